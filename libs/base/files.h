@@ -1,0 +1,48 @@
+// Whole files in and out. Reading checks what the path is before it allocates; writing goes to a sibling that is
+// renamed when complete, so that a file is there whole or not at all.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace suite {
+
+// Bytes of a regular file. Error: missing, a directory, unreadable, or larger than max_bytes.
+std::vector<std::byte> read_bytes(const std::string& path, size_t max_bytes = size_t{8} << 30);
+std::string read_text(const std::string& path, size_t max_bytes = size_t{1} << 30);
+size_t file_size(const std::string& path);  // same Errors
+bool file_exists(const std::string& path);
+
+// Reserves `path`: data goes to a temporary sibling until commit(). Destroyed without commit, it leaves nothing behind.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);  // Error when the folder is missing or not writable, or path is a directory
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  const std::string& temporary() const { return temporary_; }  // write here (any library), then commit()
+  void write(std::span<const std::byte> bytes);                // append
+  void write(std::string_view text);
+  void commit();                                               // flush, rename; Error when the disk is full
+
+ private:
+  std::string path_, temporary_;
+  int descriptor_ = -1;
+  bool done_ = false;
+};
+
+void write_file(const std::string& path, std::span<const std::byte> bytes);
+void write_file(const std::string& path, std::string_view text);
+
+// Creates a folder (and parents). Error when that fails or a file stands there.
+void make_folder(const std::string& path);
+
+// `name` as written in the file `from`: absolute names stay, others are relative to the folder of `from`.
+std::string resolve_path(const std::string& from, const std::string& name);
+
+// SHA-256 in lower-case hexadecimal.
+std::string sha256(std::span<const std::byte> bytes);
+std::string sha256(std::string_view text);
+
+}  // namespace suite

@@ -1,0 +1,51 @@
+#include "base/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <memory>
+#include <mutex>
+
+namespace suite {
+
+namespace {
+std::mutex g_mutex;
+int g_threads = 0;
+std::unique_ptr<tbb::global_control> g_control;
+std::unique_ptr<tbb::task_arena> g_arena;
+
+tbb::task_arena& arena() {
+  const std::lock_guard lock(g_mutex);
+  if (!g_arena) {
+    const int n = g_threads > 0 ? g_threads : tbb::info::default_concurrency();
+    // More threads than cores are allowed: the bits must not depend on it, and tests prove that.
+    g_control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(n));
+    g_arena = std::make_unique<tbb::task_arena>(n);
+  }
+  return *g_arena;
+}
+}  // namespace
+
+void set_threads(int count) {
+  const std::lock_guard lock(g_mutex);
+  g_threads = count;
+  g_arena.reset();
+  g_control.reset();
+}
+
+int threads() { return g_threads > 0 ? g_threads : tbb::info::default_concurrency(); }
+
+void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body) {
+  if (begin >= end) return;
+  if (grain < 1) grain = 1;
+  const size_t blocks = (end - begin + grain - 1) / grain;
+  arena().execute([&] {
+    tbb::parallel_for(
+        size_t{0}, blocks,
+        [&](size_t b) { body(begin + b * grain, std::min(end, begin + (b + 1) * grain)); }, tbb::simple_partitioner());
+  });
+}
+
+}  // namespace suite

@@ -1,0 +1,16 @@
+// Work stealing over index ranges. Results must not depend on the order of the calls.
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace suite {
+
+// 0 = one per core. Takes effect for later calls; run_app's --threads calls it.
+void set_threads(int count);
+int threads();
+
+// body(begin, end) over disjoint subranges of [begin, end) of at most `grain` indices each, in parallel.
+// The first exception thrown by a body is rethrown here.
+void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body);
+
+}  // namespace suite

@@ -1,0 +1,401 @@
+#include "base/params.h"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "base/files.h"
+
+namespace suite {
+
+struct Params::Node {
+  struct Entry {
+    std::string key;
+    int line, column;
+    const Node* value;
+    mutable bool read = false;
+  };
+  Kind kind = Kind::null;
+  int line = 0, column = 0;
+  std::string scalar;
+  bool quoted = false;
+  std::vector<const Node*> items;
+  std::vector<Entry> entries;
+  std::map<std::string, size_t, std::less<>> index;       // key -> entry
+  mutable std::set<std::string, std::less<>> asked;       // names asked of this map: the candidates for "did you mean"
+};
+
+struct Params::Document {
+  std::string file;
+  std::vector<std::string> lines;
+  std::deque<Node> nodes;
+  const Node* root = nullptr;
+
+  Where where(int line, int column) const {
+    Where w{file, line, column, {}, -1};
+    if (line >= 1 && line <= static_cast<int>(lines.size())) w.source_line = lines[line - 1];
+    return w;
+  }
+};
+
+namespace {
+
+constexpr int kMaxDepth = 200;
+constexpr size_t kMaxNodes = 50'000'000;
+
+// Builds the tree from parser events: unlike a ready-made tree this keeps duplicate keys visible and places exact.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  using Node = Params::Node;
+  explicit TreeBuilder(Params::Document& document) : document_(document) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(mark, anchor, Params::Kind::null, "", false); }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+    const bool quoted = tag == "!";
+    if (!quoted && (value.empty() || value == "~" || value == "null")) leaf(mark, anchor, Params::Kind::null, "", false);
+    else leaf(mark, anchor, Params::Kind::scalar, value, quoted);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) throw Error(at(mark), "alias to a value that is not complete yet");
+    attach(mark, found->second);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(mark, anchor, Params::Kind::list);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(mark, anchor, Params::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    Node* node;
+    YAML::anchor_t anchor;
+    bool have_key = false;
+    std::string key;
+    int key_line = 0, key_column = 0;
+  };
+
+  Where at(const YAML::Mark& mark) const { return document_.where(mark.line + 1, mark.column + 1); }
+
+  Node* make(const YAML::Mark& mark, Params::Kind kind) {
+    if (document_.nodes.size() >= kMaxNodes) throw Error(at(mark), "the document is too large", "use a binary or CSV table");
+    Node& node = document_.nodes.emplace_back();
+    node.kind = kind;
+    node.line = mark.line + 1;
+    node.column = mark.column + 1;
+    return &node;
+  }
+  void leaf(const YAML::Mark& mark, YAML::anchor_t anchor, Params::Kind kind, const std::string& text, bool quoted) {
+    if (!stack_.empty() && stack_.back().node->kind == Params::Kind::map && !stack_.back().have_key) return set_key(mark, text);
+    Node* node = make(mark, kind);
+    node->scalar = text;
+    node->quoted = quoted;
+    if (anchor) anchors_[anchor] = node;
+    attach(mark, node);
+  }
+  void set_key(const YAML::Mark& mark, const std::string& text) {
+    Open& top = stack_.back();
+    top.have_key = true;
+    top.key = text;
+    top.key_line = mark.line + 1;
+    top.key_column = mark.column + 1;
+    if (const auto found = top.node->index.find(text); found != top.node->index.end())
+      throw Error(at(mark), "duplicate key '" + text + "'",
+                  strf("first given in line %d; keep one", top.node->entries[found->second].line));
+  }
+  void attach(const YAML::Mark& mark, const Node* node) {
+    if (stack_.empty()) {
+      document_.root = node;
+      return;
+    }
+    Open& top = stack_.back();
+    if (top.node->kind == Params::Kind::list) {
+      top.node->items.push_back(node);
+      return;
+    }
+    if (!top.have_key) throw Error(at(mark), "a key must be a plain name");
+    top.node->index[top.key] = top.node->entries.size();
+    top.node->entries.push_back({top.key, top.key_line, top.key_column, node});
+    top.have_key = false;
+  }
+  void open(const YAML::Mark& mark, YAML::anchor_t anchor, Params::Kind kind) {
+    if (!stack_.empty() && stack_.back().node->kind == Params::Kind::map && !stack_.back().have_key)
+      throw Error(at(mark), "a key must be a plain name");
+    if (stack_.size() >= kMaxDepth) throw Error(at(mark), strf("nested deeper than %d", kMaxDepth));
+    stack_.push_back({make(mark, kind), anchor, false, {}, 0, 0});
+  }
+  void close() {
+    const Open done = stack_.back();
+    stack_.pop_back();
+    if (done.anchor) anchors_[done.anchor] = done.node;
+    YAML::Mark mark;
+    mark.line = done.node->line - 1;
+    mark.column = done.node->column - 1;
+    attach(mark, done.node);
+  }
+
+  Params::Document& document_;
+  std::vector<Open> stack_;
+  std::map<YAML::anchor_t, const Node*> anchors_;
+};
+
+const char* kind_name(Params::Kind kind) {
+  switch (kind) {
+    case Params::Kind::null: return "nothing";
+    case Params::Kind::scalar: return "a single value";
+    case Params::Kind::list: return "a list";
+    case Params::Kind::map: return "a map of keys";
+  }
+  return "?";
+}
+
+bool parse_double(const std::string& text, double& value) {
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  const auto [stop, code] = std::from_chars(begin, end, value);
+  return code == std::errc() && stop == end && std::isfinite(value);
+}
+
+// The parser itself recurses once per level, so depth is bounded before it runs: brackets by counting, block
+// indentation by the fact that each level needs at least one more column.
+void guard_depth(const std::string& text, const Params::Document& document) {
+  int depth = 0, deepest = 0, line = 1;
+  size_t indent = 0;
+  bool start = true, comment = false;
+  char quote = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line, start = true, comment = false, indent = 0;
+      continue;
+    }
+    if (start && (c == ' ' || c == '-' || c == '?' || c == ':')) {
+      if (++indent > 4 * kMaxDepth) throw Error(document.where(line, 1), strf("indented deeper than %d columns", 4 * kMaxDepth));
+    } else {
+      start = false;
+    }
+    if (comment) continue;
+    if (quote) {
+      if (c == quote) quote = 0;
+      continue;
+    }
+    if (c == '#') comment = true;
+    else if ((c == '"' || c == '\'') && depth > 0) quote = c;
+    else if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    else if (c == ']' || c == '}') depth = std::max(0, depth - 1);
+    if (deepest > kMaxDepth) throw Error(document.where(line, 1), strf("nested deeper than %d", kMaxDepth));
+  }
+}
+
+}  // namespace
+
+Params Params::parse_file(const std::string& path) { return parse_text(read_text(path, size_t{256} << 20), path); }
+
+Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
+  auto document = std::make_shared<Document>();
+  document->file = file_name;
+  const std::string text(yaml);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    document->lines.push_back(line);
+  }
+  if (const size_t zero = text.find('\0'); zero != std::string::npos)
+    throw Error(Where{file_name, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "YAML or JSON is expected");
+  guard_depth(text, *document);
+  try {
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    TreeBuilder builder(*document);
+    parser.HandleNextDocument(builder);
+  } catch (const YAML::Exception& e) {
+    throw Error(document->where(e.mark.line + 1, e.mark.column + 1), "malformed YAML: " + e.msg);
+  }
+  if (!document->root) throw Error(Where{file_name, 0, 0, {}, -1}, "is empty", "a YAML map is expected");
+  const Node* root = document->root;
+  return Params(std::move(document), root);
+}
+
+Params::Kind Params::kind() const { return node_->kind; }
+Where Params::where() const { return document_->where(node_->line, node_->column); }
+Where Params::where(std::string_view key) const {
+  const auto found = node_->index.find(key);
+  if (found == node_->index.end()) return where();
+  const Node::Entry& entry = node_->entries[found->second];
+  return document_->where(entry.line, entry.column);
+}
+const std::string& Params::file() const { return document_->file; }
+
+Error Params::error(std::string what, std::string hint, std::string code) const {
+  return Error(where(), std::move(what), std::move(hint), std::move(code));
+}
+
+std::optional<Params> Params::find(std::string_view key) const {
+  if (node_->kind != Kind::map) throw error(strf("expected a map with the key '%.*s', found %s", static_cast<int>(key.size()), key.data(), kind_name(node_->kind)));
+  node_->asked.emplace(key);
+  const auto found = node_->index.find(key);
+  if (found == node_->index.end()) return std::nullopt;
+  const Node::Entry& entry = node_->entries[found->second];
+  entry.read = true;
+  return Params(document_, entry.value);
+}
+
+bool Params::has(std::string_view key) const {
+  if (node_->kind != Kind::map) return false;
+  node_->asked.emplace(key);
+  return node_->index.find(key) != node_->index.end();
+}
+
+Params Params::at(std::string_view key) const {
+  if (auto found = find(key)) return *found;
+  // A near miss among the keys that are there is the likeliest cause.
+  std::vector<std::string> present;
+  for (const Node::Entry& e : node_->entries)
+    if (!e.read) present.push_back(e.key);
+  const std::string near = nearest_name(key, present);
+  throw error("the key '" + std::string(key) + "' is missing", near.empty() ? "" : "is '" + near + "' meant to be it?");
+}
+
+std::vector<std::string> Params::keys() const {
+  if (node_->kind != Kind::map) throw error(strf("expected a map, found %s", kind_name(node_->kind)));
+  std::vector<std::string> names;
+  for (const Node::Entry& e : node_->entries) names.push_back(e.key);
+  return names;
+}
+
+size_t Params::size() const { return node_->kind == Kind::map ? node_->entries.size() : node_->items.size(); }
+Params Params::operator[](size_t i) const {
+  if (node_->kind != Kind::list) throw error(strf("expected a list, found %s", kind_name(node_->kind)));
+  if (i >= node_->items.size()) throw error(strf("expected at least %zu items, found %zu", i + 1, node_->items.size()));
+  return Params(document_, node_->items[i]);
+}
+std::vector<Params> Params::items() const {
+  std::vector<Params> all;
+  if (node_->kind == Kind::scalar || node_->kind == Kind::map) all.push_back(*this);
+  for (const Node* item : node_->items) all.push_back(Params(document_, item));
+  return all;
+}
+
+std::string Params::as_text() const {
+  if (node_->kind != Kind::scalar) throw error(strf("expected a text, found %s", kind_name(node_->kind)));
+  return node_->scalar;
+}
+double Params::as_number() const {
+  double value = 0;
+  if (node_->kind != Kind::scalar || !parse_double(node_->scalar, value))
+    throw error(strf("expected a finite number, found %s", node_->kind == Kind::scalar ? ("'" + node_->scalar.substr(0, 60) + "'").c_str() : kind_name(node_->kind)));
+  return value;
+}
+double Params::as_number_in(double low, double high, const char* unit) const {
+  const double value = as_number();
+  if (!(value >= low && value <= high))
+    throw error(strf("%g is outside the valid range", value), strf("give a value from %g to %g %s", low, high, unit));
+  return value;
+}
+long long Params::as_integer(long long low, long long high) const {
+  const double value = as_number();
+  if (value != std::floor(value)) throw error("expected a whole number, found " + node_->scalar);
+  if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)))
+    throw error(node_->scalar + " is outside the valid range", strf("give a whole number from %lld to %lld", low, high));
+  return static_cast<long long>(value);
+}
+bool Params::as_bool() const {
+  const std::string text = node_->kind == Kind::scalar ? node_->scalar : "";
+  if (text == "true" || text == "yes" || text == "on") return true;
+  if (text == "false" || text == "no" || text == "off") return false;
+  throw error("expected true or false", {});
+}
+size_t Params::as_choice(std::initializer_list<const char*> names) const {
+  const std::string text = as_text();
+  std::vector<std::string> known(names.begin(), names.end());
+  for (size_t i = 0; i < known.size(); ++i)
+    if (known[i] == text) return i;
+  throw error("'" + text + "' is none of the choices here", name_hint(text, known));
+}
+std::vector<double> Params::as_numbers() const {
+  std::vector<double> values;
+  if (node_->kind != Kind::list) throw error(strf("expected a list of numbers, found %s", kind_name(node_->kind)));
+  for (const Params& item : items()) values.push_back(item.as_number());
+  return values;
+}
+std::array<double, 3> Params::as_vec3() const {
+  const std::vector<double> v = as_numbers();
+  if (v.size() != 3) throw error(strf("expected three numbers, found %zu", v.size()));
+  return {v[0], v[1], v[2]};
+}
+std::string Params::as_path() const { return resolve_path(file(), as_text()); }
+
+std::string Params::text(std::string_view key, const std::string& otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_text() : otherwise;
+}
+double Params::number(std::string_view key, double otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_number() : otherwise;
+}
+double Params::number_in(std::string_view key, double low, double high, const char* unit) const {
+  return at(key).as_number_in(low, high, unit);
+}
+double Params::number_in(std::string_view key, double low, double high, const char* unit, double otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_number_in(low, high, unit) : otherwise;
+}
+long long Params::integer(std::string_view key, long long low, long long high, long long otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_integer(low, high) : otherwise;
+}
+bool Params::boolean(std::string_view key, bool otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_bool() : otherwise;
+}
+
+namespace {
+// Visits each node once, however many aliases lead to it.
+template <class Visit>
+void walk(const Params::Node* node, std::set<const Params::Node*>& seen, const Visit& visit) {
+  if (!seen.insert(node).second) return;
+  visit(node);
+  for (const Params::Node* item : node->items) walk(item, seen, visit);
+  for (const Params::Node::Entry& e : node->entries)
+    if (e.read) walk(e.value, seen, visit);
+}
+}  // namespace
+
+std::vector<Error> Params::unread() const {
+  std::vector<Error> found;
+  std::set<const Node*> seen;
+  walk(node_, seen, [&](const Node* node) {
+    const std::vector<std::string> asked(node->asked.begin(), node->asked.end());
+    for (const Node::Entry& e : node->entries)
+      if (!e.read) found.emplace_back(document_->where(e.line, e.column), "unknown key '" + e.key + "'", name_hint(e.key, asked));
+  });
+  return found;
+}
+void Params::reject_unread() const {
+  const std::vector<Error> found = unread();
+  if (!found.empty()) throw found.front();
+}
+void Params::mark_read() const {
+  std::vector<const Node*> todo{node_};
+  std::set<const Node*> seen;
+  while (!todo.empty()) {
+    const Node* node = todo.back();
+    todo.pop_back();
+    if (!seen.insert(node).second) continue;
+    for (const Node* item : node->items) todo.push_back(item);
+    for (const Node::Entry& e : node->entries) e.read = true, todo.push_back(e.value);
+  }
+}
+
+}  // namespace suite

@@ -1,0 +1,90 @@
+#include "base/progress.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.h"
+
+namespace suite {
+
+namespace {
+std::atomic<bool> g_quiet{false};
+}
+
+void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
+
+Progress::Progress(std::string label, double total, std::string unit)
+    : label_(std::move(label)), unit_(std::move(unit)), total_(total), start_(std::chrono::steady_clock::now()),
+      next_(start_), terminal_(::isatty(2) != 0) {}
+
+Progress::~Progress() { finish(); }
+
+double Progress::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Progress::add(double amount) {
+  done_.fetch_add(amount);
+  if (g_quiet) return;
+  if (const std::unique_lock lock(mutex_, std::try_to_lock); lock.owns_lock()) draw(false);
+}
+
+void Progress::finish() {
+  const std::lock_guard lock(mutex_);
+  if (finished_) return;
+  finished_ = true;
+  if (!g_quiet) draw(true);
+}
+
+void Progress::draw(bool last) {
+  const auto now = std::chrono::steady_clock::now();
+  const double done = done_, share = total_ > 0 ? std::min(1.0, done / total_) : 1, seconds = this->seconds();
+  const double rate = seconds > 0 ? done / seconds : 0;
+  if (last) {
+    std::fprintf(stderr, "%s%s: %s %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(), human_count(done).c_str(),
+                 unit_.c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(), unit_.c_str(), terminal_ ? "\033[K" : "");
+    return;
+  }
+  const std::string left = share > 0 ? human_seconds(seconds * (1 - share) / share) : "?";
+  if (terminal_) {
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(200);
+    std::string bar(30, '.');
+    for (int i = 0; i < static_cast<int>(30 * share); ++i) bar[i] = '#';
+    std::fprintf(stderr, "\r%s [%s] %3.0f %%  %s %s/s  %s left\033[K", label_.c_str(), bar.c_str(), 100 * share,
+                 human_count(rate).c_str(), unit_.c_str(), left.c_str());
+    std::fflush(stderr);
+  } else if (const int decile = static_cast<int>(10 * share); decile > last_decile_ && decile < 10) {
+    if (now < next_) return;  // short work prints one closing line only
+    next_ = now + std::chrono::seconds(5);
+    if (last_decile_ == 0 && seconds < 2) return;
+    last_decile_ = decile;
+    std::fprintf(stderr, "%s: %d %% (%s %s/s, %s left)\n", label_.c_str(), 10 * decile, human_count(rate).c_str(),
+                 unit_.c_str(), left.c_str());
+  }
+}
+
+std::string human_seconds(double s) {
+  if (!(s < 1e9)) return "?";
+  if (s < 1e-3) return strf("%.0f us", s * 1e6);
+  if (s < 1) return strf("%.0f ms", s * 1e3);
+  if (s < 100) return strf("%.1f s", s);
+  if (s < 6000) return strf("%d min %02d s", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
+  return strf("%d h %02d min", static_cast<int>(s / 3600), static_cast<int>(s / 60) % 60);
+}
+std::string human_count(double c) {
+  if (c < 1000) return strf("%.4g", c);
+  if (c < 1e6) return strf("%.3g k", c / 1e3);
+  if (c < 1e9) return strf("%.3g M", c / 1e6);
+  return strf("%.3g G", c / 1e9);
+}
+std::string human_bytes(double b) {
+  if (b < 1000) return strf("%.0f B", b);
+  if (b < 1e6) return strf("%.3g kB", b / 1e3);
+  if (b < 1e9) return strf("%.3g MB", b / 1e6);
+  return strf("%.3g GB", b / 1e9);
+}
+
+}  // namespace suite

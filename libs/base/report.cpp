@@ -1,0 +1,115 @@
+#include "base/report.h"
+
+#include "base/json.h"
+
+namespace suite {
+
+const char* to_text(Severity severity) {
+  switch (severity) {
+    case Severity::info: return "info";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
+  }
+  return "?";
+}
+
+const IssueKind& Report::kind(const std::string& code) const {
+  for (const IssueKind& k : kinds_)
+    if (k.code == code) return k;
+  throw Bug("unlisted issue code " + code);
+}
+
+void Report::add(const std::string& code, const std::string& asset, Finding finding, size_t count) {
+  kind(code);
+  Entry& entry = entries_[{code, asset}];
+  entry.count += count;
+  if (entry.examples.size() < 3) entry.examples.push_back(std::move(finding));
+}
+
+void Report::add(const Error& error, const std::string& asset, const std::string& fallback_code) {
+  std::string code = fallback_code;
+  for (const IssueKind& k : kinds_)
+    if (k.code == error.code()) code = k.code;
+  add(code, asset, {error.where(), error.message() + (error.hint().empty() ? "" : "; " + error.hint())});
+}
+
+void Report::mute(const std::string& code) {
+  std::vector<std::string> known;
+  for (const IssueKind& k : kinds_) known.push_back(k.code);
+  for (const std::string& k : known)
+    if (k == code) {
+      muted_.insert(code);
+      return;
+    }
+  throw Error("unknown issue code '" + code + "'", name_hint(code, known));
+}
+
+size_t Report::count(Severity severity) const {
+  size_t sum = 0;
+  for (const auto& [key, entry] : entries_)
+    if (!muted_.count(key.first) && kind(key.first).severity == severity) sum += entry.count;
+  return sum;
+}
+
+size_t Report::count(const std::string& code) const {
+  size_t sum = 0;
+  for (const auto& [key, entry] : entries_)
+    if (key.first == code) sum += entry.count;
+  return sum;
+}
+
+bool Report::ok() const { return count(Severity::error) == 0 && !(strict_ && count(Severity::warning) > 0); }
+
+std::string Report::text() const {
+  std::string out;
+  for (const auto& [key, entry] : entries_) {
+    if (muted_.count(key.first)) continue;
+    const IssueKind& k = kind(key.first);
+    out += strf("%s: %s [%s] x%zu: %s\n", key.second.c_str(), to_text(k.severity), k.code.c_str(), entry.count,
+                k.summary.c_str());
+    for (const Finding& f : entry.examples) {
+      const std::string place = to_text(f.where);
+      out += "    " + (place.empty() ? "" : place + ": ") + f.message + "\n";
+    }
+    if (!k.hint.empty()) out += "    hint: " + k.hint + "\n";
+  }
+  const size_t errors = count(Severity::error), warnings = count(Severity::warning);
+  out += strf("verdict: %s (%zu errors, %zu warnings%s)\n", ok() ? "accepted" : "refused", errors, warnings,
+              strict_ ? ", strict" : "");
+  return out;
+}
+
+std::string Report::json() const {
+  Json root = Json::object();
+  root.set("schema", "suite.report/1");
+  root.set("verdict", ok() ? "accepted" : "refused");
+  root.set("errors", count(Severity::error));
+  root.set("warnings", count(Severity::warning));
+  Json list = Json::array();
+  for (const auto& [key, entry] : entries_) {
+    const IssueKind& k = kind(key.first);
+    Json item = Json::object();
+    item.set("code", k.code);
+    item.set("severity", to_text(k.severity));
+    item.set("muted", muted_.count(key.first) > 0);
+    item.set("asset", key.second);
+    item.set("summary", k.summary);
+    item.set("count", entry.count);
+    item.set("hint", k.hint);
+    Json examples = Json::array();
+    for (const Finding& f : entry.examples) {
+      Json e = Json::object();
+      e.set("file", f.where.file);
+      e.set("line", f.where.line);
+      e.set("column", f.where.column);
+      e.set("message", f.message);
+      examples.push(std::move(e));
+    }
+    item.set("examples", std::move(examples));
+    list.push(std::move(item));
+  }
+  root.set("issues", std::move(list));
+  return root.text();
+}
+
+}  // namespace suite

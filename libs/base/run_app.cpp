@@ -1,0 +1,140 @@
+#include "base/run_app.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <filesystem>
+#include <new>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+
+namespace suite {
+
+struct Cli::Impl {
+  explicit Impl(const std::string& description, const std::string& name) : app(description, name) {}
+  CLI::App app;
+};
+
+Cli::Cli(const std::string& name, const std::string& description) : impl_(new Impl(description, name)) {
+  impl_->app.get_formatter()->column_width(34);
+}
+Cli::~Cli() = default;
+
+void Cli::flag(const std::string& names, bool& value, const std::string& help) { impl_->app.add_flag(names, value, help); }
+void Cli::option(const std::string& names, std::string& value, const std::string& help, const std::string& metavar) {
+  impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
+}
+void Cli::option(const std::string& names, double& value, const std::string& help, const std::string& metavar) {
+  impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
+}
+void Cli::option(const std::string& names, long long& value, const std::string& help, const std::string& metavar) {
+  impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
+}
+void Cli::option(const std::string& names, std::vector<std::string>& values, const std::string& help, const std::string& metavar) {
+  impl_->app.add_option(names, values, help)->type_name(metavar)->allow_extra_args(false)->take_all();
+}
+void Cli::positional(const std::string& name, std::string& value, const std::string& help, bool required) {
+  impl_->app.add_option(name, value, help)->type_name("")->required(required);
+}
+void Cli::positional(const std::string& name, std::vector<std::string>& values, const std::string& help, bool required) {
+  impl_->app.add_option(name, values, help)->type_name("")->required(required);
+}
+void Cli::footer(const std::string& text) { impl_->app.footer(text); }
+bool Cli::given(const std::string& name) const { return impl_->app.count(name) > 0; }
+
+namespace {
+
+std::string g_command_line;
+
+std::shared_ptr<spdlog::logger> logger() {
+  static const auto log = [] {
+    auto made = std::make_shared<spdlog::logger>("suite", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+    made->set_pattern("%v");
+    return made;
+  }();
+  return log;
+}
+
+void remember_command_line(const std::string& name, int argc, const char* const* argv) {
+  g_command_line = name;
+  for (int i = 1; i < argc; ++i) {
+    const std::string a = argv[i];
+    const bool plain = !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") == std::string::npos;
+    g_command_line += ' ';
+    g_command_line += plain ? a : "'" + a + "'";
+  }
+}
+
+// CLI11 says "The following argument was not expected: --x"; we add the nearest name.
+int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, const std::vector<std::string>& extras) {
+  std::string message = text;
+  if (!extras.empty()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const std::string given = extras.front().substr(0, extras.front().find('='));
+    message = given.rfind('-', 0) == 0 ? "unknown option '" + given + "'" : "unexpected argument '" + given + "'";
+    if (const std::string near = nearest_name(given, known); !near.empty()) message += "; did you mean '" + near + "'?";
+  }
+  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), message.c_str(), info.name.c_str(), info.name.c_str());
+  return 2;
+}
+
+}  // namespace
+
+const std::string& command_line() { return g_command_line; }
+
+void note(const std::string& text) { logger()->info("{}", text); }
+void warn(const std::string& text) { logger()->warn("warning: {}", text); }
+
+int run_app(const AppInfo& info, int argc, const char* const* argv, const std::function<void(Cli&)>& declare,
+            const std::function<int(Cli&)>& run) {
+  std::signal(SIGPIPE, SIG_IGN);
+  remember_command_line(info.name, argc, argv);
+  if (!__builtin_cpu_supports("avx2")) {
+    std::fprintf(stderr, "%s: error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n", info.name.c_str());
+    return 1;
+  }
+  Cli cli(info.name, info.description);
+  CLI::App& app = cli.impl().app;
+  bool quiet = false;
+  long long thread_count = 0;
+  try {
+    app.set_version_flag("--version", info.name + " " + kVersion);
+    declare(cli);
+    app.add_flag("-q,--quiet", quiet, "print errors and results only");
+    app.add_option("-j,--threads", thread_count, "worker threads; 0 = one per core; the results do not depend on it")
+        ->type_name("N")->check(CLI::Range(0, 4096));
+    if (!info.footer.empty()) app.footer(info.footer);
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ExtrasError&) {
+    return usage_error(info, app, "", app.remaining());
+  } catch (const CLI::ParseError& e) {
+    return usage_error(info, app, e.what(), app.remaining());
+  }
+  Progress::set_quiet(quiet);
+  logger()->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+  set_threads(static_cast<int>(thread_count));
+  try {
+    return run(cli);
+  } catch (const UsageError& e) {
+    return usage_error(info, app, e.what(), {});
+  } catch (const Error& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: error: out of memory\n", info.name.c_str());
+    return 1;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(), e.what(), g_command_line.c_str());
+    return 3;
+  }
+}
+
+}  // namespace suite

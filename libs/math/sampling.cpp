@@ -1,0 +1,98 @@
+#include "math/sampling.h"
+
+namespace suite {
+
+namespace {
+
+// Direction numbers of the first four Sobol dimensions, generated once at compile time from the primitive polynomials
+// and initial values of Joe & Kuo (new-joe-kuo-6): d2: s=1 a=0 m=1; d3: s=2 a=1 m=1,3; d4: s=3 a=1 m=1,3,1.
+struct Polynomial {
+  int degree;
+  uint32_t coefficients;
+  uint32_t initial[3];
+};
+constexpr Polynomial kPolynomials[3] = {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}};
+
+constexpr std::array<std::array<uint32_t, 32>, 4> direction_numbers() {
+  std::array<std::array<uint32_t, 32>, 4> v{};
+  for (int i = 0; i < 32; ++i) v[0][i] = 1u << (31 - i);
+  for (int d = 1; d < 4; ++d) {
+    const Polynomial& p = kPolynomials[d - 1];
+    for (int i = 0; i < 32; ++i) {
+      if (i < p.degree) {
+        v[d][i] = p.initial[i] << (31 - i);
+      } else {
+        uint32_t x = v[d][i - p.degree] ^ (v[d][i - p.degree] >> p.degree);
+        for (int k = 1; k < p.degree; ++k)
+          if ((p.coefficients >> (p.degree - 1 - k)) & 1) x ^= v[d][i - k];
+        v[d][i] = x;
+      }
+    }
+  }
+  return v;
+}
+constexpr auto kDirections = direction_numbers();
+
+// XOR of the direction numbers of the set bits, four bits at a time: 8 look-ups instead of up to 32 branches.
+struct Nibbles {
+  uint32_t value[8][16][4];
+};
+constexpr Nibbles nibble_table() {
+  Nibbles t{};
+  for (int n = 0; n < 8; ++n)
+    for (int bits = 0; bits < 16; ++bits)
+      for (int d = 0; d < 4; ++d) {
+        uint32_t x = 0;
+        for (int k = 0; k < 4; ++k)
+          if ((bits >> k) & 1) x ^= kDirections[d][4 * n + k];
+        t.value[n][bits][d] = x;
+      }
+  return t;
+}
+constexpr Nibbles kNibbles = nibble_table();
+
+constexpr uint32_t reverse_bits(uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+// Laine-Karras style permutation: each output bit depends on lower input bits only. Constants: Vegdahl 2021.
+constexpr uint32_t laine_karras(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+}  // namespace
+
+uint32_t owen_scramble(uint32_t value, uint32_t seed) { return reverse_bits(laine_karras(reverse_bits(value), seed)); }
+
+uint32_t sobol4(uint32_t index, int dimension) { return sobol4(index)[dimension]; }
+
+std::array<uint32_t, 4> sobol4(uint32_t index) {
+  std::array<uint32_t, 4> x{};
+  for (int n = 0; index; ++n, index >>= 4) {
+    const uint32_t* row = kNibbles.value[n][index & 15];
+    for (int d = 0; d < 4; ++d) x[d] ^= row[d];
+  }
+  return x;
+}
+
+std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const {
+  // A nested shuffle of the sample index decorrelates the blocks and keeps every power-of-two prefix stratified.
+  const uint64_t key = hash_of(key_, block);
+  const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(sample), static_cast<uint32_t>(key)));
+  const std::array<uint32_t, 4> point = sobol4(shuffled);
+  const uint64_t a = mix64(key), b = mix64(key ^ 0x5bd1e995ull);
+  return {unit_double(owen_scramble(point[0], static_cast<uint32_t>(a))),
+          unit_double(owen_scramble(point[1], static_cast<uint32_t>(a >> 32))),
+          unit_double(owen_scramble(point[2], static_cast<uint32_t>(b))),
+          unit_double(owen_scramble(point[3], static_cast<uint32_t>(b >> 32)))};
+}
+
+}  // namespace suite

@@ -1,0 +1,65 @@
+#include "optics/models.h"
+
+#include "optics/models/rows.h"
+
+namespace suite {
+
+std::span<const ModelRow> models() {
+  static const std::vector<ModelRow> table{lambert_row(), mirror_row()};
+  return table;
+}
+
+const ModelRow& find_model(const std::string& name, const Where& where) {
+  std::vector<std::string> known;
+  for (const ModelRow& row : models()) {
+    if (row.name == name) return row;
+    known.push_back(row.name);
+  }
+  throw Error(where, "unknown model '" + name + "'", name_hint(name, known), "OP101");
+}
+
+namespace {
+void check_range(const ModelSpec& spec, const ModelParameter& p, double value, const Where& where) {
+  if (!(value >= p.low && value <= p.high))
+    throw Error(where, strf("model '%s': %s = %g is outside its range", spec.model.c_str(), p.name.c_str(), value),
+                strf("give %g to %g %s", p.low, p.high, p.unit.c_str()), "OP103");
+}
+}  // namespace
+
+void check_model(ModelSpec& spec, const Where& where) {
+  const ModelRow& row = find_model(spec.model, where);
+  std::vector<std::string> known;
+  for (const ModelParameter& p : row.parameters) known.push_back(p.name);
+  auto reject = [&](const std::string& name, ModelParameter::Kind kind) {
+    for (const ModelParameter& p : row.parameters)
+      if (p.name == name && p.kind == kind) return;
+    throw Error(where, "model '" + spec.model + "' has no parameter '" + name + "'", name_hint(name, known), "OP102");
+  };
+  // A number given for a curve parameter is a constant curve.
+  for (const ModelParameter& p : row.parameters)
+    if (p.kind == ModelParameter::Kind::curve)
+      if (const auto n = spec.numbers.find(p.name); n != spec.numbers.end()) {
+        spec.curves[p.name] = Curve::constant(n->second);
+        spec.numbers.erase(n);
+      }
+  for (const auto& [name, value] : spec.numbers) reject(name, ModelParameter::Kind::number);
+  for (const auto& [name, value] : spec.curves) reject(name, ModelParameter::Kind::curve);
+  for (const auto& [name, value] : spec.texts) reject(name, ModelParameter::Kind::text);
+  for (const ModelParameter& p : row.parameters) {
+    const bool given = spec.numbers.count(p.name) || spec.curves.count(p.name) || spec.texts.count(p.name);
+    if (!given && p.required) throw Error(where, "model '" + spec.model + "' needs '" + p.name + "'", p.summary + " [" + p.unit + "]", "OP104");
+    if (!given && p.kind == ModelParameter::Kind::number) spec.numbers[p.name] = p.otherwise;
+    if (!given && p.kind == ModelParameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
+    if (p.kind == ModelParameter::Kind::number) check_range(spec, p, spec.numbers.at(p.name), where);
+    if (p.kind == ModelParameter::Kind::curve) {
+      check_range(spec, p, spec.curves.at(p.name).min(), where);
+      check_range(spec, p, spec.curves.at(p.name).max(), where);
+    }
+  }
+}
+
+std::unique_ptr<const ScatterModel> bake(const ModelSpec& spec, const SpectralState& state) {
+  return find_model(spec.model).make(spec, state);
+}
+
+}  // namespace suite

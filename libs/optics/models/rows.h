@@ -1,0 +1,10 @@
+// One line per model file: the row it adds to the table in models.cpp.
+#pragma once
+#include "optics/models.h"
+
+namespace suite {
+
+ModelRow lambert_row();
+ModelRow mirror_row();
+
+}  // namespace suite

@@ -1,0 +1,118 @@
+// The scene: plain tables, no behaviour. Written by scene-prep, loaded by the renderer, immutable afterwards.
+// Everything is in the scene's ENU frame, metres; base geometry has its own local frame.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+#include "optics/model_spec.h"
+
+namespace suite {
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+// Faces of one `usemtl`/`g` run: a range of triangles with one material.
+struct Part {
+  std::string name;
+  uint32_t first_triangle = 0, triangle_count = 0;
+  uint32_t material = kNone;            // index into Scene::materials
+};
+
+// Base geometry, in local metres. Vertices are float relative to a double origin, so that georeferenced coordinates
+// lose nothing. Arrays are laid out for the ray tracer to share: positions has 3 floats a vertex and one pad float.
+struct Mesh {
+  std::string name;
+  Vec3 origin;                          // local frame position of (0, 0, 0) of the floats
+  std::vector<float> positions;         // 3 * vertex_count + 1
+  std::vector<uint32_t> indices;        // 3 * triangle_count
+  std::vector<uint32_t> normals;        // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
+  std::vector<float> uvs;               // 2 per vertex; empty = none
+  std::vector<Part> parts;              // cover all triangles, ascending
+  size_t vertex_count() const { return positions.empty() ? 0 : (positions.size() - 1) / 3; }
+  size_t triangle_count() const { return indices.size() / 3; }
+};
+
+// What a placement puts somewhere.
+enum class TargetKind : uint8_t { mesh, group, primitive };
+
+// Exact surfaces, in the primitive's own local frame; see FORMAT.md of scene_text for each one's parameters.
+enum class PrimitiveKind : uint8_t { plane, disk, box, sphere, cone, cylinder, sinusoid };
+struct Primitive {
+  std::string name;
+  PrimitiveKind kind = PrimitiveKind::sphere;
+  std::vector<double> parameters;
+  uint32_t material = kNone;
+};
+
+// An instance. `to_parent` may mirror and scale; dynamic placements (a track) come with motion.
+struct Placement {
+  Affine3 to_parent;
+  TargetKind kind = TargetKind::mesh;
+  uint32_t target = 0;                  // index into meshes, groups or primitives
+  uint32_t material_override = kNone;
+  uint32_t tag = kNone;                 // index into Scene::tags, for truth
+};
+
+// A named group of placements; group 0 is the root and is in the ENU frame.
+struct Group {
+  std::string name;
+  std::vector<Placement> placements;
+};
+
+// Where a vertical drape puts the pixels of a map: pixel (0, 0) has its outer corner at `origin`, columns go along +x
+// (east) and rows along -y (south) with the given ground sample distances (negative flips).
+struct Drape {
+  double origin_x = 0, origin_y = 0;    // m, scene ENU
+  double gsd_x = 1, gsd_y = 1;          // m
+  enum class Extend : uint8_t { clamp, repeat, none } extend = Extend::clamp;
+};
+enum class Projection : uint8_t { drape, uv };
+
+// A class map: one material per pixel.
+struct ClassMap {
+  std::string name;
+  uint32_t width = 0, height = 0;
+  std::vector<uint16_t> classes;        // row-major, top row first: indices into `materials`
+  std::vector<uint32_t> materials;      // class -> Scene::materials
+  Projection projection = Projection::drape;
+  Drape drape;
+};
+
+// Materials that a map decides: a material whose surface is looked up per point.
+struct MapBinding {
+  uint32_t material = kNone;            // the material id that geometry carries
+  uint32_t class_map = kNone;           // index into Scene::class_maps
+};
+
+// The ENU tangent frame on WGS84.
+struct GeodeticOrigin {
+  double latitude_deg = 0, longitude_deg = 0;
+  double ellipsoid_height_m = 0;
+  bool given = false;
+};
+
+struct Scene {
+  std::string name, description, author;
+  GeodeticOrigin origin;
+  std::vector<Mesh> meshes;
+  std::vector<Primitive> primitives;
+  std::vector<Group> groups;            // [0] = root
+  std::vector<Material> materials;
+  std::vector<ClassMap> class_maps;
+  std::vector<MapBinding> map_bindings;
+  std::vector<std::string> tags;
+  Box3 bounds;                          // ENU
+};
+
+// Checks every index and size of a scene that was read from a file; Error naming the table otherwise.
+void check_scene(const Scene& scene, const std::string& file);
+
+// Octahedral encoding of unit vectors in 2 x 16 bits; error below 5e-5 rad.
+// Based on: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.
+uint32_t oct_encode(Dir direction);
+Dir oct_decode(uint32_t code);
+
+}  // namespace suite

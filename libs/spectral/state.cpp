@@ -1,0 +1,176 @@
+#include "spectral/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace suite {
+
+namespace {
+void check_band(const std::string& name, double center, double width) {
+  if (!(center > 0) || !std::isfinite(center)) throw Error(strf("band '%s': centre %g um is not a wavelength", name.c_str(), center));
+  if (!(width > 0) || !(width < 2 * center)) throw Error(strf("band '%s': width %g um is not between 0 and twice the centre", name.c_str(), width));
+}
+}  // namespace
+
+Band Band::gaussian(std::string name, double center, double fwhm) {
+  check_band(name, center, fwhm);
+  // exp(-4 ln2 (d/fwhm)^2) = 1e-4 at d = 1.8226 fwhm. 256 chords keep the curve within 2e-5 of the peak.
+  const double half = fwhm * std::sqrt(std::log(1e4) / (4 * std::log(2.0)));
+  std::vector<double> x, y;
+  for (int i = -128; i <= 128; ++i) {
+    const double d = half * i / 128.0;
+    if (center + d <= 0) continue;
+    x.push_back(center + d);
+    y.push_back(std::exp(-4 * std::log(2.0) * (d / fwhm) * (d / fwhm)));
+  }
+  return {std::move(name), Curve(std::move(x), std::move(y), Outside::zero), center, fwhm};
+}
+
+Band Band::rectangular(std::string name, double center, double width) {
+  check_band(name, center, width);
+  return {std::move(name), Curve({center - width / 2, center + width / 2}, {1, 1}, Outside::zero), center, width};
+}
+
+Band Band::triangular(std::string name, double center, double fwhm) {
+  check_band(name, center, fwhm);
+  const double low = std::max(center - fwhm, 1e-6 * center);
+  return {std::move(name), Curve({low, center, center + fwhm}, {0, 1, 0}, Outside::zero), center, fwhm};
+}
+
+Band Band::tabulated(std::string name, const Curve& response, const Where& where) {
+  if (response.min() < 0) throw Error(where, "band '" + name + "': the response is negative", "responses are at least 0");
+  if (!(response.max() > 0) || response.wavelength_um().size() < 2)
+    throw Error(where, "band '" + name + "': the response is zero everywhere", "give at least two wavelengths and one positive value");
+  // Cut leading and trailing zeros: the support, not the table, decides which curves must cover the band.
+  const auto& x = response.wavelength_um();
+  const auto& y = response.value();
+  size_t first = 0, last = y.size() - 1;
+  while (y[first + 1] == 0 && y[first] == 0) ++first;
+  while (y[last - 1] == 0 && y[last] == 0) --last;
+  const Curve cut(std::vector<double>(x.begin() + first, x.begin() + last + 1), std::vector<double>(y.begin() + first, y.begin() + last + 1), Outside::zero, where);
+  double area = 0, moment = 0;
+  const auto& cx = cut.wavelength_um();
+  const auto& cy = cut.value();
+  for (size_t i = 1; i < cx.size(); ++i) {
+    const double a = 0.5 * (cy[i] + cy[i - 1]) * (cx[i] - cx[i - 1]);
+    area += a;
+    moment += a * 0.5 * (cx[i] + cx[i - 1]);
+  }
+  const double half = 0.5 * cut.max();
+  double low = cx.front(), high = cx.back();
+  for (size_t i = 1; i < cx.size(); ++i)
+    if (cy[i - 1] < half && cy[i] >= half) {
+      low = cx[i - 1] + (half - cy[i - 1]) / (cy[i] - cy[i - 1]) * (cx[i] - cx[i - 1]);
+      break;
+    }
+  for (size_t i = cx.size() - 1; i > 0; --i)
+    if (cy[i] < half && cy[i - 1] >= half) {
+      high = cx[i - 1] + (cy[i - 1] - half) / (cy[i - 1] - cy[i]) * (cx[i] - cx[i - 1]);
+      break;
+    }
+  return {std::move(name), cut, moment / area, high - low};
+}
+
+std::vector<int> SpectralState::knot_of_bin() const {
+  std::vector<int> nearest(bins.size(), 0);
+  for (size_t b = 0; b < bins.size(); ++b)
+    for (size_t k = 1; k < knots.size(); ++k)
+      if (std::fabs(bins[knots[k]].center_um() - bins[b].center_um()) < std::fabs(bins[knots[nearest[b]]].center_um() - bins[b].center_um()))
+        nearest[b] = static_cast<int>(k);
+  return nearest;
+}
+
+std::vector<float> SpectralState::sample(const Curve& curve) const {
+  std::vector<float> v(bins.size());
+  for (size_t i = 0; i < bins.size(); ++i) v[i] = static_cast<float>(curve.mean(bins[i].low_um, bins[i].high_um));
+  return v;
+}
+
+std::string SpectralState::text() const { return strf("%.4g-%.4g um, %zu bins, reference %.4g um", low_um, high_um, bins.size(), reference_um); }
+
+SpectralState make_state(std::span<const Band> bands, double step, double reference_um, size_t knot_count) {
+  if (bands.empty()) throw Error("a spectral state needs at least one band");
+  if (!(step > 0) || !std::isfinite(step)) throw Error(strf("the spectral step must be positive, found %g um", step));
+  std::vector<std::pair<double, double>> spans;
+  double weight = 0, moment = 0;
+  for (const Band& b : bands) {
+    spans.emplace_back(b.low_um(), b.high_um());
+    const double area = b.response.integral(b.low_um(), b.high_um());
+    weight += area;
+    moment += area * b.center_um;
+  }
+  // Merge the supports into disjoint intervals, then cut each at multiples of the step.
+  std::sort(spans.begin(), spans.end());
+  std::vector<std::pair<double, double>> merged;
+  for (const auto& s : spans) {
+    if (!merged.empty() && s.first <= merged.back().second) merged.back().second = std::max(merged.back().second, s.second);
+    else merged.push_back(s);
+  }
+  SpectralState state;
+  state.low_um = merged.front().first;
+  state.high_um = merged.back().second;
+  for (const auto& [low, high] : merged) {
+    double count = 0;
+    for (const auto& m : merged) count += (m.second - m.first) / step + 2;
+    if (count > 100000) throw Error(strf("a step of %g um needs about %.0f spectral bins, at most 100000 are carried", step, count), "use a larger step or more states");
+    double edge = low;
+    while (edge < high) {
+      double next = (std::floor(edge / step * (1 + 1e-12)) + 1) * step;
+      if (next > high - 0.25 * step) next = high;  // no slivers at the end
+      if (next - edge < 0.25 * step && next < high) next += step;  // nor at the start
+      next = std::min(next, high);
+      state.bins.push_back({edge, next});
+      edge = next;
+    }
+  }
+  state.reference_um = reference_um > 0 ? reference_um : moment / weight;
+  size_t reference = 0;
+  for (size_t i = 0; i < state.bins.size(); ++i)
+    if (std::fabs(state.bins[i].center_um() - state.reference_um) < std::fabs(state.bins[reference].center_um() - state.reference_um)) reference = i;
+  state.knots.push_back(reference);
+  const size_t wanted = std::min({knot_count, size_t{8}, state.bins.size()});
+  for (size_t k = 0; state.knots.size() < wanted && k < wanted; ++k) {
+    // Evenly over the bins, first and last included, so that every band has a knot near it.
+    const size_t i = wanted > 1 ? (k * (state.bins.size() - 1) + (wanted - 1) / 2) / (wanted - 1) : reference;
+    if (std::find(state.knots.begin(), state.knots.end(), i) == state.knots.end()) state.knots.push_back(i);
+  }
+  return state;
+}
+
+BandProjection::BandProjection(const SpectralState& state, std::span<const Band> bands) {
+  for (const Band& band : bands) {
+    Row row;
+    const double total = band.response.integral(band.low_um(), band.high_um());
+    double sum = 0;
+    bool open = false;
+    for (size_t k = 0; k < state.bins.size(); ++k) {
+      const Bin& bin = state.bins[k];
+      if (bin.high_um <= band.low_um() || bin.low_um >= band.high_um()) {
+        if (open) row.weights.push_back(0);
+        continue;
+      }
+      if (!open) row.first = k, open = true;
+      row.weights.push_back(band.response.integral(bin.low_um, bin.high_um) / total);
+      sum += row.weights.back();
+    }
+    if (!(sum > 0.999)) throw Error("band '" + band.name + "' is not covered by the bins of its spectral state");
+    for (double& w : row.weights) w /= sum;
+    while (!row.weights.empty() && row.weights.back() == 0) row.weights.pop_back();
+    rows_.push_back(std::move(row));
+  }
+}
+
+void BandProjection::apply(std::span<const double> in, std::span<double> out) const {
+  for (size_t b = 0; b < rows_.size(); ++b) {
+    double sum = 0;
+    for (size_t i = 0; i < rows_[b].weights.size(); ++i) sum += rows_[b].weights[i] * in[rows_[b].first + i];
+    out[b] = sum;
+  }
+}
+
+double BandProjection::weight(size_t band, size_t bin) const {
+  const Row& row = rows_[band];
+  return bin >= row.first && bin < row.first + row.weights.size() ? row.weights[bin - row.first] : 0;
+}
+
+}  // namespace suite

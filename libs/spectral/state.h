@@ -1,0 +1,75 @@
+// Bands, spectral states and the quadrature between them. A state is what rides on one path: a window, a reference
+// wavelength, and the sample bins at which radiance is carried. Quantities are bin averages, and a band's radiance is
+// integral(L R) / integral(R) over those bins.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spectral/curve.h"
+
+namespace suite {
+
+// A channel of an instrument: relative response, zero outside its support.
+struct Band {
+  std::string name;
+  Curve response;          // dimensionless, >= 0, Outside::zero
+  double center_um = 0;    // reported centre
+  double fwhm_um = 0;
+  double low_um() const { return response.low_um(); }
+  double high_um() const { return response.high_um(); }
+
+  // Gaussian by full width at half maximum, cut where the response falls below 1e-4 of its peak.
+  static Band gaussian(std::string name, double center_um, double fwhm_um);
+  static Band rectangular(std::string name, double center_um, double width_um);
+  static Band triangular(std::string name, double center_um, double fwhm_um);
+  // center = response-weighted mean wavelength, fwhm = between the outermost half-maximum crossings.
+  static Band tabulated(std::string name, const Curve& response, const Where& where = {});
+};
+
+struct Bin {
+  double low_um, high_um;
+  double center_um() const { return 0.5 * (low_um + high_um); }
+};
+
+// One spectral state (paper, section III-C): what the radiometry core is primed for.
+struct SpectralState {
+  double low_um = 0, high_um = 0;   // the window
+  double reference_um = 0;          // drives directions and convergence
+  std::vector<Bin> bins;            // ascending, not overlapping, inside the window; gaps where no band looks
+  std::vector<size_t> knots;        // <= 8 indices into bins: where the shape of scattering is drawn; knots[0] = reference
+
+  size_t size() const { return bins.size(); }
+  size_t reference_bin() const { return knots.at(0); }
+  // Index of the knot nearest in wavelength to each bin.
+  std::vector<int> knot_of_bin() const;
+  // Bin averages of a curve. Error when the curve does not cover them.
+  std::vector<float> sample(const Curve& curve) const;
+  // A short text that identifies the state in messages and logs: "0.440-0.880 um, 45 bins".
+  std::string text() const;
+};
+
+// bins: at most `step_um` wide, edges aligned to multiples of the step, only where some band responds.
+// reference_um = 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the
+// reference first. Errors: no bands, step not positive, more than 100 000 bins.
+SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
+
+// Weights that turn bin radiances into band radiances: sum over bins of weight = 1 for each band.
+class BandProjection {
+ public:
+  BandProjection(const SpectralState& state, std::span<const Band> bands);
+  size_t bands() const { return rows_.size(); }
+  // out[b] = sum_k weight[b][k] in[k]; in.size() >= bins of the state
+  void apply(std::span<const double> in, std::span<double> out) const;
+  double weight(size_t band, size_t bin) const;
+
+ private:
+  struct Row {
+    size_t first = 0;
+    std::vector<double> weights;
+  };
+  std::vector<Row> rows_;
+};
+
+}  // namespace suite

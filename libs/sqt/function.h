@@ -1,0 +1,47 @@
+// A scattering function as sqt-fit sees it: something measured or modelled that can be asked at any pair of directions,
+// or a list of scattered samples.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace suite::sqt {
+
+// hemisphere: `in` on the same side as `out` (BRDF). sphere: both sides (BTDF, BSDF, phase functions).
+enum class Domain { hemisphere, sphere };
+
+// What the values mean. bsdf: 1/sr, no cosine (the weight is value * |cos in|). phase: 1/sr over the sphere, no cosine,
+// normalised to the single-scattering albedo. intensity: relative radiant intensity of a lamp over `in`, no cosine;
+// `out` is ignored.
+enum class Quantity { bsdf, phase, intensity };
+
+class Function {
+ public:
+  struct Info {
+    std::string name;                       // for provenance: material or model name
+    std::string source;                     // format and conventions in one line ("MERL .binary, bins at centres")
+    std::vector<double> wavelength_um;      // one per channel; RGB data use nominal 0.65, 0.55, 0.45
+    std::vector<std::string> channel_names; // "R", "G", "B" or empty
+    Domain domain = Domain::hemisphere;
+    Quantity quantity = Quantity::bsdf;
+    bool isotropic = true;                  // depends on phi_i - phi_o only
+    bool bilateral = true;                  // f(phi) = f(-phi); only meaningful when isotropic
+  };
+  virtual ~Function() = default;
+  virtual const Info& info() const = 0;
+  // One value per channel. Directions are unit vectors, out.z > 0 for surfaces. NaN in a channel = no valid data there
+  // (below the horizon, missing measurement). Thread-safe.
+  virtual void value(Dir out, Dir in, std::span<double> f) const = 0;
+};
+
+// Scattered measurements (goniometer tables, raw sample text): value per channel for each pair.
+struct Samples {
+  Function::Info info;
+  std::vector<Dir> out, in;                 // same length n
+  std::vector<double> value;                // n x channels, row-major; NaN = invalid
+};
+
+}  // namespace suite::sqt

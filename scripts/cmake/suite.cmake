@@ -1,0 +1,84 @@
+# The house rules of the build: one function per kind of target, and a configuration that fails when a library looks
+# up or to its right. The order below is the drawing in README.md read row by row from the ground, left to right.
+set(SUITE_ORDER base math  spectral motion sqt  optics thermal scene mesh  sensor trace surface radiometry scheduler)
+set(SUITE_ROW_OF_base 0)
+set(SUITE_ROW_OF_math 0)
+foreach(lib spectral motion sqt)
+  set(SUITE_ROW_OF_${lib} 1)
+endforeach()
+foreach(lib optics thermal scene mesh)
+  set(SUITE_ROW_OF_${lib} 2)
+endforeach()
+foreach(lib sensor trace surface radiometry scheduler)
+  set(SUITE_ROW_OF_${lib} 3)
+endforeach()
+
+# Flags every target of ours is built with; vendors' headers are system headers and stay out of the warnings.
+add_library(suite_flags INTERFACE)
+target_compile_features(suite_flags INTERFACE cxx_std_20)
+target_compile_options(suite_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror
+                                             -ffp-contract=off -march=${SUITE_ARCH})
+target_include_directories(suite_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
+if(SUITE_SANITIZE)
+  target_compile_options(suite_flags INTERFACE -fsanitize=${SUITE_SANITIZE} -fno-omit-frame-pointer
+                                               -fno-sanitize-recover=all)
+  target_link_options(suite_flags INTERFACE -fsanitize=${SUITE_SANITIZE})
+endif()
+
+function(_suite_target name sources uses vendor)
+  add_library(${name} STATIC ${sources})
+  target_link_libraries(${name} PUBLIC suite_flags)
+  foreach(use ${uses})
+    target_link_libraries(${name} PUBLIC ${use})
+  endforeach()
+  foreach(lib ${vendor})
+    target_link_libraries(${name} PRIVATE ${lib})
+  endforeach()
+endfunction()
+
+# suite_library(<name> ROW n SOURCES ... USES ... VENDOR ...): a library of libs/. USES may name only libraries below or
+# to the left; vendors are linked PRIVATE.
+function(suite_library name)
+  cmake_parse_arguments(A "" "ROW" "SOURCES;USES;VENDOR" ${ARGN})
+  if(NOT "${A_ROW}" STREQUAL "${SUITE_ROW_OF_${name}}")
+    message(FATAL_ERROR "libs/${name} says row '${A_ROW}', the drawing in scripts/cmake/suite.cmake says '${SUITE_ROW_OF_${name}}'")
+  endif()
+  list(FIND SUITE_ORDER ${name} mine)
+  foreach(use ${A_USES})
+    list(FIND SUITE_ORDER ${use} theirs)
+    if(theirs EQUAL -1 OR theirs GREATER_EQUAL mine)
+      message(FATAL_ERROR "libs/${name} uses '${use}', which is above it, to its right, or no library of libs/")
+    endif()
+  endforeach()
+  _suite_target(${name} "${A_SOURCES}" "${A_USES}" "${A_VENDOR}")
+endfunction()
+
+# suite_format(<name> SOURCES ... USES ... VENDOR ...): a reader/writer of formats/, target format_<name>.
+function(suite_format name)
+  cmake_parse_arguments(A "" "" "SOURCES;USES;VENDOR" ${ARGN})
+  _suite_target(format_${name} "${A_SOURCES}" "${A_USES}" "${A_VENDOR}")
+endfunction()
+
+# suite_app(<name> SOURCES ... USES ... VENDOR ...): an executable of apps/. All but main.cpp go into a library so that tests can link it.
+function(suite_app name)
+  cmake_parse_arguments(A "" "" "SOURCES;USES;VENDOR" ${ARGN})
+  string(REPLACE "-" "_" library app_${name})
+  _suite_target(${library} "${A_SOURCES}" "${A_USES}" "${A_VENDOR}")
+  add_executable(${name} main.cpp)
+  target_link_libraries(${name} PRIVATE ${library})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# suite_test(<name> LABEL label SOURCES ... USES ... VENDOR ...): a GoogleTest executable, one ctest entry per executable.
+function(suite_test name)
+  cmake_parse_arguments(A "" "LABEL;TIMEOUT" "SOURCES;USES;VENDOR" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE suite_flags test_support ${A_USES} ${A_VENDOR} GTest::gtest GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT 300)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}" TIMEOUT ${A_TIMEOUT})
+endfunction()

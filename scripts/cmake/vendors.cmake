@@ -1,0 +1,63 @@
+# Every third-party library the suite may link, as one target vendor::<name> each. Its one home is in README.md's table.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(OpenSSL REQUIRED)
+find_package(LibLZMA REQUIRED)
+find_package(embree 3 REQUIRED)
+
+function(suite_vendor name)  # suite_vendor(<name> target-or-library...)
+  add_library(vendor_${name} INTERFACE)
+  target_link_libraries(vendor_${name} INTERFACE ${ARGN})
+  add_library(vendor::${name} ALIAS vendor_${name})
+endfunction()
+
+suite_vendor(tbb TBB::tbb Threads::Threads)
+suite_vendor(fmt fmt::fmt)
+suite_vendor(spdlog spdlog::spdlog)
+suite_vendor(cli11 CLI11::CLI11)
+suite_vendor(yaml yaml-cpp)
+suite_vendor(pugixml pugixml::pugixml)
+suite_vendor(json nlohmann_json::nlohmann_json)
+suite_vendor(crypto OpenSSL::Crypto)
+suite_vendor(lzma LibLZMA::LibLZMA)
+suite_vendor(embree embree)
+
+# Debian's CMake files of these two name targets that its packages do not ship; their pkg-config files are right.
+pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)
+pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(ERFA REQUIRED IMPORTED_TARGET erfa)
+suite_vendor(geographiclib PkgConfig::GEOGRAPHICLIB)
+suite_vendor(openimageio PkgConfig::OPENIMAGEIO)
+suite_vendor(erfa PkgConfig::ERFA)
+
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+suite_vendor(hdf5 PkgConfig::HDF5)
+
+find_library(GEOTIFF_LIBRARY geotiff REQUIRED)
+find_path(GEOTIFF_INCLUDE geotiff.h PATH_SUFFIXES geotiff REQUIRED)
+pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
+suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
+target_include_directories(vendor_geotiff SYSTEM INTERFACE ${GEOTIFF_INCLUDE})
+
+find_package(tinyobjloader REQUIRED)
+suite_vendor(tinyobjloader tinyobjloader::tinyobjloader)
+
+# OpenMesh and CGAL: headers in few translation units, both in libs/mesh only.
+find_package(OpenMesh REQUIRED)
+suite_vendor(openmesh OpenMeshCore)
+find_package(CGAL REQUIRED)
+suite_vendor(cgal CGAL::CGAL)
+
+if(SUITE_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+  pkg_check_modules(CHEALPIX REQUIRED IMPORTED_TARGET chealpix)
+  suite_vendor(chealpix PkgConfig::CHEALPIX)
+endif()
