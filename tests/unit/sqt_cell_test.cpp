@@ -51,7 +51,9 @@ TEST(Cell, CodeHoldsOrderAndIndex) {
       EXPECT_EQ(id.order(), order);
       EXPECT_EQ(id.index(), index);
       EXPECT_EQ(cell_at(order, xy_of(id)), id);
-      if (order > 0) EXPECT_EQ(id.parent().child(index % 4), id);
+      if (order > 0) {
+        EXPECT_EQ(id.parent().child(index % 4), id);
+      }
     }
 }
 
@@ -79,7 +81,9 @@ TEST(Cell, NeighboursTouchAndAreMutual) {
         seen.insert(n.code);
         const auto back = edge_neighbours(n);
         EXPECT_NE(std::find(back.begin(), back.end(), id), back.end());
-        if (order > 1) EXPECT_LT(angle_between(center_of(id), center_of(n)), 2.2 * std::sqrt(cell_solid_angle(order)));
+        if (order > 1) {
+          EXPECT_LT(angle_between(center_of(id), center_of(n)), 2.2 * std::sqrt(cell_solid_angle(order)));
+        }
       }
       EXPECT_EQ(seen.size(), 4u);
     }
@@ -90,7 +94,7 @@ TEST(Cell, MirrorImageIsTheCellOfTheMirroredDirection) {
   for (int i = 0; i < 100000; ++i) {
     const Dir d = random_dir(rng);
     const int order = i % 9;
-    EXPECT_EQ(mirrored(cell_of(d, order)), cell_of({d.x, -d.y, d.z}, order));
+    EXPECT_EQ(mirrored(cell_of(d, order)), cell_of(Dir{d.x, -d.y, d.z}, order));
   }
 }
 
