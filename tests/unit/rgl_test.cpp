@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <lzma.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -140,9 +141,10 @@ TEST(Rgl, AgreesWithTheMerlTableOfTheSameMaterial) {
           table->value(p.out, p.in, b);
           if (std::isnan(b[0])) continue;
           ++compared;
-          // The other reader works in float throughout, which costs up to 4e-5 on the chrome film.
-          for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(a[c], b[c], 1e-4 * b[c] + 1e-6) << name << ' ' << i << ' ' << j << ' ' << k << ' ' << c;
+          // The other reader works in float throughout: up to 5e-5 of the brightest channel; the red of the chrome film
+          // is often a difference near zero of values outside the gamut and has no relative precision of its own.
+          const double tolerance = 1e-4 * std::max({b[0], b[1], b[2]});
+          for (int c = 0; c < 3; ++c) ASSERT_NEAR(a[c], b[c], tolerance) << name << ' ' << i << ' ' << j << ' ' << k;
         }
     EXPECT_GT(compared, 20000u);
   }
