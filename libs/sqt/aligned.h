@@ -92,6 +92,18 @@ std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<c
 std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<AlignedSheet>& sheets,
                              const AlignedTotals& totals, const std::vector<double>& wavelength_um);
 
+// Codes totals and scale. The numbers are rounded in place to what a decoder sees (relative steps of 1/2000).
+std::vector<std::byte> encode_totals(AlignedTotals& totals, size_t channels);
+// Fills magnitudes, log2_scale (and delta, when has_delta); theta, phi_count and magnitude_um must be set.
+void decode_totals(std::span<const std::byte> bytes, size_t channels, bool has_delta, AlignedTotals& totals);
+
+// A whole fit at a quality: trees, totals, scale.
+struct AlignedFit {
+  AlignedData data;
+  std::vector<std::byte> totals_bytes, sheets_bytes;
+};
+AlignedFit encode_aligned(const AlignedSource& source, double quality);
+
 // Checks every invariant. Error naming the fault.
 std::shared_ptr<const Bundle> make_bundle(AlignedData data);
 

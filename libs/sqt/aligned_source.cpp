@@ -183,7 +183,8 @@ AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& 
     }
     data.compute_slopes(begin, end);
     for (size_t i = begin; i < end; ++i)
-      if (pyramid.at(data.node(i).id.code).divided) data.divide(i), parent.resize(data.size(), static_cast<ptrdiff_t>(i));
+      if (pyramid.at(data.node(i).id.code).divided)
+        data.divide(i), parent.resize(data.size(), static_cast<ptrdiff_t>(i));
     begin = end;
   }
   return sheet;

@@ -74,7 +74,8 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
   else
     theta_.push_back(0);
   for (const double theta : theta_) {
-    const std::vector<double> W = integrate([&](Dir o, Dir i, std::span<double> f) { function_.value(o, i, f); }, dir_from_angles(theta, 0.3));
+    const std::vector<double> W =
+        integrate([&](Dir o, Dir i, std::span<double> f) { function_.value(o, i, f); }, dir_from_angles(theta, 0.3));
     total_.insert(total_.end(), W.begin(), W.end());
     for (const double t : W) findings_.largest_total = std::max(findings_.largest_total, t);
   }
@@ -88,7 +89,8 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
       continue;
     }
     all += 1;
-    for (size_t c = 0; c < channels_; ++c) negative += value_[n * channels_ + c] < 0 ? 1.0 / static_cast<double>(channels_) : 0;
+    for (size_t c = 0; c < channels_; ++c)
+      negative += value_[n * channels_ + c] < 0 ? 1.0 / static_cast<double>(channels_) : 0;
     if (!p.narrow || !weighted_ || p.in.z <= 0) continue;
     function_.value(p.in, p.out, back);
     for (size_t c = 0; c < channels_; ++c) {
@@ -102,7 +104,8 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
   findings_.invalid_share = all > 0 ? invalid / all : 0;
 }
 
-// Totals over an order-6 partition of half directions (lobes fall on its dense centre through the four-fold sub-points).
+// Totals over an order-6 partition of half directions (lobes fall on its dense centre through the four-fold
+// sub-points).
 std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std::span<double>)>& value, Dir out) const {
   std::vector<double> f(channels_), W(channels_, 0.0);
   const bool sphere = function_.info().domain == Domain::sphere;
@@ -110,7 +113,8 @@ std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std:
   for (int side = 0; side < (sphere ? 2 : 1); ++side)
     for (int a = 0; a < n_r; ++a)
       for (int b = 0; b < n_phi; ++b) {
-        const double s = near_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)), phi = 2 * kPi * (b + 0.5 * (a & 1)) / n_phi;
+        const double s = near_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)),
+                     phi = 2 * kPi * (b + 0.5 * (a & 1)) / n_phi;
         const Dir h{r * std::cos(phi), r * std::sin(phi), 1 - s};
         Dir in = h * (2 * dot(h, out)) - out;
         if (!(in.z > 0) || !(dot(h, out) > 0)) continue;
@@ -182,7 +186,8 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
   for (size_t i = 0; i < parts.size(); ++i)
     for (Sums* s : {&sums[i % channels_], &sums[channels_]}) {
       const Sums& p = parts[i];
-      s->l1 += p.l1, s->f += p.f, s->square += p.square, s->f_square += p.f_square, s->plain += p.plain, s->weight += p.weight;
+      s->l1 += p.l1, s->f += p.f, s->square += p.square, s->f_square += p.f_square, s->plain += p.plain,
+          s->weight += p.weight;
       s->recip += p.recip, s->g += p.g;
     }
   for (size_t c = 0; c < count; ++c) {
@@ -198,10 +203,12 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
       std::vector<double> f(channels_), g(channels_);
       for (size_t t = 0; t < theta_.size(); ++t) {
         const Dir view = dir_from_angles(theta_[t], 0.3);
-        const double W = integrate([&](Dir o, Dir i, std::span<double> v) {
-          std::fill(v.begin(), v.end(), 0.0);
-          v[c] = bundle.value(o, i, c);
-        }, view)[c];
+        const double W = integrate(
+            [&](Dir o, Dir i, std::span<double> v) {
+              std::fill(v.begin(), v.end(), 0.0);
+              v[c] = bundle.value(o, i, c);
+            },
+            view)[c];
         const double expected = total_[t * channels_ + c];
         if (expected > 0) out[c].total_error = std::max(out[c].total_error, std::fabs(W - expected) / expected);
         const double whole = bundle.total(view, c);
@@ -221,14 +228,17 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
         for (int k = -899; k <= 899; ++k) {
           const Dir in = dir_from_angles(k * 0.1 * kDegree, 0);
           function_.value(view, in, f);
-          if (std::isfinite(f[c]) && std::fabs(k) < 850) peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
+          if (std::isfinite(f[c]) && std::fabs(k) < 850)
+            peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
         }
         *ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;
       }
     }
   });
   ErrorFigures& all = out[channels_];
-  auto farther = [](double a, double b) { return std::fabs(std::log(std::max(1e-9, b))) > std::fabs(std::log(std::max(1e-9, a))) ? b : a; };
+  auto farther = [](double a, double b) {
+    return std::fabs(std::log(std::max(1e-9, b))) > std::fabs(std::log(std::max(1e-9, a))) ? b : a;
+  };
   all.peak_ratio_20 = all.peak_ratio_45 = all.peak_ratio_70 = 1;
   for (size_t c = 0; c < channels_; ++c) {
     all.total_error = std::max(all.total_error, out[c].total_error);

@@ -29,15 +29,16 @@ struct ErrorFigures {
 class Reference {
  public:
   // pairs: number of direction pairs. The same seed gives the same pairs.
-  Reference(const Function& function, size_t pairs, uint64_t seed = 1, const std::function<void(double)>& progress = {});
+  Reference(const Function& function, size_t pairs, uint64_t seed = 1,
+            const std::function<void(double)>& progress = {});
   // One entry per channel and a last one over all channels (sums over channels; maxima of the maxima).
   std::vector<ErrorFigures> measure(const Bundle& bundle) const;
   // l1 over all channels only (fast).
   double l1(const Bundle& bundle) const;
   // Unphysical data, measured on the way.
   struct Findings {
-    double largest_total = 0;        // over view angles up to 80 deg and channels
-    double reciprocity_error = 0;    // of the data
+    double largest_total = 0;      // over view angles up to 80 deg and channels
+    double reciprocity_error = 0;  // of the data
     double negative_share = 0, invalid_share = 0;
   };
   const Findings& findings() const { return findings_; }
@@ -45,16 +46,16 @@ class Reference {
  private:
   struct Pair {
     Dir out, in;
-    float weight;      // of the uniform measure
-    bool narrow;       // both within 80 deg
+    float weight;  // of the uniform measure
+    bool narrow;   // both within 80 deg
   };
   const Function& function_;
   bool weighted_;
   size_t channels_;
   std::vector<Pair> pairs_;
-  std::vector<float> value_;                  // [pair][channel]
-  std::vector<double> theta_;                 // of the totals
-  std::vector<double> total_;                 // [theta][channel]
+  std::vector<float> value_;   // [pair][channel]
+  std::vector<double> theta_;  // of the totals
+  std::vector<double> total_;  // [theta][channel]
   Findings findings_;
   std::vector<double> integrate(const std::function<void(Dir, Dir, std::span<double>)>& f, Dir out) const;
 };
