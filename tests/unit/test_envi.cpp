@@ -8,21 +8,13 @@
 
 #include "base/files.h"
 #include "formats/envi/envi.h"
+#include "support/message_of.h"
 #include "support/temp_folder.h"
 
 using namespace suite;
 using testing::HasSubstr;
 
 namespace {
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 const char* const kHeader =
     "ENVI\n; a comment\nsamples = 3\nLines   = 2\nbands = 2\ndata type = 12\ninterleave = bip\nbyte order = 1\n"
