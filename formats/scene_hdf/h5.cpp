@@ -1,6 +1,8 @@
 #include "formats/scene_hdf/h5.h"
 
+#include <algorithm>
 #include <cstring>
+#include <fstream>
 
 #include "base/files.h"
 
@@ -132,10 +134,11 @@ Reader::Reader(const std::string& path) : path_(path) {
   file_size(path);
   // The signature and a checksummed superblock (version 3) are looked at here; older layouts are followed unchecked by
   // the library and none of ours.
-  const std::vector<std::byte> head = read_bytes_at(path, 0, 9);
+  char head[9] = {};
+  std::ifstream(path, std::ios::binary).read(head, sizeof head);
   static const unsigned char signature[9] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n', 3};
-  if (head.size() < 9 || std::memcmp(head.data(), signature, 8) != 0) fail("is not an HDF5 file");
-  if (std::memcmp(head.data(), signature, 9) != 0) fail("is an HDF5 file of another kind");
+  if (std::memcmp(head, signature, 8) != 0) fail("is not an HDF5 file");
+  if (std::memcmp(head, signature, 9) != 0) fail("is an HDF5 file of another kind");
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access()), H5Fclose);
   if (file_ < 0) fail("is a damaged HDF5 file");
 }

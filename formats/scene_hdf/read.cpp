@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/files.h"
 #include "formats/scene_hdf/h5.h"
