@@ -106,13 +106,9 @@ CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t
   return r;
 }
 
-double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors) {
-  double sum = 0;
-  for (const auto& s : sensors)
-    for (const Task& t : s->tasks())
-      for (const Capture& c : t.captures)
-        sum += static_cast<double>(c.problems()) * (c.convergence.relative_error > 0 ? c.convergence.min_paths : c.convergence.max_paths);
-  return sum;
+Convergence goal_of(const Capture& capture, const JobOptions& options) {
+  if (!options.paths) return capture.convergence;
+  return {options.paths, options.paths, 0, 0};
 }
 
 double median_of(std::vector<double>& values) {
@@ -123,6 +119,17 @@ double median_of(std::vector<double>& values) {
 
 }  // namespace
 
+double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
+  double sum = 0;
+  for (const auto& s : sensors)
+    for (const Task& t : s->tasks())
+      for (const Capture& c : t.captures) {
+        const Convergence goal = goal_of(c, options);
+        sum += static_cast<double>(c.problems()) * (goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
+      }
+  return sum;
+}
+
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   const Clock::time_point start = Clock::now();
   JobReport report;
@@ -132,7 +139,7 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
   std::vector<double> relative_errors;
   bool adaptive = false;
   std::unique_ptr<Progress> progress;
-  if (options.progress) progress = std::make_unique<Progress>("rendering", forecast_paths(sensors), "path");
+  if (options.progress) progress = std::make_unique<Progress>("rendering", forecast_paths(sensors, options), "path");
   uint64_t capture_id = 0;
   for (const auto& sensor : sensors) {
     std::vector<std::unique_ptr<StateKit>> kits(sensor->states().size());
@@ -147,7 +154,7 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
         }
         const Pipeline pipeline(kit->surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, options.pipeline);
         const size_t bands = kit->projection.bands();
-        const Convergence& goal = capture.convergence;
+        const Convergence goal = goal_of(capture, options);
         Accumulators sums(capture.problems(), bands, Accumulators::scrambles_for(goal.max_paths));
         std::vector<uint32_t> plan(capture.problems(), goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
         run_stage(pipeline, *sensor, capture, capture_id, 0, plan, sums, report.statistics, progress.get());

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace suite {
 
 struct JobOptions {
   PipelineOptions pipeline;
+  uint32_t paths = 0;              // replaces every capture's own convergence by a fixed number of paths; 0 = does not
   bool progress = true;
 };
 
@@ -32,6 +34,9 @@ struct JobReport {
   double median_relative_error = 0;  // standard error over radiance, reference band, all problems with radiance > 0
   std::string stopped_by;          // one sentence
 };
+
+// Paths that a job will run: exactly for fixed counts, at least for adaptive captures (their pilots).
+double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 
 // Runs every capture of every sensor. Deterministic: the same bytes for any number of threads.
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors,

@@ -83,3 +83,11 @@ function(suite_test name)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}" TIMEOUT ${A_TIMEOUT})
 endfunction()
+
+# suite_fuzz(<name> SOURCES ... USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
+# run, and a campaign of 30 s per input under the label `long`.
+function(suite_fuzz name)
+  suite_test(${name} LABEL fuzz ${ARGN})
+  add_test(NAME ${name}_long COMMAND ${name})
+  set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 600 ENVIRONMENT "SUITE_FUZZ_SECONDS=30")
+endfunction()
