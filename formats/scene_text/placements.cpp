@@ -82,7 +82,7 @@ void Reader::read_group(const std::string& name, const Params& p) {
   // Filed even when a placement is wrong, so that names still resolve.
   const size_t slot = draft_.groups.size();
   draft_.groups.push_back({name, p.where(), {}});
-  for (const Params& row : p.items()) item("SP001", [&] { draft_.groups[slot].placements.push_back(read_placement(row)); });
+  for (const Params& row : p.items()) item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row)); });
 }
 
 }  // namespace suite::scene_text

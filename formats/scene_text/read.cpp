@@ -7,11 +7,12 @@
 namespace suite {
 namespace scene_text {
 
-void Reader::item(const char* code, const std::function<void()>& read) {
+void Reader::item(const char* code, const Params& p, const std::function<void()>& read) {
   try {
     read();
   } catch (const Error& e) {
     report_.add(e, draft_.file, code);
+    p.mark_read();
   }
 }
 
@@ -41,33 +42,35 @@ void Reader::run(const Params& root) {
   draft_.name = root.text("name", "");
   draft_.description = root.text("description", "");
   draft_.author = root.text("author", "");
-  item("SP001", [&] {
-    if (const auto o = root.find("origin")) {
+  if (const auto o = root.find("origin"))
+    item("SP001", *o, [&] {
       draft_.origin.latitude_deg = o->number_in("latitude_deg", -90, 90, "degrees");
       draft_.origin.longitude_deg = o->number_in("longitude_deg", -180, 360, "degrees");
       draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
       draft_.origin.given = true;
-    }
-  });
-  item("SP001", [&] {
-    if (const auto windows = root.find("windows_um"))
-      for (const Params& w : windows->items()) {
+    });
+  if (const auto windows = root.find("windows_um"))
+    for (const Params& w : windows->items())
+      item("SP001", w, [&] {
         const std::vector<double> edge = w.as_numbers();
         if (edge.size() != 2 || !(edge[0] > 0 && edge[0] < edge[1])) throw w.error("a window is [low, high] in micron");
         draft_.windows.push_back({edge[0], edge[1], w.where()});
-      }
-  });
+      });
   const auto each = [&](const char* key, const char* code, const std::function<void(const std::string&, const Params&)>& read) {
-    item(code, [&] {
-      if (const auto table = root.find(key))
-        for (const std::string& name : table->keys()) item(code, [&] { read(name, table->at(name)); });
+    const auto table = root.find(key);
+    if (!table) return;
+    item(code, *table, [&] {
+      for (const std::string& name : table->keys()) {
+        const Params p = table->at(name);
+        item(code, p, [&] { read(name, p); });
+      }
     });
   };
   each("curves", "SP101", [&](const std::string& name, const Params& p) { curves_[name] = read_curve_value(p); });
   each("materials", "SP101", [&](const std::string& name, const Params& p) { read_material(name, p); });
   each("maps", "SP501", [&](const std::string& name, const Params& p) { read_map(name, p); });
   each("objects", "SP001", [&](const std::string& name, const Params& p) { read_geometry(name, p); });
-  item("SP001", [&] { read_group("world", root.at("world")); });
+  item("SP001", root.has("world") ? root.at("world") : root, [&] { read_group("world", root.at("world")); });
   each("groups", "SP001", [&](const std::string& name, const Params& p) {
     if (name == "world") throw p.error("'world' is the name of the root");
     for (const DraftGeometry& g : draft_.geometry)

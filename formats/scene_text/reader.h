@@ -34,8 +34,9 @@ class Reader {
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
 
-  // Runs one item; what it throws is filed and the next item goes on. code: of faults that bring none.
-  void item(const char* code, const std::function<void()>& read);
+  // Runs one item; what it throws is filed and the next item goes on. p: the item's text, not searched for unknown keys
+  // any more when it failed. code: of faults that bring none.
+  void item(const char* code, const Params& p, const std::function<void()>& read);
   // The file a value names, looked for beside the text and in the search folders; hashed into the inputs.
   std::string input(const Params& p);
   static Reference reference(const Params& p) { return {p.as_text(), p.where()}; }

@@ -29,6 +29,7 @@ class TerrainGrid {
   const Vec3& at(uint32_t i, uint32_t j) const { return points_[size_t{j} * width_ + i]; }
   bool cell_height(uint32_t i, uint32_t j, double x, double y, double& z) const;
   Dir normal_at(uint32_t i, uint32_t j) const;
+  double mean_spacing(uint32_t di, uint32_t dj) const;
   uint32_t width_, height_;
   std::vector<Vec3> points_;             // NaN = gap
 };

@@ -73,20 +73,27 @@ Dir TerrainGrid::normal_at(uint32_t i, uint32_t j) const {
   return n.z < 0 ? n / -len : n / len;
 }
 
+double TerrainGrid::mean_spacing(uint32_t di, uint32_t dj) const {
+  double sum = 0;
+  size_t count = 0;
+  for (uint32_t j = 0; j + dj < height_; ++j)
+    for (uint32_t i = 0; i + di < width_; ++i)
+      if (const Vec3 d = at(i + di, j + dj) - at(i, j); finite(d)) sum += std::hypot(d.x, d.y), ++count;
+  return count ? sum / static_cast<double>(count) : 1;
+}
+
+namespace {
+// Tiles of equal size, none larger than asked for.
+uint32_t cells_per_tile(uint32_t samples, double spacing, double tile_m) {
+  const double cells = samples - 1.0, tiles = std::max(1.0, std::ceil(cells * spacing / tile_m - 1e-9));
+  return static_cast<uint32_t>(std::max(1.0, std::ceil(cells / tiles)));
+}
+}  // namespace
+
 std::vector<Mesh> TerrainGrid::tiles(const std::string& name, double tile_m, uint32_t material) const {
   std::vector<Mesh> result;
   if (width_ < 2 || height_ < 2) return result;
-  // Cells per tile from the mean spacing along rows and columns.
-  Box3 box;
-  for (const Vec3& p : points_)
-    if (finite(p)) box.grow(p);
-  if (box.empty()) return result;
-  const auto cells = [&](double extent, uint32_t samples) {
-    const double spacing = extent / (samples - 1);
-    return std::max(1u, static_cast<uint32_t>(std::min(tile_m / std::max(spacing, 1e-300), samples - 1.0)));
-  };
-  const double wide = std::hypot(box.size().x, box.size().y);
-  const uint32_t ci = cells(std::min(wide, std::max(box.size().x, box.size().y)), width_), cj = cells(std::min(wide, std::max(box.size().x, box.size().y)), height_);
+  const uint32_t ci = cells_per_tile(width_, mean_spacing(1, 0), tile_m), cj = cells_per_tile(height_, mean_spacing(0, 1), tile_m);
   for (uint32_t j0 = 0; j0 + 1 < height_; j0 += cj)
     for (uint32_t i0 = 0; i0 + 1 < width_; i0 += ci) {
       const uint32_t i1 = std::min(i0 + ci, width_ - 1), j1 = std::min(j0 + cj, height_ - 1);
