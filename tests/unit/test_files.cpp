@@ -130,7 +130,8 @@ TEST(AtomicFile, AFullDiskIsAnErrorAndLeavesTheOldFile) {
     ASSERT_GE(full, 0);
     ASSERT_EQ(::dup2(full, probe - 1), probe - 1);
     ::close(full);
-    EXPECT_THAT(message_of([&] { file.write(std::string_view("new")); }), HasSubstr("cannot be written: No space left on device"));
+    EXPECT_THAT(message_of([&] { file.write(std::string_view("new")); }),
+                HasSubstr("cannot be written: No space left on device"));
   }
   EXPECT_EQ(read_text(folder / "x"), "old");
   EXPECT_EQ(folder.entries(), 1u);

@@ -44,7 +44,11 @@ TEST(Parallel, BlocksDoNotDependOnTheThreadCount) {
 }
 
 TEST(Parallel, TheFirstExceptionIsRethrownAndTheNextLoopWorks) {
-  EXPECT_THROW(parallel_for(0, 1000, 1, [](size_t begin, size_t) { if (begin == 500) throw std::runtime_error("x"); }), std::runtime_error);
+  EXPECT_THROW(parallel_for(0, 1000, 1,
+                            [](size_t begin, size_t) {
+                              if (begin == 500) throw std::runtime_error("x");
+                            }),
+               std::runtime_error);
   std::atomic<int> n{0};
   parallel_for(0, 10, 1, [&](size_t, size_t) { ++n; });
   EXPECT_EQ(n, 10);

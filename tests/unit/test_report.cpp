@@ -14,8 +14,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Error, TextHasPlaceCodeHintAndCaret) {
-  const Error e({"s.yaml", 12, 3, "  material: asphlat", -1}, "unknown material 'asphlat'", "did you mean 'asphalt'?", "SP104");
-  EXPECT_STREQ(e.what(), "s.yaml:12:3: error: unknown material 'asphlat' [SP104]; did you mean 'asphalt'?\n    material: asphlat\n    ^");
+  const Error e({"s.yaml", 12, 3, "  material: asphlat", -1}, "unknown material 'asphlat'", "did you mean 'asphalt'?",
+                "SP104");
+  EXPECT_STREQ(
+      e.what(),
+      "s.yaml:12:3: error: unknown material 'asphlat' [SP104]; did you mean 'asphalt'?\n    material: asphlat\n    ^");
   EXPECT_STREQ(Error("plain").what(), "error: plain");
   EXPECT_STREQ(Error({"b.bin", 0, 0, {}, 16}, "bad").what(), "b.bin: byte 16: error: bad");
   // The caret stands under tabs too, and never far beyond the excerpt.
@@ -47,7 +50,9 @@ TEST(Check, OurOwnMistakesNameTheConditionAndBothValues) {
 
 namespace {
 Report report() {
-  return Report({{"SP101", Severity::error, "unknown name", "use a known one"}, {"SP201", Severity::warning, "odd", ""}, {"SP301", Severity::info, "fyi", ""}});
+  return Report({{"SP101", Severity::error, "unknown name", "use a known one"},
+                 {"SP201", Severity::warning, "odd", ""},
+                 {"SP301", Severity::info, "fyi", ""}});
 }
 }  // namespace
 
@@ -119,7 +124,9 @@ TEST(Json, KeepsDigitsAndOrderAndTurnsNonsenseIntoNull) {
   Json list = Json::array();
   list.push("x");
   j.set("l", std::move(list));
-  EXPECT_EQ(j.text(0), "{\n\"z\": 0.1,\n\"a\": 1e-300,\n\"n\": null,\n\"i\": 9223372036854775807,\n\"b\": true,\n\"l\": [\n\"x\"\n]\n}\n");
+  EXPECT_EQ(j.text(0),
+            "{\n\"z\": 0.1,\n\"a\": 1e-300,\n\"n\": null,\n\"i\": 9223372036854775807,\n\"b\": true,\n\"l\": "
+            "[\n\"x\"\n]\n}\n");
 }
 
 TEST(Progress, HumanNumbers) {
