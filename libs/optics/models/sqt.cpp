@@ -76,12 +76,11 @@ class Sqt final : public ScatterModel {
     return Sample{*in, out.z * in->z > 0 ? 0 : 1, false};
   }
   void pdf(Dir out, Dir in, std::span<float> p) const override {
-    for (size_t k = 0; k < p.size(); ++k) {
-      double sum = 0;
-      if (knot_[k].t < 1) sum += (1 - knot_[k].t) * bundle_->pdf(out, in, knot_[k].low);
-      if (knot_[k].t > 0) sum += knot_[k].t * bundle_->pdf(out, in, knot_[k].high);
-      p[k] = static_cast<float>(sum);
-    }
+    thread_local std::vector<double> q;
+    q.resize(bundle_->channels());
+    bundle_->pdf(out, in, q);
+    for (size_t k = 0; k < p.size(); ++k)
+      p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
   }
   bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
   bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
