@@ -77,6 +77,27 @@ bool file_exists(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
 }
 
+RandomAccessFile::RandomAccessFile(std::string path) : path_(std::move(path)) {
+  Descriptor d{open_checked(path_)};
+  size_ = checked_size(d.fd, path_);
+  std::swap(descriptor_, d.fd);
+}
+
+RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }
+
+void RandomAccessFile::read_at(size_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t n = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(path_, strf("cannot be read: %s", std::strerror(errno)));
+    if (n == 0)
+      throw Error(Where{path_, 0, 0, {}, static_cast<long long>(offset)},
+                  strf("ends %zu bytes too early", bytes.size()));
+    offset += static_cast<size_t>(n);
+    bytes = bytes.subspan(static_cast<size_t>(n));
+  }
+}
+
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   struct stat info {};
@@ -102,10 +123,25 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 }
 void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text.data(), text.size()))); }
 
-void AtomicFile::commit() {
+void AtomicFile::write_at(size_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(path_, strf("cannot be written: %s", std::strerror(errno)));
+    offset += static_cast<size_t>(n);
+    bytes = bytes.subspan(static_cast<size_t>(n));
+  }
+}
+
+void AtomicFile::close() {
+  if (descriptor_ < 0) return;
   const int fd = descriptor_;
   descriptor_ = -1;
   if (::close(fd) != 0) fail(path_, strf("cannot be written: %s", std::strerror(errno)));
+}
+
+void AtomicFile::commit() {
+  close();
   if (::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(path_, strf("cannot be replaced: %s", std::strerror(errno)));
   done_ = true;

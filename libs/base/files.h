@@ -14,6 +14,22 @@ std::string read_text(const std::string& path, size_t max_bytes = size_t{1} << 3
 size_t file_size(const std::string& path);  // same Errors
 bool file_exists(const std::string& path);
 
+// A regular file opened for reading in pieces; for files larger than what one wants in memory.
+class RandomAccessFile {
+ public:
+  explicit RandomAccessFile(std::string path);  // Error as for read_bytes
+  ~RandomAccessFile();
+  RandomAccessFile(const RandomAccessFile&) = delete;
+  RandomAccessFile& operator=(const RandomAccessFile&) = delete;
+  size_t size() const { return size_; }                           // bytes, when it was opened
+  void read_at(size_t offset, std::span<std::byte> bytes) const;  // Error past the end; callable from many threads
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  size_t size_ = 0;
+};
+
 // Reserves `path`: data goes to a temporary sibling until commit(). Destroyed without commit, it leaves nothing behind.
 class AtomicFile {
  public:
@@ -24,7 +40,10 @@ class AtomicFile {
   const std::string& temporary() const { return temporary_; }  // write here (any library), then commit()
   void write(std::span<const std::byte> bytes);                // append
   void write(std::string_view text);
-  void commit();                                               // flush, rename; Error when the disk is full
+  void write_at(size_t offset,
+                std::span<const std::byte> bytes);  // anywhere; gaps read as zero; leaves the end of write() alone
+  void close();                                     // flush without renaming; Error when the disk is full
+  void commit();                                    // close(), rename
 
  private:
   std::string path_, temporary_;

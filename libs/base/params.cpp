@@ -55,7 +55,9 @@ class TreeBuilder : public YAML::EventHandler {
   using Node = Params::Node;
   explicit TreeBuilder(Params::Document& document) : document_(document) {}
 
-  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (document_.root) throw Error(at(mark), "a second document starts here", "one document a file");
+  }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(mark, anchor, Params::Kind::null, "", false); }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
@@ -132,6 +134,7 @@ class TreeBuilder : public YAML::EventHandler {
   void open(const YAML::Mark& mark, YAML::anchor_t anchor, Params::Kind kind) {
     if (!stack_.empty() && stack_.back().node->kind == Params::Kind::map && !stack_.back().have_key)
       throw Error(at(mark), "a key must be a plain name");
+    // The parser recurses once per level and tells each level here first, so this bounds its stack as well.
     if (stack_.size() >= kMaxDepth) throw Error(at(mark), strf("nested deeper than %d", kMaxDepth));
     stack_.push_back({make(mark, kind), anchor, false, {}, 0, 0});
   }
@@ -168,36 +171,6 @@ bool parse_double(const std::string& text, double& value) {
   return code == std::errc() && stop == end && std::isfinite(value);
 }
 
-// The parser itself recurses once per level, so depth is bounded before it runs: brackets by counting, block
-// indentation by the fact that each level needs at least one more column.
-void guard_depth(const std::string& text, const Params::Document& document) {
-  int depth = 0, deepest = 0, line = 1;
-  size_t indent = 0;
-  bool start = true, comment = false;
-  char quote = 0;
-  for (const char c : text) {
-    if (c == '\n') {
-      ++line, start = true, comment = false, indent = 0;
-      continue;
-    }
-    if (start && (c == ' ' || c == '-' || c == '?' || c == ':')) {
-      if (++indent > 4 * kMaxDepth) throw Error(document.where(line, 1), strf("indented deeper than %d columns", 4 * kMaxDepth));
-    } else {
-      start = false;
-    }
-    if (comment) continue;
-    if (quote) {
-      if (c == quote) quote = 0;
-      continue;
-    }
-    if (c == '#') comment = true;
-    else if ((c == '"' || c == '\'') && depth > 0) quote = c;
-    else if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-    else if (c == ']' || c == '}') depth = std::max(0, depth - 1);
-    if (deepest > kMaxDepth) throw Error(document.where(line, 1), strf("nested deeper than %d", kMaxDepth));
-  }
-}
-
 }  // namespace
 
 Params Params::parse_file(const std::string& path) { return parse_text(read_text(path, size_t{256} << 20), path); }
@@ -213,12 +186,12 @@ Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
   }
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
     throw Error(Where{file_name, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "YAML or JSON is expected");
-  guard_depth(text, *document);
   try {
     std::istringstream in(text);
     YAML::Parser parser(in);
     TreeBuilder builder(*document);
-    parser.HandleNextDocument(builder);
+    while (parser.HandleNextDocument(builder)) {
+    }
   } catch (const YAML::Exception& e) {
     throw Error(document->where(e.mark.line + 1, e.mark.column + 1), "malformed YAML: " + e.msg);
   }
@@ -306,9 +279,19 @@ double Params::as_number_in(double low, double high, const char* unit) const {
 long long Params::as_integer(long long low, long long high) const {
   const double value = as_number();
   if (value != std::floor(value)) throw error("expected a whole number, found " + node_->scalar);
-  if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)))
-    throw error(node_->scalar + " is outside the valid range", strf("give a whole number from %lld to %lld", low, high));
-  return static_cast<long long>(value);
+  const auto outside = [&] {
+    return error(node_->scalar + " is outside the valid range", strf("give a whole number from %lld to %lld", low, high));
+  };
+  // Digits alone are taken exactly; "1e6" goes through a double, which is exact up to 2^53.
+  long long whole = 0;
+  const char* end = node_->scalar.data() + node_->scalar.size();
+  const auto [stop, code] = std::from_chars(node_->scalar.data() + (node_->scalar.starts_with('+') ? 1 : 0), end, whole);
+  if (code != std::errc() || stop != end) {
+    if (!(std::fabs(value) <= 0x1p53)) throw outside();
+    whole = static_cast<long long>(value);
+  }
+  if (whole < low || whole > high) throw outside();
+  return whole;
 }
 bool Params::as_bool() const {
   const std::string text = node_->kind == Kind::scalar ? node_->scalar : "";

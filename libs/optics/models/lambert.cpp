@@ -52,6 +52,7 @@ class Lambert final : public ScatterModel {
       p[k] = static_cast<float>(base * (reflect ? reflect_probability_[k] : 1 - reflect_probability_[k]));
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
+  bool single_lobe() const override { return opaque_; }
   bool opaque() const override { return opaque_; }
 
  private:

@@ -25,6 +25,7 @@ class Mirror final : public ScatterModel {
   }
   void delta_probability(Dir, int, int, std::span<float> p) const override { std::fill(p.begin(), p.end(), 1.0f); }
   bool has_delta() const override { return true; }
+  bool single_lobe() const override { return true; }
   bool spectrally_uniform_shape() const override { return true; }
 
  private:
