@@ -59,7 +59,7 @@ double value_at(const std::byte* p, EnviType type, bool swap) {
 struct EnviImage::Impl {
   explicit Impl(const std::string& path) : name(path), file(path) {}
   std::string name;
-  InputFile file;
+  RandomAccessFile file;
 };
 
 EnviImage::EnviImage(const std::string& path) : header_(read_envi_header(path)) {

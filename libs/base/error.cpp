@@ -8,15 +8,6 @@ namespace suite {
 
 namespace {
 
-// One line of source with a caret under the column; tabs are kept so that the caret stands right in a terminal.
-std::string excerpt(const Where& where) {
-  if (where.source_line.empty() || where.column < 1) return {};
-  std::string line = where.source_line.substr(0, 200);
-  std::string caret;
-  for (int i = 0; i + 1 < where.column && i < static_cast<int>(line.size()); ++i) caret += line[i] == '\t' ? '\t' : ' ';
-  return "\n  " + line + "\n  " + caret + "^";
-}
-
 // Damerau-Levenshtein (optimal string alignment) distance, case-insensitive.
 size_t distance(std::string_view a, std::string_view b) {
   auto lower = [](char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); };
@@ -34,6 +25,14 @@ size_t distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string excerpt(const Where& where) {
+  if (where.source_line.empty() || where.column < 1) return {};
+  std::string line = where.source_line.substr(0, 200);
+  std::string caret;
+  for (int i = 0; i + 1 < where.column && i < static_cast<int>(line.size()); ++i) caret += line[i] == '\t' ? '\t' : ' ';
+  return "\n  " + line + "\n  " + caret + "^";
+}
 
 std::string to_text(const Where& where) {
   if (where.file.empty()) return {};

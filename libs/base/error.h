@@ -41,6 +41,10 @@ class Error : public std::exception {
 // "file:line:column" / "file: byte 123" / "file" of a place; empty for an empty place.
 std::string to_text(const Where& where);
 
+// The source line of a place with a caret under the column, each on a new line and indented; empty when there is none.
+// Tabs are kept, so that the caret stands right in a terminal.
+std::string excerpt(const Where& where);
+
 // The known name nearest to `name` (Damerau-Levenshtein distance at most max(1, length/3)), or empty.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 

@@ -77,15 +77,15 @@ bool file_exists(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
 }
 
-InputFile::InputFile(std::string path) : path_(std::move(path)) {
+RandomAccessFile::RandomAccessFile(std::string path) : path_(std::move(path)) {
   Descriptor d{open_checked(path_)};
   size_ = checked_size(d.fd, path_);
   std::swap(descriptor_, d.fd);
 }
 
-InputFile::~InputFile() { ::close(descriptor_); }
+RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }
 
-void InputFile::read_at(size_t offset, std::span<std::byte> bytes) const {
+void RandomAccessFile::read_at(size_t offset, std::span<std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t n = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;

@@ -15,12 +15,12 @@ size_t file_size(const std::string& path);  // same Errors
 bool file_exists(const std::string& path);
 
 // A regular file opened for reading in pieces; for files larger than what one wants in memory.
-class InputFile {
+class RandomAccessFile {
  public:
-  explicit InputFile(std::string path);  // Error as for read_bytes
-  ~InputFile();
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
+  explicit RandomAccessFile(std::string path);  // Error as for read_bytes
+  ~RandomAccessFile();
+  RandomAccessFile(const RandomAccessFile&) = delete;
+  RandomAccessFile& operator=(const RandomAccessFile&) = delete;
   size_t size() const { return size_; }                           // bytes, when it was opened
   void read_at(size_t offset, std::span<std::byte> bytes) const;  // Error past the end; callable from many threads
 

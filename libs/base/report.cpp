@@ -69,7 +69,7 @@ std::string Report::text() const {
                 k.summary.c_str());
     for (const Finding& f : entry.examples) {
       const std::string place = to_text(f.where);
-      out += "    " + (place.empty() ? "" : place + ": ") + f.message + "\n";
+      out += "    " + (place.empty() ? "" : place + ": ") + f.message + excerpt(f.where) + "\n";
     }
     if (!k.hint.empty()) out += "    hint: " + k.hint + "\n";
   }

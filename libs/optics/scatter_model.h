@@ -50,6 +50,8 @@ class ScatterModel {
 
   // True when the ratio of eval at any two wavelengths does not depend on direction: knots need not be mixed.
   virtual bool spectrally_uniform_shape() const { return false; }
+  // True when sample() ignores lobe_u.
+  virtual bool single_lobe() const { return false; }
   // True when nothing ever passes to the other side.
   virtual bool opaque() const { return true; }
 };

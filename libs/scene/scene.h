@@ -1,6 +1,7 @@
 // The scene: plain tables, no behaviour. Written by scene-prep, loaded by the renderer, immutable afterwards.
 // Everything is in the scene's ENU frame, metres; base geometry has its own local frame.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -81,10 +82,17 @@ struct ClassMap {
   Drape drape;
 };
 
-// Materials that a map decides: a material whose surface is looked up per point.
+// Materials that a map decides: a material whose surface is looked up per point. Its own model holds where the map says
+// nothing (outside of it under Extend::none); scene-prep fills it from the map's first class when none was given.
 struct MapBinding {
   uint32_t material = kNone;            // the material id that geometry carries
   uint32_t class_map = kNone;           // index into Scene::class_maps
+};
+
+// A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
+struct DataFile {
+  std::string name;                     // unique within the scene
+  std::vector<std::byte> bytes;
 };
 
 // The ENU tangent frame on WGS84.
@@ -104,11 +112,16 @@ struct Scene {
   std::vector<ClassMap> class_maps;
   std::vector<MapBinding> map_bindings;
   std::vector<std::string> tags;
+  std::vector<DataFile> files;
   Box3 bounds;                          // ENU
 };
 
 // Checks every index and size of a scene that was read from a file; Error naming the table otherwise.
 void check_scene(const Scene& scene, const std::string& file);
+
+// Extent of everything placed, ENU, from the corners of each target's own box (so rotated targets give a box that may be
+// somewhat large); infinite primitives count as nothing.
+Box3 scene_bounds(const Scene& scene);
 
 // Octahedral encoding of unit vectors in 2 x 16 bits; error below 5e-5 rad.
 // Based on: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.

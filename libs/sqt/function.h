@@ -21,14 +21,14 @@ enum class Quantity { bsdf, phase, intensity };
 class Function {
  public:
   struct Info {
-    std::string name;                       // for provenance: material or model name
-    std::string source;                     // format and conventions in one line ("MERL .binary, bins at centres")
-    std::vector<double> wavelength_um;      // one per channel; RGB data use nominal 0.65, 0.55, 0.45
-    std::vector<std::string> channel_names; // "R", "G", "B" or empty
+    std::string name;                        // for provenance: material or model name
+    std::string source;                      // format and conventions in one line ("MERL .binary, bins at centres")
+    std::vector<double> wavelength_um;       // one per channel; RGB data use nominal 0.65, 0.55, 0.45
+    std::vector<std::string> channel_names;  // "R", "G", "B" or empty
     Domain domain = Domain::hemisphere;
     Quantity quantity = Quantity::bsdf;
-    bool isotropic = true;                  // depends on phi_i - phi_o only
-    bool bilateral = true;                  // f(phi) = f(-phi); only meaningful when isotropic
+    bool isotropic = true;  // depends on phi_i - phi_o only
+    bool bilateral = true;  // f(phi) = f(-phi); only meaningful when isotropic
   };
   virtual ~Function() = default;
   virtual const Info& info() const = 0;
@@ -40,8 +40,8 @@ class Function {
 // Scattered measurements (goniometer tables, raw sample text): value per channel for each pair.
 struct Samples {
   Function::Info info;
-  std::vector<Dir> out, in;                 // same length n
-  std::vector<double> value;                // n x channels, row-major; NaN = invalid
+  std::vector<Dir> out, in;   // same length n
+  std::vector<double> value;  // n x channels, row-major; NaN = invalid
 };
 
 }  // namespace suite::sqt

@@ -47,7 +47,7 @@ suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
 target_include_directories(vendor_geotiff SYSTEM INTERFACE ${GEOTIFF_INCLUDE})
 
 find_package(tinyobjloader REQUIRED)
-suite_vendor(tinyobjloader tinyobjloader::tinyobjloader)
+suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced coordinates need double
 
 # OpenMesh and CGAL: headers in few translation units, both in libs/mesh only.
 find_package(OpenMesh REQUIRED)

@@ -1,0 +1,28 @@
+#include "options.h"
+
+namespace suite {
+
+AppInfo scene_prep_info() {
+  return {"scene-prep",
+          "Reads a scene written as text with the OBJ files, rasters and curves it names, checks everything, and writes one HDF5 file "
+          "that the renderer loads as it is.",
+          "Examples:\n"
+          "  scene-prep scene.yaml -o scene.h5 --report report.json\n"
+          "  scene-prep --summary scene.h5\n"
+          "  scene-prep --list-issues\n"
+          "Exit codes: 0 written, 1 refused, 2 wrong usage, 3 a bug of ours. Grammar: formats/scene_text/FORMAT.md."};
+}
+
+void declare(Cli& cli, ScenePrepOptions& o) {
+  cli.positional("input", o.input, "scene text (YAML or JSON), or a prepared scene with --summary", false);
+  cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
+  cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
+  cli.option("--report", o.report, "write the findings as JSON (- = standard output)", "FILE.json");
+  cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)", "CODE");
+  cli.flag("--strict", o.strict, "warnings refuse the scene too");
+  cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
+  cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");
+  cli.flag("--summary", o.summary, "print what a prepared scene holds");
+}
+
+}  // namespace suite

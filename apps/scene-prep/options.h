@@ -1,0 +1,19 @@
+// The options of scene-prep.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/run_app.h"
+
+namespace suite {
+
+struct ScenePrepOptions {
+  std::string input, output, report;
+  std::vector<std::string> search, mute;
+  bool strict = false, list_issues = false, list_models = false, summary = false;
+};
+
+AppInfo scene_prep_info();
+void declare(Cli& cli, ScenePrepOptions& options);
+
+}  // namespace suite

@@ -1,0 +1,97 @@
+// Based on: OGC 19-008r4, GeoTIFF Standard 1.1 (raster space, model tie points, key values).
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include <geo_normalize.h>
+#include <geotiff.h>
+#include <geovalues.h>
+#include <xtiffio.h>
+
+#include "base/files.h"
+#include "formats/raster/raster.h"
+
+namespace suite {
+
+namespace {
+
+constexpr ttag_t kNoDataTag = 42113;  // GDAL_NODATA, text
+
+// libtiff talks to standard error on its own; what matters comes back as return values.
+void quiet(const char*, const char*, va_list) {}
+
+struct CloseTiff {
+  void operator()(TIFF* t) const { XTIFFClose(t); }
+};
+struct FreeKeys {
+  void operator()(GTIF* g) const { GTIFFree(g); }
+};
+
+const double* tag(TIFF* tiff, ttag_t id, uint16_t& count) {
+  double* data = nullptr;
+  count = 0;
+  return TIFFGetField(tiff, id, &count, &data) ? data : nullptr;
+}
+
+void read_transform(TIFF* tiff, GTIF* keys, const Where& where, double m[6]) {
+  uint16_t n = 0;
+  if (const double* t = tag(tiff, TIFFTAG_GEOTRANSMATRIX, n); t && n == 16) {
+    const double values[6] = {t[3], t[0], t[1], t[7], t[4], t[5]};
+    std::copy(values, values + 6, m);
+  } else {
+    uint16_t scales = 0, ties = 0;
+    const double* scale = tag(tiff, TIFFTAG_GEOPIXELSCALE, scales);
+    const double* tie = tag(tiff, TIFFTAG_GEOTIEPOINTS, ties);
+    if (!scale || scales < 2 || !tie || ties < 6) throw Error(where, "has no pixel scale and tie point", "a GeoTIFF with a position is expected");
+    const double values[6] = {tie[3] - scale[0] * tie[0], scale[0], 0, tie[4] + scale[1] * tie[1], 0, -scale[1]};
+    std::copy(values, values + 6, m);
+  }
+  unsigned short type = RasterPixelIsArea;
+  GTIFKeyGetSHORT(keys, GTRasterTypeGeoKey, &type, 0, 1);
+  if (type == RasterPixelIsPoint) {  // the tie point is a pixel's centre: move to its corner
+    m[0] -= 0.5 * (m[1] + m[2]);
+    m[3] -= 0.5 * (m[4] + m[5]);
+  }
+  for (int i = 0; i < 6; ++i)
+    if (!(m[i] > -1e9 && m[i] < 1e9)) throw Error(where, "has a position that is not finite or absurd");
+  if (m[1] * m[5] - m[2] * m[4] == 0) throw Error(where, "has a pixel scale of zero");
+}
+
+}  // namespace
+
+GeoReference read_georeference(const std::string& path) {
+  const Where where{path, 0, 0, {}, -1};
+  file_size(path);
+  TIFFSetErrorHandler(quiet);
+  TIFFSetWarningHandler(quiet);
+  const std::unique_ptr<TIFF, CloseTiff> tiff(XTIFFOpen(path.c_str(), "r"));
+  if (!tiff) throw Error(where, "is not a TIFF file", "a GeoTIFF is expected");
+  const std::unique_ptr<GTIF, FreeKeys> keys(GTIFNew(tiff.get()));
+  if (!keys) throw Error(where, "has no GeoTIFF keys", "a GeoTIFF is expected");
+  GeoReference ref;
+  read_transform(tiff.get(), keys.get(), where, ref.to_map);
+  unsigned short code = 0, model = 0;
+  GTIFKeyGetSHORT(keys.get(), GTModelTypeGeoKey, &model, 0, 1);
+  if (GTIFKeyGetSHORT(keys.get(), ProjectedCSTypeGeoKey, &code, 0, 1) && code != KvUserDefined && model != ModelTypeGeographic) {
+    ref.epsg = code;
+  } else if (GTIFKeyGetSHORT(keys.get(), GeographicTypeGeoKey, &code, 0, 1) && code != KvUserDefined && model != ModelTypeProjected) {
+    ref.epsg = code;
+    ref.geographic = true;
+  } else {
+    throw Error(where, "names no EPSG code in its GeoTIFF keys", "ProjectedCSType or GeographicType is needed");
+  }
+  char* text = nullptr;
+  uint16_t count = 0;
+  static const TIFFFieldInfo field[] = {{kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
+  if (!TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff.get(), field, 1);
+  if (const TIFFField* known = TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) {
+    const bool got = TIFFFieldPassCount(known) ? TIFFGetField(tiff.get(), kNoDataTag, &count, &text) : TIFFGetField(tiff.get(), kNoDataTag, &text);
+    char* end = nullptr;
+    if (got && text)
+      if (const double value = std::strtod(text, &end); end != text) ref.no_data = value;
+  }
+  return ref;
+}
+
+}  // namespace suite

@@ -1,0 +1,217 @@
+#include "formats/scene_hdf/h5.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+#include "base/files.h"
+
+namespace suite::h5 {
+
+namespace {
+
+constexpr size_t kMaxText = 1 << 20;
+
+// The library prints its error stack unless told not to.
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // The newest layout of 1.10 puts a checksum on every piece of metadata, so damage is noticed and not followed.
+  H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+  H5Pset_file_locking(access, false, true);
+  return access;
+}
+
+Handle text_type(size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, length ? length : 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  return type;
+}
+
+bool put_text(hid_t object, const std::string& name, const std::string& text) {
+  const Handle type = text_type(text.size()), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle a(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const std::string padded = text.empty() ? std::string(1, '\0') : text;
+  return a >= 0 && H5Awrite(a, type, padded.data()) >= 0;
+}
+
+bool get_text(hid_t object, const std::string& name, std::string& text) {
+  if (H5Aexists(object, name.c_str()) <= 0) return false;
+  const Handle a(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (a < 0) return false;
+  const Handle type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || H5Sget_simple_extent_npoints(space) != 1) return false;
+  const size_t size = H5Tget_size(type);
+  if (size == 0 || size > kMaxText) return false;
+  text.assign(size, '\0');
+  if (H5Aread(a, text_type(size), text.data()) < 0) return false;
+  text.resize(strnlen(text.data(), size));
+  return true;
+}
+
+}  // namespace
+
+// --- Writer ---------------------------------------------------------------------------------------------------------
+
+void Writer::fail(const std::string& what) const { throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what, "is the disk full?"); }
+
+Writer::Writer(const std::string& temporary, const std::string& path) : path_(path) {
+  silence();
+  const Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(create, false);
+  file_ = Handle(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, create, file_access()), H5Fclose);
+  if (file_ < 0) fail("HDF5 refuses to create it");
+}
+
+Handle Writer::make(const std::string& name, hid_t type, size_t count, size_t width, const char* units) {
+  const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(link, 1);
+  H5Pset_obj_track_times(create, false);
+  H5Pset_alloc_time(create, H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
+  const hsize_t dims[2] = {count / width, width};
+  const Handle space(H5Screate_simple(width == 1 ? 1 : 2, dims, nullptr), H5Sclose);
+  Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose);
+  if (dataset < 0 || !put_text(dataset, "units", units)) fail("dataset '" + name + "'");
+  return dataset;
+}
+
+void Writer::write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units) {
+  const Handle dataset = make(name, type, count, width, units);
+  if (count && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) fail("dataset '" + name + "'");
+}
+
+void Writer::put_names(const std::string& name, const std::vector<std::string>& names) {
+  size_t longest = 1;
+  for (const std::string& n : names) longest = std::max(longest, n.size());
+  std::string all(longest * names.size(), '\0');
+  for (size_t i = 0; i < names.size(); ++i) std::copy(names[i].begin(), names[i].end(), all.begin() + static_cast<std::ptrdiff_t>(i * longest));
+  const Handle type = text_type(longest);
+  write(name, type, all.data(), names.size(), 1, "");
+}
+
+Writer::Column Writer::column(const std::string& name, hid_t type, size_t total, const char* units) {
+  Column c;
+  c.writer_ = this;
+  c.dataset_ = make(name, type, total, 1, units);
+  c.space_ = Handle(H5Dget_space(c.dataset_), H5Sclose);
+  return c;
+}
+
+void Writer::Column::write(hid_t type, const void* data, size_t count) {
+  if (!count) return;
+  const hsize_t n = count;
+  const Handle memory(H5Screate_simple(1, &n, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space_, H5S_SELECT_SET, &at_, nullptr, &n, nullptr) < 0 ||
+      H5Dwrite(dataset_, type, memory, space_, H5P_DEFAULT, data) < 0)
+    writer_->fail("a dataset");
+  at_ += n;
+}
+
+void Writer::attribute(const std::string& name, const std::string& text) {
+  if (!put_text(file_, name, text)) fail("attribute '" + name + "'");
+}
+void Writer::attribute(const std::string& name, std::span<const double> values) {
+  const hsize_t n = values.size();
+  const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose);
+  const Handle a(H5Acreate2(file_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (a < 0 || H5Awrite(a, H5T_IEEE_F64LE, values.data()) < 0) fail("attribute '" + name + "'");
+}
+void Writer::close() {
+  if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("flushing");
+  file_ = Handle();
+}
+
+// --- Reader ---------------------------------------------------------------------------------------------------------
+
+void Reader::fail(const std::string& what) const { throw Error(Where{path_, 0, 0, {}, -1}, what, "prepare the scene again"); }
+
+Reader::Reader(const std::string& path) : path_(path) {
+  silence();
+  file_size(path);
+  // The signature and a checksummed superblock (version 3) are looked at here; older layouts are followed unchecked by
+  // the library and none of ours.
+  char head[9] = {};
+  std::ifstream(path, std::ios::binary).read(head, sizeof head);
+  static const unsigned char signature[9] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n', 3};
+  if (std::memcmp(head, signature, 8) != 0) fail("is not an HDF5 file");
+  if (std::memcmp(head, signature, 9) != 0) fail("is an HDF5 file of another kind");
+  file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access()), H5Fclose);
+  if (file_ < 0) fail("is a damaged HDF5 file");
+}
+
+bool Reader::has(const std::string& name) const {
+  // Every link on the way must exist, or the library reports an error.
+  for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1))
+    if (H5Lexists(file_, name.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Reader::Opened Reader::open(const std::string& name, hid_t type, const char* units, size_t width, long long rows) {
+  if (!has(name)) fail("dataset '" + name + "' is missing");
+  Opened d{Handle(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose), 0};
+  if (d.dataset < 0) fail("dataset '" + name + "' cannot be opened");
+  std::string unit;
+  if (!get_text(d.dataset, "units", unit)) fail("dataset '" + name + "' has no units");
+  if (unit != units) fail("dataset '" + name + "' is in '" + unit + "'");
+  const Handle stored(H5Dget_type(d.dataset), H5Tclose), space(H5Dget_space(d.dataset), H5Sclose), create(H5Dget_create_plist(d.dataset), H5Pclose);
+  if (type >= 0 && H5Tequal(stored, type) <= 0) fail("dataset '" + name + "' has another type");
+  hsize_t dims[2] = {0, 1};
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank != (width == 1 ? 1 : 2)) fail("dataset '" + name + "' has another rank");
+  H5Sget_simple_extent_dims(space, dims, nullptr);
+  if (dims[1] != width || dims[0] > (hsize_t{1} << 40)) fail("dataset '" + name + "' has another shape");
+  if (rows >= 0 && dims[0] != static_cast<hsize_t>(rows)) fail("dataset '" + name + strf("' has %llu rows, %lld are declared", static_cast<unsigned long long>(dims[0]), rows));
+  // What is declared must be there before memory is asked for.
+  const hsize_t bytes = dims[0] * width * H5Tget_size(stored);
+  if (H5Pget_layout(create) == H5D_CHUNKED || H5Pget_external_count(create) > 0) fail("dataset '" + name + "' has another layout");
+  if (H5Dget_storage_size(d.dataset) != bytes || bytes > file_size(path_)) fail("dataset '" + name + "' is not whole");
+  d.count = dims[0] * width;
+  return d;
+}
+
+void Reader::read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count) {
+  if (!count) return;
+  herr_t status;
+  if (first == 0 && count == d.count) {
+    status = H5Dread(d.dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
+  } else {
+    const hsize_t start = first, n = count;
+    const Handle space(H5Dget_space(d.dataset), H5Sclose), memory(H5Screate_simple(1, &n, nullptr), H5Sclose);
+    status = H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &n, nullptr);
+    if (status >= 0) status = H5Dread(d.dataset, type, memory, space, H5P_DEFAULT, out);
+  }
+  if (status < 0) fail("dataset '" + name + "' cannot be read");
+}
+
+std::vector<std::string> Reader::get_names(const std::string& name, long long rows) {
+  const Opened d = open(name, -1, "", 1, rows);
+  const Handle type(H5Dget_type(d.dataset), H5Tclose);
+  const size_t size = H5Tget_size(type);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size == 0 || size > kMaxText) fail("dataset '" + name + "' holds no names");
+  std::string all(size * d.count, '\0');
+  read(name, d, text_type(size), all.data(), 0, d.count);
+  std::vector<std::string> names;
+  for (size_t i = 0; i < d.count; ++i) names.emplace_back(all.data() + i * size, strnlen(all.data() + i * size, size));
+  return names;
+}
+
+std::string Reader::text(const std::string& attribute) const {
+  std::string value;
+  if (!get_text(file_, attribute, value)) fail("attribute '" + attribute + "' is missing");
+  return value;
+}
+
+std::vector<double> Reader::numbers(const std::string& attribute, size_t count) const {
+  std::vector<double> values(count);
+  if (H5Aexists(file_, attribute.c_str()) <= 0) fail("attribute '" + attribute + "' is missing");
+  const Handle a(H5Aopen(file_, attribute.c_str(), H5P_DEFAULT), H5Aclose), space(a >= 0 ? H5Aget_space(a) : -1, H5Sclose);
+  if (a < 0 || H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(count) || H5Aread(a, H5T_NATIVE_DOUBLE, values.data()) < 0)
+    fail("attribute '" + attribute + "' cannot be read");
+  return values;
+}
+
+}  // namespace suite::h5

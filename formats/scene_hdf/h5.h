@@ -1,0 +1,111 @@
+// A thin, checked skin over the HDF5 C API: typed columns with units, handles that close themselves. Internal.
+#pragma once
+#include <hdf5.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace suite::h5 {
+
+// Any HDF5 identifier; closed by its own function.
+class Handle {
+ public:
+  Handle() = default;
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Handle&& o) noexcept : id_(o.id_), close_(o.close_) { o.id_ = -1; }
+  Handle& operator=(Handle&& o) noexcept {
+    std::swap(id_, o.id_);
+    std::swap(close_, o.close_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_ = -1;
+  herr_t (*close_)(hid_t) = nullptr;
+};
+
+template <class T> hid_t native();
+template <> inline hid_t native<uint8_t>() { return H5T_STD_U8LE; }
+template <> inline hid_t native<std::byte>() { return H5T_STD_U8LE; }
+template <> inline hid_t native<uint16_t>() { return H5T_STD_U16LE; }
+template <> inline hid_t native<uint32_t>() { return H5T_STD_U32LE; }
+template <> inline hid_t native<uint64_t>() { return H5T_STD_U64LE; }
+template <> inline hid_t native<float>() { return H5T_IEEE_F32LE; }
+template <> inline hid_t native<double>() { return H5T_IEEE_F64LE; }
+
+// Writes to a new file. Groups are made on the way. Every dataset gets `units` ("1" for pure numbers, "" for names).
+class Writer {
+ public:
+  Writer(const std::string& temporary, const std::string& path_for_messages);
+  // data: rows x width values; width 1 makes a one-dimensional dataset.
+  template <class T>
+  void put(const std::string& name, std::span<const T> data, const char* units, size_t width = 1) {
+    write(name, native<T>(), data.data(), data.size(), width, units);
+  }
+  template <class T>
+  void put(const std::string& name, const std::vector<T>& data, const char* units, size_t width = 1) {
+    put(name, std::span<const T>(data), units, width);
+  }
+  void put_names(const std::string& name, const std::vector<std::string>& names);
+  // Fills a dataset of `total` values piece by piece.
+  class Column {
+   public:
+    template <class T>
+    void append(std::span<const T> data) { write(native<T>(), data.data(), data.size()); }
+   private:
+    friend class Writer;
+    void write(hid_t type, const void* data, size_t count);
+    Writer* writer_ = nullptr;
+    Handle dataset_, space_;
+    hsize_t at_ = 0;
+  };
+  Column column(const std::string& name, hid_t type, size_t total, const char* units);
+  void attribute(const std::string& name, const std::string& text);
+  void attribute(const std::string& name, std::span<const double> values);
+  void close();
+
+ private:
+  void write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units);
+  Handle make(const std::string& name, hid_t type, size_t count, size_t width, const char* units);
+  [[noreturn]] void fail(const std::string& what) const;
+  std::string path_;
+  Handle file_;
+};
+
+// Reads from a file that is not trusted.
+class Reader {
+ public:
+  explicit Reader(const std::string& path);
+  // All values; Error unless type, width, units and the stored size agree. rows: expected count of rows, or -1 for any.
+  template <class T>
+  std::vector<T> get(const std::string& name, const char* units, size_t width = 1, long long rows = -1) {
+    Opened d = open(name, native<T>(), units, width, rows);
+    std::vector<T> data(d.count);
+    read(name, d, native<T>(), data.data(), 0, d.count);
+    return data;
+  }
+  std::vector<std::string> get_names(const std::string& name, long long rows = -1);
+  struct Opened {
+    Handle dataset;
+    size_t count = 0;  // values
+  };
+  Opened open(const std::string& name, hid_t type, const char* units, size_t width, long long rows);
+  void read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count);
+  bool has(const std::string& name) const;
+  std::string text(const std::string& attribute) const;
+  std::vector<double> numbers(const std::string& attribute, size_t count) const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  std::string path_;
+  Handle file_;
+};
+
+}  // namespace suite::h5

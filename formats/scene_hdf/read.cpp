@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/files.h"
+#include "formats/scene_hdf/h5.h"
+#include "formats/scene_hdf/layout.h"
+#include "formats/scene_hdf/scene_hdf.h"
+#include "optics/models.h"
+#include "scene/primitives.h"
+
+namespace suite {
+
+namespace {
+
+using h5::Reader;
+
+// Hands out consecutive stretches of one dataset; Error when it is shorter or longer than what the table declares.
+template <class T>
+class Stretch {
+ public:
+  Stretch(Reader& r, const std::string& name, const char* units) : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
+  // n values, in a vector with `pad` more values of 0.
+  std::vector<T> next(uint64_t n, size_t pad = 0) {
+    if (n > d_.count - at_) r_.fail("dataset '" + name_ + "' is shorter than its table says");
+    std::vector<T> out(n + pad);
+    r_.read(name_, d_, h5::native<T>(), out.data(), at_, n);
+    at_ += n;
+    return out;
+  }
+  void finish() const {
+    if (at_ != d_.count) r_.fail("dataset '" + name_ + "' is longer than its table says");
+  }
+
+ private:
+  Reader& r_;
+  std::string name_;
+  Reader::Opened d_;
+  size_t at_ = 0;
+};
+
+void read_meshes(Reader& r, std::vector<Mesh>& meshes) {
+  const std::vector<std::string> names = r.get_names("/meshes/name");
+  const auto n = static_cast<long long>(names.size());
+  const auto origin = r.get<double>("/meshes/origin", "m", 3, n);
+  const auto vertices = r.get<uint64_t>("/meshes/vertices", "1", 1, n), triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
+  const auto normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n), uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
+  const auto parts = r.get<uint32_t>("/meshes/parts", "1", 1, n);
+  const std::vector<std::string> part_name = r.get_names("/parts/name");
+  const auto part_rows = static_cast<long long>(part_name.size());
+  const auto part_triangles = r.get<uint32_t>("/parts/triangles", "1", 1, part_rows), part_material = r.get<uint32_t>("/parts/material", "1", 1, part_rows);
+  Stretch<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
+  Stretch<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
+  size_t part = 0;
+  meshes.resize(names.size());
+  for (size_t k = 0; k < names.size(); ++k) {
+    Mesh& m = meshes[k];
+    m.name = names[k];
+    m.origin = {origin[3 * k], origin[3 * k + 1], origin[3 * k + 2]};
+    if (!finite(m.origin)) r.fail("mesh '" + m.name + "' has an origin that is not finite");
+    if (vertices[k] > kNone || triangles[k] > kNone) r.fail("mesh '" + m.name + "' is too large");
+    m.positions = p.next(3 * vertices[k], vertices[k] ? 1 : 0);
+    m.indices = i.next(3 * triangles[k]);
+    if (normals[k]) m.normals = nrm.next(vertices[k]);
+    if (uvs[k]) m.uvs = uv.next(2 * vertices[k]);
+    if (parts[k] > part_name.size() - part) r.fail("mesh '" + m.name + "' declares more parts than there are");
+    uint32_t first = 0;
+    for (uint32_t q = 0; q < parts[k]; ++q, ++part) {
+      m.parts.push_back({part_name[part], first, part_triangles[part], part_material[part]});
+      if (part_triangles[part] > triangles[k] - first) r.fail("mesh '" + m.name + "' has parts larger than itself");
+      first += part_triangles[part];
+    }
+  }
+  p.finish(), uv.finish(), i.finish(), nrm.finish();
+  if (part != part_name.size()) r.fail("there are parts of no mesh");
+}
+
+void read_hierarchy(Reader& r, Scene& s) {
+  const std::vector<std::string> names = r.get_names("/primitives/name");
+  const auto n = static_cast<long long>(names.size());
+  const auto kind = r.get<uint8_t>("/primitives/kind", "1", 1, n);
+  const auto material = r.get<uint32_t>("/primitives/material", "1", 1, n), count = r.get<uint32_t>("/primitives/parameter_count", "1", 1, n);
+  Stretch<double> parameters(r, "/primitives/parameters", "SI");
+  for (size_t k = 0; k < names.size(); ++k)
+    s.primitives.push_back({names[k], static_cast<PrimitiveKind>(kind[k]), parameters.next(count[k]), material[k]});
+  parameters.finish();
+
+  const std::vector<std::string> groups = r.get_names("/groups/name");
+  const auto placements = r.get<uint64_t>("/groups/placements", "1", 1, static_cast<long long>(groups.size()));
+  const auto transform = r.get<double>("/placements/to_parent", "m", 12);
+  const auto rows = static_cast<long long>(transform.size() / 12);
+  const auto what = r.get<uint8_t>("/placements/kind", "1", 1, rows);
+  const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows), override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
+  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows);
+  size_t at = 0;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (placements[g] > target.size() - at) r.fail("group '" + groups[g] + "' declares more placements than there are");
+    Group group{groups[g], {}};
+    group.placements.reserve(placements[g]);
+    for (uint64_t q = 0; q < placements[g]; ++q, ++at) {
+      const double* t = transform.data() + 12 * at;
+      if (what[at] > static_cast<uint8_t>(TargetKind::primitive)) r.fail("a placement is of an unknown kind");
+      group.placements.push_back({{{t[0], t[1], t[2], t[4], t[5], t[6], t[8], t[9], t[10]}, {t[3], t[7], t[11]}},
+                                  static_cast<TargetKind>(what[at]), target[at], override_[at], tag[at]});
+    }
+    s.groups.push_back(std::move(group));
+  }
+  if (at != target.size()) r.fail("there are placements of no group");
+  s.tags = r.get_names("/tags");
+}
+
+// Calls visit(material, name, row) for the rows of a per-material table.
+template <class Visit>
+void each_row(Reader& r, const std::string& table, std::vector<Material>& materials, const Visit& visit) {
+  const std::vector<std::string> names = r.get_names(table + "/name");
+  const auto owner = r.get<uint32_t>(table + "/material", "1", 1, static_cast<long long>(names.size()));
+  for (size_t k = 0; k < names.size(); ++k) {
+    if (owner[k] >= materials.size()) r.fail("'" + table + "' names a material that is not there");
+    visit(materials[owner[k]], names[k], k);
+  }
+}
+
+void read_curves(Reader& r, std::vector<Material>& materials) {
+  const std::string t = "/materials/curves";
+  const auto outside = r.get<uint8_t>(t + "/outside", "1");
+  const auto points = r.get<uint64_t>(t + "/points", "1", 1, static_cast<long long>(outside.size()));
+  Stretch<double> x(r, t + "/wavelength", "um"), y(r, t + "/value", "1");
+  std::vector<Curve> curves;
+  for (size_t k = 0; k < outside.size(); ++k) {
+    std::vector<double> wavelength = x.next(points[k]), value = y.next(points[k]);
+    if (outside[k] == h5::kConstantCurve && value.size() == 1 && std::isfinite(value[0])) curves.push_back(Curve::constant(value[0]));
+    else if (outside[k] <= static_cast<uint8_t>(Outside::zero)) curves.push_back(Curve(std::move(wavelength), std::move(value), static_cast<Outside>(outside[k])));
+    else r.fail("a curve has an unknown rule outside its range");
+  }
+  x.finish(), y.finish();
+  each_row(r, t, materials, [&](Material& m, const std::string& name, size_t k) {
+    if (k >= curves.size()) r.fail("a curve is missing");
+    m.surface.curves[name] = curves[k];
+  });
+}
+
+void read_materials(Reader& r, std::vector<Material>& materials) {
+  const std::vector<std::string> ids = r.get_names("/materials/id");
+  const auto n = static_cast<long long>(ids.size());
+  const std::vector<std::string> descriptions = r.get_names("/materials/description", n), models = r.get_names("/materials/model", n);
+  const auto temperature = r.get<double>("/materials/temperature", "K", 1, n);
+  for (size_t k = 0; k < ids.size(); ++k) {
+    Material m;
+    m.id = ids[k];
+    m.description = descriptions[k];
+    m.surface.model = models[k];
+    m.temperature_k = temperature[k];
+    if (!(m.temperature_k >= 0 && m.temperature_k <= 1e5)) r.fail("material '" + m.id + "' has an absurd temperature");
+    materials.push_back(std::move(m));
+  }
+  const auto numbers = r.get<double>("/materials/numbers/value", "SI"), thermal = r.get<double>("/materials/thermal/value", "SI");
+  const std::vector<std::string> texts = r.get_names("/materials/texts/value");
+  each_row(r, "/materials/numbers", materials, [&](Material& m, const std::string& name, size_t k) { m.surface.numbers[name] = k < numbers.size() ? numbers[k] : NAN; });
+  each_row(r, "/materials/thermal", materials, [&](Material& m, const std::string& name, size_t k) { m.thermal[name] = k < thermal.size() ? thermal[k] : NAN; });
+  each_row(r, "/materials/texts", materials, [&](Material& m, const std::string& name, size_t k) {
+    if (k >= texts.size()) r.fail("a text of a material is missing");
+    m.surface.texts[name] = texts[k];
+  });
+  read_curves(r, materials);
+}
+
+void read_maps(Reader& r, Scene& s) {
+  const std::vector<std::string> names = r.get_names("/class_maps/name");
+  const auto n = static_cast<long long>(names.size());
+  const auto size = r.get<uint32_t>("/class_maps/size", "1", 2, n);
+  const auto rule = r.get<uint8_t>("/class_maps/rule", "1", 2, n);
+  const auto drape = r.get<double>("/class_maps/drape", "m", 4, n);
+  const auto count = r.get<uint32_t>("/class_maps/material_count", "1", 1, n);
+  Stretch<uint32_t> materials(r, "/class_maps/materials", "1");
+  Stretch<uint16_t> classes(r, "/class_maps/classes", "1");
+  for (size_t k = 0; k < names.size(); ++k) {
+    ClassMap m;
+    m.name = names[k];
+    m.width = size[2 * k];
+    m.height = size[2 * k + 1];
+    if (rule[2 * k] > static_cast<uint8_t>(Projection::uv) || rule[2 * k + 1] > static_cast<uint8_t>(Drape::Extend::none)) r.fail("class map '" + m.name + "' has an unknown rule");
+    m.projection = static_cast<Projection>(rule[2 * k]);
+    m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3], static_cast<Drape::Extend>(rule[2 * k + 1])};
+    m.materials = materials.next(count[k]);
+    m.classes = classes.next(uint64_t{m.width} * m.height);
+    s.class_maps.push_back(std::move(m));
+  }
+  materials.finish(), classes.finish();
+  const auto material = r.get<uint32_t>("/map_bindings/material", "1");
+  const auto map = r.get<uint32_t>("/map_bindings/class_map", "1", 1, static_cast<long long>(material.size()));
+  for (size_t k = 0; k < material.size(); ++k) s.map_bindings.push_back({material[k], map[k]});
+  const std::vector<std::string> files = r.get_names("/files/name");
+  const auto bytes = r.get<uint64_t>("/files/size", "1", 1, static_cast<long long>(files.size()));
+  Stretch<std::byte> data(r, "/files/bytes", "1");
+  for (size_t k = 0; k < files.size(); ++k) s.files.push_back({files[k], data.next(bytes[k])});
+  data.finish();
+}
+
+// Gives every material that names an embedded file its bundle, and lets the table of models check what it was given.
+void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
+  std::map<std::string, std::shared_ptr<const sqt::Bundle>> bundles;
+  const Where where{path, 0, 0, {}, -1};
+  for (Material& m : s.materials) {
+    if (m.surface.model.empty()) continue;
+    if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
+      const auto found = std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
+      if (found == s.files.end()) throw Error(where, "material '" + m.id + "' names a file that is not in the scene", "prepare the scene again");
+      if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
+      if (decode) m.surface.bundle = bundles[found->name];
+    }
+    check_model(m.surface, where);
+  }
+}
+
+}  // namespace
+
+Provenance read_provenance(const std::string& path) {
+  const Reader r(path);
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  return {r.text("generator"), r.text("arguments"), r.text("input_sha256")};
+}
+
+Scene read_scene(const std::string& path, const BundleReader& decode) {
+  Reader r(path);
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  if (const std::string version = r.text("version"); version != h5::kVersionText) r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+  Scene s;
+  s.name = r.text("name");
+  s.description = r.text("description");
+  s.author = r.text("author");
+  const auto box = r.numbers("bounds_m", 6), origin = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
+  s.bounds = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+  s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
+  try {
+    read_meshes(r, s.meshes);
+    read_hierarchy(r, s);
+    read_materials(r, s.materials);
+    read_maps(r, s);
+  } catch (const Error& e) {
+    // Faults of the values (a curve, say) carry no place of their own.
+    if (!e.where().file.empty()) throw;
+    throw Error(Where{path, 0, 0, {}, -1}, e.message(), "prepare the scene again");
+  }
+  for (const Primitive& p : s.primitives) check_primitive(p, Where{path, 0, 0, {}, -1});
+  check_scene(s, path);
+  resolve(s, path, decode);
+  return s;
+}
+
+}  // namespace suite

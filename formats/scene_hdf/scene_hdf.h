@@ -1,0 +1,31 @@
+// The prepared scene as one HDF5 file. See FORMAT.md.
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace suite {
+
+// What made a scene: no times and no paths, so that equal inputs give equal bytes.
+struct Provenance {
+  std::string generator;     // tool and version
+  std::string arguments;     // canonical: file names without folders
+  std::string input_sha256;  // over all inputs
+};
+
+// Written whole or not at all. Error when the place is not writable.
+void write_scene(const Scene& scene, const Provenance& provenance, const std::string& path);
+
+// Turns the bytes of an embedded SQT into its bundle; called once a file. name: for messages.
+using BundleReader = std::function<std::shared_ptr<const sqt::Bundle>(std::span<const std::byte> bytes, const std::string& name)>;
+
+// Reads and checks everything (sizes before allocating, every index). Materials whose `file` names an embedded file get
+// their `bundle` from decode; without decode it stays null. Error: no scene, another version, damaged.
+Scene read_scene(const std::string& path, const BundleReader& decode = {});
+// The attributes only; cheap.
+Provenance read_provenance(const std::string& path);
+
+}  // namespace suite

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "base/files.h"
+#include "formats/scene_text/reader.h"
+#include "optics/models.h"
+
+namespace suite::scene_text {
+
+namespace {
+Outside read_outside(const Params& p) {
+  const auto rule = p.find("outside");
+  if (!rule) return Outside::error;
+  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
+  return rules[rule->as_choice({"error", "hold", "zero"})];
+}
+}  // namespace
+
+// {file, column, scale, outside} or {points: [[um, value], ...], outside} or {constant}.
+Curve Reader::read_curve_map(const Params& p) {
+  if (const auto c = p.find("constant")) return Curve::constant(c->as_number());
+  if (const auto points = p.find("points")) {
+    std::vector<double> x, y;
+    for (const Params& row : points->items()) {
+      const std::vector<double> pair = row.as_numbers();
+      if (pair.size() != 2) throw row.error("a point is [wavelength_um, value]");
+      x.push_back(pair[0]);
+      y.push_back(pair[1]);
+    }
+    return Curve(std::move(x), std::move(y), read_outside(p), points->where());
+  }
+  CurveOptions options;
+  options.outside = read_outside(p);
+  options.column = static_cast<int>(p.integer("column", 1, 100000, 1));
+  options.scale = p.number("scale", 1);
+  return read_curve(input(p.at("file")), options);
+}
+
+// A number, the name of a curve of `curves`, the name of a file, or a map.
+Curve Reader::read_curve_value(const Params& p) {
+  if (p.kind() == Params::Kind::map) return read_curve_map(p);
+  const std::string text = p.as_text();
+  if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) return Curve::constant(p.as_number());
+  if (const auto known = curves_.find(text); known != curves_.end()) return known->second;
+  return read_curve(input(p), {});
+}
+
+std::string Reader::embed(const Params& p) {
+  const std::string path = input(p);
+  if (const auto known = embedded_.find(path); known != embedded_.end()) return known->second;
+  std::string name = std::filesystem::path(path).filename().string();
+  const auto taken = [&](const std::string& n) { return std::any_of(draft_.files.begin(), draft_.files.end(), [&](const DataFile& f) { return f.name == n; }); };
+  for (int k = 2; taken(name); ++k) name = strf("%d-", k) + std::filesystem::path(path).filename().string();
+  draft_.files.push_back({name, read_bytes(path)});
+  return embedded_[path] = name;
+}
+
+void Reader::read_model(const Params& p, ModelSpec& spec) {
+  const Params model = p.at("model");
+  spec.model = model.as_text();
+  const ModelRow& row = find_model(spec.model, model.where());
+  for (const ModelParameter& parameter : row.parameters) {
+    const auto value = p.find(parameter.name);
+    if (!value) continue;
+    switch (parameter.kind) {
+      case ModelParameter::Kind::number: spec.numbers[parameter.name] = value->as_number(); break;
+      case ModelParameter::Kind::curve: spec.curves[parameter.name] = read_curve_value(*value); break;
+      case ModelParameter::Kind::text:
+        spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
+        break;
+    }
+  }
+  check_model(spec, model.where());
+}
+
+void Reader::read_material(const std::string& id, const Params& p) {
+  DraftMaterial m;
+  m.where = p.where();
+  m.material.id = id;
+  // The name is known from here on, so that one wrong value does not bring a second error per use of the material.
+  const size_t slot = draft_.materials.size();
+  draft_.materials.push_back(m);
+  m.material.description = p.text("description", "");
+  if (const auto map = p.find("map")) m.map = reference(*map);
+  if (p.has("model") || !m.map.given()) {
+    read_model(p, m.material.surface);
+    m.has_model = true;
+  }
+  m.material.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
+  if (const auto thermal = p.find("thermal"))
+    for (const char* name : {"conductivity_w_m_k", "density_kg_m3", "specific_heat_j_kg_k", "thickness_m"})
+      if (const auto value = thermal->find(name)) m.material.thermal[name] = value->as_number_in(1e-12, 1e12, "SI");
+  draft_.materials[slot] = std::move(m);
+}
+
+}  // namespace suite::scene_text

@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <set>
+
+#include "base/files.h"
+#include "formats/scene_text/reader.h"
+
+namespace suite {
+namespace scene_text {
+
+void Reader::item(const char* code, const Params& p, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const Error& e) {
+    report_.add(e, draft_.file, code);
+    p.mark_read();
+  }
+}
+
+std::string Reader::input(const Params& p) {
+  const std::string name = p.as_text();
+  std::string path = p.as_path();
+  if (!file_exists(path))
+    for (const std::string& folder : options_.search)
+      if (const std::string other = resolve_path(folder + "/.", name); file_exists(other)) {
+        path = other;
+        break;
+      }
+  if (!hashes_.count(path)) {
+    try {
+      hashes_[path] = sha256(read_bytes(path, size_t{64} << 30));
+    } catch (const Error& e) {
+      // Where it is named says more than where it was looked for.
+      throw Error(p.where(), "file '" + name + "' " + e.message(), e.hint(), "SP003");
+    }
+    draft_.inputs.push_back({name, hashes_[path]});
+  }
+  return path;
+}
+
+void Reader::run(const Params& root) {
+  root.integer("scene", 1, 1);
+  draft_.name = root.text("name", "");
+  draft_.description = root.text("description", "");
+  draft_.author = root.text("author", "");
+  if (const auto o = root.find("origin"))
+    item("SP001", *o, [&] {
+      draft_.origin.latitude_deg = o->number_in("latitude_deg", -90, 90, "degrees");
+      draft_.origin.longitude_deg = o->number_in("longitude_deg", -180, 360, "degrees");
+      draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
+      draft_.origin.given = true;
+    });
+  if (const auto windows = root.find("windows_um"))
+    for (const Params& w : windows->items())
+      item("SP001", w, [&] {
+        const std::vector<double> edge = w.as_numbers();
+        if (edge.size() != 2 || !(edge[0] > 0 && edge[0] < edge[1])) throw w.error("a window is [low, high] in micron");
+        draft_.windows.push_back({edge[0], edge[1], w.where()});
+      });
+  const auto each = [&](const char* key, const char* code, const std::function<void(const std::string&, const Params&)>& read) {
+    const auto table = root.find(key);
+    if (!table) return;
+    item(code, *table, [&] {
+      for (const std::string& name : table->keys()) {
+        const Params p = table->at(name);
+        item(code, p, [&] { read(name, p); });
+      }
+    });
+  };
+  each("curves", "SP101", [&](const std::string& name, const Params& p) { curves_[name] = read_curve_value(p); });
+  each("materials", "SP101", [&](const std::string& name, const Params& p) { read_material(name, p); });
+  each("maps", "SP501", [&](const std::string& name, const Params& p) { read_map(name, p); });
+  each("objects", "SP001", [&](const std::string& name, const Params& p) { read_geometry(name, p); });
+  item("SP001", root.has("world") ? root.at("world") : root, [&] { read_group("world", root.at("world")); });
+  each("groups", "SP001", [&](const std::string& name, const Params& p) {
+    if (name == "world") throw p.error("'world' is the name of the root");
+    for (const DraftGeometry& g : draft_.geometry)
+      if (g.name == name) throw p.error("'" + name + "' is an object already", strf("see line %d", g.where.line));
+    read_group(name, p);
+  });
+  for (const Error& e : root.unread()) report_.add("SP002", draft_.file, {e.where(), e.message() + "; " + e.hint()});
+}
+
+}  // namespace scene_text
+
+Draft read_scene_text(const std::string& path, const SceneTextOptions& options, Report& report) {
+  Draft draft;
+  draft.file = path;
+  const Params root = Params::parse_file(path);
+  draft.inputs.push_back({"", sha256(read_bytes(path))});
+  // The root itself must be a map with a version; without it nothing else means anything.
+  scene_text::Reader(options, report, draft).run(root);
+  return draft;
+}
+
+}  // namespace suite

@@ -1,0 +1,52 @@
+// What the parts of the scene text reader share.
+#pragma once
+#include <functional>
+#include <map>
+
+#include "base/params.h"
+#include "formats/curve/curve.h"
+#include "formats/scene_text/scene_text.h"
+#include "motion/scene_frame.h"
+
+namespace suite::scene_text {
+
+class Reader {
+ public:
+  Reader(const SceneTextOptions& options, Report& report, Draft& draft) : options_(options), report_(report), draft_(draft) {}
+  void run(const Params& root);
+
+ private:
+  // materials.cpp
+  void read_curves(const Params& list);
+  void read_material(const std::string& id, const Params& p);
+  Curve read_curve_value(const Params& p);
+  Curve read_curve_map(const Params& p);
+  void read_model(const Params& p, ModelSpec& spec);
+  std::string embed(const Params& p);
+  // geometry.cpp
+  void read_geometry(const std::string& name, const Params& p);
+  void read_obj_geometry(const Params& p, DraftGeometry& g);
+  void read_terrain(const Params& p, DraftGeometry& g);
+  void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
+  // placements.cpp
+  void read_group(const std::string& name, const Params& p);
+  DraftPlacement read_placement(const Params& p);
+  // maps.cpp
+  void read_map(const std::string& name, const Params& p);
+
+  // Runs one item; what it throws is filed and the next item goes on. p: the item's text, not searched for unknown keys
+  // any more when it failed. code: of faults that bring none.
+  void item(const char* code, const Params& p, const std::function<void()>& read);
+  // The file a value names, looked for beside the text and in the search folders; hashed into the inputs.
+  std::string input(const Params& p);
+  static Reference reference(const Params& p) { return {p.as_text(), p.where()}; }
+
+  const SceneTextOptions& options_;
+  Report& report_;
+  Draft& draft_;
+  std::map<std::string, Curve> curves_;
+  std::map<std::string, std::string> hashes_;   // resolved path -> sha256
+  std::map<std::string, std::string> embedded_; // resolved path -> name in the scene
+};
+
+}  // namespace suite::scene_text

@@ -1,0 +1,42 @@
+// A simulation as a user writes it: YAML (or JSON) that names a prepared scene, sources, sensors and output. See FORMAT.md.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion/time.h"
+#include "scheduler/scheduler.h"
+#include "sensor/sensors.h"
+
+namespace suite {
+
+// A Sun whose direction follows from date and place.
+struct SunByTime {
+  Utc utc;
+  Where where;
+  bool disk_from_distance = true;    // half angle from the Earth-Sun distance of the date
+};
+
+struct OutputSpec {
+  enum class Type { float32, float64 } type = Type::float32;
+  enum class Order { bsq, bil, bip } order = Order::bsq;
+  std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
+};
+
+struct Simulation {
+  std::string path;
+  std::string scene_path;
+  PipelineOptions pipeline;
+  SourceSpecs sources;
+  std::optional<SunByTime> sun_by_time;   // sources.sun is there, its direction still to be computed
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  OutputSpec output;
+};
+
+// deliver: receives the finished captures of the sensors. Error located in the text for anything wrong, unread keys
+// included.
+Simulation read_simulation(const std::string& path, const std::function<void(const Sensor&, const CaptureResult&)>& deliver);
+
+}  // namespace suite

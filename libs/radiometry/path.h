@@ -1,0 +1,51 @@
+// A path is a complete record of what happened to one sensor ray: nodes (scattering events) joined by segments, with
+// everything a processor needs to propagate radiance, or later polarisation or arrival times, along it.
+//
+// Based on: Goodenough & Brown, section IV-A and IV-B.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "surface/surface.h"
+
+namespace suite {
+
+// Light that a node receives straight from an explicit source.
+struct ExplicitLight {
+  Dir direction;
+  double density = 0;            // of having drawn this direction from the source, 1/sr; 0 = collimated
+  float radiance_scale = 0;      // multiplies the source's spectrum; 0 = none, or blocked
+  const float* spectrum = nullptr;
+};
+
+struct Node {
+  Hit hit;
+  Interaction at;
+  Dir out;                       // back along the segment, ENU
+  double optical_length = 0;     // m from the sensor, sum of segment lengths
+  double spectral_factor = 1;    // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
+  std::array<ExplicitLight, 2> light;   // sun, sky
+  // The continuation. weight = w / (density of having drawn it), for every wavelength, in the wave's spectral store.
+  Dir in;
+  int lobe = 0;
+  bool delta = false, continues = false;
+  double density = 0;            // at the path's own knot, roulette included; of Dirac lobes the probability
+};
+
+enum class PathEnd : uint8_t { escaped, absorbed, roulette, max_nodes };
+
+// The nodes of a path stand in its wave (wave.h), next to their spectra.
+struct Path {
+  Ray ray;                       // the sensor's
+  double weight = 1;             // the sensor's
+  int knot = 0;                  // the knot whose shapes drew this path
+  PathEnd end = PathEnd::absorbed;
+  Dir escape;                    // direction in which it left the scene
+  double escape_factor = 1;      // spectral factor of the whole path
+  double sun_factor = 0;         // the same when the Sun was met by chance, shared with explicit sampling
+  double sky_factor = 0;
+  double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
+  int size = 0;                  // nodes
+};
+
+}  // namespace suite

@@ -1,0 +1,55 @@
+// Builds paths: traces, meets surfaces, asks sources, draws continuations (paper, section IV-A, steps 2 and 3).
+//
+// Directions are drawn from the shapes at one of the state's knots, chosen per path; every other knot could have drawn
+// the same path, and the one-sample balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014) divides by the mean of
+// all their densities. With P_k the probability of knot k, r_k the density of the path so far under knot k relative to
+// the knot that drew it, and A = sum P_k r_k, a contribution carries the factor 1 / A. Explicit samples of a source with
+// density p_s and continuations that meet it by chance share the same heuristic:
+//   explicit:   1 / (A p_s + sum P_k r_k p_k)        by chance:   1 / (A' + A p_s / p_h),  A' after the last event.
+#pragma once
+#include "math/sampling.h"
+#include "radiometry/pipeline.h"
+#include "radiometry/wave.h"
+
+namespace suite {
+
+class PathGenerator {
+ public:
+  PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options);
+
+  // Starts path p of the wave with a sensor ray. sample: index within the stream of its problem and scramble.
+  void start(Wave& wave, size_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample);
+  // Completes all started paths (those in wave.active).
+  void complete(Wave& wave, RunStatistics& statistics);
+
+ private:
+  // What generation must remember of a path and processing need not.
+  struct Live {
+    SampleStream stream{0, 0, 0};
+    uint32_t sample = 0;
+    std::array<double, 4> u;              // numbers of the current node
+    Vec3 origin;                          // of the next segment
+    Dir direction;
+    double length = 0;                    // optical length so far
+    double relative[kMaxKnots];           // r_k
+    double throughput[kMaxKnots];         // at the knots
+    double shares = 1, shares_before = 1; // A after and before the last event
+    double last_density = 0;              // p_h of the last event, without roulette; 0 after a Dirac event or none
+  };
+  void escape(Path& path, const Live& live) const;
+  bool arrive(Wave& wave, uint32_t p, const Hit& hit);
+  void ask_sources(Wave& wave, uint32_t p);
+  void add_explicit(Wave& wave, uint32_t p, const ExplicitLight& light);
+  bool go_on(Wave& wave, uint32_t p);
+
+  const Surface& surface_;
+  const Optics& optics_;
+  const Environment& environment_;
+  PipelineOptions options_;
+  size_t knots_;
+  double knot_probability_[kMaxKnots];
+  std::vector<size_t> knot_bins_;
+  std::vector<Live> live_;
+};
+
+}  // namespace suite

@@ -1,0 +1,54 @@
+#include "radiometry/path_processor.h"
+
+#include <algorithm>
+
+namespace suite {
+
+namespace {
+
+// Radiance from outside the scene, where the path left it.
+void from_outside(const Path& path, const Environment& environment, std::span<float> radiance) {
+  std::fill(radiance.begin(), radiance.end(), 0.0f);
+  if (path.end != PathEnd::escaped) return;
+  if (environment.sky) {
+    const float scale = static_cast<float>(environment.sky->relative(path.escape) * path.sky_factor);
+    const float* spectrum = environment.sky->spectrum();
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += spectrum[i] * scale;
+  }
+  if (path.sun_factor > 0) {
+    const float scale = static_cast<float>(path.sun_factor);
+    const float* spectrum = environment.sun->spectrum();
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += spectrum[i] * scale;
+  }
+}
+
+// Thermal emission of a node: (1 - W) B(T), Kirchhoff's law for this side and direction.
+void add_emission(const Node& node, std::span<float> scratch, std::span<float> radiance) {
+  node.at.baked->model->total(node.at.frame.to_local(node.out), scratch);
+  const float factor = static_cast<float>(node.spectral_factor);
+  const float* blackbody = node.at.baked->blackbody.data();
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * std::max(0.0f, 1 - scratch[i]) * blackbody[i];
+}
+
+}  // namespace
+
+void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
+  const Path& path = wave.path(p);
+  from_outside(path, environment, radiance);
+  for (int n = path.size - 1; n >= 0; --n) {
+    const Node& node = wave.node(p, n);
+    float* L = radiance.data();
+    const float* direct = wave.direct(p, n).data();
+    if (node.continues) {
+      const float* w = wave.bounce(p, n).data();
+      for (size_t i = 0; i < radiance.size(); ++i) L[i] = L[i] * w[i] + direct[i];
+    } else {
+      for (size_t i = 0; i < radiance.size(); ++i) L[i] = direct[i];
+    }
+    if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
+  }
+  if (path.weight != 1)
+    for (float& x : radiance) x *= static_cast<float>(path.weight);
+}
+
+}  // namespace suite

@@ -1,0 +1,17 @@
+// Turns a complete path into the radiance that arrives at the sensor (paper, section IV-A, step 5, and equation 5),
+// for all wavelengths of the state, from the last node back to the first:
+//   L_n = c_n Le_n + S_n + w_n / p_n L_{n+1}
+// with S the explicit sources and c the spectral factor of the prefix. Other processors (polarisation, arrival times)
+// walk the same record.
+#pragma once
+#include <span>
+
+#include "radiometry/pipeline.h"
+#include "radiometry/wave.h"
+
+namespace suite {
+
+// radiance: per bin, W/(m2 sr um). Overwrites the wave's scratch spectra.
+void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance);
+
+}  // namespace suite

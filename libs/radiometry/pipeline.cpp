@@ -1,0 +1,178 @@
+#include "radiometry/pipeline.h"
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "radiometry/path_generator.h"
+#include "radiometry/path_processor.h"
+#include "radiometry/wave.h"
+
+namespace suite {
+
+void RunStatistics::merge(const RunStatistics& o) {
+  paths += o.paths;
+  nodes += o.nodes;
+  failures += o.failures;
+  truncated += o.truncated;
+  trace.rays += o.trace.rays;
+  trace.cycles += o.trace.cycles;
+  cycles += o.cycles;
+}
+
+Accumulators::Accumulators(size_t problems, size_t bands, int scrambles)
+    : bands_(bands), scrambles_(scrambles), sums_(problems * bands * static_cast<size_t>(scrambles)), paths_(problems), failures_(problems),
+      truncated_(problems), largest_(problems), truth_(problems) {}
+
+void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
+  // Samples are dealt to the scrambles in turn, so their counts differ by one at most.
+  const uint32_t n = paths_[problem];
+  mean = standard_error = 0;
+  if (!n) return;
+  double total = 0;
+  for (int s = 0; s < scrambles_; ++s) total += sums(problem, s)[band];
+  if (failures_[problem] >= n) return;
+  mean = total / (n - failures_[problem]);  // rejected samples are not averaged in
+  double square = 0;
+  int used = 0;
+  for (int s = 0; s < scrambles_; ++s) {
+    const uint32_t count = n / static_cast<uint32_t>(scrambles_) + (static_cast<uint32_t>(s) < n % static_cast<uint32_t>(scrambles_) ? 1 : 0);
+    if (!count) continue;
+    const double d = sums(problem, s)[band] / count - mean;
+    square += d * d;
+    ++used;
+  }
+  if (used > 1) standard_error = std::sqrt(square / (used - 1) / used);
+  else standard_error = INFINITY;  // one scramble tells nothing about its own error
+}
+
+std::vector<Block> blocks_of(const Capture& capture) {
+  constexpr uint32_t edge = 8;
+  std::vector<Block> blocks;
+  for (uint32_t r = 0; r < capture.rows; r += edge)
+    for (uint32_t c = 0; c < capture.columns; c += edge)
+      blocks.push_back({c, r, std::min(edge, capture.columns - c), std::min(edge, capture.rows - r)});
+  return blocks;
+}
+
+Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
+                   const BandProjection& projection, size_t reference_band, const PipelineOptions& options)
+    : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), options_(options) {
+  if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
+}
+
+struct Pipeline::Workspace {
+  Wave wave;
+  PathGenerator generator;
+  std::vector<double> bins, bands;
+};
+
+Pipeline::~Pipeline() = default;
+
+std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& w : idle_)
+      if (w->wave.width() >= width) {
+        std::swap(w, idle_.back());
+        auto found = std::move(idle_.back());
+        idle_.pop_back();
+        return found;
+      }
+  }
+  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
+                                                  PathGenerator(surface_, optics_, environment_, options_),
+                                                  std::vector<double>(state_.size()), std::vector<double>(projection_.bands())});
+}
+
+namespace {
+
+void vote(std::array<ProblemTruth::Vote, 4>& votes, uint32_t id) {
+  // Misra & Gries 1982: any id seen in more than a fifth of the samples survives, which includes every majority.
+  for (auto& v : votes)
+    if (v.count && v.id == id) {
+      ++v.count;
+      return;
+    }
+  for (auto& v : votes)
+    if (!v.count) {
+      v = {id, 1};
+      return;
+    }
+  for (auto& v : votes) --v.count;
+}
+
+void collect_truth(Wave& wave, size_t p, const Tracer& tracer, ProblemTruth& truth) {
+  if (wave.path(p).size == 0) return;
+  const Node& first = wave.node(p, 0);
+  ++truth.hits;
+  truth.range += first.optical_length;
+  truth.position += first.at.position;
+  vote(truth.material, first.at.material);
+  vote(truth.instance, tracer.objects()[first.hit.object].instance);
+}
+
+}  // namespace
+
+void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, uint32_t from,
+                   std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const {
+  const FlushDenormals flush;
+  const uint64_t start = __rdtsc();
+  const size_t width = size_t{block.columns} * block.rows, bands = projection_.bands();
+  const int scrambles = sums.scrambles();
+  std::unique_ptr<Workspace> workspace = borrow(width);
+  Wave& wave = workspace->wave;
+  PathGenerator& generator = workspace->generator;
+  std::vector<double>&wide = workspace->bins, &band = workspace->bands;
+  auto problem_of = [&](size_t i) {
+    return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
+  };
+  uint32_t last = from;
+  for (size_t i = 0; i < width; ++i) last = std::max(last, to[problem_of(i)]);
+
+  for (uint32_t sample = from; sample < last; ++sample) {
+    const uint32_t scramble = sample % static_cast<uint32_t>(scrambles), index = sample / static_cast<uint32_t>(scrambles);
+    wave.active.clear();
+    for (size_t i = 0; i < width; ++i) {
+      const size_t problem = problem_of(i);
+      if (sample >= to[problem]) continue;
+      const SampleStream stream(options_.seed, capture_id, problem, scramble);
+      const std::array<double, 4> u = stream.draw(index, 0);
+      generator.start(wave, i, sensor.ray(capture, problem, u), stream, index);
+    }
+    generator.complete(wave, statistics);
+
+    for (size_t i = 0; i < width; ++i) {
+      const size_t problem = problem_of(i);
+      if (sample >= to[problem]) continue;
+      const std::span<float> radiance = wave.scratch2();
+      process_path(wave, i, environment_, radiance);
+      // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
+      bool good = true;
+      for (size_t k = 0; k < radiance.size(); ++k) {
+        wide[k] = radiance[k];
+        good = good && radiance[k] >= 0 && radiance[k] < 3e38f;
+      }
+      ++statistics.paths;
+      statistics.truncated += wave.path(i).truncated;
+      sums.set_paths(problem, sample + 1);
+      if (!good) {
+        ++statistics.failures;
+        ++sums.failures(problem);
+        continue;
+      }
+      projection_.apply(wide, band);
+      double* target = sums.sums(problem, static_cast<int>(scramble));
+      for (size_t b = 0; b < bands; ++b) target[b] += band[b];
+      sums.largest(problem) = std::max(sums.largest(problem), static_cast<float>(band[reference_band_]));
+      sums.truncated(problem) += static_cast<float>(wave.path(i).truncated);
+      collect_truth(wave, i, surface_.tracer(), sums.truth(problem));
+    }
+  }
+  statistics.cycles += __rdtsc() - start;
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(workspace));
+}
+
+}  // namespace suite

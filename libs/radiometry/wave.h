@@ -1,0 +1,50 @@
+// The working memory of one pass through the pipeline: the paths of a block of problems, their nodes, and the spectra
+// that belong to the nodes. Allocated once per thread and block list, never inside the loop.
+#pragma once
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "radiometry/path.h"
+
+namespace suite {
+
+class Wave {
+ public:
+  // width: problems in a block; bins: of the spectral state.
+  Wave(size_t width, int max_nodes, size_t bins);
+
+  size_t width() const { return paths_.size(); }
+  size_t bins() const { return bins_; }
+  Path& path(size_t p) { return paths_[p]; }
+  Node& node(size_t p, int n) { return nodes_[p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)]; }
+  // w / density of the continuation at a node; aligned to 32 bytes, padded to whole vectors.
+  std::span<float> bounce(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n))), bins_}; }
+  // Radiance that explicit sources send along the path from this node.
+  std::span<float> direct(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)) + 1), bins_}; }
+  std::span<float> scratch() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_)), bins_}; }
+  std::span<float> scratch2() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 1), bins_}; }
+
+  // Rays of the current stage and what they belong to.
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  std::vector<double> distance;
+  std::vector<uint8_t> blocked;
+  std::vector<uint32_t> owner;       // path of rays[i]
+  std::vector<uint8_t> light;        // which ExplicitLight of its node
+  std::vector<uint32_t> active;      // paths that go on
+
+ private:
+  struct Free {
+    void operator()(float* p) const { std::free(p); }
+  };
+  float* at(size_t i) { return spectra_.get() + i * stride_; }
+  size_t bins_, stride_;
+  int max_nodes_;
+  std::vector<Path> paths_;
+  std::vector<Node> nodes_;
+  std::unique_ptr<float[], Free> spectra_;
+};
+
+}  // namespace suite

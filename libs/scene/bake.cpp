@@ -1,0 +1,296 @@
+#include "scene/bake.h"
+
+#include <algorithm>
+#include <memory>
+#include <cmath>
+#include <set>
+
+namespace suite {
+
+namespace {
+
+template <class Table, class Name>
+std::vector<std::string> names_of(const Table& table, Name name) {
+  std::vector<std::string> names;
+  for (const auto& row : table) names.push_back(name(row));
+  return names;
+}
+
+class Baker {
+ public:
+  Baker(const Draft& draft, Report& report) : draft_(draft), report_(report) {}
+
+  Scene run() {
+    scene_.name = draft_.name;
+    scene_.description = draft_.description;
+    scene_.author = draft_.author;
+    scene_.origin = draft_.origin;
+    scene_.files = draft_.files;
+    materials();
+    class_maps();
+    geometry();
+    groups();
+    unused();
+    if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_);
+    return std::move(scene_);
+  }
+
+ private:
+  // What a geometry became: the targets a placement of it places.
+  struct Built {
+    TargetKind kind;
+    uint32_t first, count;
+    const TerrainGrid* terrain = nullptr;
+  };
+
+  void add(const char* code, const Where& where, const std::string& message) { report_.add(code, draft_.file, {where, message}); }
+
+  uint32_t material_id(const Reference& ref) {
+    if (const auto found = material_ids_.find(ref.name); found != material_ids_.end()) {
+      used_materials_.insert(ref.name);
+      return found->second;
+    }
+    const auto known = names_of(draft_.materials, [](const DraftMaterial& m) { return m.material.id; });
+    add("SP102", ref.where, "unknown material '" + ref.name + "'; " + name_hint(ref.name, known));
+    return kNone;
+  }
+
+  void materials();
+  void check_coverage(const DraftMaterial& m);
+  void class_maps();
+  void geometry();
+  Built build_mesh(const DraftGeometry& g);
+  Built build_terrain(const DraftGeometry& g);
+  Built build_primitive(const DraftGeometry& g);
+  void groups();
+  std::vector<size_t> group_order();
+  void place(const DraftPlacement& p, Group& group, bool world);
+  void unused();
+
+  const Draft& draft_;
+  Report& report_;
+  Scene scene_;
+  std::map<std::string, uint32_t> material_ids_, map_ids_, tag_ids_, group_ids_;
+  std::map<std::string, Built> built_;
+  std::vector<std::unique_ptr<TerrainGrid>> terrains_;
+  std::set<std::string> used_materials_, used_maps_, used_targets_;
+};
+
+void Baker::check_coverage(const DraftMaterial& m) {
+  for (const SpectralWindow& w : draft_.windows)
+    for (const auto& [name, curve] : m.material.surface.curves)
+      if (!curve.covers(w.low_um, w.high_um))
+        add("SP104", m.where, strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
+                                   name.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+}
+
+void Baker::materials() {
+  for (const DraftMaterial& m : draft_.materials) {
+    material_ids_[m.material.id] = static_cast<uint32_t>(scene_.materials.size());
+    scene_.materials.push_back(m.material);
+    if (m.has_model) check_coverage(m);
+    // The sum over both sides' shares must stay below 1 wherever either curve has a knot.
+    const auto& curves = m.material.surface.curves;
+    const auto rho = curves.find("reflectance"), tau = curves.find("transmittance");
+    if (rho == curves.end() || tau == curves.end()) continue;
+    for (const Curve* c : {&rho->second, &tau->second})
+      for (const double w : c->wavelength_um())
+        if (rho->second.covers(w, w) && tau->second.covers(w, w) && rho->second.at(w) + tau->second.at(w) > 1 + 1e-9) {
+          add("SP105", m.where, strf("material '%s': reflectance %g + transmittance %g at %g um", m.material.id.c_str(), rho->second.at(w), tau->second.at(w), w));
+          goto next;
+        }
+  next:;
+  }
+}
+
+void Baker::class_maps() {
+  for (const DraftClassMap& d : draft_.class_maps) {
+    ClassMap map = d.map;
+    map_ids_[map.name] = static_cast<uint32_t>(scene_.class_maps.size());
+    // Renumber the raster's values to 0, 1, ... in the order of the values.
+    std::map<uint16_t, uint16_t> index;
+    for (const auto& [value, ref] : d.materials) {
+      index[value] = static_cast<uint16_t>(map.materials.size());
+      map.materials.push_back(material_id(ref));
+    }
+    std::map<uint16_t, size_t> missing;
+    for (uint16_t& c : map.classes) {
+      const auto found = index.find(c);
+      if (found == index.end()) ++missing[c];
+      else c = found->second;
+    }
+    for (const auto& [value, count] : missing)
+      report_.add("SP502", map.name, {d.where, strf("class %u (%zu pixels) has no material", value, count)}, count);
+    scene_.class_maps.push_back(std::move(map));
+  }
+  for (size_t m = 0; m < draft_.materials.size(); ++m) {
+    const DraftMaterial& d = draft_.materials[m];
+    if (!d.map.given()) continue;
+    const auto found = map_ids_.find(d.map.name);
+    if (found == map_ids_.end()) {
+      const auto known = names_of(draft_.class_maps, [](const DraftClassMap& c) { return c.map.name; });
+      add("SP501", d.map.where, "unknown map '" + d.map.name + "'; " + name_hint(d.map.name, known));
+      continue;
+    }
+    used_maps_.insert(d.map.name);
+    const ClassMap& map = scene_.class_maps[found->second];
+    scene_.map_bindings.push_back({static_cast<uint32_t>(m), found->second});
+    for (const uint32_t id : map.materials)
+      if (id == m || (id != kNone && draft_.materials[id].map.given()))
+        add("SP501", d.map.where, "map '" + d.map.name + "' leads to material '" + draft_.materials[id].material.id + "', which a map decides again");
+    if (!d.has_model && !map.materials.empty() && map.materials.front() != kNone)
+      scene_.materials[m].surface = draft_.materials[map.materials.front()].material.surface;
+  }
+}
+
+Baker::Built Baker::build_mesh(const DraftGeometry& g) {
+  std::vector<uint32_t> ids;
+  std::set<std::string> told;
+  for (const SourceMesh::Run& run : g.mesh.runs) {
+    if (const auto found = g.materials.find(run.material); found != g.materials.end()) {
+      ids.push_back(material_id(found->second));
+    } else if (material_ids_.count(run.material)) {
+      ids.push_back(material_id({run.material, {}}));
+    } else if (g.material.given()) {
+      ids.push_back(material_id(g.material));
+    } else {
+      if (told.insert(run.material).second)
+        add("SP102", {g.mesh.file, run.line, 0, {}, -1},
+            run.material.empty() ? "faces without 'usemtl' in '" + g.name + "'; give the object a 'material'"
+                                 : "unknown material '" + run.material + "'; define it, or map the name under 'materials' of '" + g.name + "'");
+      ids.push_back(kNone);
+    }
+  }
+  if (g.material.given()) material_id(g.material);  // even when every face has a better one, the name must exist
+  Mesh mesh = make_mesh(g.mesh, g.to_local, g.normals, ids);
+  mesh.name = g.name;
+  scene_.meshes.push_back(std::move(mesh));
+  return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size() - 1), 1, nullptr};
+}
+
+Baker::Built Baker::build_terrain(const DraftGeometry& g) {
+  terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+  const auto first = static_cast<uint32_t>(scene_.meshes.size());
+  std::vector<Mesh> tiles = terrains_.back()->tiles(g.name, g.tile_m, material_id(g.material));
+  if (tiles.empty()) add("SP504", g.where, "terrain '" + g.name + "' has no two by two samples with heights");
+  for (Mesh& t : tiles) scene_.meshes.push_back(std::move(t));
+  return {TargetKind::mesh, first, static_cast<uint32_t>(scene_.meshes.size()) - first, terrains_.back().get()};
+}
+
+Baker::Built Baker::build_primitive(const DraftGeometry& g) {
+  Primitive p = g.primitive;
+  p.name = g.name;
+  p.material = material_id(g.material);
+  scene_.primitives.push_back(std::move(p));
+  return {TargetKind::primitive, static_cast<uint32_t>(scene_.primitives.size() - 1), 1, nullptr};
+}
+
+void Baker::geometry() {
+  for (const DraftGeometry& g : draft_.geometry)
+    switch (g.kind) {
+      case DraftGeometry::Kind::mesh: built_[g.name] = build_mesh(g); break;
+      case DraftGeometry::Kind::terrain: built_[g.name] = build_terrain(g); break;
+      case DraftGeometry::Kind::primitive: built_[g.name] = build_primitive(g); break;
+    }
+}
+
+// World first, every group before the groups it contains (Kahn 1962); groups in a cycle are reported and left out.
+std::vector<size_t> Baker::group_order() {
+  std::map<std::string, size_t> row;
+  for (size_t i = 0; i < draft_.groups.size(); ++i) row[draft_.groups[i].name] = i;
+  std::vector<size_t> parents(draft_.groups.size(), 0), order;
+  const auto each_child = [&](size_t g, const auto& visit) {
+    std::set<size_t> seen;
+    for (const DraftPlacement& p : draft_.groups[g].placements)
+      if (const auto found = row.find(p.target.name); found != row.end() && !built_.count(p.target.name) && seen.insert(found->second).second) visit(found->second);
+  };
+  for (size_t g = 0; g < draft_.groups.size(); ++g) each_child(g, [&](size_t c) { ++parents[c]; });
+  std::vector<size_t> ready;
+  for (size_t g = draft_.groups.size(); g-- > 0;)
+    if (parents[g] == 0) ready.push_back(g);
+  while (!ready.empty()) {
+    const size_t g = ready.back();
+    ready.pop_back();
+    order.push_back(g);
+    each_child(g, [&](size_t c) {
+      if (--parents[c] == 0) ready.push_back(c);
+    });
+  }
+  for (size_t g = 0; g < draft_.groups.size(); ++g)
+    if (parents[g]) add("SP402", draft_.groups[g].where, "group '" + draft_.groups[g].name + "' is part of a circle");
+  // World is never inside another group, so it is ready at once; it must come first.
+  const auto world = std::find(order.begin(), order.end(), size_t{0});
+  if (world != order.end()) std::rotate(order.begin(), world, world + 1);
+  return order;
+}
+
+void Baker::place(const DraftPlacement& p, Group& group, bool world) {
+  Placement made;
+  made.to_parent = p.to_parent;
+  if (p.material.given()) made.material_override = material_id(p.material);
+  if (p.tag.given()) {
+    const auto [tag, fresh] = tag_ids_.try_emplace(p.tag.name, static_cast<uint32_t>(scene_.tags.size()));
+    if (fresh) scene_.tags.push_back(p.tag.name);
+    made.tag = tag->second;
+  }
+  for (const double a : made.to_parent.a)
+    if (!std::isfinite(a)) return add("SP404", p.where, "the transform of '" + p.target.name + "' is not finite");
+  if (made.to_parent.determinant() == 0) return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
+  if (p.on.given()) {
+    const auto ground = built_.find(p.on.name);
+    if (!world) return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand");
+    if (ground == built_.end() || !ground->second.terrain) return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain");
+    const auto z = ground->second.terrain->height_at(made.to_parent.b.x, made.to_parent.b.y);
+    if (!z) return add("SP405", p.where, strf("(%g, %g) is not on '%s'", made.to_parent.b.x, made.to_parent.b.y, p.on.name.c_str()));
+    made.to_parent.b.z += *z;
+  }
+  used_targets_.insert(p.target.name);
+  if (const auto found = built_.find(p.target.name); found != built_.end()) {
+    made.kind = found->second.kind;
+    for (uint32_t k = 0; k < found->second.count; ++k) {
+      made.target = found->second.first + k;
+      group.placements.push_back(made);
+    }
+    return;
+  }
+  if (const auto found = group_ids_.find(p.target.name); found != group_ids_.end()) {
+    made.kind = TargetKind::group;
+    made.target = found->second;
+    group.placements.push_back(made);
+    return;
+  }
+  std::vector<std::string> known = names_of(draft_.geometry, [](const DraftGeometry& g) { return g.name; });
+  for (const DraftGroup& g : draft_.groups)
+    if (g.name == p.target.name) return;  // in a circle, reported already
+    else if (&g != &draft_.groups.front()) known.push_back(g.name);
+  add("SP401", p.target.where, "unknown object '" + p.target.name + "'; " + name_hint(p.target.name, known));
+}
+
+void Baker::groups() {
+  const std::vector<size_t> order = group_order();
+  for (size_t i = 0; i < order.size(); ++i) group_ids_[draft_.groups[order[i]].name] = static_cast<uint32_t>(i);
+  for (const size_t g : order) {
+    Group group;
+    group.name = draft_.groups[g].name;
+    for (const DraftPlacement& p : draft_.groups[g].placements) place(p, group, g == 0);
+    scene_.groups.push_back(std::move(group));
+  }
+  if (scene_.groups.empty() || draft_.groups.front().placements.empty()) add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
+}
+
+void Baker::unused() {
+  for (const DraftMaterial& m : draft_.materials)
+    if (!used_materials_.count(m.material.id)) add("SP103", m.where, "material '" + m.material.id + "' is not used");
+  for (const DraftClassMap& m : draft_.class_maps)
+    if (!used_maps_.count(m.map.name)) add("SP503", m.where, "map '" + m.map.name + "' is not used");
+  for (const DraftGeometry& g : draft_.geometry)
+    if (!used_targets_.count(g.name)) add("SP403", g.where, "object '" + g.name + "' is never placed");
+  for (size_t g = 1; g < draft_.groups.size(); ++g)
+    if (!used_targets_.count(draft_.groups[g].name)) add("SP403", draft_.groups[g].where, "group '" + draft_.groups[g].name + "' is never placed");
+}
+
+}  // namespace
+
+Scene bake_scene(const Draft& draft, Report& report) { return Baker(draft, report).run(); }
+
+}  // namespace suite

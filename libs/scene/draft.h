@@ -1,0 +1,109 @@
+// A scene on its way in: what the text said and what the files it names contain, every value with its place, nothing
+// resolved yet. Filled by formats/scene_text, turned into a Scene by bake.h.
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace suite {
+
+// A name that refers to something, and where it was written.
+struct Reference {
+  std::string name;
+  Where where;
+  bool given() const { return !name.empty(); }
+};
+
+// Triangles as read from a file, in double, before they get an origin.
+struct SourceMesh {
+  struct Run {                           // consecutive triangles of one group and one material name
+    std::string group, material;         // material: the `usemtl` name; empty = none
+    uint32_t first_triangle = 0;
+    int line = 0;                        // where the run starts in the file
+  };
+  std::string file;
+  std::vector<Vec3> positions;           // m
+  std::vector<uint32_t> normals;         // octahedral, one per position, or empty
+  std::vector<float> uvs;                // two per position, or empty
+  std::vector<uint32_t> indices;         // three per triangle
+  std::vector<int> lines;                // source line of each triangle, or empty
+  std::vector<Run> runs;                 // ascending
+};
+
+// Heights on a grid, as a raster gives them. Samples are at pixel centres.
+struct SourceTerrain {
+  uint32_t width = 0, height = 0;
+  std::vector<float> heights;            // m, row-major, first row first; NaN = no data
+  // Scene ENU position of the sample in column i, row j (both may be fractional) with the height given.
+  std::function<Vec3(double column, double row, double height)> place;
+};
+
+enum class NormalRule { file, facet, smooth };
+
+struct DraftGeometry {
+  std::string name;
+  Where where;
+  enum class Kind { mesh, terrain, primitive } kind = Kind::mesh;
+  SourceMesh mesh;
+  SourceTerrain terrain;
+  Primitive primitive;
+  Affine3 to_local;                      // applied once to a mesh when it is read (units, up axis)
+  Reference material;                    // of everything without a better one
+  std::map<std::string, Reference> materials;  // `usemtl` name -> material id
+  NormalRule normals = NormalRule::file;
+  double tile_m = 0;                     // largest extent of one terrain tile
+};
+
+struct DraftPlacement {
+  Where where;
+  Reference target, material, tag, on;   // on: the terrain whose surface z counts from
+  Affine3 to_parent;
+};
+
+struct DraftGroup {
+  std::string name;
+  Where where;
+  std::vector<DraftPlacement> placements;
+};
+
+struct DraftMaterial {
+  Where where;
+  Material material;
+  Reference map;                         // a class map that decides instead
+  bool has_model = false;
+};
+
+struct DraftClassMap {
+  Where where;
+  ClassMap map;                          // `materials` still empty; `classes` hold the values of the raster
+  std::map<uint16_t, Reference> materials;  // value -> material id
+};
+
+struct SpectralWindow {
+  double low_um = 0, high_um = 0;
+  Where where;
+};
+
+// One file that the scene was made from: the name as written, and its SHA-256.
+struct InputFile {
+  std::string name, sha256;
+};
+
+struct Draft {
+  std::string file, name, description, author;
+  GeodeticOrigin origin;
+  std::vector<SpectralWindow> windows;
+  std::vector<DraftMaterial> materials;
+  std::vector<DraftClassMap> class_maps;
+  std::vector<DraftGeometry> geometry;
+  std::vector<DraftGroup> groups;        // [0] = world
+  std::vector<DataFile> files;
+  std::vector<InputFile> inputs;
+};
+
+}  // namespace suite

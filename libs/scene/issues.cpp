@@ -1,0 +1,39 @@
+// One row a finding: code, severity, summary, hint. SP0 text, SP1 materials and curves, SP2 geometry files, SP3 mesh
+// quality, SP4 assembly, SP5 maps.
+#include "scene/issues.h"
+
+namespace suite {
+
+std::vector<IssueKind> scene_issues() {
+  using enum Severity;
+  return {
+      {"SP001", error, "the scene text is wrong", ""},
+      {"SP002", error, "unknown key", "remove it or correct its name"},
+      {"SP003", error, "a file cannot be read", ""},
+      {"SP101", error, "a material is described wrongly", ""},
+      {"SP102", error, "unknown material", ""},
+      {"SP103", warning, "a material is not used", "remove it, or check the names that should refer to it"},
+      {"SP104", error, "a curve does not cover a declared spectral window", "give a longer curve, or declare 'outside: hold' or 'zero'"},
+      {"SP105", error, "a material reflects and transmits more than it receives", "reflectance + transmittance must not exceed 1"},
+      {"SP201", error, "a face names something that is not there", "indices count from 1, or from the end when negative; 0 is nothing"},
+      {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},
+      {"SP203", error, "a coordinate is not a finite number", "give plain decimal numbers"},
+      {"SP204", error, "there is no triangle", "the file must hold at least one face"},
+      {"SP205", info, "lines, points, curves or free-form surfaces are left out", "only faces are geometry here"},
+      {"SP206", warning, "a concave or non-planar polygon cannot be split cleanly", "triangulate it in the modelling tool"},
+      {"SP207", info, "not every corner has a normal", "corners without one get their facet's normal"},
+      {"SP208", info, "not every corner has a texture coordinate", "corners without one get (0, 0)"},
+      {"SP401", error, "a placement names something that is not there", ""},
+      {"SP402", error, "groups contain each other", "a group may only contain groups that do not lead back to it"},
+      {"SP403", warning, "an object is never placed", "remove it, or place it in 'world' or in a group that is"},
+      {"SP404", error, "a transform flattens or is not finite", "scales must not be 0"},
+      {"SP405", error, "a place is not on the terrain", "x and y must lie inside the terrain, outside of its gaps"},
+      {"SP406", error, "nothing is placed", "'world' must place something"},
+      {"SP501", error, "a map is described wrongly", ""},
+      {"SP502", error, "a map holds a class that has no material", "list a material for it"},
+      {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
+      {"SP504", error, "a terrain cannot be put in place", ""},
+  };
+}
+
+}  // namespace suite

@@ -1,0 +1,77 @@
+#include "scene/summary.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/files.h"
+#include "base/progress.h"
+
+namespace suite {
+
+std::vector<double> flattened_counts(const Scene& s) {
+  std::vector<double> groups(s.groups.size(), 0), meshes(s.meshes.size(), 0);
+  if (!groups.empty()) groups[0] = 1;
+  for (size_t g = 0; g < s.groups.size(); ++g)  // parents come before their children
+    for (const Placement& p : s.groups[g].placements) {
+      if (p.kind == TargetKind::group) groups[p.target] += groups[g];
+      if (p.kind == TargetKind::mesh) meshes[p.target] += groups[g];
+    }
+  return meshes;
+}
+
+std::string summary_text(const Scene& s) {
+  size_t vertices = 0, triangles = 0, placements = 0, bytes = 0, pixels = 0;
+  double flat = 0;
+  const std::vector<double> counts = flattened_counts(s);
+  for (size_t i = 0; i < s.meshes.size(); ++i) {
+    const Mesh& m = s.meshes[i];
+    vertices += m.vertex_count();
+    triangles += m.triangle_count();
+    flat += counts[i] * static_cast<double>(m.triangle_count());
+    bytes += 4 * (m.positions.size() + m.indices.size() + m.normals.size() + m.uvs.size());
+  }
+  for (const Group& g : s.groups) placements += g.placements.size();
+  for (const ClassMap& m : s.class_maps) pixels += m.classes.size();
+  std::string out = strf("scene         %s\n", s.name.c_str());
+  if (s.origin.given) out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m);
+  if (!s.bounds.empty())
+    out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x, s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);
+  out += strf("meshes        %zu with %zu vertices, %zu triangles (%s)\n", s.meshes.size(), vertices, triangles, human_bytes(static_cast<double>(bytes)).c_str());
+  out += strf("primitives    %zu\n", s.primitives.size());
+  out += strf("placements    %zu in %zu groups; flattened %s triangles\n", placements, s.groups.size(), human_count(flat).c_str());
+  out += strf("class maps    %zu with %zu pixels\nfiles inside  %zu\ntags          %zu\nmaterials     %zu\n", s.class_maps.size(), pixels, s.files.size(), s.tags.size(), s.materials.size());
+  for (const Material& m : s.materials) {
+    out += strf("  %-20s %s", m.id.c_str(), m.surface.model.c_str());
+    for (const auto& [name, curve] : m.surface.curves)
+      out += curve.is_constant() ? strf("; %s %g", name.c_str(), curve.value().front())
+                                 : strf("; %s %g to %g um, outside: %s", name.c_str(), curve.low_um(), curve.high_um(), to_text(curve.outside()));
+    for (const auto& [name, text] : m.surface.texts) out += "; " + name + " " + text;
+    if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
+    out += "\n";
+  }
+  std::set<std::string> uses;
+  for (const Mesh& m : s.meshes) {
+    if (!m.normals.empty()) uses.insert("vertex normals");
+    if (!m.uvs.empty()) uses.insert("texture coordinates");
+  }
+  for (const Material& m : s.materials)
+    if (m.temperature_k > 0) uses.insert("temperatures");
+  if (!s.class_maps.empty()) uses.insert("class maps");
+  if (!s.primitives.empty()) uses.insert("exact primitives");
+  if (!s.files.empty()) uses.insert("embedded files");
+  if (s.groups.size() > 1) uses.insert("nested groups");
+  out += "uses          ";
+  for (const std::string& u : uses) out += (u == *uses.begin() ? "" : ", ") + u;
+  return out + "\n";
+}
+
+std::string input_hash(const Draft& draft) {
+  std::vector<std::string> lines;
+  for (const InputFile& f : draft.inputs) lines.push_back(f.name + '\0' + f.sha256 + '\n');
+  std::sort(lines.begin(), lines.end());
+  std::string all;
+  for (const std::string& line : lines) all += line;
+  return sha256(all);
+}
+
+}  // namespace suite

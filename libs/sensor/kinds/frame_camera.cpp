@@ -1,0 +1,83 @@
+// A framing camera: a two-dimensional array of square detectors behind a pinhole, all integrating at once.
+// Image coordinates: columns to the right, rows downwards as seen along the view direction.
+// Based on: Goodenough & Brown, section III-B (2-D framing arrays; samples over the pixel area and the integration time).
+#include <cmath>
+
+#include "math/vec.h"
+#include "sensor/kinds/rows.h"
+
+namespace suite {
+
+namespace {
+
+class FrameCamera final : public Sensor {
+ public:
+  FrameCamera(const Params& p, const SensorContext& context) : deliver_(context.deliver), name_(p.text("name", "camera")) {
+    bands_ = read_bands(p.at("bands"), context);
+    const double step = p.number_in("spectral_step_um", 1e-6, 1000, "um", 0.01);
+    state_ = make_state(bands_, step, p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
+
+    Capture capture;
+    capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
+    capture.rows = static_cast<uint32_t>(p.integer("rows", 1, 100000));
+    pitch_ = p.number_in("pitch_um", 1e-3, 1e6, "um") * 1e-6;
+    focal_ = p.number_in("focal_length_mm", 1e-3, 1e6, "mm") * 1e-3;
+    const auto [x, y, z] = p.at("position_m").as_vec3();
+    position_ = {x, y, z};
+    const auto [tx, ty, tz] = p.at("look_at_m").as_vec3();
+    const Vec3 to = Vec3{tx, ty, tz} - position_;
+    if (!(length(to) > 0)) throw p.at("look_at_m").error("look_at_m is the position of the camera", "give another point");
+    forward_ = normalized(to);
+    Vec3 up{0, 0, 1};
+    if (const auto u = p.find("up")) {
+      const auto [ux, uy, uz] = u->as_vec3();
+      up = {ux, uy, uz};
+    } else if (std::fabs(forward_.z) > 1 - 1e-9) {
+      up = {0, 1, 0};  // straight down or up: rows run north to south
+    }
+    right_ = cross(forward_, up);
+    if (!(length(right_) > 1e-9 * length(up))) throw p.error("`up` runs along the view direction", "give another `up`");
+    right_ = normalized(right_);
+    down_ = cross(forward_, right_);
+    capture.name = name_;
+    const double time = p.number("time_s", 0);
+    capture.window = {time, time + p.number_in("integration_time_s", 0, 86400, "s", 0)};
+    capture.convergence = read_convergence(p);
+    tasks_.push_back({name_, capture.window, {capture}});
+  }
+
+  std::string name() const override { return name_; }
+  std::span<const SpectralState> states() const override { return {&state_, 1}; }
+  std::span<const Band> bands(size_t) const override { return bands_; }
+  std::span<const Task> tasks() const override { return tasks_; }
+
+  SensorRay ray(const Capture& capture, size_t problem, std::span<const double, 4> u) const override {
+    const double column = static_cast<double>(problem % capture.columns) + u[0], row = static_cast<double>(problem / capture.columns) + u[1];
+    const double x = (column - 0.5 * capture.columns) * pitch_, y = (row - 0.5 * capture.rows) * pitch_;
+    SensorRay r;
+    r.ray.origin = position_;
+    r.ray.direction = normalized(forward_ * focal_ + right_ * x + down_ * y);
+    r.ray.time = capture.window.begin + u[2] * (capture.window.end - capture.window.begin);
+    return r;
+  }
+
+  void accept(CaptureResult&& result) override { deliver_(*this, result); }
+
+ private:
+  std::function<void(const Sensor&, const CaptureResult&)> deliver_;
+  std::string name_;
+  std::vector<Band> bands_;
+  SpectralState state_;
+  std::vector<Task> tasks_;
+  Vec3 position_, forward_, right_, down_;
+  double pitch_ = 0, focal_ = 0;
+};
+
+}  // namespace
+
+SensorRow frame_camera_row() {
+  return {"frame_camera", "2-D framing array behind a pinhole, global shutter",
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<FrameCamera>(p, c); }};
+}
+
+}  // namespace suite

@@ -1,0 +1,65 @@
+#include "sensor/sensors.h"
+
+#include <algorithm>
+#include <set>
+
+#include "sensor/kinds/rows.h"
+
+namespace suite {
+
+std::span<const SensorRow> sensor_kinds() {
+  static const std::vector<SensorRow> table{frame_camera_row()};
+  return table;
+}
+
+std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context) {
+  const std::string kind = params.text("kind");
+  std::vector<std::string> known;
+  for (const SensorRow& row : sensor_kinds()) {
+    if (row.name == kind) return row.make(params, context);
+    known.push_back(row.name);
+  }
+  throw params.at("kind").error("unknown sensor kind '" + kind + "'", name_hint(kind, known), "SE101");
+}
+
+std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
+  std::vector<Band> bands;
+  std::set<std::string> names;
+  for (const Params& item : list.items()) {
+    const std::string name = item.text("name");
+    if (!names.insert(name).second) throw item.error("two bands are named '" + name + "'", "give each its own name");
+    if (const auto response = item.find("response")) {
+      bands.push_back(Band::tabulated(name, context.curve(*response), response->where()));
+      continue;
+    }
+    const double center = item.number_in("center_um", 0.01, 10000, "um");
+    const double width = item.number_in("fwhm_um", 1e-6, 2 * center * 0.999, "um");
+    const auto shape = item.find("shape");
+    switch (shape ? shape->as_choice({"gaussian", "rectangular", "triangular"}) : 0) {
+      case 0: bands.push_back(Band::gaussian(name, center, width)); break;
+      case 1: bands.push_back(Band::rectangular(name, center, width)); break;
+      default: bands.push_back(Band::triangular(name, center, width));
+    }
+  }
+  if (bands.empty()) throw list.error("a sensor needs at least one band");
+  return bands;
+}
+
+Convergence read_convergence(const Params& params) {
+  Convergence c;
+  const auto paths = params.find("paths");
+  if (!paths) return c;
+  constexpr long long most = 1LL << 30;
+  if (paths->kind() == Params::Kind::scalar) {
+    c.min_paths = c.max_paths = static_cast<uint32_t>(paths->as_integer(1, most));
+    return c;
+  }
+  c.min_paths = static_cast<uint32_t>(paths->integer("min", 1, most, 32));
+  c.max_paths = static_cast<uint32_t>(paths->integer("max", 1, most, 1024));
+  c.relative_error = paths->number_in("relative_error", 0, 1, "(fraction)", 0.01);
+  c.absolute_floor = paths->number_in("absolute_floor", 0, 1e30, "W/(m2 sr um)", 0);
+  if (c.max_paths < c.min_paths) throw paths->error("max is less than min");
+  return c;
+}
+
+}  // namespace suite

@@ -1,0 +1,185 @@
+#include "sqt/cell.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace suite::sqt {
+
+namespace {
+
+// Latitude of the faces' southern corners in units of 1/nside rings, and their longitude in units of pi/4.
+constexpr int kRing[12] = {2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4};
+constexpr int kLongitude[12] = {1, 3, 5, 7, 0, 2, 4, 6, 1, 3, 5, 7};
+
+uint32_t spread(uint32_t v) {  // bits of v to the even places
+  uint64_t r = v;
+  r = (r | (r << 8)) & 0x00FF00FFu;
+  r = (r | (r << 4)) & 0x0F0F0F0Fu;
+  r = (r | (r << 2)) & 0x33333333u;
+  r = (r | (r << 1)) & 0x55555555u;
+  return static_cast<uint32_t>(r);
+}
+uint32_t gather(uint32_t r) {  // the even bits of r
+  r &= 0x55555555u;
+  r = (r | (r >> 1)) & 0x33333333u;
+  r = (r | (r >> 2)) & 0x0F0F0F0Fu;
+  r = (r | (r >> 4)) & 0x00FF00FFu;
+  r = (r | (r >> 8)) & 0x0000FFFFu;
+  return r;
+}
+
+double below_one(double v) { return std::clamp(v, 0.0, std::nextafter(1.0, 0.0)); }
+
+}  // namespace
+
+FacePoint face_point(Dir d) {
+  double quarter = std::atan2(d.y, d.x) * (2 / kPi);  // azimuth in right angles, [0, 4)
+  if (quarter < 0) quarter += 4;
+  if (quarter >= 4) quarter = 0;
+  const double z_abs = std::fabs(d.z);
+  if (z_abs <= 2.0 / 3) {  // equatorial belt: lines of constant x and y are straight in (azimuth, z)
+    const double up = 0.5 + quarter + 0.75 * d.z, down = 0.5 + quarter - 0.75 * d.z;
+    const int iu = static_cast<int>(up), id = static_cast<int>(down);
+    const int face = iu == id ? (iu & 3) | 4 : id < iu ? id & 3 : (iu & 3) + 8;
+    return {face, below_one(up - iu), below_one(1 - (down - id))};
+  }
+  // Polar caps; 1 - |z| from the horizontal part, which keeps its digits at the pole.
+  const int q = std::min(3, static_cast<int>(quarter));
+  const double within = quarter - q;
+  const double r = std::sqrt(3 * (d.x * d.x + d.y * d.y) / (1 + z_abs));
+  const double a = std::min(1.0, within * r), b = std::min(1.0, (1 - within) * r);
+  if (d.z > 0) return {q, below_one(1 - b), below_one(1 - a)};
+  return {q + 8, below_one(a), below_one(b)};
+}
+
+Dir direction(FacePoint p) {
+  const double ring = kRing[p.face] - p.x - p.y;  // 0 at the north pole, 4 at the south pole
+  double width = 1, z, s;
+  if (ring < 1 || ring > 3) {
+    width = ring < 1 ? ring : 4 - ring;
+    const double t = width * width / 3;
+    z = ring < 1 ? 1 - t : t - 1;
+    s = std::sqrt(t * (2 - t));
+  } else {
+    z = (2 - ring) * (2.0 / 3);
+    s = std::sqrt((1 - z) * (1 + z));
+  }
+  const double phi = width > 1e-15 ? (kPi / 4) * ((kLongitude[p.face] * width + p.x - p.y) / width) : 0;
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+CellXY xy_of(CellId cell) {
+  const int order = cell.order();
+  const uint32_t index = cell.index(), within = index & ((1u << (2 * order)) - 1);
+  return {static_cast<int>(index >> (2 * order)), gather(within), gather(within >> 1)};
+}
+
+CellId cell_at(int order, CellXY at) {
+  return CellId::of(order, (static_cast<uint32_t>(at.face) << (2 * order)) + spread(at.x) + (spread(at.y) << 1));
+}
+
+CellId cell_of(FacePoint p, int order) {
+  const double n = static_cast<double>(1u << order);
+  return cell_at(order, {p.face, static_cast<uint32_t>(p.x * n), static_cast<uint32_t>(p.y * n)});
+}
+
+FacePoint point_in(CellId cell, Vec2 u) {
+  const CellXY c = xy_of(cell);
+  const double n = static_cast<double>(1u << cell.order());
+  return {c.face, (c.x + u.x) / n, (c.y + u.y) / n};
+}
+
+namespace {
+
+// What lies across edge e (-x, +x, -y, +y) of a face: the other face, its edge, and whether the running coordinate
+// turns round. Found from the geometry: shared edges have the same directions at a quarter and three quarters.
+struct Across {
+  int face, edge;
+  bool reversed;
+};
+FacePoint on_edge(int face, int edge, double s) {
+  return edge < 2 ? FacePoint{face, edge == 0 ? 0.0 : 1.0, s} : FacePoint{face, s, edge == 2 ? 0.0 : 1.0};
+}
+std::array<Across, 48> find_edges() {
+  std::array<Across, 48> table{};
+  for (int f = 0; f < 12; ++f)
+    for (int e = 0; e < 4; ++e) {
+      const Dir a = direction(on_edge(f, e, 0.25));
+      for (int g = 0; g < 12; ++g)
+        for (int h = 0; h < 4; ++h) {
+          if (g == f) continue;
+          const bool same = length(direction(on_edge(g, h, 0.25)) - a) < 1e-9;
+          const bool turned = length(direction(on_edge(g, h, 0.75)) - a) < 1e-9;
+          if (same || turned) table[static_cast<size_t>(4 * f + e)] = {g, h, turned};
+        }
+    }
+  return table;
+}
+const std::array<Across, 48>& edges() {
+  static const std::array<Across, 48> table = find_edges();
+  return table;
+}
+
+}  // namespace
+
+std::array<CellId, 4> edge_neighbours(CellId cell) {
+  const int order = cell.order();
+  const uint32_t last = (1u << order) - 1;
+  const CellXY c = xy_of(cell);
+  std::array<CellId, 4> out;
+  for (int e = 0; e < 4; ++e) {
+    const uint32_t moving = e < 2 ? c.x : c.y, along = e < 2 ? c.y : c.x;
+    const bool plus = e & 1;
+    if (plus ? moving < last : moving > 0) {
+      const uint32_t to = plus ? moving + 1 : moving - 1;
+      out[static_cast<size_t>(e)] = cell_at(order, e < 2 ? CellXY{c.face, to, c.y} : CellXY{c.face, c.x, to});
+      continue;
+    }
+    const Across& a = edges()[static_cast<size_t>(4 * c.face + e)];
+    const uint32_t side = a.edge & 1 ? last : 0, run = a.reversed ? last - along : along;
+    out[static_cast<size_t>(e)] = cell_at(order, a.edge < 2 ? CellXY{a.face, side, run} : CellXY{a.face, run, side});
+  }
+  return out;
+}
+
+namespace {
+// z of the points with x + y = sum in a face.
+double height(int face, double sum) {
+  const double ring = kRing[face] - sum;
+  if (ring < 1) return 1 - ring * ring / 3;
+  if (ring > 3) return (4 - ring) * (4 - ring) / 3 - 1;
+  return (2 - ring) * (2.0 / 3);
+}
+}  // namespace
+
+double cosine_integral(CellId cell, bool both_sides) {
+  // Over the cell, s = x + y has a triangular density; integrate max(z(s), 0) between the kinks by Gauss-Legendre.
+  const CellXY c = xy_of(cell);
+  const double h = 1.0 / static_cast<double>(1u << cell.order());
+  const double low = (c.x + c.y) * h, mid = low + h, high = mid + h;
+  std::array<double, 6> cut{low, mid, high, kRing[c.face] - 1.0, kRing[c.face] - 2.0, kRing[c.face] - 3.0};
+  for (double& v : cut) v = std::clamp(v, low, high);
+  std::sort(cut.begin(), cut.end());
+  constexpr double kNode[2] = {0.33998104358485626, 0.86113631159405258},
+                   kWeight[2] = {0.65214515486254614, 0.34785484513745386};
+  double sum = 0;
+  for (size_t i = 0; i + 1 < cut.size(); ++i) {
+    const double half = 0.5 * (cut[i + 1] - cut[i]), center = 0.5 * (cut[i + 1] + cut[i]);
+    if (half <= 0) continue;
+    for (int k = 0; k < 4; ++k) {
+      const double s = center + (k & 1 ? -1 : 1) * kNode[k >> 1] * half;
+      const double z = height(c.face, s);
+      sum += half * kWeight[k >> 1] * std::max(both_sides ? -z : 0.0, z) * (h - std::fabs(s - mid));
+    }
+  }
+  return kFaceSolidAngle * sum;
+}
+
+CellId mirrored(CellId cell) {
+  // phi -> -phi exchanges x and y; polar faces 0..3 go to 3..0, the belt's 4 and 6 stay, 5 and 7 change places.
+  const CellXY c = xy_of(cell);
+  const int face = c.face < 4 ? 3 - c.face : c.face >= 8 ? 19 - c.face : 4 + (4 - (c.face - 4)) % 4;
+  return cell_at(cell.order(), {face, c.y, c.x});
+}
+
+}  // namespace suite::sqt

@@ -1,0 +1,25 @@
+#include "sqt/tree.h"
+
+#include "base/error.h"
+
+namespace suite::sqt {
+
+Tree::Tree(std::span<const CellId> leaves) : cells_(leaves.begin(), leaves.end()) {
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    const int order = cells_[i].order();
+    const CellXY at = xy_of(cells_[i]);
+    size_t node = static_cast<size_t>(at.face);
+    for (int bit = order - 1; bit >= 0; --bit) {
+      SUITE_CHECK(nodes_[node] >= 0);  // a leaf above a leaf
+      if (nodes_[node] == 0) {
+        nodes_[node] = static_cast<int>(nodes_.size());
+        nodes_.resize(nodes_.size() + 4, 0);
+      }
+      node = static_cast<size_t>(nodes_[node]) + (((at.y >> bit) & 1) * 2 + ((at.x >> bit) & 1));
+    }
+    SUITE_CHECK(nodes_[node] == 0);
+    nodes_[node] = -static_cast<int>(i) - 1;
+  }
+}
+
+}  // namespace suite::sqt

@@ -1,0 +1,55 @@
+#include "trace/tile_bvh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace suite {
+
+bool clip(const Box3& box, const Ray& ray, double t_max, double& enter, double& leave) {
+  enter = 0;
+  leave = t_max;
+  for (int i = 0; i < 3; ++i) {
+    const double inverse = 1 / ray.direction[i];
+    double a = (box.low[i] - ray.origin[i]) * inverse, b = (box.high[i] - ray.origin[i]) * inverse;
+    if (a > b) std::swap(a, b);
+    // 0 * infinity when the origin lies in the slab's plane and the ray runs within it: NaN compares false and the
+    // slab does not clip.
+    if (a > enter) enter = a;
+    if (b * (1 + 4 * 2.22e-16) < leave) leave = b * (1 + 4 * 2.22e-16);
+  }
+  return enter <= leave;
+}
+
+void TileBvh::build(std::span<const Box3> boxes) {
+  nodes_.clear();
+  if (boxes.empty()) return;
+  std::vector<uint32_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  nodes_.reserve(2 * boxes.size());
+  build(boxes, order, 0);
+}
+
+uint32_t TileBvh::build(std::span<const Box3> boxes, std::span<uint32_t> order, int depth) {
+  const uint32_t index = static_cast<uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  Box3 box, centers;
+  for (const uint32_t i : order) box.grow(boxes[i]), centers.grow(boxes[i].center());
+  nodes_[index].box = box;
+  if (order.size() == 1) {
+    nodes_[index].tile = order[0];
+    return index;
+  }
+  // Median split along the widest spread of centres: depth is at most log2 of the number of tiles.
+  const Vec3 spread = centers.size();
+  const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
+  const size_t half = order.size() / 2;
+  std::nth_element(order.begin(), order.begin() + static_cast<long>(half), order.end(), [&](uint32_t a, uint32_t b) {
+    const double ca = boxes[a].center()[axis], cb = boxes[b].center()[axis];
+    return ca < cb || (ca == cb && a < b);
+  });
+  build(boxes, order.first(half), depth + 1);
+  nodes_[index].second = build(boxes, order.subspan(half), depth + 1);
+  return index;
+}
+
+}  // namespace suite

@@ -1,0 +1,123 @@
+// Seeded mutations of a valid input, for any reader: truncate, flip bits, overwrite sizes with huge or odd numbers,
+// copy and cut blocks. A reader may accept or throw suite::Error; anything else (another exception, a signal, a
+// sanitizer report, a slow or memory-hungry parse) fails the test.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "math/sampling.h"
+
+namespace suite::test {
+
+using Bytes = std::vector<std::byte>;
+inline Bytes bytes_of(std::string_view text) {
+  Bytes b(text.size());
+  std::memcpy(b.data(), text.data(), text.size());
+  return b;
+}
+
+class Mutator {
+ public:
+  explicit Mutator(uint64_t seed) : random_(seed) {}
+
+  Bytes operator()(const Bytes& seed_input) {
+    Bytes b = seed_input;
+    const size_t steps = 1 + below(3);
+    for (size_t s = 0; s < steps && !b.empty(); ++s) step(b);
+    return b;
+  }
+
+ private:
+  size_t below(size_t n) { return n ? static_cast<size_t>(random_.uniform() * static_cast<double>(n)) : 0; }
+  // Headers are where the sizes live: half of the positions fall into the first 512 bytes.
+  size_t position(size_t size) { return random_.uniform() < 0.5 ? below(std::min<size_t>(size, 512)) : below(size); }
+
+  void step(Bytes& b) {
+    const size_t at = position(b.size());
+    switch (below(6)) {
+      case 0:
+        b.resize(at);
+        break;
+      case 1:
+        b[at] ^= std::byte(1u << below(8));
+        break;
+      case 2:
+        overwrite(b, at);
+        break;
+      case 3:
+        b.insert(b.begin() + static_cast<std::ptrdiff_t>(at), b.begin(),
+                 b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), below(64))));
+        break;
+      case 4:
+        b.erase(b.begin() + static_cast<std::ptrdiff_t>(at),
+                b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), at + 1 + below(64))));
+        break;
+      default:
+        b[at] = std::byte(below(256));
+        break;
+    }
+  }
+  void overwrite(Bytes& b, size_t at) {
+    static constexpr uint64_t odd[] = {0,
+                                       1,
+                                       0x7f,
+                                       0x80,
+                                       0xff,
+                                       0x7fff,
+                                       0xffff,
+                                       0x7fffffff,
+                                       0x80000000,
+                                       0xffffffff,
+                                       1ull << 32,
+                                       1ull << 40,
+                                       0x7fffffffffffffff,
+                                       0x8000000000000000,
+                                       0xffffffffffffffff,
+                                       0x7ff0000000000000,
+                                       0x7ff8000000000000,
+                                       0x7fc00000};
+    const uint64_t value = odd[below(std::size(odd))];
+    const size_t width = size_t{1} << below(4);
+    std::memcpy(b.data() + at, &value, std::min(width, b.size() - at));
+  }
+  Pcg32 random_;
+};
+
+// Runs `read` on mutations of `input` until `count` are done or `seconds` have passed (SUITE_FUZZ_SECONDS overrides the
+// time and lifts the count). At least one mutation must be refused, and the input itself must be accepted.
+inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
+                 size_t count = 20000, double seconds = 4) {
+  ASSERT_NO_THROW(read(input));
+  if (const char* longer = std::getenv("SUITE_FUZZ_SECONDS")) seconds = std::atof(longer), count = SIZE_MAX;
+  const auto start = std::chrono::steady_clock::now();
+  auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Mutator mutate(seed);
+  size_t done = 0, refused = 0;
+  for (; done < count && elapsed() < seconds; ++done) {
+    const Bytes b = mutate(input);
+    const double before = elapsed();
+    try {
+      read(b);
+    } catch (const Error& e) {
+      ++refused;
+      ASSERT_FALSE(e.where().file.empty()) << "mutation " << done << ": no place in: " << e.what();
+    } catch (const std::exception& e) {
+      FAIL() << "mutation " << done << " of seed " << seed << ": " << e.what();
+    }
+    ASSERT_LT(elapsed() - before, 2.0) << "mutation " << done << " of seed " << seed << " took too long";
+  }
+  ::testing::Test::RecordProperty("mutations", static_cast<int>(done));
+  std::printf("%zu mutations, %zu refused, %.1f s\n", done, refused, elapsed());
+  EXPECT_GT(refused, size_t{0});
+}
+
+}  // namespace suite::test

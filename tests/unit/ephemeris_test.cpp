@@ -1,0 +1,112 @@
+// Sun and Moon against published worked examples.
+#include "motion/ephemeris.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace suite {
+namespace {
+
+// The rows "name,value,unit,note" of the solar position example.
+std::map<std::string, double> spa_example() {
+  std::ifstream in(SUITE_TEST_DATA "/motion/spa_reference.csv");
+  std::map<std::string, double> rows;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream cells(line);
+    std::string name, value;
+    std::getline(cells, name, ',');
+    std::getline(cells, value, ',');
+    if (name != "quantity" && name != "input_utc") rows[name] = std::stod(value);
+  }
+  return rows;
+}
+
+double compass_deg(Dir d) {
+  const double a = std::atan2(d.x, d.y) / kDegree;
+  return a < 0 ? a + 360 : a;
+}
+
+TEST(Ephemeris, SunOfTheSolarPositionExample) {
+  const auto ref = spa_example();
+  const SceneFrame frame({ref.at("input_latitude"), ref.at("input_longitude"), ref.at("input_elevation")});
+  const Instant when = instant_from_utc(parse_iso8601("2003-10-17T19:30:30Z"));
+  const SkyBody sun = sun_at(frame, {}, when);
+  EXPECT_NEAR(sun.elevation / kDegree, ref.at("e0_elevation_no_refraction"), 5e-4);
+  EXPECT_NEAR(compass_deg(sun.direction), ref.at("Phi_azimuth_from_north"), 5e-4);
+  EXPECT_NEAR(sun.distance / kAstronomicalUnit, ref.at("R_sun_distance"), 1e-4);  // from the ground, not the centre
+  RecordProperty("elevation_error_deg", std::to_string(sun.elevation / kDegree - ref.at("e0_elevation_no_refraction")));
+
+  const SkyBody lifted =
+      sun_at(frame, {}, when, 0, {ref.at("input_pressure") * 100, ref.at("input_temperature") + 273});
+  EXPECT_NEAR(lifted.elevation / kDegree, ref.at("e_elevation"), 5e-4);
+  EXPECT_NEAR((lifted.elevation - sun.elevation) / kDegree, ref.at("de_refraction"), 2e-5);
+  EXPECT_NEAR(compass_deg(lifted.direction), compass_deg(sun.direction), 1e-9);
+  EXPECT_NEAR(polar_angle(lifted.direction) / kDegree, 90 - lifted.elevation / kDegree, 1e-9);
+}
+
+// J. Meeus, Astronomical Algorithms, 2nd ed., example 47.a: 1992 April 12, 0h TD; apparent place and distance.
+TEST(Ephemeris, MoonOfMeeusExample) {
+  // 0h terrestrial time is 32.184 s earlier on the TAI scale.
+  const Instant when = Instant{48724, 0} + -32.184;
+  const EquatorialPlace moon = moon_geocentric(when);
+  EXPECT_NEAR(moon.right_ascension / kDegree, 134.688470, 3e-3);
+  EXPECT_NEAR(moon.declination / kDegree, 13.768368, 3e-3);
+  EXPECT_NEAR(moon.distance, 368409.7e3, 20e3);
+  // Example 48.a: phase angle i = 69.0756 degrees.
+  EXPECT_NEAR(moon_phase_angle(when) / kDegree, 69.0756, 0.01);
+}
+
+// Seen from the ground the Moon is displaced by up to its parallax of about a degree; the displacement is downwards.
+TEST(Ephemeris, MoonParallaxLowersTheMoon) {
+  const SceneFrame ground({40, 0, 0});
+  const Instant when = instant_from_utc(parse_iso8601("2024-03-20T20:00:00Z"));
+  const SkyBody near = moon_at(ground, {}, when);
+  // The same direction from the Earth's centre: a site there, expressed in the scene's frame.
+  const SkyBody centre = moon_at(ground, ground.enu_from_ecef({0, 0, 1}), when);
+  const double lowered = std::asin(centre.direction.z) - std::asin(near.direction.z);
+  const double parallax = std::asin(6369.3e3 / centre.distance * std::cos(std::asin(near.direction.z)));
+  EXPECT_NEAR(lowered, parallax, 0.01 * parallax);
+  EXPECT_NEAR(near.angular_radius / kDegree, 0.26, 0.02);
+}
+
+// The 2024 April 8 eclipse was total at Mazatlan (23.2 N 106.4 W) around 18:09:30 UTC: the disks must nearly coincide.
+TEST(Ephemeris, SunAndMoonMeetInTheEclipse) {
+  const SceneFrame frame({23.2, -106.42, 10});
+  const Instant when = instant_from_utc(parse_iso8601("2024-04-08T18:09:30Z"));
+  const SkyBody sun = sun_at(frame, {}, when), moon = moon_at(frame, {}, when);
+  EXPECT_LT(angle_between(sun.direction, moon.direction), moon.angular_radius - sun.angular_radius + 0.01 * kDegree);
+  EXPECT_GT(moon.angular_radius, sun.angular_radius);
+}
+
+TEST(Ephemeris, SunRadiusAndSeason) {
+  const SceneFrame frame({0, 0, 0});
+  const SkyBody perihelion = sun_at(frame, {}, instant_from_utc({2024, 1, 3, 12, 0, 0}));
+  const SkyBody aphelion = sun_at(frame, {}, instant_from_utc({2024, 7, 5, 12, 0, 0}));
+  EXPECT_NEAR(perihelion.angular_radius / kDegree, 0.2711, 2e-4);
+  EXPECT_NEAR(aphelion.angular_radius / kDegree, 0.2622, 2e-4);
+}
+
+TEST(Ephemeris, RefractionNearTheHorizonAndBelow) {
+  const Refraction air{101000, 283};
+  EXPECT_NEAR(refraction_lift(0, air) / kDegree * 60, 28.98, 0.1);  // Saemundsson at geometric 0
+  EXPECT_EQ(refraction_lift(-0.02, air), 0);
+  EXPECT_NEAR(refraction_lift(kPi / 2, air), 0, 1e-6);
+  EXPECT_GE(refraction_lift(kPi / 2, air), 0);
+  EXPECT_EQ(refraction_lift(0.1, {}), 0);
+}
+
+TEST(Ephemeris, RefusesImpossibleAir) {
+  const SceneFrame frame({0, 0, 0});
+  const Instant when = instant_from_utc({2024, 1, 1, 0, 0, 0});
+  EXPECT_THROW(sun_at(frame, {}, when, 0, {-1, 283}), Error);
+  EXPECT_THROW(sun_at(frame, {}, when, 0, {1e5, 0}), Error);
+  EXPECT_THROW(moon_at(frame, {}, when, 1.5), Error);
+}
+
+}  // namespace
+}  // namespace suite
