@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace suite {
 
@@ -52,9 +53,10 @@ Band Band::tabulated(std::string name, const Curve& response, const Where& where
   const auto& cx = cut.wavelength_um();
   const auto& cy = cut.value();
   for (size_t i = 1; i < cx.size(); ++i) {
-    const double a = 0.5 * (cy[i] + cy[i - 1]) * (cx[i] - cx[i - 1]);
-    area += a;
-    moment += a * 0.5 * (cx[i] + cx[i - 1]);
+    // Exact integrals of y and x y over a chord.
+    const double dx = cx[i] - cx[i - 1];
+    area += 0.5 * (cy[i] + cy[i - 1]) * dx;
+    moment += dx / 6 * (cx[i - 1] * (2 * cy[i - 1] + cy[i]) + cx[i] * (cy[i - 1] + 2 * cy[i]));
   }
   const double half = 0.5 * cut.max();
   double low = cx.front(), high = cx.back();
@@ -116,9 +118,8 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
     double edge = low;
     while (edge < high) {
       double next = (std::floor(edge / step * (1 + 1e-12)) + 1) * step;
-      if (next > high - 0.25 * step) next = high;  // no slivers at the end
-      if (next - edge < 0.25 * step && next < high) next += step;  // nor at the start
-      next = std::min(next, high);
+      if (next - edge < 0.25 * step) next += step;  // no slivers at the start
+      if (next > high - 0.25 * step) next = high;   // nor at the end
       state.bins.push_back({edge, next});
       edge = next;
     }
@@ -128,11 +129,15 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   for (size_t i = 0; i < state.bins.size(); ++i)
     if (std::fabs(state.bins[i].center_um() - state.reference_um) < std::fabs(state.bins[reference].center_um() - state.reference_um)) reference = i;
   state.knots.push_back(reference);
+  // Each further knot is the bin farthest in wavelength from all knots so far, so that every band has a knot near it: no
+  // bin is farther from one than 1/k of the window (Gonzalez 1985: at most twice the best possible).
+  std::vector<double> distance(state.bins.size(), std::numeric_limits<double>::infinity());
   const size_t wanted = std::min({knot_count, size_t{8}, state.bins.size()});
-  for (size_t k = 0; state.knots.size() < wanted && k < wanted; ++k) {
-    // Evenly over the bins, first and last included, so that every band has a knot near it.
-    const size_t i = wanted > 1 ? (k * (state.bins.size() - 1) + (wanted - 1) / 2) / (wanted - 1) : reference;
-    if (std::find(state.knots.begin(), state.knots.end(), i) == state.knots.end()) state.knots.push_back(i);
+  while (state.knots.size() < wanted) {
+    const double latest = state.bins[state.knots.back()].center_um();
+    for (size_t i = 0; i < distance.size(); ++i)
+      distance[i] = std::min(distance[i], std::fabs(state.bins[i].center_um() - latest));
+    state.knots.push_back(static_cast<size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
   }
   return state;
 }

@@ -51,7 +51,8 @@ struct SpectralState {
   std::string text() const;
 };
 
-// bins: at most `step_um` wide, edges aligned to multiples of the step, only where some band responds.
+// bins: `step_um` wide, edges at multiples of the step, only where some band responds; the first and last bin of a stretch
+// reach to its ends and are 1/4 to 5/4 of a step wide (3/2 when the stretch has one bin only).
 // reference_um = 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the
 // reference first. Errors: no bands, step not positive, more than 100 000 bins.
 SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
