@@ -6,14 +6,20 @@
 
 namespace suite {
 
-double gamma_p(double a, double x) {
-  if (!(x > 0)) return 0;
-  const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
-  if (x < a + 1) {
-    double term = 1 / a, sum = term;
-    for (int n = 1; n < 100000 && std::fabs(term) > 1e-17 * std::fabs(sum); ++n) sum += term *= x / (a + n);
-    return std::min(1.0, front * sum);
-  }
+namespace {
+
+// x^a e^-x / Gamma(a)
+double gamma_front(double a, double x) { return std::exp(-x + a * std::log(x) - std::lgamma(a)); }
+
+// P by its power series; converges fast for x < a + 1.
+double gamma_series(double a, double x) {
+  double term = 1 / a, sum = term;
+  for (int n = 1; n < 100000 && std::fabs(term) > 1e-17 * std::fabs(sum); ++n) sum += term *= x / (a + n);
+  return std::min(1.0, gamma_front(a, x) * sum);
+}
+
+// Q by Lentz's continued fraction; converges fast for x >= a + 1.
+double gamma_fraction(double a, double x) {
   double b = x + 1 - a, c = 1e300, d = 1 / b, h = d;
   for (int i = 1; i < 100000; ++i) {
     const double an = -i * (i - a);
@@ -25,10 +31,22 @@ double gamma_p(double a, double x) {
     h *= d * c;
     if (std::fabs(d * c - 1) < 1e-16) break;
   }
-  return std::max(0.0, 1 - front * h);
+  return std::min(1.0, gamma_front(a, x) * h);
 }
 
-double chi_square_tail(double x, double k) { return 1 - gamma_p(k / 2, x / 2); }
+}  // namespace
+
+double gamma_p(double a, double x) {
+  if (!(x > 0)) return 0;
+  return x < a + 1 ? gamma_series(a, x) : 1 - gamma_fraction(a, x);
+}
+
+double gamma_q(double a, double x) {
+  if (!(x > 0)) return 1;
+  return x < a + 1 ? 1 - gamma_series(a, x) : gamma_fraction(a, x);
+}
+
+double chi_square_tail(double x, double k) { return gamma_q(k / 2, x / 2); }
 double normal_two_sided(double z) { return std::erfc(std::fabs(z) / std::sqrt(2.0)); }
 
 namespace {

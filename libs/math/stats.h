@@ -42,7 +42,9 @@ class RunningStats {
 
 // Regularised lower incomplete gamma P(a, x); a > 0, x >= 0 (Abramowitz & Stegun 6.5.29, Lentz's fraction 6.5.31).
 double gamma_p(double a, double x);
-// Probability that a chi-square variable with k degrees of freedom exceeds x.
+// The upper one, Q = 1 - P, with its relative digits kept where it is small.
+double gamma_q(double a, double x);
+// Probability that a chi-square variable with k degrees of freedom exceeds x; far tails keep their relative digits.
 double chi_square_tail(double x, double k);
 // Two-sided tail of a standard normal beyond |z|.
 double normal_two_sided(double z);

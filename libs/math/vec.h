@@ -62,7 +62,8 @@ struct Frame {
     const Vec3 t = tangent - n * dot(tangent, n);
     const double len = length(t);
     if (!(len > 1e-9 * length(tangent))) return around(n);
-    const Vec3 x = t / len;
+    // Projected a second time: for a tangent almost along n the first projection loses up to nine digits.
+    const Vec3 x = normalized(t / len - n * (dot(t, n) / len));
     return {x, cross(n, x), n};
   }
   Vec3 to_local(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }

@@ -1,0 +1,78 @@
+// Every way out of an executable: what it prints, where, and with which exit code.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/run_command.h"
+
+using namespace suite;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+CommandResult toy(const std::string& arguments) { return run_command(std::string(SUITE_TOY_APP) + " " + arguments); }
+}  // namespace
+
+TEST(RunApp, FineIsZeroAndResultsGoToStandardOutput) {
+  const CommandResult r = toy("fine --name 'a b' --size=2 -j 3");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_EQ(r.out, "name=a b size=2 strict=0 given=1 threads=3 command=toy fine --name 'a b' --size=2 -j 3\n");
+  EXPECT_EQ(r.err, "a note\nwarning: a warning\n");
+  EXPECT_EQ(toy("fine -q").err, "warning: a warning\n");
+  EXPECT_THAT(toy("fine").out, HasSubstr("name=unnamed size=1.5 strict=0 given=0"));
+}
+
+TEST(RunApp, BadInputIsOneMessageAndOne) {
+  const CommandResult r = toy("error -q");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_EQ(r.err, "warning: a warning\nf.yaml:3:1: error: wrong; do right\n  x: y\n  ^\n");
+  EXPECT_EQ(r.out, "");
+  EXPECT_EQ(toy("refuse").code, 1);
+  EXPECT_EQ(toy("memory").code, 1);
+  EXPECT_THAT(toy("memory").err, HasSubstr("toy: error: out of memory"));
+}
+
+TEST(RunApp, BadUsageIsTwoWithTheNearestNameAndAPointerToHelp) {
+  CommandResult r = toy("fine --sise 2");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_EQ(r.err, "toy: usage: unknown option '--sise'; did you mean '--size'?\ntoy: see 'toy --help'\n");
+  r = toy("fine --sise=2");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("unknown option '--sise'; did you mean '--size'?"));
+  r = toy("fine extra");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("unexpected argument 'extra'"));
+  for (const char* bad : {"", "fine --size", "fine --size two", "fine -j -1", "fine -j 1e9", "usage"}) {
+    r = toy(bad);
+    EXPECT_EQ(r.code, 2) << bad;
+    EXPECT_THAT(r.err, HasSubstr("toy: usage: ")) << bad;
+    EXPECT_THAT(r.err, HasSubstr("toy: see 'toy --help'\n")) << bad;
+  }
+}
+
+TEST(RunApp, OurBugIsThreeAndAsksForAReport) {
+  for (const char* what : {"bug", "standard"}) {
+    const CommandResult r = toy(what);
+    EXPECT_EQ(r.code, 3);
+    EXPECT_THAT(r.err, HasSubstr("toy: bug: "));
+    EXPECT_THAT(r.err, HasSubstr(std::string("please report it with this command line: toy ") + what));
+  }
+  EXPECT_THAT(toy("bug").err, HasSubstr("argc == -1: 2 against -1"));
+}
+
+TEST(RunApp, HelpAndVersionAreZeroAndDoNoWork) {
+  CommandResult r = toy("--help");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_THAT(r.out, HasSubstr("Does what it is told."));
+  EXPECT_THAT(r.out, HasSubstr("--threads"));
+  EXPECT_THAT(r.out, HasSubstr("Example: toy fine"));
+  EXPECT_EQ(r.err, "");
+  r = toy("--version");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_EQ(r.out, "toy 0.1.0\n");
+}
+
+TEST(RunApp, AClosedPipeDoesNotKillTheProgramSilently) {
+  const CommandResult r =
+      run_command("bash -c '" + std::string(SUITE_TOY_APP) + " fine | true; exit ${PIPESTATUS[0]}'");
+  EXPECT_EQ(r.code, 0);
+}
