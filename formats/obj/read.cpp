@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <istream>
 #include <limits>
 
@@ -129,7 +130,9 @@ void Collector::check_number_line(int at_least, Vec3 value) {
     while (stop < end && !blank(*stop)) ++stop;
     double number = 0;
     const auto [read_to, code] = std::from_chars(*p == '+' ? p + 1 : p, stop, number);
-    if (code == std::errc::invalid_argument || read_to != stop || !std::isfinite(number))
+    // Out of range may also mean too small, which is 0 and fine.
+    const bool too_large = code == std::errc::result_out_of_range && std::fabs(std::strtod(p, nullptr)) > 1;
+    if (code == std::errc::invalid_argument || read_to != stop || !std::isfinite(number) || too_large)
       return add("SP203", "'" + std::string(p, std::min<size_t>(static_cast<size_t>(stop - p), 40)) + "' is no finite number");
     p = stop;
   }
