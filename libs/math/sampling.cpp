@@ -89,10 +89,10 @@ std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const 
   const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(sample), static_cast<uint32_t>(key)));
   const std::array<uint32_t, 4> point = sobol4(shuffled);
   const uint64_t a = mix64(key), b = mix64(key ^ 0x5bd1e995ull);
-  return {unit_double(owen_scramble(point[0], static_cast<uint32_t>(a))),
-          unit_double(owen_scramble(point[1], static_cast<uint32_t>(a >> 32))),
-          unit_double(owen_scramble(point[2], static_cast<uint32_t>(b))),
-          unit_double(owen_scramble(point[3], static_cast<uint32_t>(b >> 32)))};
+  const std::array<uint32_t, 4> seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b), static_cast<uint32_t>(b >> 32)};
+  std::array<double, 4> u;
+  for (int d = 0; d < 4; ++d) u[d] = unit_double(reverse_bits(laine_karras(reverse_bits(point[d]), seeds[d])));
+  return u;
 }
 
 }  // namespace suite

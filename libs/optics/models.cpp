@@ -5,7 +5,7 @@
 namespace suite {
 
 std::span<const ModelRow> models() {
-  static const std::vector<ModelRow> table{lambert_row(), mirror_row()};
+  static const std::vector<ModelRow> table{lambert_row(), mirror_row(), ward_row()};
   return table;
 }
 
@@ -47,7 +47,8 @@ void check_model(ModelSpec& spec, const Where& where) {
   for (const auto& [name, value] : spec.texts) reject(name, ModelParameter::Kind::text);
   for (const ModelParameter& p : row.parameters) {
     const bool given = spec.numbers.count(p.name) || spec.curves.count(p.name) || spec.texts.count(p.name);
-    if (!given && p.required) throw Error(where, "model '" + spec.model + "' needs '" + p.name + "'", p.summary + " [" + p.unit + "]", "OP104");
+    if (!given && p.required)
+      throw Error(where, "model '" + spec.model + "' needs '" + p.name + "'", p.summary + " [" + p.unit + "]", "OP104");
     if (!given && p.kind == ModelParameter::Kind::number) spec.numbers[p.name] = p.otherwise;
     if (!given && p.kind == ModelParameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
     if (p.kind == ModelParameter::Kind::number) check_range(spec, p, spec.numbers.at(p.name), where);

@@ -4,7 +4,9 @@
 
 namespace suite {
 
-void ScatterModel::delta_weight(Dir, int, int, std::span<float> weight) const { std::fill(weight.begin(), weight.end(), 0.0f); }
+void ScatterModel::delta_weight(Dir, int, int, std::span<float> weight) const {
+  std::fill(weight.begin(), weight.end(), 0.0f);
+}
 void ScatterModel::delta_probability(Dir, int, int, std::span<float> probability) const {
   std::fill(probability.begin(), probability.end(), 0.0f);
 }

@@ -10,8 +10,6 @@
 
 namespace suite {
 
-inline constexpr int kMaxNodes = 64;
-
 // Light that a node receives straight from an explicit source.
 struct ExplicitLight {
   Dir direction;

@@ -43,7 +43,6 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
 }
 
 void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
-  std::array<double, 4> u{};
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
@@ -62,8 +61,8 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     // Ask the explicit sources at every node, then see which of them are visible.
     wave.rays.clear(), wave.owner.clear(), wave.light.clear();
     for (const uint32_t p : wave.active) {
-      u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (options_.explicit_sources) ask_sources(wave, p, u);
+      live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
+      if (options_.explicit_sources) ask_sources(wave, p);
     }
     wave.distance.assign(wave.rays.size(), std::numeric_limits<double>::infinity());
     wave.blocked.resize(wave.rays.size());
@@ -75,10 +74,8 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
 
     // Draw the continuations.
     kept = 0;
-    for (const uint32_t p : wave.active) {
-      u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (go_on(wave, p, u)) wave.active[kept++] = p;
-    }
+    for (const uint32_t p : wave.active)
+      if (go_on(wave, p)) wave.active[kept++] = p;
     wave.active.resize(kept);
   }
 }
@@ -115,7 +112,8 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   return false;
 }
 
-void PathGenerator::ask_sources(Wave& wave, uint32_t p, const std::array<double, 4>& u) {
+void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
+  const std::array<double, 4>& u = live_[p].u;
   Node& node = wave.node(p, wave.path(p).size - 1);
   const double out_side = dot(node.out, node.at.geometric_normal);
   auto ask = [&](const DirectionSample& drawn, double relative_radiance, const float* spectrum, uint8_t which) {
@@ -158,9 +156,10 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, const ExplicitLight& li
 }
 
 // Draws where the path goes from its last node; false when it ends there.
-bool PathGenerator::go_on(Wave& wave, uint32_t p, const std::array<double, 4>& u) {
+bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   Path& path = wave.path(p);
   Live& live = live_[p];
+  const std::array<double, 4>& u = live.u;
   const int n = path.size - 1;
   Node& node = wave.node(p, n);
   const ScatterModel& model = *node.at.baked->model;

@@ -27,6 +27,7 @@ class PathGenerator {
   struct Live {
     SampleStream stream{0, 0, 0};
     uint32_t sample = 0;
+    std::array<double, 4> u;              // numbers of the current node
     Vec3 origin;                          // of the next segment
     Dir direction;
     double length = 0;                    // optical length so far
@@ -37,9 +38,9 @@ class PathGenerator {
   };
   void escape(Path& path, const Live& live) const;
   bool arrive(Wave& wave, uint32_t p, const Hit& hit);
-  void ask_sources(Wave& wave, uint32_t p, const std::array<double, 4>& u);
+  void ask_sources(Wave& wave, uint32_t p);
   void add_explicit(Wave& wave, uint32_t p, const ExplicitLight& light);
-  bool go_on(Wave& wave, uint32_t p, const std::array<double, 4>& u);
+  bool go_on(Wave& wave, uint32_t p);
 
   const Surface& surface_;
   const Optics& optics_;

@@ -62,6 +62,30 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
+struct Pipeline::Workspace {
+  Wave wave;
+  PathGenerator generator;
+  std::vector<double> bins, bands;
+};
+
+Pipeline::~Pipeline() = default;
+
+std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& w : idle_)
+      if (w->wave.width() >= width) {
+        std::swap(w, idle_.back());
+        auto found = std::move(idle_.back());
+        idle_.pop_back();
+        return found;
+      }
+  }
+  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
+                                                  PathGenerator(surface_, optics_, environment_, options_),
+                                                  std::vector<double>(state_.size()), std::vector<double>(projection_.bands())});
+}
+
 namespace {
 
 void vote(std::array<ProblemTruth::Vote, 4>& votes, uint32_t id) {
@@ -97,9 +121,10 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
   const uint64_t start = __rdtsc();
   const size_t width = size_t{block.columns} * block.rows, bands = projection_.bands();
   const int scrambles = sums.scrambles();
-  Wave wave(width, options_.max_nodes, state_.size());
-  PathGenerator generator(surface_, optics_, environment_, options_);
-  std::vector<double> wide(state_.size()), band(bands);
+  std::unique_ptr<Workspace> workspace = borrow(width);
+  Wave& wave = workspace->wave;
+  PathGenerator& generator = workspace->generator;
+  std::vector<double>&wide = workspace->bins, &band = workspace->bands;
   auto problem_of = [&](size_t i) {
     return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
   };
@@ -146,6 +171,8 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
     }
   }
   statistics.cycles += __rdtsc() - start;
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(workspace));
 }
 
 }  // namespace suite

@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,8 @@
 #include "surface/surface.h"
 
 namespace suite {
+
+inline constexpr int kMaxNodes = 64;
 
 struct PipelineOptions {
   uint64_t seed = 1;
@@ -87,6 +91,7 @@ class Pipeline {
   // Keeps references; all must outlive it.
   Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
            const BandProjection& projection, size_t reference_band, const PipelineOptions& options);
+  ~Pipeline();
 
   // Runs the samples [from, to[problem]) of each problem of a block and adds them to the accumulators; sample s goes to
   // scramble s % scrambles. Problems whose `to` is not above `from` are left alone. Thread-safe for distinct blocks.
@@ -101,6 +106,11 @@ class Pipeline {
   const BandProjection& projection_;
   size_t reference_band_;
   PipelineOptions options_;
+  // Working memory goes from block to block; as many as threads have been at work at once.
+  struct Workspace;
+  std::unique_ptr<Workspace> borrow(size_t width) const;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };
 
 }  // namespace suite

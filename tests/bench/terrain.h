@@ -73,7 +73,7 @@ class TerrainCamera final : public Sensor {
   std::span<const Band> bands(size_t) const override { return bands_; }
   std::span<const Task> tasks() const override { return tasks_; }
   SensorRay ray(const Capture& c, size_t problem, std::span<const double, 4> u) const override {
-    const double half = std::tan(30 * kDegree), edge = c.columns;
+    const double half = 0.57735026918962576, edge = c.columns;  // tan 30 degrees
     const double x = (2 * (static_cast<double>(problem % c.columns) + u[0]) / edge - 1) * half;
     const double y = (2 * (static_cast<double>(problem / c.columns) + u[1]) / edge - 1) * half;
     return {{position_, normalized(forward_ + right_ * x + down_ * y), 0}, 1};

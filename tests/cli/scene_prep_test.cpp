@@ -17,7 +17,9 @@ class ScenePrep : public ::testing::Test {
     write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write_file(folder_ / "good.yaml", kGood);
   }
-  CommandResult run(const std::string& arguments) { return run_command("cd '" + folder_.path() + "' && '" SUITE_BIN_DIR "/scene-prep' " + arguments); }
+  CommandResult run(const std::string& arguments) {
+    return run_command("cd '" + folder_.path() + "' && '" SUITE_BIN_DIR "/scene-prep' " + arguments);
+  }
   static constexpr const char* kGood =
       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}, spare: {model: lambert, reflectance: 0.2}}\n"
       "objects: {tri: {obj: tri.obj, material: grey}}\nworld: [{place: tri}]\n";
@@ -50,15 +52,25 @@ TEST_F(ScenePrep, RefusalsNameThePlaceAndLeaveNothing) {
   const struct {
     const char *name, *text, *expected;
   } cases[] = {
-      {"index0", "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: zero.obj, material: grey}}\nworld: [{place: t}]\n",
+      {"index0",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: zero.obj, material: "
+       "grey}}\nworld: [{place: t}]\n",
        "zero.obj:4:1: vertex index 0"},
-      {"gone", "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: gone.obj, material: grey}}\nworld: [{place: t}]\n",
+      {"gone",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: gone.obj, material: "
+       "grey}}\nworld: [{place: t}]\n",
        "gone.yaml:3:20: file 'gone.obj' no such file"},
-      {"folder", "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: ., material: grey}}\nworld: [{place: t}]\n",
+      {"folder",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: ., material: "
+       "grey}}\nworld: [{place: t}]\n",
        "folder.yaml:3:20: file '.' is a directory"},
-      {"cover", "scene: 1\nwindows_um: [[0.4, 3]]\nmaterials: {grey: {model: lambert, reflectance: {points: [[0.4, 0.1], [2.5, 0.2]]}}}\nobjects: {t: {obj: tri.obj, material: grey}}\nworld: [{place: t}]\n",
+      {"cover",
+       "scene: 1\nwindows_um: [[0.4, 3]]\nmaterials: {grey: {model: lambert, reflectance: {points: [[0.4, 0.1], [2.5, "
+       "0.2]]}}}\nobjects: {t: {obj: tri.obj, material: grey}}\nworld: [{place: t}]\n",
        "reflectance is given from 0.4 to 2.5 um, the window is 0.4 to 3 um"},
-      {"unknown", "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: tri.obj, material: gray}}\nworld: [{place: t}]\n",
+      {"unknown",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: tri.obj, material: "
+       "gray}}\nworld: [{place: t}]\n",
        "unknown material 'gray'; did you mean 'grey'?"},
   };
   write_file(folder_ / "zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
@@ -97,7 +109,8 @@ TEST_F(ScenePrep, CalibrationRange) {
   const CommandResult r = run("range.yaml -o range.h5 --strict --path '" + scene + "'");
   ASSERT_EQ(r.code, 0) << r.out << r.err;
   const Scene s = read_scene(folder_ / "range.h5");
-  // Sample (45, 138) of the raster is the origin: 127 m above a geoid 48 m above the ellipsoid, as is the origin's height.
+  // Sample (45, 138) of the raster is the origin: 127 m above a geoid 48 m above the ellipsoid, as is the origin's
+  // height.
   for (const Placement& p : s.groups.at(0).placements)
     if (p.tag != kNone && s.tags[p.tag].rfind("panel", 0) == 0) {
       EXPECT_NEAR(p.to_parent.b.z, 0.5, 1.5);

@@ -17,7 +17,9 @@ class CurveFile : public ::testing::Test {
     write_file(folder_ / "c.txt", text);
     return read_curve(folder_ / "c.txt", options);
   }
-  std::string fault(const std::string& text, const CurveOptions& options = {}) { return message_of([&] { read(text, options); }); }
+  std::string fault(const std::string& text, const CurveOptions& options = {}) {
+    return message_of([&] { read(text, options); });
+  }
   TempFolder folder_;
 };
 
@@ -35,7 +37,8 @@ TEST_F(CurveFile, CsvWithHeaderInNanometresAndSecondColumn) {
 }
 
 TEST_F(CurveFile, EcostressHeaderPercentAndDescending) {
-  const Curve c = read("Name: x\nX Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n\n 14.0\t 1.0\n 2.0\t 50.0\n");
+  const Curve c =
+      read("Name: x\nX Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n\n 14.0\t 1.0\n 2.0\t 50.0\n");
   EXPECT_DOUBLE_EQ(c.low_um(), 2);
   EXPECT_DOUBLE_EQ(c.at(2), 0.5);
   EXPECT_DOUBLE_EQ(c.at(14), 0.01);

@@ -39,7 +39,8 @@ TEST(Obj, NormalsAndUvsSplitVertices) {
 }
 
 TEST(Obj, KeepsGeoreferencedCoordinates) {
-  const Read r("v 477660.1258 5473962.8903 127.001\nv 477661.1258 5473962.8903 127\nv 477660.1258 5473963.8903 127\nf 1 2 3\n");
+  const Read r(
+      "v 477660.1258 5473962.8903 127.001\nv 477661.1258 5473962.8903 127\nv 477660.1258 5473963.8903 127\nf 1 2 3\n");
   EXPECT_NEAR(r.mesh.positions[0].x, 477660.1258, 1e-9);
   EXPECT_NEAR(r.mesh.positions[0].y, 5473962.8903, 2e-9);
 }
@@ -67,7 +68,8 @@ TEST(Obj, ConcavePolygonIsCutAlongItsOutline) {
 }
 
 TEST(Obj, FaultsAreLocated) {
-  EXPECT_THAT(Read(kSquare + "f 0 1 2\n").report.text(), HasSubstr("[SP201] x1: a face names something that is not there\n    t.obj:5:1: vertex index 0"));
+  EXPECT_THAT(Read(kSquare + "f 0 1 2\n").report.text(),
+              HasSubstr("[SP201] x1: a face names something that is not there\n    t.obj:5:1: vertex index 0"));
   EXPECT_THAT(Read(kSquare + "vt 0 0\nf 1/0 2/1 3/1\n").report.text(), HasSubstr("t.obj:6:1: index 0"));
   EXPECT_THAT(Read(kSquare + "f 1 2\n").report.text(), HasSubstr("[SP202] x1"));
   EXPECT_THAT(Read("v 0 nan 0\nf 1 1 1\n").report.text(), HasSubstr("t.obj:1:1: 'nan' is no finite number"));
@@ -76,7 +78,8 @@ TEST(Obj, FaultsAreLocated) {
   EXPECT_THAT(Read("").report.text(), HasSubstr("[SP204] x1"));
   EXPECT_THAT(Read(kSquare + "l 1 2\nf 1 2 3\n").report.text(), HasSubstr("[SP205] x1"));
   Report report(scene_issues());
-  EXPECT_THAT(message_of([&] { parse_obj(std::string("v 0 0\0", 6), "t.obj", report); }), HasSubstr("byte 5: error: is not a text file"));
+  EXPECT_THAT(message_of([&] { parse_obj(std::string("v 0 0\0", 6), "t.obj", report); }),
+              HasSubstr("byte 5: error: is not a text file"));
 }
 
 }  // namespace

@@ -29,7 +29,15 @@ Scene small_scene() {
   bare.parts = {{"", 0, 2, kNone}};
   s.meshes = {m, bare};
   s.primitives = {{"ball", PrimitiveKind::sphere, {2.5}, 1}};
-  Material grey{"grey", "a grey", {"lambert", {}, {{"reflectance", Curve({0.4, 1.0}, {0.1, 0.3}, Outside::hold)}, {"transmittance", Curve::constant(0)}}, {}, nullptr}, 300, {{"density_kg_m3", 1000}}};
+  Material grey{"grey",
+                "a grey",
+                {"lambert",
+                 {},
+                 {{"reflectance", Curve({0.4, 1.0}, {0.1, 0.3}, Outside::hold)}, {"transmittance", Curve::constant(0)}},
+                 {},
+                 nullptr},
+                300,
+                {{"density_kg_m3", 1000}}};
   Material mirror{"mirror", "", {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr}, 0, {}};
   s.materials = {grey, mirror};
   Placement p;
@@ -112,12 +120,15 @@ TEST_F(SceneHdf, BadIndicesAreRefused) {
     return message_of([&] { read_scene(path_); });
   };
   EXPECT_THAT(refused([](Scene& s) { s.meshes[0].indices[3] = 4; }), HasSubstr("vertex index 4 of 4"));
-  EXPECT_THAT(refused([](Scene& s) { s.meshes[0].parts[0].material = 7; }), HasSubstr("names a material that is not there"));
-  EXPECT_THAT(refused([](Scene& s) { s.groups[0].placements[0].target = 9; }), HasSubstr("places something that is not there"));
+  EXPECT_THAT(refused([](Scene& s) { s.meshes[0].parts[0].material = 7; }),
+              HasSubstr("names a material that is not there"));
+  EXPECT_THAT(refused([](Scene& s) { s.groups[0].placements[0].target = 9; }),
+              HasSubstr("places something that is not there"));
   EXPECT_THAT(refused([](Scene& s) { s.groups[1].placements[0].kind = TargetKind::group; }), HasSubstr("not below it"));
   EXPECT_THAT(refused([](Scene& s) { s.class_maps[0].classes[0] = 5; }), HasSubstr("class 5 has no material"));
   EXPECT_THAT(refused([](Scene& s) { s.primitives[0].parameters = {1, 2}; }), HasSubstr("has 2 parameters"));
-  EXPECT_THAT(refused([](Scene& s) { s.materials[0].surface.model = "nothing"; }), HasSubstr("unknown model 'nothing'"));
+  EXPECT_THAT(refused([](Scene& s) { s.materials[0].surface.model = "nothing"; }),
+              HasSubstr("unknown model 'nothing'"));
 }
 
 TEST_F(SceneHdf, ForeignAndDamagedFilesAreRefused) {
@@ -133,7 +144,8 @@ TEST_F(SceneHdf, ForeignAndDamagedFilesAreRefused) {
 }
 
 TEST_F(SceneHdf, UnwritablePlaceLeavesNothing) {
-  EXPECT_THAT(message_of([&] { write_scene(small_scene(), {}, folder_ / "no/such/s.h5"); }), HasSubstr("cannot be written"));
+  EXPECT_THAT(message_of([&] { write_scene(small_scene(), {}, folder_ / "no/such/s.h5"); }),
+              HasSubstr("cannot be written"));
   EXPECT_EQ(folder_.entries(), 1u);
 }
 

@@ -35,10 +35,13 @@ TEST(Raster, DemCornersLieAtTheirPublishedCoordinates) {
   const auto dms = [](double d, double m, double s) { return d + m / 60 + s / 3600; };
   const struct {
     double column, row, east, north;
-  } corners[] = {{0, 0, dms(8, 38, 39.02), dms(49, 25, 40.91)}, {0, 119, dms(8, 38, 39.72), dms(49, 24, 4.57)},
-                 {198, 0, dms(8, 42, 44.76), dms(49, 25, 41.59)}, {198, 119, dms(8, 42, 45.33), dms(49, 24, 5.25)}};
+  } corners[] = {{0, 0, dms(8, 38, 39.02), dms(49, 25, 40.91)},
+                 {0, 119, dms(8, 38, 39.72), dms(49, 24, 4.57)},
+                 {198, 0, dms(8, 42, 44.76), dms(49, 25, 41.59)},
+                 {198, 119, dms(8, 42, 45.33), dms(49, 24, 5.25)}};
   for (const auto& c : corners) {
-    const double x = ref.to_map[0] + ref.to_map[1] * c.column + ref.to_map[2] * c.row, y = ref.to_map[3] + ref.to_map[4] * c.column + ref.to_map[5] * c.row;
+    const double x = ref.to_map[0] + ref.to_map[1] * c.column + ref.to_map[2] * c.row,
+                 y = ref.to_map[3] + ref.to_map[4] * c.column + ref.to_map[5] * c.row;
     const Geodetic g = geodetic_from_utm({*zone, x, y, 0});
     EXPECT_NEAR(g.longitude_deg, c.east, 0.005 / 3600 * 1.01);
     EXPECT_NEAR(g.latitude_deg, c.north, 0.005 / 3600 * 1.01);
@@ -113,7 +116,10 @@ TEST(Terrain, TilesCoverTheGridOnceWithEqualSeams) {
     triangles += m.triangle_count();
     EXPECT_EQ(m.normals.size(), m.vertex_count());
     for (size_t t = 0; t < m.triangle_count(); ++t) {
-      const auto p = [&](int k) { const float* q = &m.positions[3 * m.indices[3 * t + k]]; return Vec3{q[0], q[1], q[2]}; };
+      const auto p = [&](int k) {
+        const float* q = &m.positions[3 * m.indices[3 * t + k]];
+        return Vec3{q[0], q[1], q[2]};
+      };
       EXPECT_GT(cross(p(1) - p(0), p(2) - p(0)).z, 0);
     }
   }

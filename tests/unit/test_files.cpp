@@ -57,17 +57,17 @@ TEST(Files, UnreadableFilesSaySo) {
   EXPECT_THAT(message_of([&] { read_text(folder / "x"); }), HasSubstr("cannot be opened: Permission denied"));
 }
 
-TEST(InputFile, ReadsRangesAndRefusesToPassTheEnd) {
+TEST(RandomAccessFile, ReadsRangesAndRefusesToPassTheEnd) {
   const TempFolder folder;
   write_file(folder / "x", std::string_view("0123456789"));
-  const InputFile file(folder / "x");
+  const RandomAccessFile file(folder / "x");
   EXPECT_EQ(file.size(), 10u);
   std::byte some[4];
   file.read_at(3, some);
   EXPECT_EQ(static_cast<char>(some[0]), '3');
   EXPECT_EQ(static_cast<char>(some[3]), '6');
   EXPECT_THAT(message_of([&] { file.read_at(8, some); }), HasSubstr("x: byte 10: error: ends 2 bytes too early"));
-  EXPECT_THROW(InputFile(folder.path()), Error);
+  EXPECT_THROW(RandomAccessFile(folder.path()), Error);
 }
 
 TEST(AtomicFile, IsThereWholeOrNotAtAll) {

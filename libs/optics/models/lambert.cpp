@@ -19,7 +19,8 @@ class Lambert final : public ScatterModel {
     float ratio = -1;
     for (size_t i = 0; i < rho_.size(); ++i) {
       if (rho_[i] + tau_[i] > 1 + 1e-6f)
-        throw Error(strf("reflectance %g + transmittance %g at %g um exceeds 1", rho_[i], tau_[i], state.bins[i].center_um()));
+        throw Error(
+            strf("reflectance %g + transmittance %g at %g um exceeds 1", rho_[i], tau_[i], state.bins[i].center_um()));
       if (tau_[i] > 0) opaque_ = false;
       if (rho_[i] + tau_[i] <= 0) continue;
       const float share = rho_[i] / (rho_[i] + tau_[i]);
@@ -71,11 +72,14 @@ std::vector<ModelSpec> examples() {
 
 ModelRow lambert_row() {
   using P = ModelParameter;
-  return {"lambert", "perfectly diffuse reflection and transmission (Lambert 1760)",
+  return {"lambert",
+          "perfectly diffuse reflection and transmission (Lambert 1760)",
           {{"reflectance", P::Kind::curve, "1", "hemispherical reflectance of both sides", 0, 1},
            {"transmittance", P::Kind::curve, "1", "hemispherical transmittance, diffuse", 0, 1, false, 0}},
           true,
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> { return std::make_unique<Lambert>(spec, state); },
+          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
+            return std::make_unique<Lambert>(spec, state);
+          },
           examples};
 }
 

@@ -20,7 +20,9 @@ class Mirror final : public ScatterModel {
     return Sample{{-out.x, -out.y, out.z}, 0, true};
   }
   void pdf(Dir, Dir, std::span<float> p) const override { std::fill(p.begin(), p.end(), 0.0f); }
-  void delta_weight(Dir, int, int, std::span<float> weight) const override { std::copy_n(rho_.begin(), weight.size(), weight.begin()); }
+  void delta_weight(Dir, int, int, std::span<float> weight) const override {
+    std::copy_n(rho_.begin(), weight.size(), weight.begin());
+  }
   void delta_probability(Dir, int, int, std::span<float> p) const override { std::fill(p.begin(), p.end(), 1.0f); }
   bool has_delta() const override { return true; }
   bool single_lobe() const override { return true; }
@@ -34,11 +36,16 @@ class Mirror final : public ScatterModel {
 
 ModelRow mirror_row() {
   using P = ModelParameter;
-  return {"mirror", "perfectly specular reflection (Dirac lobe)",
+  return {"mirror",
+          "perfectly specular reflection (Dirac lobe)",
           {{"reflectance", P::Kind::curve, "1", "specular reflectance of both sides", 0, 1}},
           true,
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> { return std::make_unique<Mirror>(spec, state); },
-          []() -> std::vector<ModelSpec> { return {{"mirror", {}, {{"reflectance", Curve::constant(0.8)}}, {}, nullptr}}; }};
+          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
+            return std::make_unique<Mirror>(spec, state);
+          },
+          []() -> std::vector<ModelSpec> {
+            return {{"mirror", {}, {{"reflectance", Curve::constant(0.8)}}, {}, nullptr}};
+          }};
 }
 
 }  // namespace suite

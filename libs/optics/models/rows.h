@@ -6,5 +6,6 @@ namespace suite {
 
 ModelRow lambert_row();
 ModelRow mirror_row();
+ModelRow ward_row();
 
 }  // namespace suite
