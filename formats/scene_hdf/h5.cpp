@@ -69,15 +69,27 @@ Writer::Writer(const std::string& temporary, const std::string& path) : path_(pa
   if (file_ < 0) fail("HDF5 refuses to create it");
 }
 
+// Groups made on the way by the library would carry times.
+void Writer::make_groups(const std::string& name) {
+  const Handle create(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(create, false);
+  for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1)) {
+    const std::string group = name.substr(0, at);
+    if (H5Lexists(file_, group.c_str(), H5P_DEFAULT) > 0) continue;
+    const Handle made(H5Gcreate2(file_, group.c_str(), H5P_DEFAULT, create, H5P_DEFAULT), H5Gclose);
+    if (made < 0) fail("group '" + group + "'");
+  }
+}
+
 Handle Writer::make(const std::string& name, hid_t type, size_t count, size_t width, const char* units) {
-  const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(link, 1);
+  make_groups(name);
+  const Handle create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(create, false);
   H5Pset_alloc_time(create, H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
   const hsize_t dims[2] = {count / width, width};
   const Handle space(H5Screate_simple(width == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-  Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose);
+  Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, create, H5P_DEFAULT), H5Dclose);
   if (dataset < 0 || !put_text(dataset, "units", units)) fail("dataset '" + name + "'");
   return dataset;
 }

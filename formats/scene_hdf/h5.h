@@ -98,6 +98,7 @@ class Writer {
 
  private:
   void write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units);
+  void make_groups(const std::string& name);
   Handle make(const std::string& name, hid_t type, size_t count, size_t width, const char* units);
   [[noreturn]] void fail(const std::string& what) const;
   std::string path_;
