@@ -303,12 +303,11 @@ Pose pose_from_ecef(const SceneFrame& frame, Vec3 ecef, const Quat& rotation) {
   return {normalized(frame.to_ecef().rotation.conjugate() * rotation), frame.enu_from_ecef(ecef)};
 }
 
-Pose pose_from_geodetic(const SceneFrame& frame, const Geodetic& place, const Quat& rotation) {
-  const Quat axes = SceneFrame(place).to_ecef().rotation;
-  return {normalized(frame.to_ecef().rotation.conjugate() * axes * rotation), frame.enu_from_geodetic(place)};
+Quat geodetic_axes(const SceneFrame& frame, const Geodetic& place) {
+  return normalized(frame.to_ecef().rotation.conjugate() * SceneFrame(place).to_ecef().rotation);
 }
 
-Pose pose_from_utm(const SceneFrame& frame, const UtmPoint& point, const Quat& rotation) {
+Quat utm_axes(const SceneFrame& frame, const UtmPoint& point) {
   const Geodetic place = geodetic_from_utm(point);
   // The grid's north, seen from true north, from two points 20 m apart on the grid's north line.
   UtmPoint north = point, south = point;
@@ -316,8 +315,15 @@ Pose pose_from_utm(const SceneFrame& frame, const UtmPoint& point, const Quat& r
   south.northing -= 10;
   const SceneFrame local(place);
   const Vec3 along = local.enu_from_utm(north) - local.enu_from_utm(south);
-  const Quat turn = quat_about({0, 0, 1}, std::atan2(-along.x, along.y));
-  return pose_from_geodetic(frame, place, turn * rotation);
+  return normalized(geodetic_axes(frame, place) * quat_about({0, 0, 1}, std::atan2(-along.x, along.y)));
+}
+
+Pose pose_from_geodetic(const SceneFrame& frame, const Geodetic& place, const Quat& rotation) {
+  return {normalized(geodetic_axes(frame, place) * rotation), frame.enu_from_geodetic(place)};
+}
+
+Pose pose_from_utm(const SceneFrame& frame, const UtmPoint& point, const Quat& rotation) {
+  return {normalized(utm_axes(frame, point) * rotation), frame.enu_from_utm(point)};
 }
 
 TrackPtr static_track(const Pose& pose) { return std::make_shared<Static>(pose); }

@@ -39,6 +39,10 @@ Quat platform_rotation(double azimuth, double pitch, double roll);
 
 // ---- Frames in which tracks are written --------------------------------------------------------------------------
 
+// Rotations from the axes of a frame at a place to scene ENU: east, north, up of the place; grid east, grid north, up.
+Quat geodetic_axes(const SceneFrame& frame, const Geodetic& place);
+Quat utm_axes(const SceneFrame& frame, const UtmPoint& point);
+
 // The pose that scene ENU gives a body at an ECEF point, turned by `rotation` relative to the ECEF axes.
 Pose pose_from_ecef(const SceneFrame& frame, Vec3 ecef, const Quat& rotation);
 // At a geodetic place, turned relative to east, north and up of that place.
