@@ -4,7 +4,8 @@ namespace suite {
 
 AppInfo scene_prep_info() {
   return {"scene-prep",
-          "Reads a scene written as text with the OBJ files, rasters and curves it names, checks everything, and writes one HDF5 file "
+          "Reads a scene written as text with the OBJ files, rasters and curves it names, checks everything, and "
+          "writes one HDF5 file "
           "that the renderer loads as it is.",
           "Examples:\n"
           "  scene-prep scene.yaml -o scene.h5 --report report.json\n"
@@ -18,7 +19,8 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
   cli.option("--report", o.report, "write the findings as JSON (- = standard output)", "FILE.json");
-  cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)", "CODE");
+  cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)",
+             "CODE");
   cli.flag("--strict", o.strict, "warnings refuse the scene too");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");

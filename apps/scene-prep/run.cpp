@@ -17,14 +17,16 @@ namespace suite {
 namespace {
 
 void list_issues() {
-  for (const IssueKind& k : scene_issues()) std::printf("%s  %-7s  %s\n", k.code.c_str(), to_text(k.severity), k.summary.c_str());
+  for (const IssueKind& k : scene_issues())
+    std::printf("%s  %-7s  %s\n", k.code.c_str(), to_text(k.severity), k.summary.c_str());
 }
 
 void list_models() {
   for (const ModelRow& row : models()) {
     std::printf("%s: %s\n", row.name.c_str(), row.summary.c_str());
     for (const ModelParameter& p : row.parameters)
-      std::printf("    %s [%s]: %s%s\n", p.name.c_str(), p.unit.c_str(), p.summary.c_str(), p.required ? "" : " (optional)");
+      std::printf("    %s [%s]: %s%s\n", p.name.c_str(), p.unit.c_str(), p.summary.c_str(),
+                  p.required ? "" : " (optional)");
   }
 }
 
@@ -37,8 +39,10 @@ std::string canonical_arguments(const ScenePrepOptions& o) {
 }
 
 void write_report(const ScenePrepOptions& o, const Report& report) {
-  if (o.report == "-") std::fputs(report.json().c_str(), stdout);
-  else if (!o.report.empty()) write_file(o.report, report.json());
+  if (o.report == "-")
+    std::fputs(report.json().c_str(), stdout);
+  else if (!o.report.empty())
+    write_file(o.report, report.json());
 }
 
 int prepare(const ScenePrepOptions& o) {
@@ -67,7 +71,8 @@ int run_scene_prep(const ScenePrepOptions& o) {
   const Scene scene = read_scene(o.input);
   const Provenance p = read_provenance(o.input);
   std::printf("%s", summary_text(scene).c_str());
-  std::printf("made by       %s: %s\ninputs        sha256 %s\n", p.generator.c_str(), p.arguments.c_str(), p.input_sha256.c_str());
+  std::printf("made by       %s: %s\ninputs        sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
+              p.input_sha256.c_str());
   return 0;
 }
 

@@ -16,7 +16,8 @@ constexpr size_t kMaxRows = 10'000'000;
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
 }
 
@@ -50,13 +51,15 @@ struct Header {
     const bool x = text.rfind("x units", 0) == 0, y = text.rfind("y units", 0) == 0;
     if (y && text.find("percent") != std::string::npos) to_share = 0.01;
     if (y) return;
-    if (text.find("nanomet") != std::string::npos || has_word(text, "nm") || has_word(text, "wavelength_nm")) to_um = 1e-3;
+    if (text.find("nanomet") != std::string::npos || has_word(text, "nm") || has_word(text, "wavelength_nm"))
+      to_um = 1e-3;
     if (x && text.find("micromet") != std::string::npos) to_um = 1;
   }
   static bool has_word(const std::string& text, const std::string& word) {
     const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
-      if ((at == 0 || !letter(text[at - 1])) && (at + word.size() == text.size() || !letter(text[at + word.size()]))) return true;
+      if ((at == 0 || !letter(text[at - 1])) && (at + word.size() == text.size() || !letter(text[at + word.size()])))
+        return true;
     return false;
   }
 };
@@ -66,7 +69,8 @@ struct Header {
 Curve read_curve(const std::string& path, const CurveOptions& options) {
   const std::string text = read_text(path, size_t{512} << 20);
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
-    throw Error(Where{path, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "two columns, CSV or ECOSTRESS are expected");
+    throw Error(Where{path, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file",
+                "two columns, CSV or ECOSTRESS are expected");
   Header header;
   std::vector<double> x, y, row;
   const size_t column = options.column > 0 ? static_cast<size_t>(options.column) : 1;
@@ -85,13 +89,18 @@ Curve read_curve(const std::string& path, const CurveOptions& options) {
       header.note(line);
       continue;
     }
-    if (row.size() <= column) throw Error(where, strf("a row of %zu numbers, column %zu was asked for", row.size(), column), "rows are 'wavelength value'");
+    if (row.size() <= column)
+      throw Error(where, strf("a row of %zu numbers, column %zu was asked for", row.size(), column),
+                  "rows are 'wavelength value'");
     if (x.size() >= kMaxRows) throw Error(where, strf("more than %zu rows", kMaxRows));
     const double um = row[0] * header.to_um, value = row[column] * header.to_share * options.scale;
-    if (!(um >= 0.01 && um <= 10000)) throw Error(where, strf("wavelength %g um is not between 0.01 and 10000 um", um), "nanometres need a header with 'nm'");
+    if (!(um >= 0.01 && um <= 10000))
+      throw Error(where, strf("wavelength %g um is not between 0.01 and 10000 um", um),
+                  "nanometres need a header with 'nm'");
     if (!std::isfinite(value)) throw Error(where, "the value is not finite");
     if (!x.empty() && um == x.back()) throw Error(where, strf("wavelength %g um is given twice", um), "give each once");
-    if (x.size() > 1 && (um > x.back()) != (x[1] > x[0])) throw Error(where, strf("wavelengths are not monotonic: %g um follows %g um", um, x.back()), "sort the rows");
+    if (x.size() > 1 && (um > x.back()) != (x[1] > x[0]))
+      throw Error(where, strf("wavelengths are not monotonic: %g um follows %g um", um, x.back()), "sort the rows");
     x.push_back(um);
     y.push_back(value);
   }

@@ -8,7 +8,9 @@ namespace {
 
 double area2(Vec2 a, Vec2 b, Vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-bool inside(Vec2 p, Vec2 a, Vec2 b, Vec2 c) { return area2(a, b, p) >= 0 && area2(b, c, p) >= 0 && area2(c, a, p) >= 0; }
+bool inside(Vec2 p, Vec2 a, Vec2 b, Vec2 c) {
+  return area2(a, b, p) >= 0 && area2(b, c, p) >= 0 && area2(c, a, p) >= 0;
+}
 bool same(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
 
 }  // namespace
@@ -38,12 +40,15 @@ std::vector<std::array<int, 3>> split_polygon(std::span<const Vec3> corners, boo
     for (size_t k = 0; k < m; ++k) {
       const Vec2 a = p[ring[(k + m - 1) % m]], b = p[ring[k]], c = p[ring[(k + 1) % m]];
       const double area = area2(a, b, c);
-      const double edges = std::pow(std::hypot(b.x - a.x, b.y - a.y), 2) + std::pow(std::hypot(c.x - b.x, c.y - b.y), 2) + std::pow(std::hypot(a.x - c.x, a.y - c.y), 2);
+      const double edges = std::pow(std::hypot(b.x - a.x, b.y - a.y), 2) +
+                           std::pow(std::hypot(c.x - b.x, c.y - b.y), 2) +
+                           std::pow(std::hypot(a.x - c.x, a.y - c.y), 2);
       if (!(area > 1e-14 * edges) || area / edges <= best_quality) continue;
       bool ear = true;
       for (size_t q = 0; q < m && ear; ++q) {
         const Vec2 point = p[ring[q]];
-        if (q == k || q == (k + 1) % m || q == (k + m - 1) % m || same(point, a) || same(point, b) || same(point, c)) continue;
+        if (q == k || q == (k + 1) % m || q == (k + m - 1) % m || same(point, a) || same(point, b) || same(point, c))
+          continue;
         ear = !inside(point, a, b, c);
       }
       if (ear) best = k, best_quality = area / edges;

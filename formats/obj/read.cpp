@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <istream>
 #include <limits>
 
@@ -65,7 +66,7 @@ class Collector {
     uint32_t v;
     uint32_t vt, vn;  // kNone = not given
   };
-  struct Shared {     // output vertices of one position, a linked list
+  struct Shared {  // output vertices of one position, a linked list
     uint32_t vt, vn, next;
   };
 
@@ -83,7 +84,8 @@ class Collector {
   }
   Where here() {
     sync_line();
-    return {file_, line_, 1, std::string(original_.substr(line_start_, std::min<size_t>(line_end_ - line_start_, 200))), -1};
+    return {file_, line_, 1, std::string(original_.substr(line_start_, std::min<size_t>(line_end_ - line_start_, 200))),
+            -1};
   }
   void add(const char* code, const std::string& message) { report_.add(code, file_, {here(), message}); }
 
@@ -101,9 +103,9 @@ class Collector {
 
   std::vector<Vec3> positions_, normals_;
   std::vector<std::array<float, 2>> uvs_;
-  std::vector<uint32_t> heads_;              // first output vertex of each position
-  std::vector<Shared> shared_;               // parallel to the output vertices
-  std::vector<uint32_t> vertex_of_;          // output vertex -> position
+  std::vector<uint32_t> heads_;      // first output vertex of each position
+  std::vector<Shared> shared_;       // parallel to the output vertices
+  std::vector<uint32_t> vertex_of_;  // output vertex -> position
   std::string group_, material_;
   bool new_run_ = true;
   std::vector<Corner> corners_;
@@ -129,8 +131,11 @@ void Collector::check_number_line(int at_least, Vec3 value) {
     while (stop < end && !blank(*stop)) ++stop;
     double number = 0;
     const auto [read_to, code] = std::from_chars(*p == '+' ? p + 1 : p, stop, number);
-    if (code == std::errc::invalid_argument || read_to != stop || !std::isfinite(number))
-      return add("SP203", "'" + std::string(p, std::min<size_t>(static_cast<size_t>(stop - p), 40)) + "' is no finite number");
+    // Out of range may also mean too small, which is 0 and fine.
+    const bool too_large = code == std::errc::result_out_of_range && std::fabs(std::strtod(p, nullptr)) > 1;
+    if (code == std::errc::invalid_argument || read_to != stop || !std::isfinite(number) || too_large)
+      return add("SP203",
+                 "'" + std::string(p, std::min<size_t>(static_cast<size_t>(stop - p), 40)) + "' is no finite number");
     p = stop;
   }
   if (tokens < at_least) return add("SP203", strf("%d numbers, %d are needed", tokens, at_least));
@@ -182,10 +187,12 @@ void Collector::face(const tinyobj::index_t* corner, int count) {
     corners_.push_back(c);
     ring_.push_back(positions_[c.v]);
   }
-  if (mesh_.indices.size() / 3 + corners_.size() > std::numeric_limits<int>::max()) throw Error(here(), "more than 2^31 triangles");
+  if (mesh_.indices.size() / 3 + corners_.size() > std::numeric_limits<int>::max())
+    throw Error(here(), "more than 2^31 triangles");
   if (new_run_) {
     const auto first = static_cast<uint32_t>(mesh_.indices.size() / 3);
-    const bool joins = !mesh_.runs.empty() && mesh_.runs.back().group == group_ && mesh_.runs.back().material == material_;
+    const bool joins =
+        !mesh_.runs.empty() && mesh_.runs.back().group == group_ && mesh_.runs.back().material == material_;
     if (!joins) mesh_.runs.push_back({group_, material_, first, line_});
     new_run_ = false;
   }
@@ -227,17 +234,21 @@ SourceMesh Collector::finish() {
   mesh_.positions.reserve(n);
   for (const uint32_t v : vertex_of_) mesh_.positions.push_back(positions_[v]);
   const bool any_normal = without_normal_ < corners, any_uv = without_uv_ < corners;
-  if (any_normal && without_normal_) report_.add("SP207", file_, {whole, strf("%zu of %zu corners have none", without_normal_, corners)});
-  if (any_uv && without_uv_) report_.add("SP208", file_, {whole, strf("%zu of %zu corners have none", without_uv_, corners)});
+  if (any_normal && without_normal_)
+    report_.add("SP207", file_, {whole, strf("%zu of %zu corners have none", without_normal_, corners)});
+  if (any_uv && without_uv_)
+    report_.add("SP208", file_, {whole, strf("%zu of %zu corners have none", without_uv_, corners)});
   if (any_uv) {
     mesh_.uvs.resize(2 * n, 0.0f);
     for (size_t k = 0; k < n; ++k)
-      if (shared_[k].vt != kNone) mesh_.uvs[2 * k] = uvs_[shared_[k].vt][0], mesh_.uvs[2 * k + 1] = uvs_[shared_[k].vt][1];
+      if (shared_[k].vt != kNone)
+        mesh_.uvs[2 * k] = uvs_[shared_[k].vt][0], mesh_.uvs[2 * k + 1] = uvs_[shared_[k].vt][1];
   }
   if (any_normal) {
     std::vector<uint32_t> facet(n, oct_encode({0, 0, 1}));
     for (size_t t = 0; t + 2 < corners; t += 3) {
-      const Vec3 a = mesh_.positions[mesh_.indices[t]], b = mesh_.positions[mesh_.indices[t + 1]], c = mesh_.positions[mesh_.indices[t + 2]];
+      const Vec3 a = mesh_.positions[mesh_.indices[t]], b = mesh_.positions[mesh_.indices[t + 1]],
+                 c = mesh_.positions[mesh_.indices[t + 2]];
       const Vec3 f = cross(b - a, c - a);
       if (length(f) > 0)
         for (int k = 0; k < 3; ++k) facet[mesh_.indices[t + k]] = oct_encode(normalized(f));
@@ -245,7 +256,8 @@ SourceMesh Collector::finish() {
     mesh_.normals = std::move(facet);
     for (size_t k = 0; k < n; ++k)
       if (shared_[k].vn != kNone)
-        if (const Vec3 v = normals_[shared_[k].vn]; length(v) > 0 && std::isfinite(length(v))) mesh_.normals[k] = oct_encode(normalized(v));
+        if (const Vec3 v = normals_[shared_[k].vn]; length(v) > 0 && std::isfinite(length(v)))
+          mesh_.normals[k] = oct_encode(normalized(v));
   }
   unlisted_statements();
   return std::move(mesh_);
@@ -273,7 +285,9 @@ SourceMesh parse_obj(std::string_view text, const std::string& file, Report& rep
   std::istream stream(&buffer);
   Collector collector(text, buffer, file, report);
   tinyobj::callback_t call;
-  call.vertex_cb = [](void* u, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t z, tinyobj::real_t) { self(u).vertex(x, y, z); };
+  call.vertex_cb = [](void* u, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t z, tinyobj::real_t) {
+    self(u).vertex(x, y, z);
+  };
   call.normal_cb = [](void* u, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t z) { self(u).normal(x, y, z); };
   call.texcoord_cb = [](void* u, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t) { self(u).uv(x, y); };
   call.index_cb = [](void* u, tinyobj::index_t* corners, int count) { self(u).face(corners, count); };
@@ -290,6 +304,8 @@ SourceMesh parse_obj(std::string_view text, const std::string& file, Report& rep
   return collector.finish();
 }
 
-SourceMesh read_obj(const std::string& path, Report& report) { return parse_obj(read_text(path, size_t{16} << 30), path, report); }
+SourceMesh read_obj(const std::string& path, Report& report) {
+  return parse_obj(read_text(path, size_t{16} << 30), path, report);
+}
 
 }  // namespace suite

@@ -43,7 +43,8 @@ void read_transform(TIFF* tiff, GTIF* keys, const Where& where, double m[6]) {
     uint16_t scales = 0, ties = 0;
     const double* scale = tag(tiff, TIFFTAG_GEOPIXELSCALE, scales);
     const double* tie = tag(tiff, TIFFTAG_GEOTIEPOINTS, ties);
-    if (!scale || scales < 2 || !tie || ties < 6) throw Error(where, "has no pixel scale and tie point", "a GeoTIFF with a position is expected");
+    if (!scale || scales < 2 || !tie || ties < 6)
+      throw Error(where, "has no pixel scale and tie point", "a GeoTIFF with a position is expected");
     const double values[6] = {tie[3] - scale[0] * tie[0], scale[0], 0, tie[4] + scale[1] * tie[1], 0, -scale[1]};
     std::copy(values, values + 6, m);
   }
@@ -73,9 +74,11 @@ GeoReference read_georeference(const std::string& path) {
   read_transform(tiff.get(), keys.get(), where, ref.to_map);
   unsigned short code = 0, model = 0;
   GTIFKeyGetSHORT(keys.get(), GTModelTypeGeoKey, &model, 0, 1);
-  if (GTIFKeyGetSHORT(keys.get(), ProjectedCSTypeGeoKey, &code, 0, 1) && code != KvUserDefined && model != ModelTypeGeographic) {
+  if (GTIFKeyGetSHORT(keys.get(), ProjectedCSTypeGeoKey, &code, 0, 1) && code != KvUserDefined &&
+      model != ModelTypeGeographic) {
     ref.epsg = code;
-  } else if (GTIFKeyGetSHORT(keys.get(), GeographicTypeGeoKey, &code, 0, 1) && code != KvUserDefined && model != ModelTypeProjected) {
+  } else if (GTIFKeyGetSHORT(keys.get(), GeographicTypeGeoKey, &code, 0, 1) && code != KvUserDefined &&
+             model != ModelTypeProjected) {
     ref.epsg = code;
     ref.geographic = true;
   } else {
@@ -83,10 +86,12 @@ GeoReference read_georeference(const std::string& path) {
   }
   char* text = nullptr;
   uint16_t count = 0;
-  static const TIFFFieldInfo field[] = {{kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
+  static const TIFFFieldInfo field[] = {
+      {kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
   if (!TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff.get(), field, 1);
   if (const TIFFField* known = TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) {
-    const bool got = TIFFFieldPassCount(known) ? TIFFGetField(tiff.get(), kNoDataTag, &count, &text) : TIFFGetField(tiff.get(), kNoDataTag, &text);
+    const bool got = TIFFFieldPassCount(known) ? TIFFGetField(tiff.get(), kNoDataTag, &count, &text)
+                                               : TIFFGetField(tiff.get(), kNoDataTag, &text);
     char* end = nullptr;
     if (got && text)
       if (const double value = std::strtod(text, &end); end != text) ref.no_data = value;

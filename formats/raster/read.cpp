@@ -16,12 +16,15 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   if (!input) throw Error(where, "cannot be read as an image: " + OIIO::geterror(), "PNG and TIFF are expected");
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 4096)
-    throw Error(where, strf("an image of %d x %d x %d with %d channels", spec.width, spec.height, spec.depth, spec.nchannels));
+    throw Error(where,
+                strf("an image of %d x %d x %d with %d channels", spec.width, spec.height, spec.depth, spec.nchannels));
   const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
   if (pixels > max_pixels) throw Error(where, strf("%zu pixels, at most %zu are accepted here", pixels, max_pixels));
   // No codec of these packs a pixel into less than a thousandth of its bits on top of its header.
   const size_t samples = pixels * static_cast<size_t>(spec.nchannels);
-  if (samples / 8192 > bytes + 1024) throw Error(where, strf("declares %d x %d pixels in %zu bytes", spec.width, spec.height, bytes), "the file is damaged");
+  if (samples / 8192 > bytes + 1024)
+    throw Error(where, strf("declares %d x %d pixels in %zu bytes", spec.width, spec.height, bytes),
+                "the file is damaged");
   Raster raster;
   raster.width = static_cast<uint32_t>(spec.width);
   raster.height = static_cast<uint32_t>(spec.height);
@@ -34,12 +37,24 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   // The library maps unsigned integers to 0..1 and signed ones to -1..1; undo that.
   double scale = 1;
   switch (stored.basetype) {
-    case OIIO::TypeDesc::UINT8: scale = 255; break;
-    case OIIO::TypeDesc::INT8: scale = 127; break;
-    case OIIO::TypeDesc::UINT16: scale = 65535; break;
-    case OIIO::TypeDesc::INT16: scale = 32767; break;
-    case OIIO::TypeDesc::HALF: case OIIO::TypeDesc::FLOAT: case OIIO::TypeDesc::DOUBLE: return raster;
-    default: throw Error(where, strf("pixels of type %s", stored.c_str()), "8 or 16 bit integers, or floats, are expected");
+    case OIIO::TypeDesc::UINT8:
+      scale = 255;
+      break;
+    case OIIO::TypeDesc::INT8:
+      scale = 127;
+      break;
+    case OIIO::TypeDesc::UINT16:
+      scale = 65535;
+      break;
+    case OIIO::TypeDesc::INT16:
+      scale = 32767;
+      break;
+    case OIIO::TypeDesc::HALF:
+    case OIIO::TypeDesc::FLOAT:
+    case OIIO::TypeDesc::DOUBLE:
+      return raster;
+    default:
+      throw Error(where, strf("pixels of type %s", stored.c_str()), "8 or 16 bit integers, or floats, are expected");
   }
   for (float& v : raster.values) v = static_cast<float>(std::round(v * scale));
   return raster;

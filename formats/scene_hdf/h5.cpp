@@ -43,7 +43,8 @@ bool get_text(hid_t object, const std::string& name, std::string& text) {
   const Handle a(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (a < 0) return false;
   const Handle type(H5Aget_type(a), H5Tclose), space(H5Aget_space(a), H5Sclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || H5Sget_simple_extent_npoints(space) != 1) return false;
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || H5Sget_simple_extent_npoints(space) != 1)
+    return false;
   const size_t size = H5Tget_size(type);
   if (size == 0 || size > kMaxText) return false;
   text.assign(size, '\0');
@@ -56,7 +57,9 @@ bool get_text(hid_t object, const std::string& name, std::string& text) {
 
 // --- Writer ---------------------------------------------------------------------------------------------------------
 
-void Writer::fail(const std::string& what) const { throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what, "is the disk full?"); }
+void Writer::fail(const std::string& what) const {
+  throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what, "is the disk full?");
+}
 
 Writer::Writer(const std::string& temporary, const std::string& path) : path_(path) {
   silence();
@@ -66,20 +69,33 @@ Writer::Writer(const std::string& temporary, const std::string& path) : path_(pa
   if (file_ < 0) fail("HDF5 refuses to create it");
 }
 
+// Groups made on the way by the library would carry times.
+void Writer::make_groups(const std::string& name) {
+  const Handle create(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(create, false);
+  for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1)) {
+    const std::string group = name.substr(0, at);
+    if (H5Lexists(file_, group.c_str(), H5P_DEFAULT) > 0) continue;
+    const Handle made(H5Gcreate2(file_, group.c_str(), H5P_DEFAULT, create, H5P_DEFAULT), H5Gclose);
+    if (made < 0) fail("group '" + group + "'");
+  }
+}
+
 Handle Writer::make(const std::string& name, hid_t type, size_t count, size_t width, const char* units) {
-  const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose), create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(link, 1);
+  make_groups(name);
+  const Handle create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(create, false);
   H5Pset_alloc_time(create, H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
   const hsize_t dims[2] = {count / width, width};
   const Handle space(H5Screate_simple(width == 1 ? 1 : 2, dims, nullptr), H5Sclose);
-  Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose);
+  Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, create, H5P_DEFAULT), H5Dclose);
   if (dataset < 0 || !put_text(dataset, "units", units)) fail("dataset '" + name + "'");
   return dataset;
 }
 
-void Writer::write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units) {
+void Writer::write(const std::string& name, hid_t type, const void* data, size_t count, size_t width,
+                   const char* units) {
   const Handle dataset = make(name, type, count, width, units);
   if (count && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) fail("dataset '" + name + "'");
 }
@@ -88,7 +104,8 @@ void Writer::put_names(const std::string& name, const std::vector<std::string>& 
   size_t longest = 1;
   for (const std::string& n : names) longest = std::max(longest, n.size());
   std::string all(longest * names.size(), '\0');
-  for (size_t i = 0; i < names.size(); ++i) std::copy(names[i].begin(), names[i].end(), all.begin() + static_cast<std::ptrdiff_t>(i * longest));
+  for (size_t i = 0; i < names.size(); ++i)
+    std::copy(names[i].begin(), names[i].end(), all.begin() + static_cast<std::ptrdiff_t>(i * longest));
   const Handle type = text_type(longest);
   write(name, type, all.data(), names.size(), 1, "");
 }
@@ -127,7 +144,9 @@ void Writer::close() {
 
 // --- Reader ---------------------------------------------------------------------------------------------------------
 
-void Reader::fail(const std::string& what) const { throw Error(Where{path_, 0, 0, {}, -1}, what, "prepare the scene again"); }
+void Reader::fail(const std::string& what) const {
+  throw Error(Where{path_, 0, 0, {}, -1}, what, "prepare the scene again");
+}
 
 Reader::Reader(const std::string& path) : path_(path) {
   silence();
@@ -157,17 +176,21 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
   std::string unit;
   if (!get_text(d.dataset, "units", unit)) fail("dataset '" + name + "' has no units");
   if (unit != units) fail("dataset '" + name + "' is in '" + unit + "'");
-  const Handle stored(H5Dget_type(d.dataset), H5Tclose), space(H5Dget_space(d.dataset), H5Sclose), create(H5Dget_create_plist(d.dataset), H5Pclose);
+  const Handle stored(H5Dget_type(d.dataset), H5Tclose), space(H5Dget_space(d.dataset), H5Sclose),
+      create(H5Dget_create_plist(d.dataset), H5Pclose);
   if (type >= 0 && H5Tequal(stored, type) <= 0) fail("dataset '" + name + "' has another type");
   hsize_t dims[2] = {0, 1};
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank != (width == 1 ? 1 : 2)) fail("dataset '" + name + "' has another rank");
   H5Sget_simple_extent_dims(space, dims, nullptr);
   if (dims[1] != width || dims[0] > (hsize_t{1} << 40)) fail("dataset '" + name + "' has another shape");
-  if (rows >= 0 && dims[0] != static_cast<hsize_t>(rows)) fail("dataset '" + name + strf("' has %llu rows, %lld are declared", static_cast<unsigned long long>(dims[0]), rows));
+  if (rows >= 0 && dims[0] != static_cast<hsize_t>(rows))
+    fail("dataset '" + name +
+         strf("' has %llu rows, %lld are declared", static_cast<unsigned long long>(dims[0]), rows));
   // What is declared must be there before memory is asked for.
   const hsize_t bytes = dims[0] * width * H5Tget_size(stored);
-  if (H5Pget_layout(create) == H5D_CHUNKED || H5Pget_external_count(create) > 0) fail("dataset '" + name + "' has another layout");
+  if (H5Pget_layout(create) == H5D_CHUNKED || H5Pget_external_count(create) > 0)
+    fail("dataset '" + name + "' has another layout");
   if (H5Dget_storage_size(d.dataset) != bytes || bytes > file_size(path_)) fail("dataset '" + name + "' is not whole");
   d.count = dims[0] * width;
   return d;
@@ -191,7 +214,8 @@ std::vector<std::string> Reader::get_names(const std::string& name, long long ro
   const Opened d = open(name, -1, "", 1, rows);
   const Handle type(H5Dget_type(d.dataset), H5Tclose);
   const size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size == 0 || size > kMaxText) fail("dataset '" + name + "' holds no names");
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size == 0 || size > kMaxText)
+    fail("dataset '" + name + "' holds no names");
   std::string all(size * d.count, '\0');
   read(name, d, text_type(size), all.data(), 0, d.count);
   std::vector<std::string> names;
@@ -208,8 +232,10 @@ std::string Reader::text(const std::string& attribute) const {
 std::vector<double> Reader::numbers(const std::string& attribute, size_t count) const {
   std::vector<double> values(count);
   if (H5Aexists(file_, attribute.c_str()) <= 0) fail("attribute '" + attribute + "' is missing");
-  const Handle a(H5Aopen(file_, attribute.c_str(), H5P_DEFAULT), H5Aclose), space(a >= 0 ? H5Aget_space(a) : -1, H5Sclose);
-  if (a < 0 || H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(count) || H5Aread(a, H5T_NATIVE_DOUBLE, values.data()) < 0)
+  const Handle a(H5Aopen(file_, attribute.c_str(), H5P_DEFAULT), H5Aclose),
+      space(a >= 0 ? H5Aget_space(a) : -1, H5Sclose);
+  if (a < 0 || H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(count) ||
+      H5Aread(a, H5T_NATIVE_DOUBLE, values.data()) < 0)
     fail("attribute '" + attribute + "' cannot be read");
   return values;
 }

@@ -31,14 +31,36 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-template <class T> hid_t native();
-template <> inline hid_t native<uint8_t>() { return H5T_STD_U8LE; }
-template <> inline hid_t native<std::byte>() { return H5T_STD_U8LE; }
-template <> inline hid_t native<uint16_t>() { return H5T_STD_U16LE; }
-template <> inline hid_t native<uint32_t>() { return H5T_STD_U32LE; }
-template <> inline hid_t native<uint64_t>() { return H5T_STD_U64LE; }
-template <> inline hid_t native<float>() { return H5T_IEEE_F32LE; }
-template <> inline hid_t native<double>() { return H5T_IEEE_F64LE; }
+template <class T>
+hid_t native();
+template <>
+inline hid_t native<uint8_t>() {
+  return H5T_STD_U8LE;
+}
+template <>
+inline hid_t native<std::byte>() {
+  return H5T_STD_U8LE;
+}
+template <>
+inline hid_t native<uint16_t>() {
+  return H5T_STD_U16LE;
+}
+template <>
+inline hid_t native<uint32_t>() {
+  return H5T_STD_U32LE;
+}
+template <>
+inline hid_t native<uint64_t>() {
+  return H5T_STD_U64LE;
+}
+template <>
+inline hid_t native<float>() {
+  return H5T_IEEE_F32LE;
+}
+template <>
+inline hid_t native<double>() {
+  return H5T_IEEE_F64LE;
+}
 
 // Writes to a new file. Groups are made on the way. Every dataset gets `units` ("1" for pure numbers, "" for names).
 class Writer {
@@ -58,7 +80,10 @@ class Writer {
   class Column {
    public:
     template <class T>
-    void append(std::span<const T> data) { write(native<T>(), data.data(), data.size()); }
+    void append(std::span<const T> data) {
+      write(native<T>(), data.data(), data.size());
+    }
+
    private:
     friend class Writer;
     void write(hid_t type, const void* data, size_t count);
@@ -73,6 +98,7 @@ class Writer {
 
  private:
   void write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units);
+  void make_groups(const std::string& name);
   Handle make(const std::string& name, hid_t type, size_t count, size_t width, const char* units);
   [[noreturn]] void fail(const std::string& what) const;
   std::string path_;

@@ -18,7 +18,8 @@ using h5::Reader;
 template <class T>
 class Stretch {
  public:
-  Stretch(Reader& r, const std::string& name, const char* units) : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
+  Stretch(Reader& r, const std::string& name, const char* units)
+      : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
   // n values, in a vector with `pad` more values of 0.
   std::vector<T> next(uint64_t n, size_t pad = 0) {
     if (n > d_.count - at_) r_.fail("dataset '" + name_ + "' is shorter than its table says");
@@ -42,12 +43,15 @@ void read_meshes(Reader& r, std::vector<Mesh>& meshes) {
   const std::vector<std::string> names = r.get_names("/meshes/name");
   const auto n = static_cast<long long>(names.size());
   const auto origin = r.get<double>("/meshes/origin", "m", 3, n);
-  const auto vertices = r.get<uint64_t>("/meshes/vertices", "1", 1, n), triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
-  const auto normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n), uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
+  const auto vertices = r.get<uint64_t>("/meshes/vertices", "1", 1, n),
+             triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
+  const auto normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n),
+             uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
   const auto parts = r.get<uint32_t>("/meshes/parts", "1", 1, n);
   const std::vector<std::string> part_name = r.get_names("/parts/name");
   const auto part_rows = static_cast<long long>(part_name.size());
-  const auto part_triangles = r.get<uint32_t>("/parts/triangles", "1", 1, part_rows), part_material = r.get<uint32_t>("/parts/material", "1", 1, part_rows);
+  const auto part_triangles = r.get<uint32_t>("/parts/triangles", "1", 1, part_rows),
+             part_material = r.get<uint32_t>("/parts/material", "1", 1, part_rows);
   Stretch<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
   Stretch<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
   size_t part = 0;
@@ -78,7 +82,8 @@ void read_hierarchy(Reader& r, Scene& s) {
   const std::vector<std::string> names = r.get_names("/primitives/name");
   const auto n = static_cast<long long>(names.size());
   const auto kind = r.get<uint8_t>("/primitives/kind", "1", 1, n);
-  const auto material = r.get<uint32_t>("/primitives/material", "1", 1, n), count = r.get<uint32_t>("/primitives/parameter_count", "1", 1, n);
+  const auto material = r.get<uint32_t>("/primitives/material", "1", 1, n),
+             count = r.get<uint32_t>("/primitives/parameter_count", "1", 1, n);
   Stretch<double> parameters(r, "/primitives/parameters", "SI");
   for (size_t k = 0; k < names.size(); ++k)
     s.primitives.push_back({names[k], static_cast<PrimitiveKind>(kind[k]), parameters.next(count[k]), material[k]});
@@ -89,7 +94,8 @@ void read_hierarchy(Reader& r, Scene& s) {
   const auto transform = r.get<double>("/placements/to_parent", "m", 12);
   const auto rows = static_cast<long long>(transform.size() / 12);
   const auto what = r.get<uint8_t>("/placements/kind", "1", 1, rows);
-  const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows), override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
+  const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows),
+             override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
   const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows);
   size_t at = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
@@ -100,7 +106,10 @@ void read_hierarchy(Reader& r, Scene& s) {
       const double* t = transform.data() + 12 * at;
       if (what[at] > static_cast<uint8_t>(TargetKind::primitive)) r.fail("a placement is of an unknown kind");
       group.placements.push_back({{{t[0], t[1], t[2], t[4], t[5], t[6], t[8], t[9], t[10]}, {t[3], t[7], t[11]}},
-                                  static_cast<TargetKind>(what[at]), target[at], override_[at], tag[at]});
+                                  static_cast<TargetKind>(what[at]),
+                                  target[at],
+                                  override_[at],
+                                  tag[at]});
     }
     s.groups.push_back(std::move(group));
   }
@@ -127,9 +136,12 @@ void read_curves(Reader& r, std::vector<Material>& materials) {
   std::vector<Curve> curves;
   for (size_t k = 0; k < outside.size(); ++k) {
     std::vector<double> wavelength = x.next(points[k]), value = y.next(points[k]);
-    if (outside[k] == h5::kConstantCurve && value.size() == 1 && std::isfinite(value[0])) curves.push_back(Curve::constant(value[0]));
-    else if (outside[k] <= static_cast<uint8_t>(Outside::zero)) curves.push_back(Curve(std::move(wavelength), std::move(value), static_cast<Outside>(outside[k])));
-    else r.fail("a curve has an unknown rule outside its range");
+    if (outside[k] == h5::kConstantCurve && value.size() == 1 && std::isfinite(value[0]))
+      curves.push_back(Curve::constant(value[0]));
+    else if (outside[k] <= static_cast<uint8_t>(Outside::zero))
+      curves.push_back(Curve(std::move(wavelength), std::move(value), static_cast<Outside>(outside[k])));
+    else
+      r.fail("a curve has an unknown rule outside its range");
   }
   x.finish(), y.finish();
   each_row(r, t, materials, [&](Material& m, const std::string& name, size_t k) {
@@ -141,7 +153,8 @@ void read_curves(Reader& r, std::vector<Material>& materials) {
 void read_materials(Reader& r, std::vector<Material>& materials) {
   const std::vector<std::string> ids = r.get_names("/materials/id");
   const auto n = static_cast<long long>(ids.size());
-  const std::vector<std::string> descriptions = r.get_names("/materials/description", n), models = r.get_names("/materials/model", n);
+  const std::vector<std::string> descriptions = r.get_names("/materials/description", n),
+                                 models = r.get_names("/materials/model", n);
   const auto temperature = r.get<double>("/materials/temperature", "K", 1, n);
   for (size_t k = 0; k < ids.size(); ++k) {
     Material m;
@@ -152,10 +165,15 @@ void read_materials(Reader& r, std::vector<Material>& materials) {
     if (!(m.temperature_k >= 0 && m.temperature_k <= 1e5)) r.fail("material '" + m.id + "' has an absurd temperature");
     materials.push_back(std::move(m));
   }
-  const auto numbers = r.get<double>("/materials/numbers/value", "SI"), thermal = r.get<double>("/materials/thermal/value", "SI");
+  const auto numbers = r.get<double>("/materials/numbers/value", "SI"),
+             thermal = r.get<double>("/materials/thermal/value", "SI");
   const std::vector<std::string> texts = r.get_names("/materials/texts/value");
-  each_row(r, "/materials/numbers", materials, [&](Material& m, const std::string& name, size_t k) { m.surface.numbers[name] = k < numbers.size() ? numbers[k] : NAN; });
-  each_row(r, "/materials/thermal", materials, [&](Material& m, const std::string& name, size_t k) { m.thermal[name] = k < thermal.size() ? thermal[k] : NAN; });
+  each_row(r, "/materials/numbers", materials, [&](Material& m, const std::string& name, size_t k) {
+    m.surface.numbers[name] = k < numbers.size() ? numbers[k] : NAN;
+  });
+  each_row(r, "/materials/thermal", materials, [&](Material& m, const std::string& name, size_t k) {
+    m.thermal[name] = k < thermal.size() ? thermal[k] : NAN;
+  });
   each_row(r, "/materials/texts", materials, [&](Material& m, const std::string& name, size_t k) {
     if (k >= texts.size()) r.fail("a text of a material is missing");
     m.surface.texts[name] = texts[k];
@@ -177,9 +195,12 @@ void read_maps(Reader& r, Scene& s) {
     m.name = names[k];
     m.width = size[2 * k];
     m.height = size[2 * k + 1];
-    if (rule[2 * k] > static_cast<uint8_t>(Projection::uv) || rule[2 * k + 1] > static_cast<uint8_t>(Drape::Extend::none)) r.fail("class map '" + m.name + "' has an unknown rule");
+    if (rule[2 * k] > static_cast<uint8_t>(Projection::uv) ||
+        rule[2 * k + 1] > static_cast<uint8_t>(Drape::Extend::none))
+      r.fail("class map '" + m.name + "' has an unknown rule");
     m.projection = static_cast<Projection>(rule[2 * k]);
-    m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3], static_cast<Drape::Extend>(rule[2 * k + 1])};
+    m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3],
+               static_cast<Drape::Extend>(rule[2 * k + 1])};
     m.materials = materials.next(count[k]);
     m.classes = classes.next(uint64_t{m.width} * m.height);
     s.class_maps.push_back(std::move(m));
@@ -202,8 +223,10 @@ void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   for (Material& m : s.materials) {
     if (m.surface.model.empty()) continue;
     if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
-      const auto found = std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
-      if (found == s.files.end()) throw Error(where, "material '" + m.id + "' names a file that is not in the scene", "prepare the scene again");
+      const auto found =
+          std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
+      if (found == s.files.end())
+        throw Error(where, "material '" + m.id + "' names a file that is not in the scene", "prepare the scene again");
       if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
       if (decode) m.surface.bundle = bundles[found->name];
     }
@@ -222,7 +245,8 @@ Provenance read_provenance(const std::string& path) {
 Scene read_scene(const std::string& path, const BundleReader& decode) {
   Reader r(path);
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
-  if (const std::string version = r.text("version"); version != h5::kVersionText) r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+  if (const std::string version = r.text("version"); version != h5::kVersionText)
+    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
   Scene s;
   s.name = r.text("name");
   s.description = r.text("description");

@@ -20,7 +20,8 @@ struct Provenance {
 void write_scene(const Scene& scene, const Provenance& provenance, const std::string& path);
 
 // Turns the bytes of an embedded SQT into its bundle; called once a file. name: for messages.
-using BundleReader = std::function<std::shared_ptr<const sqt::Bundle>(std::span<const std::byte> bytes, const std::string& name)>;
+using BundleReader =
+    std::function<std::shared_ptr<const sqt::Bundle>(std::span<const std::byte> bytes, const std::string& name)>;
 
 // Reads and checks everything (sizes before allocating, every index). Materials whose `file` names an embedded file get
 // their `bundle` from decode; without decode it stays null. Error: no scene, another version, damaged.

@@ -43,9 +43,12 @@ void write_meshes(Writer& w, const std::vector<Mesh>& meshes) {
   w.put_names("/parts/name", pick(parts, [](const Part& p) { return p.name; }));
   w.put("/parts/triangles", pick(parts, [](const Part& p) { return p.triangle_count; }), "1");
   w.put("/parts/material", pick(parts, [](const Part& p) { return p.material; }), "1");
-  put_all<float>(w, "/geometry/positions", meshes, "m", [](const Mesh& m) { return std::span<const float>(m.positions.data(), 3 * m.vertex_count()); });
-  put_all<uint32_t>(w, "/geometry/indices", meshes, "1", [](const Mesh& m) { return std::span<const uint32_t>(m.indices); });
-  put_all<uint32_t>(w, "/geometry/normals", meshes, "1", [](const Mesh& m) { return std::span<const uint32_t>(m.normals); });
+  put_all<float>(w, "/geometry/positions", meshes, "m",
+                 [](const Mesh& m) { return std::span<const float>(m.positions.data(), 3 * m.vertex_count()); });
+  put_all<uint32_t>(w, "/geometry/indices", meshes, "1",
+                    [](const Mesh& m) { return std::span<const uint32_t>(m.indices); });
+  put_all<uint32_t>(w, "/geometry/normals", meshes, "1",
+                    [](const Mesh& m) { return std::span<const uint32_t>(m.normals); });
   put_all<float>(w, "/geometry/uvs", meshes, "1", [](const Mesh& m) { return std::span<const float>(m.uvs); });
 }
 
@@ -53,7 +56,8 @@ void write_hierarchy(Writer& w, const Scene& s) {
   w.put_names("/primitives/name", pick(s.primitives, [](const Primitive& p) { return p.name; }));
   w.put("/primitives/kind", pick(s.primitives, [](const Primitive& p) { return static_cast<uint8_t>(p.kind); }), "1");
   w.put("/primitives/material", pick(s.primitives, [](const Primitive& p) { return p.material; }), "1");
-  w.put("/primitives/parameter_count", pick(s.primitives, [](const Primitive& p) { return static_cast<uint32_t>(p.parameters.size()); }), "1");
+  w.put("/primitives/parameter_count",
+        pick(s.primitives, [](const Primitive& p) { return static_cast<uint32_t>(p.parameters.size()); }), "1");
   std::vector<double> parameters;
   for (const Primitive& p : s.primitives) parameters.insert(parameters.end(), p.parameters.begin(), p.parameters.end());
   w.put("/primitives/parameters", parameters, "SI");
@@ -64,7 +68,9 @@ void write_hierarchy(Writer& w, const Scene& s) {
   std::vector<uint32_t> target, material, tag;
   for (const Group& g : s.groups)
     for (const Placement& p : g.placements) {
-      for (int r = 0; r < 3; ++r) transform.insert(transform.end(), {p.to_parent.a[3 * r], p.to_parent.a[3 * r + 1], p.to_parent.a[3 * r + 2], p.to_parent.b[r]});
+      for (int r = 0; r < 3; ++r)
+        transform.insert(transform.end(),
+                         {p.to_parent.a[3 * r], p.to_parent.a[3 * r + 1], p.to_parent.a[3 * r + 2], p.to_parent.b[r]});
       kind.push_back(static_cast<uint8_t>(p.kind));
       target.push_back(p.target);
       material.push_back(p.material_override);
@@ -86,7 +92,8 @@ struct Rows {
   std::vector<Value> value;
   Rows(const std::vector<Material>& materials, Get get) {
     for (size_t m = 0; m < materials.size(); ++m)
-      for (const auto& [key, v] : get(materials[m])) material.push_back(static_cast<uint32_t>(m)), name.push_back(key), value.push_back(v);
+      for (const auto& [key, v] : get(materials[m]))
+        material.push_back(static_cast<uint32_t>(m)), name.push_back(key), value.push_back(v);
   }
 };
 
@@ -101,23 +108,33 @@ void write_materials(Writer& w, const std::vector<Material>& materials) {
     w.put_names(table + "/name", rows.name);
     put_value(table, rows.value);
   };
-  put_rows("/materials/numbers", [](const Material& m) -> const auto& { return m.surface.numbers; },
-           [&](const std::string& t, const std::vector<double>& v) { w.put(t + "/value", v, "SI"); });
-  put_rows("/materials/thermal", [](const Material& m) -> const auto& { return m.thermal; },
-           [&](const std::string& t, const std::vector<double>& v) { w.put(t + "/value", v, "SI"); });
-  put_rows("/materials/texts", [](const Material& m) -> const auto& { return m.surface.texts; },
-           [&](const std::string& t, const std::vector<std::string>& v) { w.put_names(t + "/value", v); });
-  put_rows("/materials/curves", [](const Material& m) -> const auto& { return m.surface.curves; }, [&](const std::string& t, const std::vector<Curve>& curves) {
-    w.put(t + "/outside", pick(curves, [](const Curve& c) { return static_cast<uint8_t>(c.is_constant() ? h5::kConstantCurve : static_cast<int>(c.outside())); }), "1");
-    w.put(t + "/points", pick(curves, [](const Curve& c) { return uint64_t{c.value().size()}; }), "1");
-    std::vector<double> x, y;
-    for (const Curve& c : curves) {
-      x.insert(x.end(), c.wavelength_um().begin(), c.wavelength_um().end());
-      y.insert(y.end(), c.value().begin(), c.value().end());
-    }
-    w.put(t + "/wavelength", x, "um");
-    w.put(t + "/value", y, "1");
-  });
+  put_rows(
+      "/materials/numbers", [](const Material& m) -> const auto& { return m.surface.numbers; },
+      [&](const std::string& t, const std::vector<double>& v) { w.put(t + "/value", v, "SI"); });
+  put_rows(
+      "/materials/thermal", [](const Material& m) -> const auto& { return m.thermal; },
+      [&](const std::string& t, const std::vector<double>& v) { w.put(t + "/value", v, "SI"); });
+  put_rows(
+      "/materials/texts", [](const Material& m) -> const auto& { return m.surface.texts; },
+      [&](const std::string& t, const std::vector<std::string>& v) { w.put_names(t + "/value", v); });
+  put_rows(
+      "/materials/curves", [](const Material& m) -> const auto& { return m.surface.curves; },
+      [&](const std::string& t, const std::vector<Curve>& curves) {
+        w.put(t + "/outside",
+              pick(curves,
+                   [](const Curve& c) {
+                     return static_cast<uint8_t>(c.is_constant() ? h5::kConstantCurve : static_cast<int>(c.outside()));
+                   }),
+              "1");
+        w.put(t + "/points", pick(curves, [](const Curve& c) { return uint64_t{c.value().size()}; }), "1");
+        std::vector<double> x, y;
+        for (const Curve& c : curves) {
+          x.insert(x.end(), c.wavelength_um().begin(), c.wavelength_um().end());
+          y.insert(y.end(), c.value().begin(), c.value().end());
+        }
+        w.put(t + "/wavelength", x, "um");
+        w.put(t + "/value", y, "1");
+      });
 }
 
 void write_maps(Writer& w, const Scene& s) {
@@ -166,9 +183,11 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     w.attribute("generator", provenance.generator);
     w.attribute("arguments", provenance.arguments);
     w.attribute("input_sha256", provenance.input_sha256);
-    const double box[6] = {s.bounds.low.x, s.bounds.low.y, s.bounds.low.z, s.bounds.high.x, s.bounds.high.y, s.bounds.high.z};
+    const double box[6] = {s.bounds.low.x,  s.bounds.low.y,  s.bounds.low.z,
+                           s.bounds.high.x, s.bounds.high.y, s.bounds.high.z};
     w.attribute("bounds_m", box);
-    const double origin[4] = {s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m, s.origin.given ? 1.0 : 0.0};
+    const double origin[4] = {s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m,
+                              s.origin.given ? 1.0 : 0.0};
     w.attribute("origin_latitude_deg_longitude_deg_height_m_given", origin);
     write_meshes(w, s.meshes);
     write_hierarchy(w, s);

@@ -22,9 +22,12 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
       kind = k;
     }
   if (kind.empty()) throw p.error("object '" + name + "' has no geometry", name_hint("", kinds));
-  if (kind == "obj") read_obj_geometry(p, g);
-  else if (kind == "terrain") read_terrain(p, g);
-  else read_primitive(p, g, kind);
+  if (kind == "obj")
+    read_obj_geometry(p, g);
+  else if (kind == "terrain")
+    read_terrain(p, g);
+  else
+    read_primitive(p, g, kind);
   draft_.geometry.push_back(std::move(g));
 }
 
@@ -67,7 +70,8 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   const SceneFrame frame({draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
   g.terrain.place = [=](double column, double row, double height) {
     const double c = column + 0.5, r = row + 0.5;  // samples are at pixel centres
-    const double x = ref.to_map[0] + ref.to_map[1] * c + ref.to_map[2] * r, y = ref.to_map[3] + ref.to_map[4] * c + ref.to_map[5] * r;
+    const double x = ref.to_map[0] + ref.to_map[1] * c + ref.to_map[2] * r,
+                 y = ref.to_map[3] + ref.to_map[4] * c + ref.to_map[5] * r;
     const double h = height + separation;
     return zone ? frame.enu_from_utm({*zone, x, y, h}) : frame.enu_from_geodetic({y, x, h});
   };
@@ -76,18 +80,22 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
 void Reader::read_primitive(const Params& p, DraftGeometry& g, const std::string& kind) {
   g.kind = DraftGeometry::Kind::primitive;
   if (!g.material.given()) throw p.error("object '" + g.name + "' needs a 'material'");
-  const auto row = std::find_if(primitive_rows().begin(), primitive_rows().end(), [&](const PrimitiveRow& r) { return r.name == kind; });
+  const auto row = std::find_if(primitive_rows().begin(), primitive_rows().end(),
+                                [&](const PrimitiveRow& r) { return r.name == kind; });
   const Params values = p.at(kind);
   g.primitive.name = g.name;
   g.primitive.kind = row->kind;
   for (const PrimitiveParameter& parameter : row->parameters) {
-    const double value = parameter.otherwise ? values.number_in(parameter.name, parameter.low, parameter.high, parameter.unit.c_str(), *parameter.otherwise)
-                                             : values.number_in(parameter.name, parameter.low, parameter.high, parameter.unit.c_str());
+    const double value = parameter.otherwise
+                             ? values.number_in(parameter.name, parameter.low, parameter.high, parameter.unit.c_str(),
+                                                *parameter.otherwise)
+                             : values.number_in(parameter.name, parameter.low, parameter.high, parameter.unit.c_str());
     g.primitive.parameters.push_back(value);
   }
   if (row->kind == PrimitiveKind::sinusoid)
     for (const Params& term : values.at("terms").items())
-      for (const char* name : {"amplitude", "kx", "ky", "phase"}) g.primitive.parameters.push_back(term.number(name, 0));
+      for (const char* name : {"amplitude", "kx", "ky", "phase"})
+        g.primitive.parameters.push_back(term.number(name, 0));
   check_primitive(g.primitive, values.where());
 }
 

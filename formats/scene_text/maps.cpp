@@ -8,19 +8,22 @@ namespace suite::scene_text {
 namespace {
 
 uint16_t class_of(const std::string& key, const Params& where) {
-  if (key.empty() || key.size() > 5 || key.find_first_not_of("0123456789") != std::string::npos || std::stol(key) > 65535)
+  if (key.empty() || key.size() > 5 || key.find_first_not_of("0123456789") != std::string::npos ||
+      std::stol(key) > 65535)
     throw where.error("class '" + key + "' is not a number from 0 to 65535");
   return static_cast<uint16_t>(std::stol(key));
 }
 
 void read_drape(const Params& p, Drape& drape) {
   const std::vector<double> origin = p.at("origin").as_numbers();
-  if (origin.size() != 2) throw p.at("origin").error("an origin is [x, y] in metres: the outer corner of the first pixel");
+  if (origin.size() != 2)
+    throw p.at("origin").error("an origin is [x, y] in metres: the outer corner of the first pixel");
   drape.origin_x = origin[0];
   drape.origin_y = origin[1];
   const Params gsd = p.at("gsd");
   std::vector<double> g = gsd.kind() == Params::Kind::list ? gsd.as_numbers() : std::vector<double>(2, gsd.as_number());
-  if (g.size() != 2 || g[0] == 0 || g[1] == 0) throw gsd.error("a ground sample distance is one or two numbers other than 0, m");
+  if (g.size() != 2 || g[0] == 0 || g[1] == 0)
+    throw gsd.error("a ground sample distance is one or two numbers other than 0, m");
   drape.gsd_x = g[0];
   drape.gsd_y = g[1];
   constexpr Drape::Extend rules[] = {Drape::Extend::clamp, Drape::Extend::repeat, Drape::Extend::none};
@@ -34,7 +37,8 @@ void Reader::read_map(const std::string& name, const Params& p) {
   m.where = p.where();
   m.map.name = name;
   p.at("type").as_choice({"class"});
-  if (const auto projection = p.find("projection"); projection && projection->as_choice({"drape", "uv"}) == 1) m.map.projection = Projection::uv;
+  if (const auto projection = p.find("projection"); projection && projection->as_choice({"drape", "uv"}) == 1)
+    m.map.projection = Projection::uv;
   if (m.map.projection == Projection::drape) read_drape(p.at("drape"), m.map.drape);
   const Params materials = p.at("materials");
   for (const std::string& key : materials.keys()) m.materials[class_of(key, materials)] = reference(materials.at(key));
@@ -42,7 +46,8 @@ void Reader::read_map(const std::string& name, const Params& p) {
   const Params file = p.at("file");
   const Raster raster = read_raster(input(file));
   if (!raster.integer || raster.channels != 1)
-    throw file.error(strf("a class map is one channel of whole numbers, '%s' has %u%s", file.as_text().c_str(), raster.channels, raster.integer ? "" : " of floats"));
+    throw file.error(strf("a class map is one channel of whole numbers, '%s' has %u%s", file.as_text().c_str(),
+                          raster.channels, raster.integer ? "" : " of floats"));
   m.map.width = raster.width;
   m.map.height = raster.height;
   m.map.classes.reserve(raster.values.size());

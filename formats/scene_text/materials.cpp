@@ -49,7 +49,9 @@ std::string Reader::embed(const Params& p) {
   const std::string path = input(p);
   if (const auto known = embedded_.find(path); known != embedded_.end()) return known->second;
   std::string name = std::filesystem::path(path).filename().string();
-  const auto taken = [&](const std::string& n) { return std::any_of(draft_.files.begin(), draft_.files.end(), [&](const DataFile& f) { return f.name == n; }); };
+  const auto taken = [&](const std::string& n) {
+    return std::any_of(draft_.files.begin(), draft_.files.end(), [&](const DataFile& f) { return f.name == n; });
+  };
   for (int k = 2; taken(name); ++k) name = strf("%d-", k) + std::filesystem::path(path).filename().string();
   draft_.files.push_back({name, read_bytes(path)});
   return embedded_[path] = name;
@@ -63,8 +65,12 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
     const auto value = p.find(parameter.name);
     if (!value) continue;
     switch (parameter.kind) {
-      case ModelParameter::Kind::number: spec.numbers[parameter.name] = value->as_number(); break;
-      case ModelParameter::Kind::curve: spec.curves[parameter.name] = read_curve_value(*value); break;
+      case ModelParameter::Kind::number:
+        spec.numbers[parameter.name] = value->as_number();
+        break;
+      case ModelParameter::Kind::curve:
+        spec.curves[parameter.name] = read_curve_value(*value);
+        break;
       case ModelParameter::Kind::text:
         spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
         break;

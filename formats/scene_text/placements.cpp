@@ -10,7 +10,8 @@ namespace {
 Affine3 read_rotation(const Params& p) {
   if (const auto q = p.find("quaternion")) {
     const std::vector<double> v = q->as_numbers();
-    if (v.size() != 4 || !(std::hypot(std::hypot(v[0], v[1]), std::hypot(v[2], v[3])) > 1e-12)) throw q->error("a quaternion is four numbers (w, x, y, z), not all 0");
+    if (v.size() != 4 || !(std::hypot(std::hypot(v[0], v[1]), std::hypot(v[2], v[3])) > 1e-12))
+      throw q->error("a quaternion is four numbers (w, x, y, z), not all 0");
     return Pose{normalized(Quat{v[0], v[1], v[2], v[3]}), {}}.affine();
   }
   if (const auto axis = p.find("axis")) {
@@ -22,7 +23,8 @@ Affine3 read_rotation(const Params& p) {
   if (const auto euler = p.find("euler_deg")) {
     const auto angle = euler->as_vec3();
     const std::string order = p.text("order", "xyz");
-    if (order.size() != 3 || order.find_first_not_of("xyz") != std::string::npos) throw p.at("order").error("an order is three of x, y, z", "'xyz' turns about x first");
+    if (order.size() != 3 || order.find_first_not_of("xyz") != std::string::npos)
+      throw p.at("order").error("an order is three of x, y, z", "'xyz' turns about x first");
     Affine3 r;
     for (int i = 0; i < 3; ++i) {
       Vec3 axis;
@@ -40,8 +42,10 @@ Affine3 read_rotation(const Params& p) {
 
 Affine3 read_matrix(const Params& p) {
   const std::vector<double> m = p.as_numbers();
-  if (m.size() != 12 && m.size() != 16) throw p.error(strf("a matrix is 12 or 16 numbers, row by row, found %zu", m.size()));
-  if (m.size() == 16 && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)) throw p.error("the last row of a matrix must be 0 0 0 1");
+  if (m.size() != 12 && m.size() != 16)
+    throw p.error(strf("a matrix is 12 or 16 numbers, row by row, found %zu", m.size()));
+  if (m.size() == 16 && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1))
+    throw p.error("the last row of a matrix must be 0 0 0 1");
   return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
 }
 
@@ -82,7 +86,8 @@ void Reader::read_group(const std::string& name, const Params& p) {
   // Filed even when a placement is wrong, so that names still resolve.
   const size_t slot = draft_.groups.size();
   draft_.groups.push_back({name, p.where(), {}});
-  for (const Params& row : p.items()) item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row)); });
+  for (const Params& row : p.items())
+    item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row)); });
 }
 
 }  // namespace suite::scene_text

@@ -56,7 +56,8 @@ void Reader::run(const Params& root) {
         if (edge.size() != 2 || !(edge[0] > 0 && edge[0] < edge[1])) throw w.error("a window is [low, high] in micron");
         draft_.windows.push_back({edge[0], edge[1], w.where()});
       });
-  const auto each = [&](const char* key, const char* code, const std::function<void(const std::string&, const Params&)>& read) {
+  const auto each = [&](const char* key, const char* code,
+                        const std::function<void(const std::string&, const Params&)>& read) {
     const auto table = root.find(key);
     if (!table) return;
     item(code, *table, [&] {

@@ -12,7 +12,8 @@ namespace suite::scene_text {
 
 class Reader {
  public:
-  Reader(const SceneTextOptions& options, Report& report, Draft& draft) : options_(options), report_(report), draft_(draft) {}
+  Reader(const SceneTextOptions& options, Report& report, Draft& draft)
+      : options_(options), report_(report), draft_(draft) {}
   void run(const Params& root);
 
  private:
@@ -45,8 +46,8 @@ class Reader {
   Report& report_;
   Draft& draft_;
   std::map<std::string, Curve> curves_;
-  std::map<std::string, std::string> hashes_;   // resolved path -> sha256
-  std::map<std::string, std::string> embedded_; // resolved path -> name in the scene
+  std::map<std::string, std::string> hashes_;    // resolved path -> sha256
+  std::map<std::string, std::string> embedded_;  // resolved path -> name in the scene
 };
 
 }  // namespace suite::scene_text

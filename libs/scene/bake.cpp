@@ -1,8 +1,8 @@
 #include "scene/bake.h"
 
 #include <algorithm>
-#include <memory>
 #include <cmath>
+#include <memory>
 #include <set>
 
 namespace suite {
@@ -43,7 +43,9 @@ class Baker {
     const TerrainGrid* terrain = nullptr;
   };
 
-  void add(const char* code, const Where& where, const std::string& message) { report_.add(code, draft_.file, {where, message}); }
+  void add(const char* code, const Where& where, const std::string& message) {
+    report_.add(code, draft_.file, {where, message});
+  }
 
   uint32_t material_id(const Reference& ref) {
     if (const auto found = material_ids_.find(ref.name); found != material_ids_.end()) {
@@ -80,8 +82,9 @@ void Baker::check_coverage(const DraftMaterial& m) {
   for (const SpectralWindow& w : draft_.windows)
     for (const auto& [name, curve] : m.material.surface.curves)
       if (!curve.covers(w.low_um, w.high_um))
-        add("SP104", m.where, strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
-                                   name.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+        add("SP104", m.where,
+            strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
+                 name.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
 }
 
 void Baker::materials() {
@@ -96,7 +99,9 @@ void Baker::materials() {
     for (const Curve* c : {&rho->second, &tau->second})
       for (const double w : c->wavelength_um())
         if (rho->second.covers(w, w) && tau->second.covers(w, w) && rho->second.at(w) + tau->second.at(w) > 1 + 1e-9) {
-          add("SP105", m.where, strf("material '%s': reflectance %g + transmittance %g at %g um", m.material.id.c_str(), rho->second.at(w), tau->second.at(w), w));
+          add("SP105", m.where,
+              strf("material '%s': reflectance %g + transmittance %g at %g um", m.material.id.c_str(),
+                   rho->second.at(w), tau->second.at(w), w));
           goto next;
         }
   next:;
@@ -116,8 +121,10 @@ void Baker::class_maps() {
     std::map<uint16_t, size_t> missing;
     for (uint16_t& c : map.classes) {
       const auto found = index.find(c);
-      if (found == index.end()) ++missing[c];
-      else c = found->second;
+      if (found == index.end())
+        ++missing[c];
+      else
+        c = found->second;
     }
     for (const auto& [value, count] : missing)
       report_.add("SP502", map.name, {d.where, strf("class %u (%zu pixels) has no material", value, count)}, count);
@@ -137,7 +144,9 @@ void Baker::class_maps() {
     scene_.map_bindings.push_back({static_cast<uint32_t>(m), found->second});
     for (const uint32_t id : map.materials)
       if (id == m || (id != kNone && draft_.materials[id].map.given()))
-        add("SP501", d.map.where, "map '" + d.map.name + "' leads to material '" + draft_.materials[id].material.id + "', which a map decides again");
+        add("SP501", d.map.where,
+            "map '" + d.map.name + "' leads to material '" + draft_.materials[id].material.id +
+                "', which a map decides again");
     if (!d.has_model && !map.materials.empty() && map.materials.front() != kNone)
       scene_.materials[m].surface = draft_.materials[map.materials.front()].material.surface;
   }
@@ -157,7 +166,8 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
       if (told.insert(run.material).second)
         add("SP102", {g.mesh.file, run.line, 0, {}, -1},
             run.material.empty() ? "faces without 'usemtl' in '" + g.name + "'; give the object a 'material'"
-                                 : "unknown material '" + run.material + "'; define it, or map the name under 'materials' of '" + g.name + "'");
+                                 : "unknown material '" + run.material +
+                                       "'; define it, or map the name under 'materials' of '" + g.name + "'");
       ids.push_back(kNone);
     }
   }
@@ -186,11 +196,16 @@ Baker::Built Baker::build_primitive(const DraftGeometry& g) {
 }
 
 void Baker::geometry() {
-  for (const DraftGeometry& g : draft_.geometry)
-    switch (g.kind) {
-      case DraftGeometry::Kind::mesh: built_[g.name] = build_mesh(g); break;
-      case DraftGeometry::Kind::terrain: built_[g.name] = build_terrain(g); break;
-      case DraftGeometry::Kind::primitive: built_[g.name] = build_primitive(g); break;
+  for (const DraftGeometry& g : draft_.geometry) switch (g.kind) {
+      case DraftGeometry::Kind::mesh:
+        built_[g.name] = build_mesh(g);
+        break;
+      case DraftGeometry::Kind::terrain:
+        built_[g.name] = build_terrain(g);
+        break;
+      case DraftGeometry::Kind::primitive:
+        built_[g.name] = build_primitive(g);
+        break;
     }
 }
 
@@ -202,7 +217,9 @@ std::vector<size_t> Baker::group_order() {
   const auto each_child = [&](size_t g, const auto& visit) {
     std::set<size_t> seen;
     for (const DraftPlacement& p : draft_.groups[g].placements)
-      if (const auto found = row.find(p.target.name); found != row.end() && !built_.count(p.target.name) && seen.insert(found->second).second) visit(found->second);
+      if (const auto found = row.find(p.target.name);
+          found != row.end() && !built_.count(p.target.name) && seen.insert(found->second).second)
+        visit(found->second);
   };
   for (size_t g = 0; g < draft_.groups.size(); ++g) each_child(g, [&](size_t c) { ++parents[c]; });
   std::vector<size_t> ready;
@@ -235,13 +252,18 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   }
   for (const double a : made.to_parent.a)
     if (!std::isfinite(a)) return add("SP404", p.where, "the transform of '" + p.target.name + "' is not finite");
-  if (made.to_parent.determinant() == 0) return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
+  if (made.to_parent.determinant() == 0)
+    return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
   if (p.on.given()) {
     const auto ground = built_.find(p.on.name);
-    if (!world) return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand");
-    if (ground == built_.end() || !ground->second.terrain) return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain");
+    if (!world)
+      return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand");
+    if (ground == built_.end() || !ground->second.terrain)
+      return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain");
     const auto z = ground->second.terrain->height_at(made.to_parent.b.x, made.to_parent.b.y);
-    if (!z) return add("SP405", p.where, strf("(%g, %g) is not on '%s'", made.to_parent.b.x, made.to_parent.b.y, p.on.name.c_str()));
+    if (!z)
+      return add("SP405", p.where,
+                 strf("(%g, %g) is not on '%s'", made.to_parent.b.x, made.to_parent.b.y, p.on.name.c_str()));
     made.to_parent.b.z += *z;
   }
   used_targets_.insert(p.target.name);
@@ -261,8 +283,10 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   }
   std::vector<std::string> known = names_of(draft_.geometry, [](const DraftGeometry& g) { return g.name; });
   for (const DraftGroup& g : draft_.groups)
-    if (g.name == p.target.name) return;  // in a circle, reported already
-    else if (&g != &draft_.groups.front()) known.push_back(g.name);
+    if (g.name == p.target.name)
+      return;  // in a circle, reported already
+    else if (&g != &draft_.groups.front())
+      known.push_back(g.name);
   add("SP401", p.target.where, "unknown object '" + p.target.name + "'; " + name_hint(p.target.name, known));
 }
 
@@ -275,7 +299,8 @@ void Baker::groups() {
     for (const DraftPlacement& p : draft_.groups[g].placements) place(p, group, g == 0);
     scene_.groups.push_back(std::move(group));
   }
-  if (scene_.groups.empty() || draft_.groups.front().placements.empty()) add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
+  if (scene_.groups.empty() || draft_.groups.front().placements.empty())
+    add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
 }
 
 void Baker::unused() {
@@ -286,7 +311,8 @@ void Baker::unused() {
   for (const DraftGeometry& g : draft_.geometry)
     if (!used_targets_.count(g.name)) add("SP403", g.where, "object '" + g.name + "' is never placed");
   for (size_t g = 1; g < draft_.groups.size(); ++g)
-    if (!used_targets_.count(draft_.groups[g].name)) add("SP403", draft_.groups[g].where, "group '" + draft_.groups[g].name + "' is never placed");
+    if (!used_targets_.count(draft_.groups[g].name))
+      add("SP403", draft_.groups[g].where, "group '" + draft_.groups[g].name + "' is never placed");
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ Box3 moved(const Box3& box, const Affine3& to_parent) {
   Box3 out;
   if (box.empty()) return out;
   for (int c = 0; c < 8; ++c)
-    out.grow(to_parent.point({c & 1 ? box.high.x : box.low.x, c & 2 ? box.high.y : box.low.y, c & 4 ? box.high.z : box.low.z}));
+    out.grow(to_parent.point(
+        {c & 1 ? box.high.x : box.low.x, c & 2 ? box.high.y : box.low.y, c & 4 ? box.high.z : box.low.z}));
   return out;
 }
 
@@ -31,7 +32,9 @@ Box3 scene_bounds(const Scene& s) {
   for (const Primitive& p : s.primitives) primitives.push_back(primitive_box(p));
   for (size_t g = s.groups.size(); g-- > 0;)
     for (const Placement& p : s.groups[g].placements) {
-      const Box3& box = p.kind == TargetKind::mesh ? meshes[p.target] : p.kind == TargetKind::group ? groups[p.target] : primitives[p.target];
+      const Box3& box = p.kind == TargetKind::mesh    ? meshes[p.target]
+                        : p.kind == TargetKind::group ? groups[p.target]
+                                                      : primitives[p.target];
       groups[g].grow(moved(box, p.to_parent));
     }
   return groups.empty() ? Box3{} : groups.front();

@@ -21,24 +21,24 @@ struct Reference {
 
 // Triangles as read from a file, in double, before they get an origin.
 struct SourceMesh {
-  struct Run {                           // consecutive triangles of one group and one material name
-    std::string group, material;         // material: the `usemtl` name; empty = none
+  struct Run {                    // consecutive triangles of one group and one material name
+    std::string group, material;  // material: the `usemtl` name; empty = none
     uint32_t first_triangle = 0;
-    int line = 0;                        // where the run starts in the file
+    int line = 0;  // where the run starts in the file
   };
   std::string file;
-  std::vector<Vec3> positions;           // m
-  std::vector<uint32_t> normals;         // octahedral, one per position, or empty
-  std::vector<float> uvs;                // two per position, or empty
-  std::vector<uint32_t> indices;         // three per triangle
-  std::vector<int> lines;                // source line of each triangle, or empty
-  std::vector<Run> runs;                 // ascending
+  std::vector<Vec3> positions;    // m
+  std::vector<uint32_t> normals;  // octahedral, one per position, or empty
+  std::vector<float> uvs;         // two per position, or empty
+  std::vector<uint32_t> indices;  // three per triangle
+  std::vector<int> lines;         // source line of each triangle, or empty
+  std::vector<Run> runs;          // ascending
 };
 
 // Heights on a grid, as a raster gives them. Samples are at pixel centres.
 struct SourceTerrain {
   uint32_t width = 0, height = 0;
-  std::vector<float> heights;            // m, row-major, first row first; NaN = no data
+  std::vector<float> heights;  // m, row-major, first row first; NaN = no data
   // Scene ENU position of the sample in column i, row j (both may be fractional) with the height given.
   std::function<Vec3(double column, double row, double height)> place;
 };
@@ -52,16 +52,16 @@ struct DraftGeometry {
   SourceMesh mesh;
   SourceTerrain terrain;
   Primitive primitive;
-  Affine3 to_local;                      // applied once to a mesh when it is read (units, up axis)
-  Reference material;                    // of everything without a better one
+  Affine3 to_local;                            // applied once to a mesh when it is read (units, up axis)
+  Reference material;                          // of everything without a better one
   std::map<std::string, Reference> materials;  // `usemtl` name -> material id
   NormalRule normals = NormalRule::file;
-  double tile_m = 0;                     // largest extent of one terrain tile
+  double tile_m = 0;  // largest extent of one terrain tile
 };
 
 struct DraftPlacement {
   Where where;
-  Reference target, material, tag, on;   // on: the terrain whose surface z counts from
+  Reference target, material, tag, on;  // on: the terrain whose surface z counts from
   Affine3 to_parent;
 };
 
@@ -74,13 +74,13 @@ struct DraftGroup {
 struct DraftMaterial {
   Where where;
   Material material;
-  Reference map;                         // a class map that decides instead
+  Reference map;  // a class map that decides instead
   bool has_model = false;
 };
 
 struct DraftClassMap {
   Where where;
-  ClassMap map;                          // `materials` still empty; `classes` hold the values of the raster
+  ClassMap map;                             // `materials` still empty; `classes` hold the values of the raster
   std::map<uint16_t, Reference> materials;  // value -> material id
 };
 
@@ -101,7 +101,7 @@ struct Draft {
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;
   std::vector<DraftGeometry> geometry;
-  std::vector<DraftGroup> groups;        // [0] = world
+  std::vector<DraftGroup> groups;  // [0] = world
   std::vector<DataFile> files;
   std::vector<InputFile> inputs;
 };

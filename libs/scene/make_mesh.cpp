@@ -28,7 +28,8 @@ std::vector<uint32_t> smooth_normals(const std::vector<Vec3>& p, const std::vect
   };
   std::sort(order.begin(), order.end(), less);
   std::vector<uint32_t> first(p.size());
-  for (size_t k = 0; k < order.size(); ++k) first[order[k]] = k && p[order[k]] == p[order[k - 1]] ? first[order[k - 1]] : order[k];
+  for (size_t k = 0; k < order.size(); ++k)
+    first[order[k]] = k && p[order[k]] == p[order[k - 1]] ? first[order[k - 1]] : order[k];
   std::vector<Vec3> sum(p.size());
   for (size_t t = 0; t + 2 < indices.size(); t += 3) {
     const uint32_t v[3] = {indices[t], indices[t + 1], indices[t + 2]};
@@ -50,7 +51,8 @@ std::vector<uint32_t> smooth_normals(const std::vector<Vec3>& p, const std::vect
 
 }  // namespace
 
-Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials) {
+Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule,
+               std::span<const uint32_t> materials) {
   SUITE_CHECK_EQ(source.runs.size(), materials.size());
   Mesh mesh;
   mesh.name = source.file;
@@ -86,7 +88,8 @@ Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rul
   for (size_t r = 0; r < source.runs.size(); ++r) {
     const SourceMesh::Run& run = source.runs[r];
     const uint32_t end = r + 1 < source.runs.size() ? source.runs[r + 1].first_triangle : triangles;
-    if (end > run.first_triangle) mesh.parts.push_back({run.group, run.first_triangle, end - run.first_triangle, materials[r]});
+    if (end > run.first_triangle)
+      mesh.parts.push_back({run.group, run.first_triangle, end - run.first_triangle, materials[r]});
   }
   return mesh;
 }

@@ -7,21 +7,46 @@ namespace suite {
 std::span<const PrimitiveRow> primitive_rows() {
   constexpr double tiny = 1e-9, huge = 1e9;
   static const std::vector<PrimitiveRow> rows{
-      {"plane", PrimitiveKind::plane, "z = 0, facing up; UV (0, 0) to (1, 1) over the rectangle, metres when infinite",
-       {{"width", "m", "extent along x, centred; 0 = infinite", 0, huge, 0.0}, {"depth", "m", "extent along y, centred; 0 = infinite", 0, huge, 0.0}}},
-      {"disk", PrimitiveKind::disk, "z = 0, facing up; u = radius share, v = azimuth / 2 pi",
+      {"plane",
+       PrimitiveKind::plane,
+       "z = 0, facing up; UV (0, 0) to (1, 1) over the rectangle, metres when infinite",
+       {{"width", "m", "extent along x, centred; 0 = infinite", 0, huge, 0.0},
+        {"depth", "m", "extent along y, centred; 0 = infinite", 0, huge, 0.0}}},
+      {"disk",
+       PrimitiveKind::disk,
+       "z = 0, facing up; u = radius share, v = azimuth / 2 pi",
        {{"radius", "m", "outer radius", tiny, huge, {}}, {"inner_radius", "m", "radius of the hole", 0, huge, 0.0}}},
-      {"box", PrimitiveKind::box, "axis-aligned; UV (0, 0) to (1, 1) on every face",
-       {{"x0", "m", "low corner", -huge, huge, {}}, {"y0", "m", "low corner", -huge, huge, {}}, {"z0", "m", "low corner", -huge, huge, {}},
-        {"x1", "m", "high corner", -huge, huge, {}}, {"y1", "m", "high corner", -huge, huge, {}}, {"z1", "m", "high corner", -huge, huge, {}}}},
-      {"sphere", PrimitiveKind::sphere, "around the origin; u = azimuth / 2 pi, v = polar angle from +z / pi", {{"radius", "m", "radius", tiny, huge, {}}}},
-      {"cone", PrimitiveKind::cone, "from z = 0 up; u = azimuth / 2 pi, v = z / height on the side",
-       {{"radius", "m", "radius at z = 0", tiny, huge, {}}, {"top_radius", "m", "radius at z = height (frustum)", 0, huge, 0.0},
-        {"height", "m", "height", tiny, huge, {}}, {"capped", "1", "1 = closed by disks", 0, 1, 1.0}}},
-      {"cylinder", PrimitiveKind::cylinder, "from z = 0 up; u = azimuth / 2 pi, v = z / height on the side",
-       {{"radius", "m", "radius", tiny, huge, {}}, {"height", "m", "height", tiny, huge, {}}, {"capped", "1", "1 = closed by disks", 0, 1, 1.0}}},
-      {"sinusoid", PrimitiveKind::sinusoid, "height field z = sum of a sin(kx x + ky y + phase) over a rectangle; UV (0, 0) to (1, 1) over it",
-       {{"width", "m", "extent along x, centred", tiny, huge, {}}, {"depth", "m", "extent along y, centred", tiny, huge, {}}}}};
+      {"box",
+       PrimitiveKind::box,
+       "axis-aligned; UV (0, 0) to (1, 1) on every face",
+       {{"x0", "m", "low corner", -huge, huge, {}},
+        {"y0", "m", "low corner", -huge, huge, {}},
+        {"z0", "m", "low corner", -huge, huge, {}},
+        {"x1", "m", "high corner", -huge, huge, {}},
+        {"y1", "m", "high corner", -huge, huge, {}},
+        {"z1", "m", "high corner", -huge, huge, {}}}},
+      {"sphere",
+       PrimitiveKind::sphere,
+       "around the origin; u = azimuth / 2 pi, v = polar angle from +z / pi",
+       {{"radius", "m", "radius", tiny, huge, {}}}},
+      {"cone",
+       PrimitiveKind::cone,
+       "from z = 0 up; u = azimuth / 2 pi, v = z / height on the side",
+       {{"radius", "m", "radius at z = 0", tiny, huge, {}},
+        {"top_radius", "m", "radius at z = height (frustum)", 0, huge, 0.0},
+        {"height", "m", "height", tiny, huge, {}},
+        {"capped", "1", "1 = closed by disks", 0, 1, 1.0}}},
+      {"cylinder",
+       PrimitiveKind::cylinder,
+       "from z = 0 up; u = azimuth / 2 pi, v = z / height on the side",
+       {{"radius", "m", "radius", tiny, huge, {}},
+        {"height", "m", "height", tiny, huge, {}},
+        {"capped", "1", "1 = closed by disks", 0, 1, 1.0}}},
+      {"sinusoid",
+       PrimitiveKind::sinusoid,
+       "height field z = sum of a sin(kx x + ky y + phase) over a rectangle; UV (0, 0) to (1, 1) over it",
+       {{"width", "m", "extent along x, centred", tiny, huge, {}},
+        {"depth", "m", "extent along y, centred", tiny, huge, {}}}}};
   return rows;
 }
 
@@ -37,13 +62,16 @@ void check_primitive(const Primitive& p, const Where& where) {
   for (size_t i = 0; i < p.parameters.size(); ++i) {
     const double v = p.parameters[i];
     if (!std::isfinite(v) || (i < fixed && !(v >= row.parameters[i].low && v <= row.parameters[i].high)))
-      throw Error(where, strf("%s '%s': %s = %g is out of range", row.name.c_str(), p.name.c_str(), i < fixed ? row.parameters[i].name.c_str() : "a term", v));
+      throw Error(where, strf("%s '%s': %s = %g is out of range", row.name.c_str(), p.name.c_str(),
+                              i < fixed ? row.parameters[i].name.c_str() : "a term", v));
   }
   const auto& a = p.parameters;
   if (p.kind == PrimitiveKind::plane && (a[0] == 0) != (a[1] == 0))
     throw Error(where, "plane '" + p.name + "': give both width and depth, or neither for an infinite one");
-  if (p.kind == PrimitiveKind::box && !(a[0] < a[3] && a[1] < a[4] && a[2] < a[5])) throw Error(where, "box '" + p.name + "' is empty", "low corner first");
-  if (p.kind == PrimitiveKind::disk && !(a[1] < a[0])) throw Error(where, "disk '" + p.name + "': the hole is larger than the disk");
+  if (p.kind == PrimitiveKind::box && !(a[0] < a[3] && a[1] < a[4] && a[2] < a[5]))
+    throw Error(where, "box '" + p.name + "' is empty", "low corner first");
+  if (p.kind == PrimitiveKind::disk && !(a[1] < a[0]))
+    throw Error(where, "disk '" + p.name + "': the hole is larger than the disk");
 }
 
 Box3 primitive_box(const Primitive& p) {
@@ -51,12 +79,18 @@ Box3 primitive_box(const Primitive& p) {
   const auto& a = p.parameters;
   const auto around = [](double x, double y, double z0, double z1) { return Box3{{-x, -y, z0}, {x, y, z1}}; };
   switch (p.kind) {
-    case PrimitiveKind::plane: return a[0] == 0 ? Box3{} : around(a[0] / 2, a[1] / 2, 0, 0);
-    case PrimitiveKind::disk: return around(a[0], a[0], 0, 0);
-    case PrimitiveKind::box: return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}};
-    case PrimitiveKind::sphere: return around(a[0], a[0], -a[0], a[0]);
-    case PrimitiveKind::cone: return around(std::fmax(a[0], a[1]), std::fmax(a[0], a[1]), 0, a[2]);
-    case PrimitiveKind::cylinder: return around(a[0], a[0], 0, a[1]);
+    case PrimitiveKind::plane:
+      return a[0] == 0 ? Box3{} : around(a[0] / 2, a[1] / 2, 0, 0);
+    case PrimitiveKind::disk:
+      return around(a[0], a[0], 0, 0);
+    case PrimitiveKind::box:
+      return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}};
+    case PrimitiveKind::sphere:
+      return around(a[0], a[0], -a[0], a[0]);
+    case PrimitiveKind::cone:
+      return around(std::fmax(a[0], a[1]), std::fmax(a[0], a[1]), 0, a[2]);
+    case PrimitiveKind::cylinder:
+      return around(a[0], a[0], 0, a[1]);
     case PrimitiveKind::sinusoid: {
       double sum = 0;
       for (size_t i = 2; i < a.size(); i += 4) sum += std::fabs(a[i]);

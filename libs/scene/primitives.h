@@ -10,14 +10,14 @@ namespace suite {
 
 struct PrimitiveParameter {
   std::string name, unit, summary;
-  double low, high;                      // valid range
-  std::optional<double> otherwise;       // value when not given; none = required
+  double low, high;                 // valid range
+  std::optional<double> otherwise;  // value when not given; none = required
 };
 
 struct PrimitiveRow {
-  std::string name;                      // "sphere"
+  std::string name;  // "sphere"
   PrimitiveKind kind;
-  std::string summary;                   // where it stands in its local frame, and what its UVs are
+  std::string summary;                         // where it stands in its local frame, and what its UVs are
   std::vector<PrimitiveParameter> parameters;  // in the order of Primitive::parameters
 };
 
@@ -25,7 +25,8 @@ struct PrimitiveRow {
 // amplitude m, kx 1/m, ky 1/m, phase rad.
 std::span<const PrimitiveRow> primitive_rows();
 
-// Extent in the local frame; empty when infinite. Error when parameters are missing or out of range (files are not trusted).
+// Extent in the local frame; empty when infinite. Error when parameters are missing or out of range (files are not
+// trusted).
 Box3 primitive_box(const Primitive& primitive);
 void check_primitive(const Primitive& primitive, const Where& where);
 

@@ -33,18 +33,25 @@ std::string summary_text(const Scene& s) {
   for (const Group& g : s.groups) placements += g.placements.size();
   for (const ClassMap& m : s.class_maps) pixels += m.classes.size();
   std::string out = strf("scene         %s\n", s.name.c_str());
-  if (s.origin.given) out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m);
+  if (s.origin.given)
+    out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg,
+                s.origin.ellipsoid_height_m);
   if (!s.bounds.empty())
-    out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x, s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);
-  out += strf("meshes        %zu with %zu vertices, %zu triangles (%s)\n", s.meshes.size(), vertices, triangles, human_bytes(static_cast<double>(bytes)).c_str());
+    out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x,
+                s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);
+  out += strf("meshes        %zu with %zu vertices, %zu triangles (%s)\n", s.meshes.size(), vertices, triangles,
+              human_bytes(static_cast<double>(bytes)).c_str());
   out += strf("primitives    %zu\n", s.primitives.size());
-  out += strf("placements    %zu in %zu groups; flattened %s triangles\n", placements, s.groups.size(), human_count(flat).c_str());
-  out += strf("class maps    %zu with %zu pixels\nfiles inside  %zu\ntags          %zu\nmaterials     %zu\n", s.class_maps.size(), pixels, s.files.size(), s.tags.size(), s.materials.size());
+  out += strf("placements    %zu in %zu groups; flattened %s triangles\n", placements, s.groups.size(),
+              human_count(flat).c_str());
+  out += strf("class maps    %zu with %zu pixels\nfiles inside  %zu\ntags          %zu\nmaterials     %zu\n",
+              s.class_maps.size(), pixels, s.files.size(), s.tags.size(), s.materials.size());
   for (const Material& m : s.materials) {
     out += strf("  %-20s %s", m.id.c_str(), m.surface.model.c_str());
     for (const auto& [name, curve] : m.surface.curves)
       out += curve.is_constant() ? strf("; %s %g", name.c_str(), curve.value().front())
-                                 : strf("; %s %g to %g um, outside: %s", name.c_str(), curve.low_um(), curve.high_um(), to_text(curve.outside()));
+                                 : strf("; %s %g to %g um, outside: %s", name.c_str(), curve.low_um(), curve.high_um(),
+                                        to_text(curve.outside()));
     for (const auto& [name, text] : m.surface.texts) out += "; " + name + " " + text;
     if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
     out += "\n";

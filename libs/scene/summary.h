@@ -7,7 +7,8 @@
 
 namespace suite {
 
-// Counts, sizes, extents, materials with the coverage of their curves, and the features the scene uses. Ends with a newline.
+// Counts, sizes, extents, materials with the coverage of their curves, and the features the scene uses. Ends with a
+// newline.
 std::string summary_text(const Scene& scene);
 
 // How many times each mesh is placed, all hierarchies flattened (saturates at 2^53).

@@ -40,18 +40,21 @@ std::optional<double> TerrainGrid::height_at(double x, double y) const {
   // Walk to the cell: the grid is nearly affine, so steps from the local cell's edges converge in a few turns.
   double u = 0.5 * (width_ - 1), v = 0.5 * (height_ - 1);
   for (int turn = 0; turn < 64; ++turn) {
-    const auto i = static_cast<uint32_t>(std::clamp(u, 0.0, width_ - 2.0)), j = static_cast<uint32_t>(std::clamp(v, 0.0, height_ - 2.0));
+    const auto i = static_cast<uint32_t>(std::clamp(u, 0.0, width_ - 2.0)),
+               j = static_cast<uint32_t>(std::clamp(v, 0.0, height_ - 2.0));
     const Vec3 o = at(i, j), e = at(i + 1, j) - o, s = at(i, j + 1) - o;
     const double area = e.x * s.y - e.y * s.x;
-    if (!(std::fabs(area) > 0)) break;   // a gap: the search below goes on
-    const double un = i + ((x - o.x) * s.y - (y - o.y) * s.x) / area, vn = j + (e.x * (y - o.y) - e.y * (x - o.x)) / area;
+    if (!(std::fabs(area) > 0)) break;  // a gap: the search below goes on
+    const double un = i + ((x - o.x) * s.y - (y - o.y) * s.x) / area,
+                 vn = j + (e.x * (y - o.y) - e.y * (x - o.x)) / area;
     const bool settled = std::fabs(un - u) + std::fabs(vn - v) < 1e-9;
     u = un, v = vn;
     if (settled) break;
   }
   if (!(u > -2 && v > -2 && u < width_ + 1 && v < height_ + 1)) return std::nullopt;
   double z = 0;
-  const auto i0 = static_cast<uint32_t>(std::clamp(u - 1, 0.0, width_ - 2.0)), j0 = static_cast<uint32_t>(std::clamp(v - 1, 0.0, height_ - 2.0));
+  const auto i0 = static_cast<uint32_t>(std::clamp(u - 1, 0.0, width_ - 2.0)),
+             j0 = static_cast<uint32_t>(std::clamp(v - 1, 0.0, height_ - 2.0));
   for (uint32_t j = j0; j <= std::min(j0 + 2, height_ - 2); ++j)
     for (uint32_t i = i0; i <= std::min(i0 + 2, width_ - 2); ++i)
       if (cell_height(i, j, x, y, z)) return z;
@@ -64,7 +67,9 @@ std::optional<double> TerrainGrid::height_at(double x, double y) const {
 
 Dir TerrainGrid::normal_at(uint32_t i, uint32_t j) const {
   // Central differences, one-sided at edges and gaps.
-  const auto pick = [&](uint32_t k, uint32_t l, uint32_t fi, uint32_t fj) { return finite(at(k, l)) ? at(k, l) : at(fi, fj); };
+  const auto pick = [&](uint32_t k, uint32_t l, uint32_t fi, uint32_t fj) {
+    return finite(at(k, l)) ? at(k, l) : at(fi, fj);
+  };
   const Vec3 east = pick(std::min(i + 1, width_ - 1), j, i, j) - pick(i ? i - 1 : 0, j, i, j);
   const Vec3 south = pick(i, std::min(j + 1, height_ - 1), i, j) - pick(i, j ? j - 1 : 0, i, j);
   const Vec3 n = cross(south, east);
@@ -93,7 +98,8 @@ uint32_t cells_per_tile(uint32_t samples, double spacing, double tile_m) {
 std::vector<Mesh> TerrainGrid::tiles(const std::string& name, double tile_m, uint32_t material) const {
   std::vector<Mesh> result;
   if (width_ < 2 || height_ < 2) return result;
-  const uint32_t ci = cells_per_tile(width_, mean_spacing(1, 0), tile_m), cj = cells_per_tile(height_, mean_spacing(0, 1), tile_m);
+  const uint32_t ci = cells_per_tile(width_, mean_spacing(1, 0), tile_m),
+                 cj = cells_per_tile(height_, mean_spacing(0, 1), tile_m);
   for (uint32_t j0 = 0; j0 + 1 < height_; j0 += cj)
     for (uint32_t i0 = 0; i0 + 1 < width_; i0 += ci) {
       const uint32_t i1 = std::min(i0 + ci, width_ - 1), j1 = std::min(j0 + cj, height_ - 1);

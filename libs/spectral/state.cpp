@@ -144,38 +144,52 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
 
 BandProjection::BandProjection(const SpectralState& state, std::span<const Band> bands) {
   for (const Band& band : bands) {
-    Row row;
+    std::vector<double> weights;
+    size_t first = 0;
     const double total = band.response.integral(band.low_um(), band.high_um());
     double sum = 0;
-    bool open = false;
     for (size_t k = 0; k < state.bins.size(); ++k) {
       const Bin& bin = state.bins[k];
-      if (bin.high_um <= band.low_um() || bin.low_um >= band.high_um()) {
-        if (open) row.weights.push_back(0);
-        continue;
-      }
-      if (!open) row.first = k, open = true;
-      row.weights.push_back(band.response.integral(bin.low_um, bin.high_um) / total);
-      sum += row.weights.back();
+      const bool inside = bin.high_um > band.low_um() && bin.low_um < band.high_um();
+      if (!inside && weights.empty()) continue;
+      if (weights.empty()) first = k;
+      weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);
+      sum += weights.back();
     }
     if (!(sum > 0.999)) throw Error("band '" + band.name + "' is not covered by the bins of its spectral state");
-    for (double& w : row.weights) w /= sum;
-    while (!row.weights.empty() && row.weights.back() == 0) row.weights.pop_back();
-    rows_.push_back(std::move(row));
+    while (!weights.empty() && weights.back() == 0) weights.pop_back();
+    identity_ = identity_ && weights.size() == 1 && first == rows_.size();
+    rows_.push_back({static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
+    for (const double w : weights) weights_.push_back(w / sum);
+  }
+  identity_ = identity_ && rows_.size() == state.bins.size();
+}
+
+void BandProjection::add(std::span<const float> in, std::span<double> sums) const {
+  if (identity_) {
+    for (size_t b = 0; b < rows_.size(); ++b) sums[b] += static_cast<double>(in[b]);
+    return;
+  }
+  for (size_t b = 0; b < rows_.size(); ++b) {
+    const double* w = &weights_[rows_[b].offset];
+    const float* x = &in[rows_[b].first];
+    double sum = 0;
+    for (uint32_t i = 0; i < rows_[b].count; ++i) sum += w[i] * static_cast<double>(x[i]);
+    sums[b] += sum;
   }
 }
 
 void BandProjection::apply(std::span<const double> in, std::span<double> out) const {
   for (size_t b = 0; b < rows_.size(); ++b) {
     double sum = 0;
-    for (size_t i = 0; i < rows_[b].weights.size(); ++i) sum += rows_[b].weights[i] * in[rows_[b].first + i];
+    for (size_t i = 0; i < rows_[b].count; ++i) sum += weights_[rows_[b].offset + i] * in[rows_[b].first + i];
     out[b] = sum;
   }
 }
 
 double BandProjection::weight(size_t band, size_t bin) const {
   const Row& row = rows_[band];
-  return bin >= row.first && bin < row.first + row.weights.size() ? row.weights[bin - row.first] : 0;
+  return bin >= row.first && bin < row.first + row.count ? weights_[row.offset + bin - row.first] : 0;
 }
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 // integral(L R) / integral(R) over those bins.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,15 +63,19 @@ class BandProjection {
   BandProjection(const SpectralState& state, std::span<const Band> bands);
   size_t bands() const { return rows_.size(); }
   // out[b] = sum_k weight[b][k] in[k]; in.size() >= bins of the state
+  void add(std::span<const float> in, std::span<double> sums) const;  // sums[b] += ...; the inner loop of rendering
   void apply(std::span<const double> in, std::span<double> out) const;
   double weight(size_t band, size_t bin) const;
 
  private:
   struct Row {
-    size_t first = 0;
-    std::vector<double> weights;
+    uint32_t first = 0;    // bin
+    uint32_t offset = 0;   // of its weights
+    uint32_t count = 0;
   };
   std::vector<Row> rows_;
+  std::vector<double> weights_;
+  bool identity_ = true;   // band b is bin b
 };
 
 }  // namespace suite

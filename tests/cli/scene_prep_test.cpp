@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/files.h"
+#include "formats/scene_hdf/scene_hdf.h"
+#include "optics/models.h"
+#include "support/run_command.h"
+
+namespace suite {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ScenePrep : public ::testing::Test {
+ protected:
+  ScenePrep() {
+    write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_file(folder_ / "good.yaml", kGood);
+  }
+  CommandResult run(const std::string& arguments) {
+    return run_command("cd '" + folder_.path() + "' && '" SUITE_BIN_DIR "/scene-prep' " + arguments);
+  }
+  static constexpr const char* kGood =
+      "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}, spare: {model: lambert, reflectance: 0.2}}\n"
+      "objects: {tri: {obj: tri.obj, material: grey}}\nworld: [{place: tri}]\n";
+  TempFolder folder_;
+};
+
+TEST_F(ScenePrep, WritesSummarisesAndRepeats) {
+  const CommandResult r = run("good.yaml -o a.h5 --report r.json");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.out, HasSubstr("[SP103] x1"));
+  EXPECT_THAT(r.out, HasSubstr("verdict: accepted (0 errors, 1 warnings)"));
+  EXPECT_THAT(read_text(folder_ / "r.json"), HasSubstr("\"code\": \"SP103\""));
+  // The library once put the time of the second into every group.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_EQ(run("good.yaml -o b.h5").code, 0);
+  EXPECT_EQ(read_bytes(folder_ / "a.h5"), read_bytes(folder_ / "b.h5"));
+  const CommandResult s = run("--summary a.h5");
+  EXPECT_EQ(s.code, 0) << s.err;
+  EXPECT_THAT(s.out, HasSubstr("1 with 3 vertices, 1 triangles"));
+}
+
+TEST_F(ScenePrep, StrictAndMute) {
+  EXPECT_EQ(run("good.yaml -o a.h5 --strict").code, 1);
+  EXPECT_FALSE(file_exists(folder_ / "a.h5"));
+  EXPECT_EQ(run("good.yaml -o a.h5 --strict --mute SP103").code, 0);
+  const CommandResult r = run("good.yaml --mute SP013");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("unknown issue code 'SP013'; did you mean"));
+}
+
+TEST_F(ScenePrep, RefusalsNameThePlaceAndLeaveNothing) {
+  const struct {
+    const char *name, *text, *expected;
+  } cases[] = {
+      {"index0",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: zero.obj, material: "
+       "grey}}\nworld: [{place: t}]\n",
+       "zero.obj:4:1: vertex index 0"},
+      {"gone",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: gone.obj, material: "
+       "grey}}\nworld: [{place: t}]\n",
+       "gone.yaml:3:20: file 'gone.obj' no such file"},
+      {"folder",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: ., material: "
+       "grey}}\nworld: [{place: t}]\n",
+       "folder.yaml:3:20: file '.' is a directory"},
+      {"cover",
+       "scene: 1\nwindows_um: [[0.4, 3]]\nmaterials: {grey: {model: lambert, reflectance: {points: [[0.4, 0.1], [2.5, "
+       "0.2]]}}}\nobjects: {t: {obj: tri.obj, material: grey}}\nworld: [{place: t}]\n",
+       "reflectance is given from 0.4 to 2.5 um, the window is 0.4 to 3 um"},
+      {"unknown",
+       "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: tri.obj, material: "
+       "gray}}\nworld: [{place: t}]\n",
+       "unknown material 'gray'; did you mean 'grey'?"},
+  };
+  write_file(folder_ / "zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
+  const size_t before = folder_.entries();
+  for (const auto& c : cases) {
+    write_file(folder_ / (std::string(c.name) + ".yaml"), c.text);
+    const CommandResult r = run(std::string(c.name) + ".yaml -o out.h5");
+    EXPECT_EQ(r.code, 1) << c.name << r.out << r.err;
+    EXPECT_THAT(r.err, HasSubstr(c.expected)) << c.name;
+  }
+  EXPECT_EQ(folder_.entries(), before + std::size(cases));
+}
+
+TEST_F(ScenePrep, UsageAndPlaces) {
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("--help").code, 0);
+  EXPECT_EQ(run("--version").code, 0);
+  const CommandResult r = run("--ouput x");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("did you mean '--output'?"));
+  EXPECT_EQ(run("--summary a.h5 -o b.h5").code, 2);
+  EXPECT_EQ(run("missing.yaml").code, 1);
+  EXPECT_EQ(run("good.yaml -o no/such/folder/a.h5").code, 1);
+  EXPECT_EQ(run("good.yaml -o .").code, 1);
+  EXPECT_THAT(run("--list-issues").out, HasSubstr("SP201"));
+  EXPECT_THAT(run("--list-models").out, HasSubstr("lambert"));
+}
+
+TEST_F(ScenePrep, CalibrationRange) {
+  // Everything but the measured panel, whose SQT another tool makes.
+  const std::string scene = SUITE_SOURCE_DIR "/sample_scenes/calibration_range";
+  std::string text = read_text(scene + "/scene.yaml");
+  const std::string measured = "model: sqt, file: satin.sqt";
+  text.replace(text.find(measured), measured.size(), "model: lambert, reflectance: 0.3");
+  write_file(folder_ / "range.yaml", text);
+  const CommandResult r = run("range.yaml -o range.h5 --strict --path '" + scene + "'");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Scene s = read_scene(folder_ / "range.h5");
+  // Sample (45, 138) of the raster is the origin: 127 m above a geoid 48 m above the ellipsoid, as is the origin's
+  // height.
+  for (const Placement& p : s.groups.at(0).placements)
+    if (p.tag != kNone && s.tags[p.tag].rfind("panel", 0) == 0) {
+      EXPECT_NEAR(p.to_parent.b.z, 0.5, 1.5);
+    }
+  EXPECT_EQ(s.class_maps.size(), 1u);
+  EXPECT_GT(s.bounds.size().x, 4900);
+}
+
+}  // namespace
+}  // namespace suite

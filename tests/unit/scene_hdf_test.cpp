@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/files.h"
+#include "formats/scene_hdf/scene_hdf.h"
+#include "support/message_of.h"
+#include "support/temp_folder.h"
+
+namespace suite {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scene small_scene() {
+  Scene s;
+  s.name = "small";
+  s.origin = {49.5, 8.25, 100.5, true};
+  Mesh m;
+  m.name = "quad";
+  m.origin = {1e6, -2e6, 3.5};
+  m.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0};
+  m.indices = {0, 1, 2, 0, 2, 3};
+  m.normals.assign(4, oct_encode({0, 0, 1}));
+  m.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+  m.parts = {{"a", 0, 1, 0}, {"b", 1, 1, 1}};
+  Mesh bare = m;
+  bare.normals.clear();
+  bare.uvs.clear();
+  bare.parts = {{"", 0, 2, kNone}};
+  s.meshes = {m, bare};
+  s.primitives = {{"ball", PrimitiveKind::sphere, {2.5}, 1}};
+  Material grey{"grey",
+                "a grey",
+                {"lambert",
+                 {},
+                 {{"reflectance", Curve({0.4, 1.0}, {0.1, 0.3}, Outside::hold)}, {"transmittance", Curve::constant(0)}},
+                 {},
+                 nullptr},
+                300,
+                {{"density_kg_m3", 1000}}};
+  Material mirror{"mirror", "", {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr}, 0, {}};
+  s.materials = {grey, mirror};
+  Placement p;
+  p.to_parent = translation({1, 2, 3});
+  p.kind = TargetKind::group;
+  p.target = 1;
+  p.tag = 0;
+  Placement q;
+  q.target = 1;
+  q.material_override = 1;
+  Placement b;
+  b.kind = TargetKind::primitive;
+  s.groups = {{"world", {p, b}}, {"inner", {q, q}}};
+  s.tags = {"first"};
+  s.class_maps = {{"map", 2, 2, {0, 1, 1, 0}, {0, 1}, Projection::drape, {10, 20, 2, 3, Drape::Extend::repeat}}};
+  s.map_bindings = {{0, 0}};
+  s.files = {{"data.bin", {std::byte{1}, std::byte{2}, std::byte{3}}}, {"empty.bin", {}}};
+  s.bounds = scene_bounds(s);
+  return s;
+}
+
+class SceneHdf : public ::testing::Test {
+ protected:
+  SceneHdf() { write_scene(small_scene(), {"gen 1", "args", "hash"}, path_); }
+  TempFolder folder_;
+  std::string path_ = folder_ / "s.h5";
+};
+
+TEST_F(SceneHdf, RoundTrip) {
+  const Scene a = small_scene(), b = read_scene(path_);
+  EXPECT_EQ(b.name, a.name);
+  EXPECT_EQ(b.origin.latitude_deg, a.origin.latitude_deg);
+  ASSERT_EQ(b.meshes.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(b.meshes[k].origin, a.meshes[k].origin);
+    EXPECT_EQ(b.meshes[k].positions, a.meshes[k].positions);
+    EXPECT_EQ(b.meshes[k].indices, a.meshes[k].indices);
+    EXPECT_EQ(b.meshes[k].normals, a.meshes[k].normals);
+    EXPECT_EQ(b.meshes[k].uvs, a.meshes[k].uvs);
+    ASSERT_EQ(b.meshes[k].parts.size(), a.meshes[k].parts.size());
+  }
+  EXPECT_EQ(b.meshes[0].parts[1].name, "b");
+  EXPECT_EQ(b.meshes[1].parts[0].material, kNone);
+  EXPECT_EQ(b.primitives.at(0).parameters, a.primitives[0].parameters);
+  ASSERT_EQ(b.groups.size(), 2u);
+  EXPECT_EQ(b.groups[0].placements.at(0).to_parent, a.groups[0].placements[0].to_parent);
+  EXPECT_EQ(b.groups[1].placements.at(1).material_override, 1u);
+  EXPECT_EQ(b.tags, a.tags);
+  ASSERT_EQ(b.materials.size(), 2u);
+  EXPECT_EQ(b.materials[0].temperature_k, 300);
+  EXPECT_EQ(b.materials[0].thermal.at("density_kg_m3"), 1000);
+  const Curve& c = b.materials[0].surface.curves.at("reflectance");
+  EXPECT_DOUBLE_EQ(c.at(0.7), 0.2);
+  EXPECT_EQ(c.outside(), Outside::hold);
+  EXPECT_TRUE(b.materials[1].surface.curves.at("reflectance").is_constant());
+  EXPECT_EQ(b.class_maps.at(0).classes, a.class_maps[0].classes);
+  EXPECT_EQ(b.class_maps.at(0).drape.gsd_y, 3);
+  EXPECT_EQ(b.files.at(0).bytes, a.files[0].bytes);
+  EXPECT_EQ(b.bounds.high, a.bounds.high);
+  EXPECT_EQ(read_provenance(path_).input_sha256, "hash");
+}
+
+TEST_F(SceneHdf, SameSceneSameBytes) {
+  write_scene(small_scene(), {"gen 1", "args", "hash"}, folder_ / "other.h5");
+  EXPECT_EQ(read_bytes(path_), read_bytes(folder_ / "other.h5"));
+}
+
+TEST_F(SceneHdf, EmptySceneRoundTrips) {
+  Scene s;
+  s.groups = {{"world", {}}};
+  write_scene(s, {}, path_);
+  EXPECT_EQ(read_scene(path_).groups.size(), 1u);
+}
+
+TEST_F(SceneHdf, BadIndicesAreRefused) {
+  const auto refused = [&](const std::function<void(Scene&)>& damage) {
+    Scene s = small_scene();
+    damage(s);
+    write_scene(s, {}, path_);
+    return message_of([&] { read_scene(path_); });
+  };
+  EXPECT_THAT(refused([](Scene& s) { s.meshes[0].indices[3] = 4; }), HasSubstr("vertex index 4 of 4"));
+  EXPECT_THAT(refused([](Scene& s) { s.meshes[0].parts[0].material = 7; }),
+              HasSubstr("names a material that is not there"));
+  EXPECT_THAT(refused([](Scene& s) { s.groups[0].placements[0].target = 9; }),
+              HasSubstr("places something that is not there"));
+  EXPECT_THAT(refused([](Scene& s) { s.groups[1].placements[0].kind = TargetKind::group; }), HasSubstr("not below it"));
+  EXPECT_THAT(refused([](Scene& s) { s.class_maps[0].classes[0] = 5; }), HasSubstr("class 5 has no material"));
+  EXPECT_THAT(refused([](Scene& s) { s.primitives[0].parameters = {1, 2}; }), HasSubstr("has 2 parameters"));
+  EXPECT_THAT(refused([](Scene& s) { s.materials[0].surface.model = "nothing"; }),
+              HasSubstr("unknown model 'nothing'"));
+}
+
+TEST_F(SceneHdf, ForeignAndDamagedFilesAreRefused) {
+  const auto fault = [](const std::string& path) { return message_of([&] { read_scene(path); }); };
+  EXPECT_THAT(fault(folder_ / "none.h5"), HasSubstr("no such file"));
+  EXPECT_THAT(fault(folder_.path()), HasSubstr("is a directory"));
+  write_file(folder_ / "text.h5", "hello");
+  EXPECT_THAT(fault(folder_ / "text.h5"), HasSubstr("is not an HDF5 file"));
+  std::vector<std::byte> bytes = read_bytes(path_);
+  bytes.resize(bytes.size() - 100);
+  write_file(folder_ / "short.h5", bytes);
+  EXPECT_THAT(fault(folder_ / "short.h5"), HasSubstr("damaged"));
+}
+
+TEST_F(SceneHdf, UnwritablePlaceLeavesNothing) {
+  EXPECT_THAT(message_of([&] { write_scene(small_scene(), {}, folder_ / "no/such/s.h5"); }),
+              HasSubstr("cannot be written"));
+  EXPECT_EQ(folder_.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace suite

@@ -1,0 +1,161 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/files.h"
+#include "formats/scene_text/scene_text.h"
+#include "scene/bake.h"
+#include "scene/issues.h"
+#include "support/message_of.h"
+#include "support/temp_folder.h"
+
+namespace suite {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SceneText : public ::testing::Test {
+ protected:
+  SceneText() { write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 2 3\n"); }
+  Scene bake(const std::string& text) {
+    write_file(folder_ / "s.yaml", text);
+    report_ = Report(scene_issues());
+    return bake_scene(read_scene_text(folder_ / "s.yaml", {}, report_), report_);
+  }
+  std::string findings(const std::string& text) {
+    bake(text);
+    return report_.text();
+  }
+  static std::string whole(const std::string& world, const std::string& more = "") {
+    return "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2}\nobjects:\n  tri: {obj: tri.obj}\n" +
+           more + "world:\n" + world;
+  }
+  TempFolder folder_;
+  Report report_{scene_issues()};
+};
+
+TEST_F(SceneText, TransformsScaleThenRotateThenTranslate) {
+  const Scene s = bake(
+      whole("  - {place: tri, translate: [10, 20, 30], rotate: {axis: [0, 0, 1], angle_deg: 90}, scale: [2, 3, 4]}\n"));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  const Vec3 p = s.groups.at(0).placements.at(0).to_parent.point({1, 1, 1});
+  EXPECT_NEAR(p.x, 10 - 3, 1e-12);
+  EXPECT_NEAR(p.y, 20 + 2, 1e-12);
+  EXPECT_NEAR(p.z, 30 + 4, 1e-12);
+}
+
+TEST_F(SceneText, RotationsAgree) {
+  // A quarter turn about z said in four ways, compass 270 being counter-clockwise from above.
+  const Scene s =
+      bake(whole("  - {place: tri, rotate: {euler_deg: [0, 0, 90]}}\n"
+                 "  - {place: tri, rotate: {quaternion: [1, 0, 0, 1]}}\n"
+                 "  - {place: tri, rotate: {heading_deg: 270}}\n"
+                 "  - {place: tri, matrix: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0]}\n"
+                 "  - {place: tri, rotate: [{axis: [0, 0, 2], angle_deg: 45}, {axis: [0, 0, 1], angle_deg: 45}]}\n"));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  for (const Placement& p : s.groups.at(0).placements) {
+    const Vec3 v = p.to_parent.point({1, 0, 0});
+    EXPECT_NEAR(v.x, 0, 1e-12);
+    EXPECT_NEAR(v.y, 1, 1e-12);
+  }
+}
+
+TEST_F(SceneText, EulerOrderIsFixedAxesFirstLetterFirst) {
+  const Scene s = bake(whole("  - {place: tri, rotate: {euler_deg: [90, 0, 90], order: xyz}}\n"));
+  // (0, 1, 0): about x by 90 to (0, 0, 1), about z it stays.
+  const Vec3 v = s.groups.at(0).placements.at(0).to_parent.point({0, 1, 0});
+  EXPECT_NEAR(v.z, 1, 1e-12);
+}
+
+TEST_F(SceneText, GroupsNestAndChildrenComeAfterParents) {
+  std::string groups = "groups:\n";
+  for (int k = 0; k < 64; ++k)
+    groups += strf("  g%d: [{place: %s, translate: [1, 0, 0], rotate: {axis: [0, 0, 1], angle_deg: 1}}]\n", k,
+                   k == 63 ? "tri" : strf("g%d", k + 1).c_str());
+  const Scene s = bake(whole("  - {place: g0}\n", groups));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  EXPECT_NO_THROW(check_scene(s, "t"));
+  // The composed pose against the closed form of 64 equal screw steps: a turn by 64 degrees, and a geometric sum.
+  Affine3 all;
+  uint32_t group = 0;
+  for (int depth = 0; depth < 65; ++depth) {
+    all = all * s.groups[group].placements.at(0).to_parent;
+    group = s.groups[group].placements.at(0).target;
+  }
+  const double a = kDegree, x = (std::sin(32 * a) / std::sin(a / 2)) * std::cos(31.5 * a),
+               y = (std::sin(32 * a) / std::sin(a / 2)) * std::sin(31.5 * a);
+  EXPECT_NEAR(all.b.x, x, 1e-12);
+  EXPECT_NEAR(all.b.y, y, 1e-12);
+  EXPECT_NEAR(all.a[0], std::cos(64 * a), 1e-12);
+}
+
+TEST_F(SceneText, AllFaultsInOneRun) {
+  const std::string text = findings(
+      "scene: 1\n"
+      "materials:\n"
+      "  grey: {model: lambrt, reflectance: 0.2}\n"
+      "  red: {model: lambert, reflectance: 1.2}\n"
+      "  blue: {model: lambert, reflectance: blue.txt}\n"
+      "objects:\n"
+      "  tri: {obj: tri.obj, normls: smooth}\n"
+      "  sphere: {sphere: {radius: 1}, material: gray}\n"
+      "world:\n"
+      "  - {place: trii}\n"
+      "  - {place: sphere, scale: 0}\n"
+      "  - {place: tri, rotate: {angle: 3}}\n");
+  EXPECT_THAT(text, HasSubstr("s.yaml:3:17: unknown model 'lambrt'; did you mean 'lambert'?\n    grey: {model: lambrt, "
+                              "reflectance: 0.2}\n                  ^"));
+  EXPECT_THAT(text, HasSubstr("s.yaml:4:16: model 'lambert': reflectance = 1.2 is outside its range"));
+  EXPECT_THAT(text, HasSubstr("s.yaml:5:39: file 'blue.txt' no such file"));
+  EXPECT_THAT(text, HasSubstr("s.yaml:7:23: unknown key 'normls'; did you mean 'normals'?"));
+  EXPECT_THAT(text, HasSubstr("s.yaml:8:43: unknown material 'gray'; did you mean 'grey'?"));
+  EXPECT_THAT(text, HasSubstr("s.yaml:10:13: unknown object 'trii'; did you mean 'tri'?"));
+  EXPECT_THAT(text, HasSubstr("[SP404] x1"));
+  EXPECT_THAT(text, HasSubstr("a rotation needs"));
+  EXPECT_THAT(text, HasSubstr("verdict: refused (8 errors"));
+}
+
+TEST_F(SceneText, CirclesOfGroupsAreFound) {
+  EXPECT_THAT(findings(whole("  - {place: tri}\n", "groups:\n  a: [{place: b}]\n  b: [{place: a}]\n")),
+              HasSubstr("[SP402] x2"));
+}
+
+TEST_F(SceneText, CoverageEnergyAndUnused) {
+  const std::string text = findings(
+      "scene: 1\nwindows_um: [[0.4, 2.0]]\n"
+      "materials:\n"
+      "  grey: {model: lambert, reflectance: {points: [[0.4, 0.5], [1.0, 0.6]]}}\n"
+      "  leaf: {model: lambert, reflectance: 0.6, transmittance: {points: [[0.3, 0.1], [2.5, 0.5]]}}\n"
+      "objects: {tri: {obj: tri.obj}}\nworld: [{place: tri}]\n");
+  EXPECT_THAT(text, HasSubstr("[SP104] x1"));
+  EXPECT_THAT(text, HasSubstr("[SP105] x1"));
+  EXPECT_THAT(text, HasSubstr("material 'leaf' is not used"));
+  EXPECT_THAT(findings("scene: 1\nwindows_um: [[0.4, 2.0]]\nmaterials: {grey: {model: lambert, reflectance: {points: "
+                       "[[0.4, 0.5], [1.0, 0.6]], outside: hold}}}\n"
+                       "objects: {tri: {obj: tri.obj}}\nworld: [{place: tri}]\n"),
+              Not(HasSubstr("SP104")));
+}
+
+TEST_F(SceneText, MirroredUpAxisKeepsWindingAndNormals) {
+  write_file(folder_ / "up.obj", "v 0 0 0\nv 1 0 0\nv 0 0 -1\nvn 0 1 0\nf 1//1 2//1 3//1\n");
+  const Scene s = bake(
+      "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {obj: up.obj, up: y, material: "
+      "grey}}\nworld: [{place: t}]\n");
+  const Mesh& m = s.meshes.at(0);
+  const auto p = [&](int k) {
+    return Vec3{m.positions[3 * m.indices[k]], m.positions[3 * m.indices[k] + 1], m.positions[3 * m.indices[k] + 2]};
+  };
+  const Dir facet = normalized(cross(p(1) - p(0), p(2) - p(0)));
+  EXPECT_NEAR(facet.z, 1, 1e-6);
+  EXPECT_NEAR(oct_decode(m.normals.at(0)).z, 1, 1e-4);
+}
+
+TEST_F(SceneText, EmptyAndForeignTexts) {
+  EXPECT_THAT(message_of([&] { bake(""); }), HasSubstr("is empty"));
+  EXPECT_THAT(message_of([&] { bake("scene: 7\n"); }), HasSubstr("s.yaml:1:8: error: 7 is outside the valid range"));
+  EXPECT_THAT(message_of([&] { bake("[1, 2"); }), HasSubstr("s.yaml:1:1: error"));
+  EXPECT_THAT(message_of([&] { bake("just text"); }), HasSubstr("s.yaml:1:1"));
+}
+
+}  // namespace
+}  // namespace suite
