@@ -136,13 +136,12 @@ class AlignedBundle final : public Bundle {
   }
   double pdf(Dir out, Dir in, size_t channel) const override {
     Query q;
-    if (!query(out, in, q)) return 0;
-    double p = 0;
-    for (int b = 0; b < q.at.count; ++b) {
-      const Table& table = tables_[q.at.view[b] * channels() + channel];
-      if (!table.cumulative.empty()) p += q.at.weight[b] * table.mass(q.leaf + q.sheet->first);
-    }
-    return p * 0x1p-32 * q.sheet->inverse_area[q.leaf] / q.stretch;
+    return query(out, in, q) ? density(q, channel) : 0;
+  }
+  void pdf(Dir out, Dir in, std::span<double> p) const override {
+    Query q;
+    const bool there = query(out, in, q);
+    for (size_t c = 0; c < p.size(); ++c) p[c] = there ? density(q, c) : 0;
   }
   std::optional<DeltaLobe> delta(Dir, size_t) const override { return std::nullopt; }
 
@@ -296,6 +295,15 @@ class AlignedBundle final : public Bundle {
       l += static_cast<float>(q.at.weight[b]) * (p[0] + q.dx * p[1] + q.dy * p[2]);
     }
     return portable_exp2(l);
+  }
+
+  double density(const Query& q, size_t channel) const {
+    double p = 0;
+    for (int b = 0; b < q.at.count; ++b) {
+      const Table& table = tables_[q.at.view[b] * channels() + channel];
+      if (!table.cumulative.empty()) p += q.at.weight[b] * table.mass(q.leaf + q.sheet->first);
+    }
+    return p * 0x1p-32 * q.sheet->inverse_area[q.leaf] / q.stretch;
   }
 
   void build_tables() {
