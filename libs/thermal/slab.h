@@ -68,7 +68,8 @@ class Slab {
   // is no load, or no step down to min_step succeeds.
   void advance(double t);
   // One step of the given length (s, > 0) whatever its error; false (and no change) when Newton's method does not
-  // converge or a temperature leaves 0..1e4 K. estimate: of the step's error, K.
+  // converge or a temperature leaves 0..1e4 K, as it can far from balance with steps far beyond the time constants.
+  // estimate: of the step's error, K.
   bool step(double dt, double* estimate = nullptr);
 
   double time() const { return t_; }
