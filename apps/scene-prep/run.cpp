@@ -7,6 +7,7 @@
 #include "base/report.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/scene_text.h"
+#include "mesh/check.h"
 #include "optics/models.h"
 #include "scene/bake.h"
 #include "scene/issues.h"
@@ -35,6 +36,7 @@ std::string canonical_arguments(const ScenePrepOptions& o) {
   std::string text = std::filesystem::path(o.input).filename().string();
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
+  if (o.repair) text += " --repair";
   return text;
 }
 
@@ -49,7 +51,10 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  const Draft draft = read_scene_text(o.input, {o.search}, report);
+  Draft draft = read_scene_text(o.input, {o.search}, report);
+  MeshCheck check;
+  check.self_intersections = !o.quick;
+  check_draft_meshes(draft, check, o.repair, report);
   const Scene scene = bake_scene(draft, report);
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);

@@ -5,7 +5,7 @@
 namespace suite {
 
 std::span<const ModelRow> models() {
-  static const std::vector<ModelRow> table{lambert_row(), mirror_row(), ward_row()};
+  static const std::vector<ModelRow> table{lambert_row(), mirror_row(), ward_row(), sqt_row()};
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "sqt/aligned.h"
+#include "sqt/lattice.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
 #include "sqt/tree.h"
@@ -26,7 +27,7 @@ struct Sheet {
 };
 
 // Divides coarse leaves; the planes go on.
-void refine(AlignedSheet& sheet, size_t width) {
+void refine(AlignedSheet& sheet, const Region& region, size_t width) {
   AlignedSheet fine;
   for (size_t i = 0; i < sheet.leaves.size(); ++i) {
     const CellId id = sheet.leaves[i];
@@ -37,7 +38,9 @@ void refine(AlignedSheet& sheet, size_t width) {
     const float* p = &sheet.plane[i * width * 3];
     for (uint32_t y = 0; y < side; ++y)
       for (uint32_t x = 0; x < side; ++x) {
-        fine.leaves.push_back(cell_at(id.order() + extra, {at.face, at.x * side + x, at.y * side + y}));
+        const CellId part = cell_at(id.order() + extra, {at.face, at.x * side + x, at.y * side + y});
+        if (!region.holds(part)) continue;  // across the symmetry plane or below the horizon
+        fine.leaves.push_back(part);
         const float dx = (static_cast<float>(x) + 0.5f) / n - 0.5f, dy = (static_cast<float>(y) + 0.5f) / n - 0.5f;
         for (size_t j = 0; j < width; ++j) {
           const float gx = p[3 * j + 1], gy = p[3 * j + 2];
@@ -79,7 +82,7 @@ class AlignedBundle final : public Bundle {
     size_t first = 0;
     for (AlignedSheet& s : data.sheets) {
       stored_.push_back(s.leaves);
-      refine(s, layout_.width());
+      refine(s, {layout_.upper_only, layout_.half_stored}, layout_.width());
       Sheet sheet{Tree(s.leaves), std::move(s.plane), {}, first};
       for (const CellId id : s.leaves)
         sheet.inverse_area.push_back(static_cast<float>(1 / (cell_solid_angle(id.order()) * copies(id))));
@@ -136,13 +139,12 @@ class AlignedBundle final : public Bundle {
   }
   double pdf(Dir out, Dir in, size_t channel) const override {
     Query q;
-    if (!query(out, in, q)) return 0;
-    double p = 0;
-    for (int b = 0; b < q.at.count; ++b) {
-      const Table& table = tables_[q.at.view[b] * channels() + channel];
-      if (!table.cumulative.empty()) p += q.at.weight[b] * table.mass(q.leaf + q.sheet->first);
-    }
-    return p * 0x1p-32 * q.sheet->inverse_area[q.leaf] / q.stretch;
+    return query(out, in, q) ? density(q, channel) : 0;
+  }
+  void pdf(Dir out, Dir in, std::span<double> p) const override {
+    Query q;
+    const bool there = query(out, in, q);
+    for (size_t c = 0; c < p.size(); ++c) p[c] = there ? density(q, c) : 0;
   }
   std::optional<DeltaLobe> delta(Dir, size_t) const override { return std::nullopt; }
 
@@ -296,6 +298,15 @@ class AlignedBundle final : public Bundle {
       l += static_cast<float>(q.at.weight[b]) * (p[0] + q.dx * p[1] + q.dy * p[2]);
     }
     return portable_exp2(l);
+  }
+
+  double density(const Query& q, size_t channel) const {
+    double p = 0;
+    for (int b = 0; b < q.at.count; ++b) {
+      const Table& table = tables_[q.at.view[b] * channels() + channel];
+      if (!table.cumulative.empty()) p += q.at.weight[b] * table.mass(q.leaf + q.sheet->first);
+    }
+    return p * 0x1p-32 * q.sheet->inverse_area[q.leaf] / q.stretch;
   }
 
   void build_tables() {

@@ -110,7 +110,7 @@ float StepRule::step(CellId cell, std::span<const float> value) const {
   const double weight = portable_log2(std::max(1e-30f, sum / norm)) - reference_;
   const double area = -2.0 * (cell.order() - 4);  // log2, relative to order 4
   double step = log2_quality_ - kWeightPower * weight - kAreaPower * area;
-  step = std::clamp(step, log2_quality_ - 8, 1.0);
+  step = std::clamp(step, -9.0, 1.0);
   // Quarter powers of two: the last bits of the weight do not matter.
   return portable_exp2(0.25f * static_cast<float>(std::floor(4 * step + 0.5)));
 }

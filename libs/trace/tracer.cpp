@@ -97,11 +97,10 @@ struct Tracer::Tile {
   std::vector<uint32_t> objects;     // indices into Tracer::objects_
   SceneHandle scene;
 
-  // The ray's origin relative to the tile, advanced in double to the tile's bounds; returns the advance.
-  double rebase(const Ray& ray, double enter, float origin_out[3]) const {
+  // The ray's origin relative to the tile, advanced in double to where it enters the tile's bounds.
+  void rebase(const Ray& ray, double enter, float origin_out[3]) const {
     const Vec3 p = ray.origin + ray.direction * enter - origin;
     origin_out[0] = static_cast<float>(p.x), origin_out[1] = static_cast<float>(p.y), origin_out[2] = static_cast<float>(p.z);
-    return enter;
   }
 };
 
@@ -112,8 +111,13 @@ struct Tracer::Impl {
   TileBvh bvh;
 
   void finish(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
-  void nearest_one(const Tracer& t, const Ray& ray, Hit& hit, TraceStatistics& s) const;
-  bool occluded_one(const Ray& ray, double t_max, TraceStatistics& s) const;
+  void trace_packet(const Tracer& t, uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<Hit> hits, std::span<double> reach,
+                    bool coherent, TraceStatistics& s) const;
+  void occlude_packet(uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<double> reach,
+                      bool coherent, TraceStatistics& s) const;
+  template <class Send>
+  void through_tiles(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
+  void continue_long_way(Itinerary& way, const Ray& ray, double reach) const;
 };
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)), objects_(flatten(*scene_)), impl_(new Impl) {
@@ -225,132 +229,179 @@ void Tracer::Impl::finish(const Tracer& t, const Ray& ray, uint32_t object, uint
   hit.v = v;
 }
 
-void Tracer::Impl::nearest_one(const Tracer& t, const Ray& ray, Hit& hit, TraceStatistics& s) const {
-  double t_max = INFINITY;
-  uint32_t object = kNone, triangle = 0;
-  float u = 0, v = 0;
-  ++s.rays;
-  bvh.walk(ray, t_max, [&](uint32_t index, double enter) {
-    const Tile& tile = tiles[index];
-    RTCRayHit rh;
-    float origin[3];
-    const double advance = tile.rebase(ray, enter, origin);
-    rh.ray = {origin[0], origin[1], origin[2], 0, static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
-              static_cast<float>(ray.direction.z), 0, static_cast<float>(t_max - advance), 0xffffffffu, 0, 0};
-    rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    const uint64_t start = cycles();
-    rtcIntersect1(tile.scene.scene, &context, &rh);
-    s.cycles += cycles() - start;
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
-    const uint32_t id = rh.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? rh.hit.instID[0] : rh.hit.geomID;
-    t_max = advance + static_cast<double>(rh.ray.tfar);
-    object = tile.objects[id];
-    triangle = rh.hit.primID;
-    u = rh.hit.u, v = rh.hit.v;
-  });
-  if (object == kNone) hit = Hit{};
-  else finish(t, ray, object, triangle, u, v, hit);
-}
+// A ray's way through the tiles, nearest first. Rays that cross more tiles than fit here start again where they stopped.
+struct Tracer::Itinerary {
+  static constexpr uint32_t kRoom = 12;
+  uint32_t tile[kRoom];
+  double enter[kRoom];
+  uint32_t count = 0, next = 0;
+  bool more = false;
 
-bool Tracer::Impl::occluded_one(const Ray& ray, double limit, TraceStatistics& s) const {
-  double t_max = limit;
-  bool blocked = false;
-  ++s.rays;
-  bvh.walk(ray, t_max, [&](uint32_t index, double enter) {
-    const Tile& tile = tiles[index];
-    RTCRay r;
-    float origin[3];
-    const double advance = tile.rebase(ray, enter, origin);
-    r = {origin[0], origin[1], origin[2], 0, static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
-         static_cast<float>(ray.direction.z), 0, static_cast<float>(limit - advance), 0xffffffffu, 0, 0};
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    const uint64_t start = cycles();
-    rtcOccluded1(tile.scene.scene, &context, &r);
-    s.cycles += cycles() - start;
-    if (r.tfar < 0) {
-      blocked = true;
-      t_max = -1;
-    }
-  });
-  return blocked;
-}
-
-void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
-  if (impl_->tiles.size() != 1) {
-    for (size_t i = 0; i < rays.size(); ++i) impl_->nearest_one(*this, rays[i], hits[i], s);
-    return;
+  void plan(const TileBvh& bvh, const Ray& ray, double t_max) {
+    count = next = 0;
+    more = false;
+    bvh.walk(ray, t_max, [&](uint32_t index, double at) {
+      if (count == kRoom) {
+        more = true;
+        t_max = -1;
+        return;
+      }
+      tile[count] = index;
+      enter[count++] = at;
+    });
   }
-  const Tile& tile = impl_->tiles[0];
+};
+
+// Eight rays of a list against one tile.
+struct Tracer::Packet {
+  uint32_t ray[kWidth];
+  double advance[kWidth];
+  uint32_t size = 0;
+};
+
+void Tracer::Impl::trace_packet(const Tracer& t, uint32_t tile_index, const Packet& packet, std::span<const Ray> rays, std::span<Hit> hits,
+                                std::span<double> reach, bool coherent, TraceStatistics& s) const {
+  const Tile& tile = tiles[tile_index];
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  s.rays += rays.size();
   alignas(32) RTCRayHit8 rh;
   alignas(32) int valid[kWidth];
-  for (size_t base = 0; base < rays.size(); base += kWidth) {
-    const size_t n = std::min<size_t>(kWidth, rays.size() - base);
-    for (size_t i = 0; i < kWidth; ++i) {
-      const Ray& ray = rays[base + std::min(i, n - 1)];
-      double enter = 0, leave = 0;
-      valid[i] = i < n && clip(tile.bounds, ray, INFINITY, enter, leave) ? -1 : 0;
-      float origin[3];
-      tile.rebase(ray, enter, origin);
-      rh.ray.org_x[i] = origin[0], rh.ray.org_y[i] = origin[1], rh.ray.org_z[i] = origin[2];
-      rh.ray.dir_x[i] = static_cast<float>(ray.direction.x), rh.ray.dir_y[i] = static_cast<float>(ray.direction.y);
-      rh.ray.dir_z[i] = static_cast<float>(ray.direction.z);
-      rh.ray.tnear[i] = 0, rh.ray.tfar[i] = INFINITY, rh.ray.time[i] = 0;
-      rh.ray.mask[i] = 0xffffffffu, rh.ray.id[i] = 0, rh.ray.flags[i] = 0;
-      rh.hit.geomID[i] = rh.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  for (uint32_t i = 0; i < kWidth; ++i) {
+    const uint32_t j = std::min(i, packet.size - 1);
+    const Ray& ray = rays[packet.ray[j]];
+    valid[i] = i < packet.size ? -1 : 0;
+    float origin[3];
+    tile.rebase(ray, packet.advance[j], origin);
+    rh.ray.org_x[i] = origin[0], rh.ray.org_y[i] = origin[1], rh.ray.org_z[i] = origin[2];
+    rh.ray.dir_x[i] = static_cast<float>(ray.direction.x), rh.ray.dir_y[i] = static_cast<float>(ray.direction.y);
+    rh.ray.dir_z[i] = static_cast<float>(ray.direction.z);
+    rh.ray.tnear[i] = 0, rh.ray.tfar[i] = static_cast<float>(reach[packet.ray[j]] - packet.advance[j]), rh.ray.time[i] = 0;
+    rh.ray.mask[i] = 0xffffffffu, rh.ray.id[i] = 0, rh.ray.flags[i] = 0;
+    rh.hit.geomID[i] = rh.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  const uint64_t start = cycles();
+  rtcIntersect8(valid, tile.scene.scene, &context, &rh);
+  s.cycles += cycles() - start;
+  for (uint32_t i = 0; i < packet.size; ++i) {
+    if (rh.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    const uint32_t r = packet.ray[i];
+    const uint32_t id = rh.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID ? rh.hit.instID[0][i] : rh.hit.geomID[i];
+    reach[r] = packet.advance[i] + static_cast<double>(rh.ray.tfar[i]);
+    finish(t, rays[r], tile.objects[id], rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
+  }
+}
+
+void Tracer::Impl::occlude_packet(uint32_t tile_index, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked,
+                                  std::span<double> reach, bool coherent, TraceStatistics& s) const {
+  const Tile& tile = tiles[tile_index];
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  alignas(32) RTCRay8 q;
+  alignas(32) int valid[kWidth];
+  for (uint32_t i = 0; i < kWidth; ++i) {
+    const uint32_t j = std::min(i, packet.size - 1);
+    const Ray& ray = rays[packet.ray[j]];
+    valid[i] = i < packet.size ? -1 : 0;
+    float origin[3];
+    tile.rebase(ray, packet.advance[j], origin);
+    q.org_x[i] = origin[0], q.org_y[i] = origin[1], q.org_z[i] = origin[2];
+    q.dir_x[i] = static_cast<float>(ray.direction.x), q.dir_y[i] = static_cast<float>(ray.direction.y);
+    q.dir_z[i] = static_cast<float>(ray.direction.z);
+    q.tnear[i] = 0, q.tfar[i] = static_cast<float>(reach[packet.ray[j]] - packet.advance[j]), q.time[i] = 0;
+    q.mask[i] = 0xffffffffu, q.id[i] = 0, q.flags[i] = 0;
+  }
+  const uint64_t start = cycles();
+  rtcOccluded8(valid, tile.scene.scene, &context, &q);
+  s.cycles += cycles() - start;
+  for (uint32_t i = 0; i < packet.size; ++i)
+    if (q.tfar[i] < 0) {
+      blocked[packet.ray[i]] = 1;
+      reach[packet.ray[i]] = -1;  // no further tile matters
     }
-    const uint64_t start = cycles();
-    rtcIntersect8(valid, tile.scene.scene, &context, &rh);
-    s.cycles += cycles() - start;
-    for (size_t i = 0; i < n; ++i) {
-      if (!valid[i] || rh.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-        hits[base + i] = Hit{};
-        continue;
-      }
-      const uint32_t id = rh.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID ? rh.hit.instID[0][i] : rh.hit.geomID[i];
-      impl_->finish(*this, rays[base + i], tile.objects[id], rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[base + i]);
+}
+
+// Sends every ray through its tiles, nearest first, eight rays that are at the same tile at a time.
+// send(tile, packet) traces a packet and lowers reach[] of rays that need not go on.
+template <class Send>
+void Tracer::Impl::through_tiles(std::span<const Ray> rays, std::span<double> reach, const Send& send) const {
+  if (tiles.size() == 1) {
+    Packet packet;
+    for (uint32_t i = 0; i < rays.size(); ++i) {
+      double enter = 0, leave = 0;
+      if (!clip(tiles[0].bounds, rays[i].origin, inverse_of(rays[i].direction), reach[i], enter, leave)) continue;
+      packet.ray[packet.size] = i;
+      packet.advance[packet.size] = enter;
+      if (++packet.size == kWidth) send(0u, packet), packet.size = 0;
+    }
+    if (packet.size) send(0u, packet);
+    return;
+  }
+  thread_local std::vector<Itinerary> ways;
+  thread_local std::vector<std::pair<uint32_t, uint32_t>> waiting;  // (tile, ray)
+  ways.resize(std::max(ways.size(), rays.size()));
+  for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i]);
+  for (;;) {
+    waiting.clear();
+    for (uint32_t i = 0; i < rays.size(); ++i) {
+      Itinerary& way = ways[i];
+      if (way.next == way.count && way.more && reach[i] > 0) continue_long_way(way, rays[i], reach[i]);
+      if (way.next < way.count && way.enter[way.next] <= reach[i]) waiting.emplace_back(way.tile[way.next], i);
+      else way.next = way.count;
+    }
+    if (waiting.empty()) return;
+    std::stable_sort(waiting.begin(), waiting.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    Packet packet;
+    for (size_t w = 0; w < waiting.size(); ++w) {
+      const auto [tile, i] = waiting[w];
+      packet.ray[packet.size] = i;
+      packet.advance[packet.size] = ways[i].enter[ways[i].next++];
+      ++packet.size;
+      if (packet.size == kWidth || w + 1 == waiting.size() || waiting[w + 1].first != tile) send(tile, packet), packet.size = 0;
     }
   }
+}
+
+// The next tiles of a ray that crosses more than an itinerary holds: all tiles are listed again and those it has been
+// through, which are the nearest, are skipped.
+void Tracer::Impl::continue_long_way(Itinerary& way, const Ray& ray, double reach) const {
+  const double last = way.enter[way.count - 1];
+  std::vector<uint32_t> at_last;  // tiles entered exactly there have been visited
+  for (uint32_t i = 0; i < way.count; ++i)
+    if (way.enter[i] == last) at_last.push_back(way.tile[i]);
+  way.count = way.next = 0;
+  way.more = false;
+  double t_max = reach;
+  bvh.walk(ray, t_max, [&](uint32_t index, double enter) {
+    if (enter < last || (enter == last && std::find(at_last.begin(), at_last.end(), index) != at_last.end())) return;
+    if (way.count == Itinerary::kRoom) {
+      way.more = true;
+      t_max = -1;
+      return;
+    }
+    way.tile[way.count] = index;
+    way.enter[way.count++] = enter;
+  });
+}
+
+void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
+  thread_local std::vector<double> reach;
+  reach.assign(rays.size(), INFINITY);
+  std::fill(hits.begin(), hits.end(), Hit{});
+  s.rays += rays.size();
+  if (impl_->tiles.empty()) return;
+  impl_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { impl_->trace_packet(*this, tile, packet, rays, hits, reach, coherent, s); });
 }
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
                       TraceStatistics& s) const {
-  if (impl_->tiles.size() != 1) {
-    for (size_t i = 0; i < rays.size(); ++i) blocked[i] = impl_->occluded_one(rays[i], distance[i], s);
-    return;
-  }
-  const Tile& tile = impl_->tiles[0];
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  thread_local std::vector<double> reach;
+  reach.assign(distance.begin(), distance.end());
+  std::fill(blocked.begin(), blocked.end(), uint8_t{0});
   s.rays += rays.size();
-  alignas(32) RTCRay8 r;
-  alignas(32) int valid[kWidth];
-  for (size_t base = 0; base < rays.size(); base += kWidth) {
-    const size_t n = std::min<size_t>(kWidth, rays.size() - base);
-    for (size_t i = 0; i < kWidth; ++i) {
-      const size_t j = base + std::min(i, n - 1);
-      double enter = 0, leave = 0;
-      valid[i] = i < n && clip(tile.bounds, rays[j], distance[j], enter, leave) ? -1 : 0;
-      float origin[3];
-      const double advance = tile.rebase(rays[j], enter, origin);
-      r.org_x[i] = origin[0], r.org_y[i] = origin[1], r.org_z[i] = origin[2];
-      r.dir_x[i] = static_cast<float>(rays[j].direction.x), r.dir_y[i] = static_cast<float>(rays[j].direction.y);
-      r.dir_z[i] = static_cast<float>(rays[j].direction.z);
-      r.tnear[i] = 0, r.tfar[i] = static_cast<float>(distance[j] - advance), r.time[i] = 0;
-      r.mask[i] = 0xffffffffu, r.id[i] = 0, r.flags[i] = 0;
-    }
-    const uint64_t start = cycles();
-    rtcOccluded8(valid, tile.scene.scene, &context, &r);
-    s.cycles += cycles() - start;
-    for (size_t i = 0; i < n; ++i) blocked[base + i] = valid[i] && r.tfar[i] < 0;
-  }
+  if (impl_->tiles.empty()) return;
+  impl_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { impl_->occlude_packet(tile, packet, rays, blocked, reach, coherent, s); });
 }
 
 Vec3 Tracer::leave(const Hit& hit, Dir direction) const {

@@ -71,6 +71,8 @@ class Tracer {
 
  private:
   struct Tile;
+  struct Itinerary;
+  struct Packet;
   struct Impl;
   std::shared_ptr<const Scene> scene_;
   std::vector<TracedObject> objects_;

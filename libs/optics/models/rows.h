@@ -7,5 +7,6 @@ namespace suite {
 ModelRow lambert_row();
 ModelRow mirror_row();
 ModelRow ward_row();
+ModelRow sqt_row();
 
 }  // namespace suite
