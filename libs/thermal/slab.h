@@ -108,15 +108,15 @@ class Slab {
   void check() const;
   void build_grid();
   FaceNow face_at(const SlabFace& face, double t) const;
-  double heat_of(size_t node, double T) const;
   double capacity_of(size_t node, double T) const;
-  double conductance(size_t interval, double T) const;  // k(T)/h, W/(m2 K)
   void evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const;
+  void set_newton_matrix(const Stage& s, double scale, const FaceNow& top, const FaceNow& bottom);
   void factor_linear(double scale);
   bool solve_linear(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom, Stage& s);
   bool solve_newton(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom, Stage& s);
   bool solve(std::span<const double> history, double scale, double t, Stage& s);
   double filtered_error(double dt, double t_end);
+  void guess_middle(double dt);
   bool attempt(double dt, double& error);  // into end_
   void accept(double dt);                  // end_ becomes the present
 
@@ -126,16 +126,18 @@ class Slab {
   double t_ = 0, next_step_ = 0;
   std::vector<double> T_, depth_;
   // Per node: coefficients of the stored heat in T^1..T^5 (J/m2 K^-m) and heat generation (W/m2); per interval:
-  // coefficients of the conductance in T^0..T^3.
-  std::vector<std::array<double, 5>> heat_coefficients_;
-  std::vector<std::array<double, 4>> flux_coefficients_;
-  std::vector<double> source_, capacity_, conductance_;  // the last two of linear slabs
+  // coefficients of the conductance in T^0..T^3. One array a power.
+  std::array<std::vector<double>, 5> heat_coefficients_;
+  std::array<std::vector<double>, 4> flux_coefficients_;
+  std::vector<double> source_;
   Stage now_, middle_, end_;
   // Elimination from the bottom up, for one product of stage weight and step.
   double factored_for_ = -1;
   bool factored_fixed_ = false;
   std::vector<double> pivot_, up_, down_, right_, diagonal_, lower_, upper_, history_;
   double top_diagonal_ = 0;
+  std::vector<double> rate_;  // K/s at the end of the last step, for guesses; used while last_step_ > 0
+  double last_step_ = 0;
   std::vector<double> flux_sum_;
   double sum_time_ = 0;
   Counters counters_;

@@ -87,15 +87,13 @@ Slab::Slab(SlabSpec spec, SlabOptions options) : spec_(std::move(spec)), options
     for (size_t i = 1; i < l.conductivity.size(); ++i) linear_ = linear_ && l.conductivity[i] == 0;
   }
   const size_t n = depth_.size();
-  for (const auto& c : heat_coefficients_) capacity_.push_back(c[0]);
-  for (const auto& c : flux_coefficients_) conductance_.push_back(c[0]);
   for (Stage* s : {&now_, &middle_, &end_}) {
     s->T.resize(n);
     s->heat.resize(n);
     s->gain.resize(n);
     s->flux.resize(n - 1);
   }
-  for (auto* v : {&pivot_, &up_, &down_, &right_, &diagonal_, &lower_, &upper_, &history_}) v->resize(n);
+  for (auto* v : {&pivot_, &up_, &down_, &right_, &diagonal_, &lower_, &upper_, &history_, &rate_}) v->resize(n);
   flux_sum_.resize(n - 1);
   T_.assign(n, 0);
 }
@@ -122,7 +120,7 @@ void Slab::build_grid() {
   const bool radiates_below = spec_.bottom.kind == SlabFace::Kind::surface;
   auto add_node = [this](double z) {
     depth_.push_back(z);
-    heat_coefficients_.push_back({});
+    for (auto& c : heat_coefficients_) c.push_back(0);
     source_.push_back(0);
   };
   add_node(0);
@@ -135,12 +133,10 @@ void Slab::build_grid() {
       add_node(depth_.back() + h);
       for (const size_t node : {depth_.size() - 2, depth_.size() - 1}) {
         for (size_t m = 0; m < 5; ++m)
-          heat_coefficients_[node][m] += l.density * h / 2 * l.specific_heat[m] / static_cast<double>(m + 1);
+          heat_coefficients_[m][node] += l.density * h / 2 * l.specific_heat[m] / static_cast<double>(m + 1);
         source_[node] += l.heat_generation * h / 2;
       }
-      std::array<double, 4> c = l.conductivity;
-      for (double& v : c) v /= h;
-      flux_coefficients_.push_back(c);
+      for (size_t m = 0; m < 4; ++m) flux_coefficients_[m].push_back(l.conductivity[m] / h);
       if (depth_.size() > kMostNodes)
         throw Error(strf("a slab needs more than %zu nodes", kMostNodes),
                     "give a coarser resolution or the number of intervals");
@@ -149,19 +145,15 @@ void Slab::build_grid() {
     depth_.back() = z;
     if (l.contact_resistance > 0 && k + 1 < spec_.layers.size()) {
       add_node(z);  // the other side of the contact
-      flux_coefficients_.push_back({1 / l.contact_resistance, 0, 0, 0});
+      for (size_t m = 0; m < 4; ++m) flux_coefficients_[m].push_back(m == 0 ? 1 / l.contact_resistance : 0);
     }
   }
 }
 
-double Slab::heat_of(size_t node, double T) const { return T * polynomial(heat_coefficients_[node], T); }
-
 double Slab::capacity_of(size_t node, double T) const {
-  const auto& c = heat_coefficients_[node];
-  return c[0] + T * (2 * c[1] + T * (3 * c[2] + T * (4 * c[3] + T * 5 * c[4])));
+  const auto& c = heat_coefficients_;
+  return c[0][node] + T * (2 * c[1][node] + T * (3 * c[2][node] + T * (4 * c[3][node] + T * 5 * c[4][node])));
 }
-
-double Slab::conductance(size_t interval, double T) const { return polynomial(flux_coefficients_[interval], T); }
 
 Slab::FaceNow Slab::face_at(const SlabFace& face, double t) const {
   FaceNow now;
