@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,8 @@ struct AlignedData {
 class AlignedSource {
  public:
   struct Options {
+    std::optional<LobeFrame>
+        frame;  // none: retro when twice as much returns to the viewer as goes to the mirror direction, else half
     size_t views = 0;           // 0: as many as view_error asks for
     double view_error = 0.015;  // interpolation error allowed between views, log2 units
     int base_order = 6;         // every cell of this order is asked

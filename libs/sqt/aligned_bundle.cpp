@@ -67,8 +67,8 @@ void refine(AlignedSheet& sheet, const Region& region, size_t width) {
   sheet = std::move(fine);
 }
 
-// Points of a leaf at which its weight is looked up: 1, 4 or 16 by its size.
-int points_of(CellId id) { return id.order() >= 6 ? 1 : id.order() == 5 ? 4 : 16; }
+// Points of a leaf at which its weight is looked up.
+int points_of(CellId id) { return id.order() >= 6 ? 1 : 4; }
 
 // Integral of |cos| stretch (or 1) over a leaf for one view, kept above a floor near the horizon.
 double leaf_weight(const AlignedLayout& layout, const LobeMap& map, CellId id, const Dir* points) {
@@ -125,6 +125,12 @@ class AlignedBundle final : public Bundle {
   }
   double total(Dir out, size_t channel) const override {
     if (!faces(out)) return 0;
+    if (totals_.phi_count == 1) {
+      const size_t m = totals_.magnitude_um.size();
+      const ThetaGrid::At at = fine_.locate(surface() ? fast_acos(std::fabs(out.z)) : 0);
+      const float* low = &totals_.magnitudes[at.low * m + channel_magnitude_[channel]];
+      return at.t > 0 ? (1 - at.t) * low[0] + at.t * low[m] : low[0];
+    }
     return fine_total(place(fine_, totals_.phi_count, upright(out)), channel_magnitude_[channel]);
   }
   void magnitude(Dir out, std::span<double> W) const override {
@@ -338,7 +344,7 @@ class AlignedBundle final : public Bundle {
     std::vector<float> weight_of_area;  // copies of every leaf
     for (size_t s = 0; s < sheets_.size(); ++s)
       for (const CellId id : sheets_[s].tree.cells()) {
-        const int n = points_of(id), side = n == 1 ? 1 : n == 4 ? 2 : 4;
+        const int n = points_of(id), side = n == 1 ? 1 : 2;
         weight_of_area.push_back(static_cast<float>(copies(id)));
         for (int k = 0; k < n; ++k)
           points[s].push_back(direction_in(id, {(k % side + 0.5) / side, (k / side + 0.5) / side}));

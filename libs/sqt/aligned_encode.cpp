@@ -112,7 +112,7 @@ std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<c
   const StepRule steps(layout, 0.25 * reference);
   std::vector<AlignedSheet> sheets;
   for (int s = 0; s < layout.sheets; ++s)
-    sheets.push_back(leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, max_leaves * 4 / 3 + 16)));
+    sheets.push_back(leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, 2 * max_leaves + 64)));
   if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
   return sheets;
 }

@@ -263,6 +263,27 @@ void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::
     }
 }
 
+namespace {
+
+// Half vectors, unless the function sends at least twice as much back to the viewer as to the mirror direction.
+LobeFrame detect_frame(const Function& function) {
+  std::vector<double> back(function.info().wavelength_um.size()), mirror(back.size());
+  double sum = 0;
+  int n = 0;
+  for (const double theta : {30 * kDegree, 45 * kDegree, 60 * kDegree})
+    for (const double phi : {0.0, 1.0, 2.0, 3.0}) {
+      const Dir out = dir_from_angles(theta, phi);
+      function.value(out, out, back);
+      function.value(out, {-out.x, -out.y, out.z}, mirror);
+      for (size_t c = 0; c < back.size(); ++c)
+        if (back[c] > 0 && mirror[c] > 0 && std::isfinite(back[c]) && std::isfinite(mirror[c]))
+          sum += std::log2(back[c] / mirror[c]), ++n;
+    }
+  return n && sum / n > 1 ? LobeFrame::retro : LobeFrame::half;
+}
+
+}  // namespace
+
 AlignedSource::AlignedSource(const Function& function, const Options& options,
                              const std::function<void(double)>& progress)
     : impl_(new Impl) {
@@ -274,7 +295,8 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   SUITE_CHECK(layout.channels > 0);
   layout.cosine_weighted = surface;
   layout.upper_only = surface;
-  layout.frame = surface                                  ? LobeFrame::half
+  layout.frame = options.frame                            ? *options.frame
+                 : surface                                ? detect_frame(function)
                  : m.function.quantity == Quantity::phase ? LobeFrame::forward
                                                           : LobeFrame::direct;
   layout.half_stored = m.function.isotropic && m.function.bilateral;

@@ -107,6 +107,15 @@ TEST(SqtStability, NarrowLobesAtEveryWidth) {
   }
 }
 
+TEST(SqtStability, LobesAreFollowedWhereverTheyPoint) {
+  auto frame_of = [](const Analytic& f) { return AlignedSource(f, test::small_options()).layout().frame; };
+  EXPECT_EQ(frame_of(test::glossy()), LobeFrame::half);
+  EXPECT_EQ(frame_of(Analytic([](Dir o, Dir i) {
+              return 0.3 * test::glossy_value({-o.x, -o.y, o.z}, i, 0.15);
+            })),
+            LobeFrame::retro);
+}
+
 TEST(SqtStability, PaperMethodStandsTheSame) {
   for (const auto& f : {Analytic([](Dir, Dir) { return 0.5 / kPi; }), Analytic([](Dir, Dir) { return 0.0; }),
                         Analytic([](Dir, Dir) { return std::nan(""); })})
