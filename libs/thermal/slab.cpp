@@ -102,10 +102,10 @@ void Slab::factor_linear(double scale) {
     upper_[i] = i + 1 < n ? -scale * flux_coefficients_[0][i] : 0;
     diagonal_[i] = heat_coefficients_[0][i] - lower_[i] - upper_[i];
   }
-  factored_fixed_ = spec_.bottom.kind == SlabFace::Kind::temperature;
-  if (factored_fixed_) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
+  if (spec_.bottom.kind == SlabFace::Kind::temperature) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
   top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
   factored_for_ = scale;
+  ++counters_.eliminations;
 }
 
 // Constant properties: the interior is eliminated exactly, the top face's balance is one equation in its temperature.
@@ -165,33 +165,43 @@ void Slab::set_newton_matrix(const Stage& s, double scale, const FaceNow& top, c
     diagonal[n - 1] -= scale * bottom.slope(T[n - 1]);
 }
 
-// Properties that depend on temperature, or two radiating faces: Newton's method on all nodes from the guess in s.T.
+// Properties that depend on temperature, or two radiating faces: Newton's method on all nodes from the guess in s.T. An
+// elimination is kept, over stages and steps, as long as it makes the change shrink fiftyfold at each turn.
 bool Slab::solve_newton(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom,
                         Stage& s) {
   const size_t n = T_.size();
+  constexpr double kShrinks = 0.02, kRounding = 1e-10;  // K
+  bool renew = factored_for_ != scale, done = false;
   double last = INFINITY;
-  for (int k = 0; k < 25; ++k) {
+  for (int k = 0; k < 40; ++k) {
     evaluate(s, top, bottom);
-    // Convergence is quadratic, squares weighed with d(ln k)/dT of some 1e-3/K: what is left is rounding.
-    if (last < 1e-5) return true;
+    if (done) return true;
     for (size_t i = 0; i < n; ++i) right_[i] = history[i] + scale * s.gain[i] - s.heat[i];
     if (top.fixed) right_[0] = top.kelvin - s.T[0];
     if (bottom.fixed) right_[n - 1] = bottom.kelvin - s.T[n - 1];
-    set_newton_matrix(s, scale, top, bottom);
-    top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+    if (renew) {
+      set_newton_matrix(s, scale, top, bottom);
+      top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+      factored_for_ = scale;
+      ++counters_.eliminations;
+    }
     for (size_t i = n - 1; i-- > 0;) right_[i] -= up_[i] * right_[i + 1];
     double change = right_[0] / top_diagonal_, largest = 0;
     for (size_t i = 0; i < n; ++i) {
       if (i > 0) change = pivot_[i] * right_[i] - down_[i] * change;
       largest = std::fmax(largest, std::fabs(change));
       s.T[i] += change;
-      if (!(s.T[i] > 0 && s.T[i] < kHottest)) return false;
     }
-    ++counters_.newton;
-    // Rounding in large slabs may keep the change above the goal; it must at least not grow.
-    if (k > 8 && largest >= last) return false;
+    if (!(*std::min_element(s.T.begin(), s.T.end()) > 0 && *std::max_element(s.T.begin(), s.T.end()) < kHottest)) break;
+    // The next change would be smaller by the same ratio: stop when that is rounding.
+    const double ratio = largest / last;
+    done = largest < kRounding || (k > 0 && largest * ratio < 0.01 * kRounding);
+    if (k > 10 && renew && ratio >= 1) break;
+    renew = k == 0 ? false : ratio > kShrinks;
+    if (k == 0 && largest > 1) renew = true;
     last = largest;
   }
+  factored_for_ = -1;
   return false;
 }
 

@@ -88,7 +88,7 @@ class Slab {
   std::vector<double> mean_fluxes() const;
 
   struct Counters {
-    long long steps = 0, rejected = 0, newton = 0;
+    long long steps = 0, rejected = 0, eliminations = 0;
   };
   const Counters& counters() const { return counters_; }
   // Lengths of accepted steps, recorded while on.
@@ -133,7 +133,6 @@ class Slab {
   Stage now_, middle_, end_;
   // Elimination from the bottom up, for one product of stage weight and step.
   double factored_for_ = -1;
-  bool factored_fixed_ = false;
   std::vector<double> pivot_, up_, down_, right_, diagonal_, lower_, upper_, history_;
   double top_diagonal_ = 0;
   std::vector<double> rate_;  // K/s at the end of the last step, for guesses; used while last_step_ > 0
