@@ -30,6 +30,9 @@ void Slab::start(double t, std::span<const double> kelvin) {
     if (!(T >= 1 && T <= kHottest)) throw Error(strf("a slab starts at %g K", T), "1 to 10000 K");
   t_ = t;
   T_.assign(kelvin.begin(), kelvin.end());
+  now_.T = T_;
+  evaluate(now_, {}, {});
+  heat_ = now_.heat;
   next_step_ = std::fmin(1.0, options_.max_step);
   last_step_ = 0;
   reset_means();
@@ -67,7 +70,7 @@ void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
     for (size_t j = 0; j < n - 1; ++j) {
       // The mean of k over both temperatures, as symmetric polynomials, so that nothing cancels when they are close.
       const double a = T[j], b = T[j + 1], sum = a + b, squares = a * a + b * b;
-      flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) / 3 + k3[j] * sum * squares / 4) * (a - b);
+      flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) * (1.0 / 3) + k3[j] * sum * squares / 4) * (a - b);
     }
   }
   gain[0] = source_[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
@@ -170,7 +173,7 @@ void Slab::set_newton_matrix(const Stage& s, double scale, const FaceNow& top, c
 bool Slab::solve_newton(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom,
                         Stage& s) {
   const size_t n = T_.size();
-  constexpr double kShrinks = 0.02, kRounding = 1e-10;  // K
+  constexpr double kShrinks = 0.02, kEnough = 1e-10;  // K
   bool renew = factored_for_ != scale, done = false;
   double last = INFINITY;
   for (int k = 0; k < 40; ++k) {
@@ -186,16 +189,19 @@ bool Slab::solve_newton(std::span<const double> history, double scale, const Fac
       ++counters_.eliminations;
     }
     for (size_t i = n - 1; i-- > 0;) right_[i] -= up_[i] * right_[i + 1];
-    double change = right_[0] / top_diagonal_, largest = 0;
+    double change = right_[0] / top_diagonal_, largest = 0, coldest = kHottest, hottest = 0;
     for (size_t i = 0; i < n; ++i) {
       if (i > 0) change = pivot_[i] * right_[i] - down_[i] * change;
       largest = std::fmax(largest, std::fabs(change));
-      s.T[i] += change;
+      const double T = s.T[i] += change;
+      coldest = T < coldest ? T : coldest;
+      hottest = T > hottest ? T : hottest;
     }
-    if (!(*std::min_element(s.T.begin(), s.T.end()) > 0 && *std::max_element(s.T.begin(), s.T.end()) < kHottest)) break;
-    // The next change would be smaller by the same ratio: stop when that is rounding.
+    if (!(coldest > 0 && hottest < kHottest && std::isfinite(change))) break;
+    // The next change would be smaller by the same ratio: stop when that is too little to matter. The heat it leaves
+    // out of place is carried over by accept().
     const double ratio = largest / last;
-    done = largest < kRounding || (k > 0 && largest * ratio < 0.01 * kRounding);
+    done = largest < kEnough || (k > 0 && largest * ratio < kEnough);
     if (k > 10 && renew && ratio >= 1) break;
     renew = k == 0 ? false : ratio > kShrinks;
     if (k == 0 && largest > 1) renew = true;
@@ -246,6 +252,7 @@ bool Slab::attempt(double dt, double& error) {
   if (top.fixed) now_.T[0] = top.kelvin;
   if (bottom.fixed) now_.T[n - 1] = bottom.kelvin;
   evaluate(now_, top, bottom);
+  now_.heat = heat_;
   // The middle stage: trapezoidal rule over gamma dt.
   for (size_t i = 0; i < n; ++i) history_[i] = now_.heat[i] + scale * now_.gain[i];
   guess_middle(dt);
@@ -264,6 +271,12 @@ void Slab::accept(double dt) {
   for (size_t j = 0; j < flux_sum_.size(); ++j)
     flux_sum_[j] += dt * (kW * (now_.flux[j] + middle_.flux[j]) + kD * end_.flux[j]);
   sum_time_ += dt;
+  // The heat that flowed, not the heat of the temperatures found: what the iteration left over is made up for by the
+  // next step, so that nothing is ever lost or gained.
+  for (size_t i = 0; i < heat_.size(); ++i)
+    heat_[i] += dt * (kW * (now_.gain[i] + middle_.gain[i]) + kD * end_.gain[i]);
+  if (spec_.top.kind == SlabFace::Kind::temperature) heat_.front() = end_.heat.front();
+  if (spec_.bottom.kind == SlabFace::Kind::temperature) heat_.back() = end_.heat.back();
   if (!linear_)
     for (size_t i = 0; i < T_.size(); ++i) rate_[i] = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
   last_step_ = dt;

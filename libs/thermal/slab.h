@@ -124,7 +124,7 @@ class Slab {
   SlabOptions options_;
   bool linear_ = false;  // constant properties and a bottom without radiation: one elimination a stage
   double t_ = 0, next_step_ = 0;
-  std::vector<double> T_, depth_;
+  std::vector<double> T_, heat_, depth_;  // K, conserved heat in J/m2, m
   // Per node: coefficients of the stored heat in T^1..T^5 (J/m2 K^-m) and heat generation (W/m2); per interval:
   // coefficients of the conductance in T^0..T^3. One array a power.
   std::array<std::vector<double>, 5> heat_coefficients_;
