@@ -73,9 +73,11 @@ void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
       flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) * (1.0 / 3) + k3[j] * sum * squares / 4) * (a - b);
     }
   }
-  gain[0] = source_[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
-  for (size_t i = 1; i + 1 < n; ++i) gain[i] = source_[i] + (flux[i - 1] - flux[i]);
-  gain[n - 1] = source_[n - 1] + flux[n - 2] + (bottom.fixed ? 0 : bottom.flux(T[n - 1]));
+  const double* source = source_.data();
+  gain[0] = source[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
+#pragma GCC ivdep
+  for (size_t i = 1; i < n - 1; ++i) gain[i] = source[i] + (flux[i - 1] - flux[i]);
+  gain[n - 1] = source[n - 1] + flux[n - 2] + (bottom.fixed ? 0 : bottom.flux(T[n - 1]));
 }
 
 namespace {
@@ -192,7 +194,7 @@ bool Slab::solve_newton(std::span<const double> history, double scale, const Fac
     double change = right_[0] / top_diagonal_, largest = 0, coldest = kHottest, hottest = 0;
     for (size_t i = 0; i < n; ++i) {
       if (i > 0) change = pivot_[i] * right_[i] - down_[i] * change;
-      largest = std::fmax(largest, std::fabs(change));
+      largest = std::fabs(change) > largest ? std::fabs(change) : largest;  // fmax would be a call a node
       const double T = s.T[i] += change;
       coldest = T < coldest ? T : coldest;
       hottest = T > hottest ? T : hottest;
@@ -229,9 +231,9 @@ double Slab::filtered_error(double dt, double t_end) {
   double e = top.fixed ? 0 : right_[0] / (top_diagonal_ - slope), largest = std::fabs(e);
   for (size_t i = 1; i < n; ++i) {
     e = pivot_[i] * right_[i] - down_[i] * e;
-    largest = std::fmax(largest, std::fabs(e));
+    largest = std::fabs(e) > largest ? std::fabs(e) : largest;
   }
-  return largest;
+  return std::isfinite(e) ? largest : e;  // what is not finite stays so to the last node
 }
 
 // Newton's start for the middle stage: the last step's trend goes on, where that is believable.
