@@ -236,13 +236,24 @@ double Slab::filtered_error(double dt, double t_end) {
   return std::isfinite(e) ? largest : e;  // what is not finite stays so to the last node
 }
 
-// Newton's start for the middle stage: the last step's trend goes on, where that is believable.
+// Newton's starts: the parabola through the last step goes on to the middle; the end continues from there.
 void Slab::guess_middle(double dt) {
   middle_.T = now_.T;
   if (linear_ || !(last_step_ > 0) || dt > 2 * last_step_) return;
+  const double ahead = kGamma * dt;
   for (size_t i = 0; i < now_.T.size(); ++i) {
-    const double change = rate_[i] * kGamma * dt;
-    if (std::fabs(change) < 0.1 * now_.T[i]) middle_.T[i] += change;
+    const double change = ahead * (rate_[i] + ahead * bend_[i]);
+    middle_.T[i] += std::fabs(change) < 0.1 * now_.T[i] ? change : 0;
+  }
+}
+
+void Slab::guess_end(double dt) {
+  // On the parabola's bend when there is one, else straight on through now and the middle; never far.
+  const bool curved = !linear_ && last_step_ > 0 && dt <= 2 * last_step_;
+  for (size_t i = 0; i < now_.T.size(); ++i) {
+    const double slope = (middle_.T[i] - now_.T[i]) / (kGamma * dt), rest = (1 - kGamma) * dt;
+    const double change = rest * (slope + (curved ? dt * bend_[i] : 0));
+    end_.T[i] = middle_.T[i] + (std::fabs(change) < 0.1 * middle_.T[i] ? change : 0);
   }
 }
 
@@ -260,10 +271,8 @@ bool Slab::attempt(double dt, double& error) {
   guess_middle(dt);
   if (!solve(history_, scale, t_ + kGamma * dt, middle_)) return false;
   // The end: backward differences over both.
-  for (size_t i = 0; i < n; ++i) {
-    history_[i] = now_.heat[i] + kW * dt * (now_.gain[i] + middle_.gain[i]);
-    end_.T[i] = std::fmax(middle_.T[i] + (middle_.T[i] - now_.T[i]) * ((1 - kGamma) / kGamma), 0.5 * middle_.T[i]);
-  }
+  for (size_t i = 0; i < n; ++i) history_[i] = now_.heat[i] + kW * dt * (now_.gain[i] + middle_.gain[i]);
+  guess_end(dt);
   if (!solve(history_, scale, t_ + dt, end_)) return false;
   error = filtered_error(dt, t_ + dt);
   return std::isfinite(error);
@@ -280,7 +289,12 @@ void Slab::accept(double dt) {
   if (spec_.top.kind == SlabFace::Kind::temperature) heat_.front() = end_.heat.front();
   if (spec_.bottom.kind == SlabFace::Kind::temperature) heat_.back() = end_.heat.back();
   if (!linear_)
-    for (size_t i = 0; i < T_.size(); ++i) rate_[i] = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
+    for (size_t i = 0; i < T_.size(); ++i) {
+      const double first = (middle_.T[i] - now_.T[i]) / (kGamma * dt);
+      const double second = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
+      bend_[i] = (second - first) / dt;
+      rate_[i] = second + bend_[i] * (1 - kGamma) * dt;
+    }
   last_step_ = dt;
   T_ = end_.T;
   t_ += dt;

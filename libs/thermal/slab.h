@@ -117,6 +117,7 @@ class Slab {
   bool solve(std::span<const double> history, double scale, double t, Stage& s);
   double filtered_error(double dt, double t_end);
   void guess_middle(double dt);
+  void guess_end(double dt);
   bool attempt(double dt, double& error);  // into end_
   void accept(double dt);                  // end_ becomes the present
 
@@ -135,7 +136,7 @@ class Slab {
   double factored_for_ = -1;
   std::vector<double> pivot_, up_, down_, right_, diagonal_, lower_, upper_, history_;
   double top_diagonal_ = 0;
-  std::vector<double> rate_;  // K/s at the end of the last step, for guesses; used while last_step_ > 0
+  std::vector<double> rate_, bend_;  // K/s, K/s2 at the end of the last step, for guesses; used while last_step_ > 0
   double last_step_ = 0;
   std::vector<double> flux_sum_;
   double sum_time_ = 0;
