@@ -17,6 +17,8 @@ namespace suite {
 
 namespace {
 
+const std::string kGenerator = std::string("scene-prep ") + kVersion;
+
 void list_issues() {
   for (const IssueKind& k : scene_issues())
     std::printf("%s  %-7s  %s\n", k.code.c_str(), to_text(k.severity), k.summary.c_str());
@@ -47,7 +49,22 @@ void write_report(const ScenePrepOptions& o, const Report& report) {
     write_file(o.report, report.json());
 }
 
+// The output was made by this version from the same inputs with the same options.
+bool up_to_date(const ScenePrepOptions& o) {
+  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
+  try {
+    const Provenance p = read_provenance(o.output);
+    return p.generator == kGenerator && p.arguments == canonical_arguments(o) && inputs_unchanged(o.input, {o.search}, p.inputs);
+  } catch (const Error&) {
+    return false;  // whatever stands there is replaced
+  }
+}
+
 int prepare(const ScenePrepOptions& o) {
+  if (up_to_date(o)) {
+    note(o.output + " is up to date: inputs, options and version are unchanged (--force prepares it again)");
+    return 0;
+  }
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
@@ -60,7 +77,7 @@ int prepare(const ScenePrepOptions& o) {
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (!report.ok()) return 1;
   if (o.output.empty()) return 0;
-  write_scene(scene, {std::string("scene-prep ") + kVersion, canonical_arguments(o), input_hash(draft)}, o.output);
+  write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output);
   note(strf("wrote %s (%zu bytes)", o.output.c_str(), file_size(o.output)));
   return 0;
 }

@@ -1,11 +1,9 @@
 #include "input.h"
 
-#include <cstring>
-
 #include "base/files.h"
-#include "formats/merl/merl.h"
-#include "formats/rgl/rgl.h"
+#include "formats/measured/measured.h"
 #include "optics/model_function.h"
+#include "sqt/scattered.h"
 
 namespace suite {
 
@@ -17,14 +15,13 @@ FitInput load_input(const SqtFitOptions& options) {
     input.function = model_function(options.model);
     input.provenance.input = options.model;
   } else {
-    const std::vector<std::byte> bytes = read_bytes(options.input);
-    const bool tensor = bytes.size() >= 11 && std::memcmp(bytes.data(), "tensor_file", 11) == 0;
-    if (tensor)
-      input.function = parse_rgl(bytes, options.input);
+    Measured measured = read_measured(options.input);
+    if (auto* function = std::get_if<0>(&measured))
+      input.function = std::move(*function);
     else
-      input.function = parse_merl(bytes, options.input);
+      input.function = sqt::interpolate(std::get<1>(measured));
     input.provenance.input = options.input;
-    input.provenance.input_sha256 = sha256(bytes);
+    input.provenance.input_sha256 = sha256(read_bytes(options.input));
   }
   input.provenance.conventions = input.function->info().source;
   return input;

@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include "formats/measured/measured.h"
+
 namespace suite {
 
 AppInfo sqt_fit_info() {
