@@ -54,7 +54,8 @@ bool up_to_date(const ScenePrepOptions& o) {
   if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
   try {
     const Provenance p = read_provenance(o.output);
-    return p.generator == kGenerator && p.arguments == canonical_arguments(o) && inputs_unchanged(o.input, {o.search}, p.inputs);
+    return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
+           inputs_unchanged(o.input, {o.search}, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
