@@ -50,16 +50,27 @@ Pose DualQuat::pose() const {
   return {real, t.vec()};
 }
 
+namespace {
+constexpr double kHalfTurn = 1e-12;  // cosine of half the angle below which both ways round are equally short
+}
+
 Pose sclerp(const Pose& a, const Pose& b, double s) {
   // The relative motion in a's own frame: translations are small there, whatever frame the poses are given in.
   Quat q = a.rotation.conjugate() * b.rotation;
   const Vec3 t = rotate(a.rotation.conjugate(), b.translation - a.translation);
-  if (q.w < 0) q = q * -1.0;  // the shorter way round
+  if (std::fabs(q.w) < kHalfTurn) {
+    // Half a turn: rounding would choose the way round. The first component of the axis that is not nothing does.
+    const Vec3 u = q.vec();
+    const double leading = std::fabs(u.x) > 1e-6 ? u.x : std::fabs(u.y) > 1e-6 ? u.y : u.z;
+    if (leading < 0) q = q * -1.0;
+  } else if (q.w < 0) {
+    q = q * -1.0;  // the shorter way round
+  }
   const Vec3 u = q.vec();
   const double sin_half = length(u), half = std::atan2(sin_half, q.w);
   Pose step;
-  if (sin_half < 1e-12) {
-    // No measurable rotation: the screw has infinite pitch, a straight line. Second-order terms are below an ulp.
+  if (sin_half < 1e-100) {
+    // No rotation: the screw has infinite pitch, a straight line. Its bend would be of this size times the distance.
     step = {normalized(Quat{1, u.x * s, u.y * s, u.z * s}), t * s};
   } else {
     // Screw axis direction l, pitch along it d, and the foot of the axis c with t = d l + (I - R) c.

@@ -41,7 +41,8 @@ struct DualQuat {
 };
 
 // The screw motion from a (s = 0) to b (s = 1) along the shorter way round; s outside [0, 1] extrapolates the screw.
-// Exact for rotations by 0, by less than 1e-9 rad and by 180 degrees (there the axis of the shorter way is a's choice).
+// Exact for rotations by 0, by less than 1e-9 rad and by 180 degrees. There (within 2e-12 rad) both ways round are equally
+// short, and the one whose axis has a positive first component in a's frame is taken: the same in every world frame.
 // The screw is taken relative to a, so large common translations (Earth-centred coordinates) cost no precision in it.
 Pose sclerp(const Pose& a, const Pose& b, double s);
 

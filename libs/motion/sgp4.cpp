@@ -202,6 +202,8 @@ bool Sgp4::deep_space() const { return model_->deep.has_value(); }
 
 OrbitState Sgp4::at_minutes(double t) const {
   const std::string& name = elements_.satellite;
+  if (!(std::fabs(t) <= 1e8))
+    throw Error("satellite " + name + strf(": asked for %g min after its epoch", t), "at most 1e8 min (190 years)");
   double a = 0;
   Mean m = model_->secular(t, a, name);
   if (model_->deep) {

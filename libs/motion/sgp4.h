@@ -43,7 +43,7 @@ class Sgp4 {
 
   // State at minutes after the epoch; any sign. A pure function: may be called from many threads.
   // Error, naming the satellite: the mean or perturbed eccentricity leaves its range, the mean motion or the semi-latus
-  // rectum is not positive, or the satellite has decayed.
+  // rectum is not positive, the satellite has decayed, or the time is further than 1e8 minutes from the epoch.
   OrbitState at_minutes(double minutes) const;
   OrbitState at(Instant instant) const { return at_minutes((instant - epoch_) / 60); }
 

@@ -5,7 +5,8 @@
 namespace suite {
 
 std::span<const ModelRow> models() {
-  static const std::vector<ModelRow> table{lambert_row(), mirror_row(), ward_row()};
+  static const std::vector<ModelRow> table{lambert_row(),    oren_nayar_row(), leaf_row(), rpv_row(),        ross_li_row(), ward_row(),
+                                           ggx_row(), mirror_row(),     dielectric_row(),  ggx_dielectric_row(), sqt_row()};
   return table;
 }
 

@@ -4,6 +4,7 @@
 
 namespace suite {
 
+std::optional<ScatterModel::Factored> ScatterModel::factored(Dir, Dir) const { return std::nullopt; }
 void ScatterModel::delta_weight(Dir, int, int, std::span<float> weight) const {
   std::fill(weight.begin(), weight.end(), 0.0f);
 }

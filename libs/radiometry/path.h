@@ -14,8 +14,12 @@ namespace suite {
 struct ExplicitLight {
   Dir direction;
   double density = 0;            // of having drawn this direction from the source, 1/sr; 0 = collimated
-  float radiance_scale = 0;      // multiplies the source's spectrum; 0 = none, or blocked
+  float radiance_scale = 0;      // relative radiance of the source in this direction
   const float* spectrum = nullptr;
+  // What arrives, when the scattering factors into a number and a spectrum: scale * spectrum[k] * scatter[k].
+  // Null = blocked, or already added to the node's direct radiance.
+  const float* scatter = nullptr;
+  float scale = 0;
 };
 
 struct Node {
@@ -23,9 +27,12 @@ struct Node {
   Interaction at;
   Dir out;                       // back along the segment, ENU
   double optical_length = 0;     // m from the sensor, sum of segment lengths
+  bool has_direct = false;       // explicit light that did not factor stands in the wave's store
   double spectral_factor = 1;    // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
   std::array<ExplicitLight, 2> light;   // sun, sky
-  // The continuation. weight = w / (density of having drawn it), for every wavelength, in the wave's spectral store.
+  // The continuation. w / (density of having drawn it) is bounce_scale * bounce_spectrum[k].
+  const float* bounce_spectrum = nullptr;
+  float bounce_scale = 0;
   Dir in;
   int lobe = 0;
   bool delta = false, continues = false;

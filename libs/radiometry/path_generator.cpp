@@ -106,7 +106,7 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   node.continues = false;
   node.light = {};
   surface_.interact(hit, node.out, node.at);
-  std::fill_n(wave.direct(p, path.size - 1).data(), wave.bins(), 0.0f);
+  node.has_direct = false;
   if (node.at.baked && node.at.baked->model) return true;
   path.end = PathEnd::absorbed;
   return false;
@@ -122,7 +122,7 @@ void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
     if (node.at.baked->model->opaque() && in_side * out_side <= 0) return;
     // Light may come in only from the side of the surface that the shading frame says it comes from.
     if (in_side * dot(drawn.direction, node.at.frame.z) <= 0) return;
-    node.light[which] = {drawn.direction, drawn.density, static_cast<float>(relative_radiance), spectrum};
+    node.light[which] = {drawn.direction, drawn.density, static_cast<float>(relative_radiance), spectrum, nullptr, 0};
     wave.rays.push_back({surface_.tracer().leave(node.hit, drawn.direction), drawn.direction, wave.path(p).ray.time});
     wave.owner.push_back(p);
     wave.light.push_back(which);
@@ -135,13 +135,11 @@ void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
   }
 }
 
-void PathGenerator::add_explicit(Wave& wave, uint32_t p, const ExplicitLight& light) {
+void PathGenerator::add_explicit(Wave& wave, uint32_t p, ExplicitLight& light) {
   const int n = wave.path(p).size - 1;
-  const Node& node = wave.node(p, n);
+  Node& node = wave.node(p, n);
   const Live& live = live_[p];
   const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
-  const std::span<float> w = wave.scratch();
-  node.at.baked->model->eval(out, in, w);
   double denominator = live.shares;
   if (light.density > 0) {
     float pdf[kMaxKnots];
@@ -150,7 +148,16 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, const ExplicitLight& li
     for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k];
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
+  if (const auto factored = node.at.baked->model->factored(out, in)) {
+    light.scatter = factored->spectrum;
+    light.scale = scale * factored->scale;
+    return;
+  }
+  const std::span<float> w = wave.scratch();
+  node.at.baked->model->eval(out, in, w);
   float* direct = wave.direct(p, n).data();
+  if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
+  node.has_direct = true;
   const float* spectrum = light.spectrum;
   for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * spectrum[i] * scale;
 }
@@ -172,11 +179,13 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   if (dot(node.in, node.at.geometric_normal) * drawn->in.z <= 0) return false;  // would leak through the real surface
   const std::span<float> w = wave.bounce(p, n);
   float density[kMaxKnots];
+  std::optional<ScatterModel::Factored> factored;
   if (drawn->delta) {
     model.delta_weight(out, drawn->lobe, path.knot, w);
     model.delta_probability(out, drawn->lobe, path.knot, {density, knots_});
   } else {
-    model.eval(out, drawn->in, w);
+    factored = model.factored(out, drawn->in);
+    if (!factored) model.eval(out, drawn->in, w);
     model.pdf(out, drawn->in, {density, knots_});
   }
   const double own = density[path.knot];
@@ -187,7 +196,7 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   for (size_t k = 0; k < knots_; ++k) {
     live.relative[k] *= density[k] / own;
     live.shares += knot_probability_[k] * live.relative[k];
-    live.throughput[k] *= w[knot_bins_[k]] / own;
+    live.throughput[k] *= (factored ? factored->scale * factored->spectrum[knot_bins_[k]] : w[knot_bins_[k]]) / own;
     brightest = std::max(brightest, live.throughput[k]);
   }
   if (!(brightest > 0) && knots_ == 1 && optics_.state().size() == 1) return false;  // nothing more can arrive
@@ -211,8 +220,8 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   node.delta = drawn->delta;
   node.density = own * survival;
   node.continues = true;
-  const float scale = static_cast<float>(1 / node.density);
-  for (float& x : w) x *= scale;
+  node.bounce_spectrum = factored ? factored->spectrum : w.data();
+  node.bounce_scale = static_cast<float>((factored ? factored->scale : 1) / node.density);
   live.last_density = drawn->delta ? 0 : own;
   live.direction = node.in;
   live.origin = surface_.tracer().leave(node.hit, node.in);

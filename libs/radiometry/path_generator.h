@@ -39,7 +39,7 @@ class PathGenerator {
   void escape(Path& path, const Live& live) const;
   bool arrive(Wave& wave, uint32_t p, const Hit& hit);
   void ask_sources(Wave& wave, uint32_t p);
-  void add_explicit(Wave& wave, uint32_t p, const ExplicitLight& light);
+  void add_explicit(Wave& wave, uint32_t p, ExplicitLight& light);
   bool go_on(Wave& wave, uint32_t p);
 
   const Surface& surface_;

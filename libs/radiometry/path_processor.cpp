@@ -30,6 +30,30 @@ void add_emission(const Node& node, std::span<float> scratch, std::span<float> r
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * std::max(0.0f, 1 - scratch[i]) * blackbody[i];
 }
 
+// L = S + w / p L for what factors: one pass over the wavelengths in the usual case of one source.
+void propagate(const Node& node, size_t n, float* __restrict L) {
+  const ExplicitLight& sun = node.light[0];
+  if (node.continues) {
+    const float* __restrict w = node.bounce_spectrum;
+    const float b = node.bounce_scale;
+    if (sun.scatter == w) {
+      const float* __restrict e = sun.spectrum;
+      const float s = sun.scale;
+      for (size_t i = 0; i < n; ++i) L[i] = w[i] * (b * L[i] + s * e[i]);
+    } else {
+      for (size_t i = 0; i < n; ++i) L[i] *= b * w[i];
+    }
+  } else {
+    std::fill_n(L, n, 0.0f);
+  }
+  for (const ExplicitLight& light : node.light) {
+    if (!light.scatter || (&light == &sun && node.continues && sun.scatter == node.bounce_spectrum)) continue;
+    const float *__restrict e = light.spectrum, *__restrict w = light.scatter;
+    const float s = light.scale;
+    for (size_t i = 0; i < n; ++i) L[i] += s * e[i] * w[i];
+  }
+}
+
 }  // namespace
 
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
@@ -37,13 +61,10 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
   from_outside(path, environment, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
     const Node& node = wave.node(p, n);
-    float* L = radiance.data();
-    const float* direct = wave.direct(p, n).data();
-    if (node.continues) {
-      const float* w = wave.bounce(p, n).data();
-      for (size_t i = 0; i < radiance.size(); ++i) L[i] = L[i] * w[i] + direct[i];
-    } else {
-      for (size_t i = 0; i < radiance.size(); ++i) L[i] = direct[i];
+    propagate(node, radiance.size(), radiance.data());
+    if (node.has_direct) {
+      const float* direct = wave.direct(p, n).data();
+      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
     }
     if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
   }

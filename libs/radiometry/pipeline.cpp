@@ -65,7 +65,6 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
 struct Pipeline::Workspace {
   Wave wave;
   PathGenerator generator;
-  std::vector<double> bins, bands;
 };
 
 Pipeline::~Pipeline() = default;
@@ -82,8 +81,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
       }
   }
   return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
-                                                  PathGenerator(surface_, optics_, environment_, options_),
-                                                  std::vector<double>(state_.size()), std::vector<double>(projection_.bands())});
+                                                  PathGenerator(surface_, optics_, environment_, options_)});
 }
 
 namespace {
@@ -124,7 +122,6 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
   std::unique_ptr<Workspace> workspace = borrow(width);
   Wave& wave = workspace->wave;
   PathGenerator& generator = workspace->generator;
-  std::vector<double>&wide = workspace->bins, &band = workspace->bands;
   auto problem_of = [&](size_t i) {
     return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
   };
@@ -149,23 +146,20 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
       // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-      bool good = true;
-      for (size_t k = 0; k < radiance.size(); ++k) {
-        wide[k] = radiance[k];
-        good = good && radiance[k] >= 0 && radiance[k] < 3e38f;
-      }
+      unsigned bad = 0;
+      for (const float L : radiance) bad |= static_cast<unsigned>(!(L >= 0 && L < 3e38f));
       ++statistics.paths;
       statistics.truncated += wave.path(i).truncated;
       sums.set_paths(problem, sample + 1);
-      if (!good) {
+      if (bad) {
         ++statistics.failures;
         ++sums.failures(problem);
         continue;
       }
-      projection_.apply(wide, band);
       double* target = sums.sums(problem, static_cast<int>(scramble));
-      for (size_t b = 0; b < bands; ++b) target[b] += band[b];
-      sums.largest(problem) = std::max(sums.largest(problem), static_cast<float>(band[reference_band_]));
+      const double before = target[reference_band_];
+      projection_.add(radiance, {target, bands});
+      sums.largest(problem) = std::max(sums.largest(problem), static_cast<float>(target[reference_band_] - before));
       sums.truncated(problem) += static_cast<float>(wave.path(i).truncated);
       collect_truth(wave, i, surface_.tracer(), sums.truth(problem));
     }

@@ -19,7 +19,7 @@ class Wave {
   size_t bins() const { return bins_; }
   Path& path(size_t p) { return paths_[p]; }
   Node& node(size_t p, int n) { return nodes_[p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)]; }
-  // w / density of the continuation at a node; aligned to 32 bytes, padded to whole vectors.
+  // w of the continuation at a node, where the model does not keep it; aligned to 32 bytes, padded to whole vectors.
   std::span<float> bounce(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n))), bins_}; }
   // Radiance that explicit sources send along the path from this node.
   std::span<float> direct(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)) + 1), bins_}; }

@@ -14,7 +14,7 @@ inline constexpr double kStefanBoltzmann = 5.670374419184429e-8;  // W/(m2 K4), 
 double planck_radiance(double wavelength_um, double kelvin);
 
 // Radiance in [low_um, high_um], W/(m2 sr): exact series of the fractional function, relative error < 1e-12.
-// Source: Widger & Woodall, Bull. AMS 57, 1976, with the small-argument power series below x = 2.
+// Source: Widger & Woodall, Bull. AMS 57, 1976, with the small-argument power series below x = 1.
 double planck_band_radiance(double low_um, double high_um, double kelvin);
 
 // Kelvin whose planck_radiance at the wavelength is the given radiance (> 0).

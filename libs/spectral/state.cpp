@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace suite {
 
@@ -52,9 +53,10 @@ Band Band::tabulated(std::string name, const Curve& response, const Where& where
   const auto& cx = cut.wavelength_um();
   const auto& cy = cut.value();
   for (size_t i = 1; i < cx.size(); ++i) {
-    const double a = 0.5 * (cy[i] + cy[i - 1]) * (cx[i] - cx[i - 1]);
-    area += a;
-    moment += a * 0.5 * (cx[i] + cx[i - 1]);
+    // Exact integrals of y and x y over a chord.
+    const double dx = cx[i] - cx[i - 1];
+    area += 0.5 * (cy[i] + cy[i - 1]) * dx;
+    moment += dx / 6 * (cx[i - 1] * (2 * cy[i - 1] + cy[i]) + cx[i] * (cy[i - 1] + 2 * cy[i]));
   }
   const double half = 0.5 * cut.max();
   double low = cx.front(), high = cx.back();
@@ -116,9 +118,8 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
     double edge = low;
     while (edge < high) {
       double next = (std::floor(edge / step * (1 + 1e-12)) + 1) * step;
-      if (next > high - 0.25 * step) next = high;  // no slivers at the end
-      if (next - edge < 0.25 * step && next < high) next += step;  // nor at the start
-      next = std::min(next, high);
+      if (next - edge < 0.25 * step) next += step;  // no slivers at the start
+      if (next > high - 0.25 * step) next = high;   // nor at the end
       state.bins.push_back({edge, next});
       edge = next;
     }
@@ -128,49 +129,67 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   for (size_t i = 0; i < state.bins.size(); ++i)
     if (std::fabs(state.bins[i].center_um() - state.reference_um) < std::fabs(state.bins[reference].center_um() - state.reference_um)) reference = i;
   state.knots.push_back(reference);
+  // Each further knot is the bin farthest in wavelength from all knots so far, so that every band has a knot near it: no
+  // bin is farther from one than 1/k of the window (Gonzalez 1985: at most twice the best possible).
+  std::vector<double> distance(state.bins.size(), std::numeric_limits<double>::infinity());
   const size_t wanted = std::min({knot_count, size_t{8}, state.bins.size()});
-  for (size_t k = 0; state.knots.size() < wanted && k < wanted; ++k) {
-    // Evenly over the bins, first and last included, so that every band has a knot near it.
-    const size_t i = wanted > 1 ? (k * (state.bins.size() - 1) + (wanted - 1) / 2) / (wanted - 1) : reference;
-    if (std::find(state.knots.begin(), state.knots.end(), i) == state.knots.end()) state.knots.push_back(i);
+  while (state.knots.size() < wanted) {
+    const double latest = state.bins[state.knots.back()].center_um();
+    for (size_t i = 0; i < distance.size(); ++i)
+      distance[i] = std::min(distance[i], std::fabs(state.bins[i].center_um() - latest));
+    state.knots.push_back(static_cast<size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
   }
   return state;
 }
 
 BandProjection::BandProjection(const SpectralState& state, std::span<const Band> bands) {
   for (const Band& band : bands) {
-    Row row;
+    std::vector<double> weights;
+    size_t first = 0;
     const double total = band.response.integral(band.low_um(), band.high_um());
     double sum = 0;
-    bool open = false;
     for (size_t k = 0; k < state.bins.size(); ++k) {
       const Bin& bin = state.bins[k];
-      if (bin.high_um <= band.low_um() || bin.low_um >= band.high_um()) {
-        if (open) row.weights.push_back(0);
-        continue;
-      }
-      if (!open) row.first = k, open = true;
-      row.weights.push_back(band.response.integral(bin.low_um, bin.high_um) / total);
-      sum += row.weights.back();
+      const bool inside = bin.high_um > band.low_um() && bin.low_um < band.high_um();
+      if (!inside && weights.empty()) continue;
+      if (weights.empty()) first = k;
+      weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);
+      sum += weights.back();
     }
     if (!(sum > 0.999)) throw Error("band '" + band.name + "' is not covered by the bins of its spectral state");
-    for (double& w : row.weights) w /= sum;
-    while (!row.weights.empty() && row.weights.back() == 0) row.weights.pop_back();
-    rows_.push_back(std::move(row));
+    while (!weights.empty() && weights.back() == 0) weights.pop_back();
+    identity_ = identity_ && weights.size() == 1 && first == rows_.size();
+    rows_.push_back({static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
+    for (const double w : weights) weights_.push_back(w / sum);
+  }
+  identity_ = identity_ && rows_.size() == state.bins.size();
+}
+
+void BandProjection::add(std::span<const float> in, std::span<double> sums) const {
+  if (identity_) {
+    for (size_t b = 0; b < rows_.size(); ++b) sums[b] += static_cast<double>(in[b]);
+    return;
+  }
+  for (size_t b = 0; b < rows_.size(); ++b) {
+    const double* w = &weights_[rows_[b].offset];
+    const float* x = &in[rows_[b].first];
+    double sum = 0;
+    for (uint32_t i = 0; i < rows_[b].count; ++i) sum += w[i] * static_cast<double>(x[i]);
+    sums[b] += sum;
   }
 }
 
 void BandProjection::apply(std::span<const double> in, std::span<double> out) const {
   for (size_t b = 0; b < rows_.size(); ++b) {
     double sum = 0;
-    for (size_t i = 0; i < rows_[b].weights.size(); ++i) sum += rows_[b].weights[i] * in[rows_[b].first + i];
+    for (size_t i = 0; i < rows_[b].count; ++i) sum += weights_[rows_[b].offset + i] * in[rows_[b].first + i];
     out[b] = sum;
   }
 }
 
 double BandProjection::weight(size_t band, size_t bin) const {
   const Row& row = rows_[band];
-  return bin >= row.first && bin < row.first + row.weights.size() ? row.weights[bin - row.first] : 0;
+  return bin >= row.first && bin < row.first + row.count ? weights_[row.offset + bin - row.first] : 0;
 }
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 // integral(L R) / integral(R) over those bins.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,7 +51,8 @@ struct SpectralState {
   std::string text() const;
 };
 
-// bins: at most `step_um` wide, edges aligned to multiples of the step, only where some band responds.
+// bins: `step_um` wide, edges at multiples of the step, only where some band responds; the first and last bin of a stretch
+// reach to its ends and are 1/4 to 5/4 of a step wide (3/2 when the stretch has one bin only).
 // reference_um = 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the
 // reference first. Errors: no bands, step not positive, more than 100 000 bins.
 SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
@@ -61,15 +63,19 @@ class BandProjection {
   BandProjection(const SpectralState& state, std::span<const Band> bands);
   size_t bands() const { return rows_.size(); }
   // out[b] = sum_k weight[b][k] in[k]; in.size() >= bins of the state
+  void add(std::span<const float> in, std::span<double> sums) const;  // sums[b] += ...; the inner loop of rendering
   void apply(std::span<const double> in, std::span<double> out) const;
   double weight(size_t band, size_t bin) const;
 
  private:
   struct Row {
-    size_t first = 0;
-    std::vector<double> weights;
+    uint32_t first = 0;    // bin
+    uint32_t offset = 0;   // of its weights
+    uint32_t count = 0;
   };
   std::vector<Row> rows_;
+  std::vector<double> weights_;
+  bool identity_ = true;   // band b is bin b
 };
 
 }  // namespace suite

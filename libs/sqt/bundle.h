@@ -66,6 +66,8 @@ class Bundle {
   // u in [0,1)^2 places the direction in its cell, lobe_u in [0,1) chooses the cell. Never draws the Dirac lobe.
   virtual std::optional<Dir> sample(Dir out, Vec2 u, double lobe_u, size_t channel) const = 0;
   virtual double pdf(Dir out, Dir in, size_t channel) const = 0;
+  // The same for every channel at once.
+  virtual void pdf(Dir out, Dir in, std::span<double> p) const = 0;
   // The Dirac lobe of a channel, when info().has_delta.
   virtual std::optional<DeltaLobe> delta(Dir out, size_t channel) const = 0;
 

@@ -125,6 +125,9 @@ class PaperBundle final : public Bundle {
     }
     return p;
   }
+  void pdf(Dir out, Dir in, std::span<double> p) const override {
+    for (size_t c = 0; c < p.size(); ++c) p[c] = pdf(out, in, c);
+  }
   std::optional<DeltaLobe> delta(Dir, size_t) const override { return std::nullopt; }
 
   std::vector<Cell> cells(size_t view, size_t channel) const override {

@@ -1,5 +1,5 @@
 // Seeded mutations of a valid input, for any reader: truncate, flip bits, overwrite sizes with huge or odd numbers,
-// copy and cut blocks. A reader may accept or throw suite::Error; anything else (another exception, a signal, a
+// copy and cut blocks, and for texts splice in words that the grammar gives meaning to. A reader may accept or throw suite::Error; anything else (another exception, a signal, a
 // sanitizer report, a slow or memory-hungry parse) fails the test.
 #pragma once
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ inline Bytes bytes_of(std::string_view text) {
 
 class Mutator {
  public:
-  explicit Mutator(uint64_t seed) : random_(seed) {}
+  // words: spliced in at random places, or put in place of others; none for binary formats.
+  explicit Mutator(uint64_t seed, std::vector<std::string> words = {}) : random_(seed), words_(std::move(words)) {}
 
   Bytes operator()(const Bytes& seed_input) {
     Bytes b = seed_input;
@@ -43,7 +44,7 @@ class Mutator {
 
   void step(Bytes& b) {
     const size_t at = position(b.size());
-    switch (below(6)) {
+    switch (below(words_.empty() ? 6 : 10)) {
       case 0:
         b.resize(at);
         break;
@@ -61,10 +62,19 @@ class Mutator {
         b.erase(b.begin() + static_cast<std::ptrdiff_t>(at),
                 b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), at + 1 + below(64))));
         break;
-      default:
+      case 5:
         b[at] = std::byte(below(256));
         break;
+      default:
+        splice(b, at);
+        break;
     }
+  }
+  void splice(Bytes& b, size_t at) {
+    const Bytes word = bytes_of(words_[below(words_.size())]);
+    const size_t replaced = below(2) ? 0 : std::min(b.size() - at, below(20));
+    const auto place = b.begin() + static_cast<std::ptrdiff_t>(at);
+    b.insert(b.erase(place, place + static_cast<std::ptrdiff_t>(replaced)), word.begin(), word.end());
   }
   void overwrite(Bytes& b, size_t at) {
     static constexpr uint64_t odd[] = {0,
@@ -90,17 +100,18 @@ class Mutator {
     std::memcpy(b.data() + at, &value, std::min(width, b.size() - at));
   }
   Pcg32 random_;
+  std::vector<std::string> words_;
 };
 
 // Runs `read` on mutations of `input` until `count` are done or `seconds` have passed (SUITE_FUZZ_SECONDS overrides the
 // time and lifts the count). At least one mutation must be refused, and the input itself must be accepted.
 inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
-                 size_t count = 20000, double seconds = 4) {
+                 size_t count = 20000, double seconds = 4, const std::vector<std::string>& words = {}) {
   ASSERT_NO_THROW(read(input));
   if (const char* longer = std::getenv("SUITE_FUZZ_SECONDS")) seconds = std::atof(longer), count = SIZE_MAX;
   const auto start = std::chrono::steady_clock::now();
   auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  Mutator mutate(seed);
+  Mutator mutate(seed, words);
   size_t done = 0, refused = 0;
   for (; done < count && elapsed() < seconds; ++done) {
     const Bytes b = mutate(input);

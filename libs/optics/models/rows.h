@@ -7,5 +7,13 @@ namespace suite {
 ModelRow lambert_row();
 ModelRow mirror_row();
 ModelRow ward_row();
+ModelRow ggx_row();
+ModelRow ggx_dielectric_row();
+ModelRow dielectric_row();
+ModelRow oren_nayar_row();
+ModelRow rpv_row();
+ModelRow ross_li_row();
+ModelRow leaf_row();
+ModelRow sqt_row();
 
 }  // namespace suite

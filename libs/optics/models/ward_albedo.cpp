@@ -51,8 +51,8 @@ WardAlbedo::WardAlbedo(double alpha_x, double alpha_y)
     const double phi = columns_ == 1 ? 0 : kPi / 2 * static_cast<double>(c) / static_cast<double>(columns_ - 1);
     const double cp = std::cos(phi), sp = std::sin(phi), width = slope_width(cp, sp);
     for (size_t r = 0; r + 1 < kRows; ++r) {
-      const double v = static_cast<double>(r) / (kRows - 1);
-      table_[r * columns_ + c] = integral(v / (1 - v) / width, cp, sp);
+      const double v = 1 - static_cast<double>(r) / (kRows - 1), s = 1 / (v * v) - 1;
+      table_[r * columns_ + c] = integral(s / width, cp, sp);
     }
     table_[(kRows - 1) * columns_ + c] = 1;  // at grazing half of the slopes reflect with weight 2
   }
@@ -93,7 +93,7 @@ double WardAlbedo::exact(Dir out) const {
 double WardAlbedo::at(Dir out) const {
   const double s = std::hypot(out.x, out.y), cp = s > 0 ? std::fabs(out.x) / s : 1,
                sp = s > 0 ? std::fabs(out.y) / s : 0;
-  const double scaled = slope_width(cp, sp) * s, v = scaled / (scaled + out.z);
+  const double scaled = slope_width(cp, sp) * s, v = 1 - std::sqrt(out.z / (scaled + out.z));
   const double row = std::clamp(v, 0.0, 1.0) * (kRows - 1);
   const size_t r = std::min(kRows - 2, static_cast<size_t>(row));
   const double wr = row - static_cast<double>(r);

@@ -1,0 +1,32 @@
+#include "options.h"
+
+namespace suite {
+
+AppInfo render_info() {
+  return {"dirsig-render",
+          "Renders what the sensors of a simulation measure in a prepared scene: spectral radiance in W/(m2 sr um), its standard error for "
+          "every pixel and band, and truth.",
+          "Output, for each sensor NAME, in the folder given with -o (ENVI, opens in GDAL, QGIS, ENVI):\n"
+          "  NAME.img         radiance, one band per channel, with wavelengths and fwhm\n"
+          "  NAME_error.img   standard error of the radiance, same bands\n"
+          "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
+          "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
+          "The same seed gives the same bytes for any number of threads.\n\n"
+          "Examples:\n"
+          "  dirsig-render sim.yaml -o out/\n"
+          "  dirsig-render sim.yaml -o quick/ --paths 8       a quick look\n"
+          "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
+          "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 our bug."};
+}
+
+void declare_render(Cli& cli, RenderOptions& o) {
+  cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
+  cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
+  cli.option("--paths", o.paths, "paths per pixel instead of what the sensors ask for", "N");
+  cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
+  cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
+}
+
+}  // namespace suite

@@ -1,0 +1,18 @@
+// Where the function comes from.
+#pragma once
+#include <memory>
+
+#include "formats/sqt/sqt.h"
+#include "options.h"
+#include "sqt/function.h"
+
+namespace suite {
+
+struct FitInput {
+  std::shared_ptr<const sqt::Function> function;
+  SqtProvenance provenance;
+};
+// Error: unknown kind of file (hint lists the known ones), or what the reader says.
+FitInput load_input(const SqtFitOptions& options);
+
+}  // namespace suite

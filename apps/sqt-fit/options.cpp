@@ -1,0 +1,47 @@
+#include "options.h"
+
+#include "formats/measured/measured.h"
+
+namespace suite {
+
+AppInfo sqt_fit_info() {
+  return {
+      "sqt-fit", "Fits a spherical quad-tree (.sqt) to a measured or modelled scattering function.",
+      "Inputs, by content: MERL .binary (90x90x180 or 90x90x360), RGL .bsdf (rgb or spectral).\n"
+      "Conventions:\n"
+      "  units      values are BSDF in 1/sr; angles of files as their formats say; wavelengths in um\n"
+      "  cosine     values carry no cosine; the weight that is integrated and sampled is value x |cos theta_in|\n"
+      "  bins       a bin of a table stands for its centre; tables are looked up in the nearest bin\n"
+      "  horizon    nothing at or below it; cells that it cuts carry the mass above it; RGL files are divided by the\n"
+      "             cosine, clamped at 88 deg\n"
+      "  views      0 to 89.9 deg; incident directions to the horizon\n"
+      "  errors     --max-error is the cosine-weighted relative L1: sum |f'-f| cos / sum f cos, both angles uniform "
+      "on\n"
+      "             the hemisphere up to 80 deg, over all channels\n"
+      "Examples:\n"
+      "  sqt-fit satin.bsdf -o satin.sqt\n"
+      "  sqt-fit gold.binary -o gold.sqt --max-error 0.05 --report gold.json\n"
+      "  sqt-fit gold.binary -o gold.sqt --max-bytes 50000 --curve gold.csv\n"
+      "  sqt-fit --model ward:reflectance=0.2,roughness=0.15 -o ward.sqt\n"
+      "  sqt-fit gold.binary -o old.sqt --method paper --order 6 --views 24 --threshold 0.2\n"
+      "Exit codes: 0 written, 1 bad input or (--strict) a promise not kept, 2 wrong usage, 3 a bug of ours."};
+}
+
+void declare(Cli& cli, SqtFitOptions& o) {
+  cli.positional("input", o.input, "file to fit", false);
+  cli.option("--model", o.model, "fit a scattering model instead of a file", "NAME:PARAM=VALUE,...");
+  cli.option("-o,--output", o.output, "file to write", "FILE.sqt");
+  cli.option("--method", o.method, "aligned, or paper (one tree a view and channel, for comparison)", "NAME");
+  cli.option("--order", o.order, "finest HEALPix order, 3-12 (paper: 1-8); 0 = 10 (paper: 6)", "N");
+  cli.option("--views", o.views, "view directions, 2-64; 0 = 17 (paper: 24)", "N");
+  cli.option("--threshold", o.threshold,
+             "paper: families whose values differ by at most this share of their mean are consolidated", "X");
+  cli.option("--max-error", o.max_error, "aligned: find the smallest file with at most this error", "E");
+  cli.option("--max-bytes", o.max_bytes, "aligned: find the best fit of at most this size", "N");
+  cli.option("--report", o.report, "write sizes and errors as JSON", "FILE.json");
+  cli.option("--curve", o.curve, "sweep the quality (paper: the threshold) and write error against bytes and seconds",
+             "FILE.csv");
+  cli.flag("--strict", o.strict, "unphysical input and promises that cannot be kept are errors");
+}
+
+}  // namespace suite

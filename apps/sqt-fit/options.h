@@ -1,0 +1,20 @@
+// The options of sqt-fit.
+#pragma once
+#include <string>
+
+#include "base/run_app.h"
+
+namespace suite {
+
+struct SqtFitOptions {
+  std::string input, model, output, report, curve;
+  std::string method = "aligned";
+  long long order = 0, views = 0, max_bytes = 0;
+  double threshold = 0.1, max_error = 0;
+  bool strict = false;
+};
+
+AppInfo sqt_fit_info();
+void declare(Cli& cli, SqtFitOptions& options);
+
+}  // namespace suite

@@ -1,0 +1,194 @@
+#include "run.h"
+
+#include <chrono>
+#include <functional>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/progress.h"
+#include "input.h"
+#include "sqt/fit.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kReferencePairs = 200000;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// What is to be written, with what is to be said about it.
+struct Outcome {
+  std::vector<std::byte> file;
+  std::shared_ptr<const sqt::Bundle> bundle;
+  std::vector<sqt::ErrorFigures> errors;
+  bool error_met = true, bytes_met = true;
+};
+
+void check_options(const SqtFitOptions& o) {
+  if (o.input.empty() == o.model.empty()) throw UsageError("give one input file or --model");
+  if (o.output.empty() && o.report.empty() && o.curve.empty())
+    throw UsageError("give -o FILE.sqt (or --report, --curve)");
+  if (o.method != "aligned" && o.method != "paper") throw UsageError("--method is 'aligned' or 'paper'");
+  const bool paper = o.method == "paper";
+  if (paper && (o.max_error != 0 || o.max_bytes != 0))
+    throw UsageError("--max-error and --max-bytes need --method aligned; see --threshold and --curve");
+  if (o.order && (o.order < (paper ? 1 : 3) || o.order > (paper ? 8 : 12))) throw UsageError("--order is out of range");
+  if (o.views && (o.views < 2 || o.views > 64)) throw UsageError("--views is out of range");
+  if (!(o.max_error >= 0) || o.max_bytes < 0 || !(o.threshold >= 0)) throw UsageError("targets must be positive");
+}
+
+// Numbers about the input that no physical surface has; errors under --strict.
+void judge_input(const FitInput& input, const sqt::Reference& reference, bool strict) {
+  const sqt::Reference::Findings& f = reference.findings();
+  auto say = [&](const std::string& text, const std::string& done) {
+    if (strict) throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "leave out --strict to have it " + done);
+    warn(input.provenance.input + ": " + text + "; " + done);
+  };
+  const bool surface = input.function->info().quantity == sqt::Quantity::bsdf;
+  if (surface && f.largest_total > 1.0005)
+    say(strf("directional-hemispherical total of %.4f exceeds 1", f.largest_total), "clamped to 1");
+  if (f.negative_share > 0) say(strf("%.3g %% of the values are negative", 100 * f.negative_share), "taken as 0");
+  if (surface && f.reciprocity_error > 0.02)
+    say(strf("not reciprocal: mean difference %.2g %%", 100 * f.reciprocity_error), "fitted as it is");
+}
+
+sqt::AlignedSource::Options source_options(const SqtFitOptions& o) {
+  sqt::AlignedSource::Options options;
+  if (o.views) options.views = static_cast<size_t>(o.views);
+  if (o.order)
+    options.max_order = static_cast<int>(o.order), options.base_order = std::min(options.base_order, options.max_order);
+  return options;
+}
+
+sqt::PaperOptions paper_options(const SqtFitOptions& o) {
+  sqt::PaperOptions options;
+  if (o.views) options.views = static_cast<size_t>(o.views);
+  if (o.order) options.order = static_cast<int>(o.order);
+  options.threshold = o.threshold;
+  return options;
+}
+
+Json report_json(const SqtFitOptions& o, const FitInput& input, const Outcome& out, double seconds) {
+  Json j = Json::object();
+  j.set("input", input.provenance.input);
+  j.set("method", o.method);
+  j.set("bytes", out.file.size());
+  j.set("leaves", out.bundle->info().leaves);
+  j.set("max_order", out.bundle->info().max_order);
+  j.set("frame", out.bundle->info().frame);
+  j.set("seconds", seconds);
+  j.set("error_met", out.error_met);
+  j.set("bytes_met", out.bytes_met);
+  j.set("conventions", input.provenance.conventions);
+  j.set("units", "value 1/sr without cosine; rmse 1/sr; other errors relative");
+  j.set("overall", error_json(out.errors.back()));
+  Json channels = Json::array();
+  for (size_t c = 0; c + 1 < out.errors.size(); ++c) {
+    Json e = error_json(out.errors[c]);
+    e.set("wavelength_um", input.function->info().wavelength_um[c]);
+    channels.push(std::move(e));
+  }
+  j.set("channels", std::move(channels));
+  return j;
+}
+
+void print_summary(const SqtFitOptions& o, const Outcome& out, double seconds) {
+  const sqt::ErrorFigures& e = out.errors.back();
+  note(strf("%s: %zu bytes, %zu leaves to order %d, %.2f s", o.method.c_str(), out.file.size(),
+            out.bundle->info().leaves, out.bundle->info().max_order, seconds));
+  note(strf("  l1 %.2f %%  cos_rmse %.2f %%  rmse %.3g /sr  total_error %.2g %%  reciprocity_error %.2g %%", 100 * e.l1,
+            100 * e.cos_rmse, e.rmse, 100 * e.total_error, 100 * e.reciprocity_error));
+  note(strf("  peaks at 20/45/70 deg: %.3f %.3f %.3f of the data; largest sampling weight %.2f", e.peak_ratio_20,
+            e.peak_ratio_45, e.peak_ratio_70, e.max_weight));
+}
+
+// Error against size and time over a range of the method's knob.
+void write_curve(const SqtFitOptions& o, const FitInput& input, const sqt::Reference& reference,
+                 const sqt::AlignedSource* source) {
+  std::string csv = "method,knob,bytes,leaves,seconds,l1,cos_rmse,rmse\n";
+  auto row = [&](double knob, size_t bytes, const sqt::Bundle& bundle, double seconds) {
+    const sqt::ErrorFigures e = reference.measure(bundle).back();
+    csv += strf("%s,%.6g,%zu,%zu,%.4g,%.6g,%.6g,%.6g\n", o.method.c_str(), knob, bytes, bundle.info().leaves, seconds,
+                e.l1, e.cos_rmse, e.rmse);
+  };
+  Progress progress("curve", 10, "point");
+  for (int k = 0; k < 10; ++k) {
+    const Stopwatch watch;
+    if (source) {
+      const double quality = 0.01 * std::pow(2, 0.8 * k);
+      const sqt::AlignedFit fit = sqt::encode_aligned(*source, quality);
+      const size_t bytes = pack_sqt(fit, input.provenance, {}).size();
+      row(quality, bytes, *sqt::make_bundle(fit.data), watch.seconds());
+    } else {
+      sqt::PaperOptions options = paper_options(o);
+      options.threshold = k ? 0.01 * std::pow(2, 0.8 * (k - 1)) : 0;
+      const sqt::PaperData data = sqt::fit_paper(*input.function, options);
+      const size_t bytes = pack_sqt(data, input.provenance, {}).size();
+      row(options.threshold, bytes, *sqt::make_bundle(data), watch.seconds());
+    }
+    progress.add(1);
+  }
+  progress.finish();
+  write_file(o.curve, csv);
+}
+
+}  // namespace
+
+int run_sqt_fit(const SqtFitOptions& o) {
+  check_options(o);
+  const FitInput input = load_input(o);
+  const Stopwatch watch;
+  Progress progress("fitting", 1, "fit");
+  auto advance = [&](double share) { return [&progress, share](double fraction) { progress.add(share * fraction); }; };
+  const sqt::Reference reference(*input.function, kReferencePairs, 1, advance(0.2));
+  judge_input(input, reference, o.strict);
+  Outcome out;
+  std::unique_ptr<sqt::AlignedSource> source;
+  if (o.method == "aligned") {
+    source = std::make_unique<sqt::AlignedSource>(*input.function, source_options(o), advance(0.4));
+    sqt::FitTarget target{o.max_error, static_cast<size_t>(o.max_bytes), 0};
+    // The container's share is known once something has been packed.
+    const sqt::AlignedFit first = sqt::encode_aligned(*source, 1.0);
+    const std::vector<sqt::ErrorFigures> blank(
+        input.function->info().wavelength_um.size() + 1,
+        {1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3});
+    target.overhead =
+        pack_sqt(first, input.provenance, blank).size() - first.sheets_bytes.size() - first.totals_bytes.size() + 64;
+    const sqt::FitResult result = sqt::fit_to(*source, reference, target, advance(0.3));
+    out.bundle = sqt::make_bundle(result.fit.data);
+    out.errors = reference.measure(*out.bundle);
+    out.file = pack_sqt(result.fit, input.provenance, out.errors);
+    out.error_met = result.error_met;
+    out.bytes_met = !o.max_bytes || out.file.size() <= static_cast<size_t>(o.max_bytes);
+  } else {
+    const sqt::PaperData data = sqt::fit_paper(*input.function, paper_options(o), advance(0.7));
+    out.bundle = sqt::make_bundle(data);
+    out.errors = reference.measure(*out.bundle);
+    out.file = pack_sqt(data, input.provenance, out.errors);
+  }
+  progress.finish();
+  const double seconds = watch.seconds();
+  print_summary(o, out, seconds);
+  if (!out.error_met || !out.bytes_met) {
+    const std::string text =
+        !out.bytes_met
+            ? strf("%lld bytes cannot be kept: the smallest file has %zu", o.max_bytes, out.file.size())
+            : strf("an error of %g cannot be kept: the best fit has %.4g", o.max_error, out.errors.back().l1);
+    if (o.strict)
+      throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "relax the target or leave out --strict");
+    warn(text);
+  }
+  if (!o.output.empty()) write_file(o.output, out.file);
+  if (!o.report.empty()) write_file(o.report, report_json(o, input, out, seconds).text());
+  if (!o.curve.empty()) write_curve(o, input, reference, source.get());
+  return 0;
+}
+
+}  // namespace suite

@@ -1,0 +1,71 @@
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "formats/brdf_csv/brdf_csv.h"
+#include "formats/cornell/cornell.h"
+#include "formats/measured/measured.h"
+#include "formats/merl/merl.h"
+#include "formats/rgl/rgl.h"
+#include "formats/samples/samples.h"
+
+namespace suite {
+
+namespace {
+
+enum class Kind { unknown, rgl, merl, samples, cornell, csv };
+
+Kind kind_of(std::span<const std::byte> bytes, const std::string& path) {
+  auto starts = [&](const char* text, size_t n) {
+    return bytes.size() >= n && std::memcmp(bytes.data(), text, n) == 0;
+  };
+  if (starts("tensor_file", 12)) return Kind::rgl;
+  if (starts("RAWBH10A", 8) || starts("RAWBS10A", 8)) return Kind::samples;
+  const int32_t ninety[2] = {90, 90};
+  if (bytes.size() >= 8 && std::memcmp(bytes.data(), ninety, 8) == 0) return Kind::merl;
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".bsdf") return Kind::rgl;
+  if (extension == ".binary") return Kind::merl;
+  if (extension == ".brdf") return Kind::cornell;
+  if (extension == ".csv") return Kind::csv;
+  return Kind::unknown;
+}
+
+}  // namespace
+
+Measured read_measured(const std::string& path) {
+  const std::vector<std::byte> bytes = read_bytes(path, size_t{1} << 32);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  switch (kind_of(bytes, path)) {
+    case Kind::rgl:
+      return std::static_pointer_cast<const sqt::Function>(parse_rgl(bytes, path));
+    case Kind::merl:
+      return std::static_pointer_cast<const sqt::Function>(parse_merl(bytes, path));
+    case Kind::samples:
+      return parse_samples(text, path);
+    case Kind::cornell:
+      return parse_cornell(text, path);
+    case Kind::csv:
+      return parse_brdf_csv(text, path);
+    case Kind::unknown:
+      break;
+  }
+  throw Error(Where{path, 0, 0, {}, -1}, "is no measured scattering file that we know",
+              "known formats:\n" + measured_formats());
+}
+
+std::string measured_formats() {
+  return "  .binary   MERL, 90 x 90 x 180 or 360; f = raw x (1, 1.15, 1.66)/1500 per sr, no cosine; values at bin "
+         "centres,\n"
+         "            nearest bin; a triple with a negative value is invalid\n"
+         "  .bsdf     RGL tensor file, rgb or spectral, isotropic or anisotropic; light = theta_i; divided by "
+         "cos(out), from\n"
+         "            88 deg on by cos 88 deg; negative values count as 0\n"
+         "  RAWBH10A, RAWBS10A   raw sample text, per sr without cosine (recognised by its first line)\n"
+         "  .brdf     Cornell text, per sr without cosine\n"
+         "  .csv      theta_o, phi_o, theta_i, phi_i [rad, or _deg], wavelength_um, value [1/sr, no cosine]\n"
+         "Directions below the horizon hold no data.\n";
+}
+
+}  // namespace suite

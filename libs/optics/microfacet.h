@@ -1,0 +1,61 @@
+// The GGX distribution of micro-facet normals with Smith's height-correlated shadowing, and the sampling of the normals
+// that are visible from a direction.
+//
+// All directions on the upper side (z > 0), unit length. Based on: B. Walter et al., "Microfacet models for refraction
+// through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 3(2), 2014 (equations
+// 72, 86, 99); E. Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
+#pragma once
+#include <cmath>
+
+#include <vector>
+
+#include "math/sampling.h"
+#include "math/vec.h"
+
+namespace suite {
+
+struct Ggx {
+  double ax = 0.1, ay = 0.1;  // roughness along x and y, > 0
+
+  // Density of normals per projected solid angle, 1/sr.
+  double density(Dir h) const {
+    const double x = h.x / ax, y = h.y / ay, t = x * x + y * y + h.z * h.z;
+    return 1 / (kPi * ax * ay * t * t);
+  }
+  double lambda(Dir d) const {
+    const double z2 = d.z * d.z, a2 = ax * ax * d.x * d.x + ay * ay * d.y * d.y;
+    // (sqrt(1 + a2 / z2) - 1) / 2 without cancellation at small slopes.
+    return 0.5 * a2 / (z2 + std::fabs(d.z) * std::sqrt(z2 + a2));
+  }
+  double masking(Dir d) const { return 1 / (1 + lambda(d)); }                            // G1
+  double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }       // G2, same side
+  // Density per steradian of visible_normal(out, .).
+  double visible_density(Dir out, Dir h) const {
+    const double c = dot(out, h);
+    return c > 0 ? masking(out) * c * density(h) / out.z : 0;
+  }
+  Dir visible_normal(Dir out, Vec2 u) const {
+    // Stretch to the hemisphere of unit roughness, sample the visible half disk, project back.
+    const Dir v = normalized({ax * out.x, ay * out.y, out.z});
+    const double s2 = v.x * v.x + v.y * v.y;
+    const Vec3 t1 = s2 > 0 ? Vec3{-v.y, v.x, 0} / std::sqrt(s2) : Vec3{1, 0, 0}, t2 = cross(v, t1);
+    const double r = std::sqrt(u.x), phi = 2 * kPi * u.y, s = 0.5 * (1 + v.z);
+    const double p1 = r * std::cos(phi), p2 = (1 - s) * std::sqrt(std::max(0.0, 1 - p1 * p1)) + s * r * std::sin(phi);
+    const Vec3 n = t1 * p1 + t2 * p2 + v * std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2));
+    return normalized({ax * n.x, ay * n.y, std::max(0.0, n.z)});
+  }
+
+};
+
+// Points of the unit square for averages over visible normals when a model is baked (the first points of Sobol's sequence; count a
+// power of two up to 2^16).
+inline std::vector<Vec2> baking_points(uint32_t count) {
+  std::vector<Vec2> points(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto x = sobol4(i);
+    points[i] = {unit_double(x[0]) + 0.5 / count, unit_double(x[1]) + 0.5 / count};
+  }
+  return points;
+}
+
+}  // namespace suite

@@ -1,0 +1,78 @@
+#include "optics/model_function.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "optics/models.h"
+
+namespace suite {
+
+namespace {
+
+class ModelFunction final : public sqt::Function {
+ public:
+  ModelFunction(const ModelSpec& spec, const SpectralState& state, std::string text) : model_(bake(spec, state)) {
+    info_.name = spec.model;
+    info_.source = "model " + std::move(text) + ", evaluated where asked";
+    info_.wavelength_um = {state.reference_um};
+    info_.domain = model_->opaque() ? sqt::Domain::hemisphere : sqt::Domain::sphere;
+    info_.isotropic = info_.bilateral = rotation_does_not_matter();
+  }
+  const Info& info() const override { return info_; }
+  void value(Dir out, Dir in, std::span<double> f) const override {
+    if (!(out.z > 0) || in.z == 0 || (in.z < 0 && info_.domain == sqt::Domain::hemisphere)) {
+      f[0] = std::nan("");
+      return;
+    }
+    float w = 0;
+    model_->eval(out, in, {&w, 1});
+    f[0] = w / std::fabs(in.z);
+  }
+
+ private:
+  bool rotation_does_not_matter() const {
+    auto w = [&](Dir out, Dir in) {
+      float v = 0;
+      model_->eval(out, in, {&v, 1});
+      return static_cast<double>(v);
+    };
+    for (int k = 0; k < 60; ++k) {
+      const double a = 0.1 + 0.023 * k, b = 1.4 - 0.021 * k, phi = 0.37 * k, turn = 1.1 * k;
+      const double plain = w(dir_from_angles(a, 0), dir_from_angles(b, phi));
+      if (std::fabs(w(dir_from_angles(a, turn), dir_from_angles(b, phi + turn)) - plain) > 1e-4 * plain + 1e-7)
+        return false;
+    }
+    return true;
+  }
+
+  std::unique_ptr<const ScatterModel> model_;
+  Info info_;
+};
+
+}  // namespace
+
+std::shared_ptr<const sqt::Function> model_function(const std::string& text) {
+  ModelSpec spec;
+  const size_t colon = text.find(':');
+  spec.model = text.substr(0, colon);
+  const Where where{"--model " + text, 0, 0, {}, -1};
+  for (size_t at = colon; at != std::string::npos;) {
+    const size_t next = text.find(',', at + 1);
+    const std::string item = text.substr(at + 1, next == std::string::npos ? next : next - at - 1);
+    const size_t equals = item.find('=');
+    char* end = nullptr;
+    const double value = equals == std::string::npos ? 0 : std::strtod(item.c_str() + equals + 1, &end);
+    if (equals == std::string::npos || end == item.c_str() + equals + 1 || *end)
+      throw Error(where, "'" + item + "' is not PARAM=NUMBER");
+    spec.numbers[item.substr(0, equals)] = value;
+    at = next;
+  }
+  check_model(spec, where);
+  SpectralState state;
+  state.low_um = 0.5495, state.high_um = 0.5505, state.reference_um = 0.55;
+  state.bins = {{0.5495, 0.5505}};
+  state.knots = {0};
+  return std::make_shared<ModelFunction>(spec, state, text);
+}
+
+}  // namespace suite

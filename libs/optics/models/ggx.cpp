@@ -1,0 +1,134 @@
+// Rough metal: a GGX micro-facet surface of perfect conductors' mirrors, isotropic or anisotropic, single scattering.
+// Assumes: the same on both sides, nothing transmitted; light scattered twice between facets is lost (the total says so).
+// Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals).
+#include <cmath>
+
+#include "optics/fresnel.h"
+#include "optics/microfacet.h"
+#include "optics/models/common.h"
+#include "optics/models/directional_table.h"
+#include "optics/models/rows.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kRows = 129, kPoints = 8192, kAngles = 96;
+
+class GgxConductor final : public ScatterModel {
+ public:
+  GgxConductor(const ModelSpec& spec, const SpectralState& state)
+      : f0_(state.sample(spec.curves.at("f0"))),
+        n_(state.sample(spec.curves.at("n"))),
+        k_(state.sample(spec.curves.at("k"))),
+        facets_{spec.numbers.at("roughness"),
+                spec.numbers.at("roughness_y") > 0 ? spec.numbers.at("roughness_y") : spec.numbers.at("roughness")} {
+    if (facets_.ay < 1e-4) throw Error("model 'ggx': roughness_y is below 1e-4", "give 1e-4 to 1, or 0 for the same as roughness");
+    const float n_low = *std::min_element(n_.begin(), n_.end()), n_high = *std::max_element(n_.begin(), n_.end());
+    const bool given_f0 = *std::max_element(f0_.begin(), f0_.end()) > 0;
+    indexed_ = n_high > 0;
+    if (indexed_ && !(n_low > 0)) throw Error("model 'ggx': n must be above 0 everywhere");
+    if (indexed_ == given_f0) throw Error("model 'ggx' needs f0, or n and k, but not both");
+    tabulate();
+    const std::vector<float>&first = indexed_ ? n_ : f0_, &second = indexed_ ? k_ : f0_;
+    auto constant = [](const std::vector<float>& v) { return std::all_of(v.begin(), v.end(), [&](float x) { return x == v[0]; }); };
+    uniform_ = constant(first) && constant(second);
+  }
+
+  void eval(Dir out, Dir in, std::span<float> w) const override {
+    if (!same_side(out, in)) return zero(w);
+    const Dir o = up(out), i = up(in), h = normalized(o + i);
+    const double shape = facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z), c = dot(o, h);
+    for (size_t b = 0; b < w.size(); ++b) w[b] = finite_float(reflectance(c, b) * shape);
+  }
+  void total(Dir out, std::span<float> W) const override {
+    if (out.z == 0) return zero(W);
+    total_.at(up(out), W);
+  }
+  std::optional<Sample> sample(Dir out, Vec2 u, double, int) const override {
+    if (out.z == 0) return std::nullopt;
+    const Dir o = up(out), h = facets_.visible_normal(o, u), in = normalized(h * (2 * dot(o, h)) - o);
+    if (!(in.z > 0)) return std::nullopt;
+    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, 0, false};
+  }
+  void pdf(Dir out, Dir in, std::span<float> p) const override {
+    if (!same_side(out, in)) return zero(p);
+    const Dir o = up(out), h = normalized(o + up(in));
+    const double density = facets_.masking(o) * facets_.density(h) / (4 * o.z);
+    std::fill(p.begin(), p.end(), finite_float(density));
+  }
+  bool spectrally_uniform_shape() const override { return uniform_; }
+  bool single_lobe() const override { return true; }
+
+ private:
+  double reflectance(double c, size_t bin) const {
+    return indexed_ ? fresnel_conductor(c, n_[bin], k_[bin]) : fresnel_schlick(c, f0_[bin]);
+  }
+  // W(out) = integral of F(o.h) G2/G1 over visible normals. The distribution of c = o.h, weighed with G2/G1, is put into
+  // hats over c = t^2 (F bends near grazing), then multiplied with F of every wavelength.
+  void tabulate() {
+    std::vector<float> fresnel(f0_.size() * kAngles);
+    for (size_t b = 0; b < f0_.size(); ++b)
+      for (size_t a = 0; a < kAngles; ++a) {
+        const double t = static_cast<double>(a) / (kAngles - 1);
+        fresnel[b * kAngles + a] = static_cast<float>(reflectance(t * t, b));
+      }
+    const std::vector<Vec2> points = baking_points(kPoints);
+    total_ = DirectionalTable(facets_.ax, facets_.ay, kRows, f0_.size(), [&](Dir o, std::span<float> W) {
+      std::vector<double> hats(kAngles);
+      for (const Vec2 u : points) {
+        const Dir h = facets_.visible_normal(o, u);
+        const double c = dot(o, h);
+        const Dir in = h * (2 * c) - o;
+        if (!(in.z > 0 && c > 0)) continue;
+        const double weight = facets_.shadowing(o, in) / facets_.masking(o) / kPoints;
+        const double t = std::min(1.0, std::sqrt(c)) * (kAngles - 1);
+        const size_t a = std::min(kAngles - 2, static_cast<size_t>(t));
+        // Linear in c between the nodes, as F is nearly.
+        const double c0 = static_cast<double>(a * a), c1 = static_cast<double>((a + 1) * (a + 1)), share = (t * t - c0) / (c1 - c0);
+        hats[a] += weight * (1 - share);
+        hats[a + 1] += weight * share;
+      }
+      for (size_t b = 0; b < W.size(); ++b) {
+        double sum = 0;
+        for (size_t a = 0; a < kAngles; ++a) sum += hats[a] * fresnel[b * kAngles + a];
+        W[b] = static_cast<float>(sum);
+      }
+    });
+  }
+
+  std::vector<float> f0_, n_, k_;
+  Ggx facets_;
+  bool indexed_ = false, uniform_ = false;
+  DirectionalTable total_;
+};
+
+std::vector<ModelSpec> examples() {
+  // Aluminium-like and gold-like (after Rakic 1998), coarse.
+  const Curve n({0.4, 0.6, 0.8, 1.0, 2.0}, {0.49, 1.2, 2.7, 1.35, 2.2}, Outside::hold);
+  const Curve k({0.4, 0.6, 0.8, 1.0, 2.0}, {4.86, 7.26, 8.3, 9.6, 20.8}, Outside::hold);
+  const Curve gold({0.4, 0.5, 0.6, 1.0}, {0.38, 0.5, 0.9, 0.97}, Outside::hold);
+  auto metal = [](double rough, double rough_y, std::map<std::string, Curve> curves) {
+    return ModelSpec{"ggx", {{"roughness", rough}, {"roughness_y", rough_y}}, std::move(curves), {}, nullptr};
+  };
+  return {metal(0.2, 0, {{"n", n}, {"k", k}}), metal(0.5, 0.1, {{"f0", gold}}), metal(1, 0, {{"f0", Curve::constant(1)}}),
+          metal(1e-3, 0, {{"n", n}, {"k", k}})};
+}
+
+}  // namespace
+
+ModelRow ggx_row() {
+  using P = ModelParameter;
+  return {"ggx",
+          "rough metal, GGX micro-facets (Walter 2007, Heitz 2014 and 2018), single scattering",
+          {{"f0", P::Kind::curve, "1", "reflectance at normal incidence (Schlick); or give n and k", 0, 1, false, 0},
+           {"n", P::Kind::curve, "1", "real part of the refractive index", 0, 100, false, 0},
+           {"k", P::Kind::curve, "1", "imaginary part of the refractive index, absorbing positive", 0, 200, false, 0},
+           {"roughness", P::Kind::number, "1", "GGX alpha (along x when anisotropic)", 1e-4, 1},
+           {"roughness_y", P::Kind::number, "1", "GGX alpha along y; 0 = as along x", 0, 1, false, 0}},
+          true,
+          make_model<GgxConductor>,
+          examples};
+}
+
+}  // namespace suite

@@ -1,0 +1,27 @@
+// What the empirical models of natural ground share: they diverge at grazing and have no closed total.
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace suite {
+
+// Beyond 85 deg these models are evaluated at 85 deg: they were made for satellite and field geometries and grow without
+// bound towards the horizon.
+inline constexpr double kGroundMinCosine = 0.08715574274765817;
+inline Dir not_grazing(Dir d) {
+  if (d.z >= kGroundMinCosine) return d;
+  const double scale = std::sqrt((1 - kGroundMinCosine * kGroundMinCosine) / (d.x * d.x + d.y * d.y));
+  return {d.x * scale, d.y * scale, kGroundMinCosine};
+}
+
+// Quadrature over the upper hemisphere for functions even in azimuth: nodes with y >= 0 and weights cos(theta) d(omega)
+// that sum to pi. Nodes crowd towards the direction `out` (azimuth 0), where the hot spot has its cusp.
+struct GroundNode {
+  Dir in;
+  double weight;
+};
+std::vector<GroundNode> ground_nodes(Dir out);
+
+}  // namespace suite

@@ -1,0 +1,157 @@
+// A fitted spherical quad-tree as a scattering model: shapes at the stored wavelengths, magnitudes from the finer
+// table.
+//
+// At a wavelength between two stored ones the shape is the mean of theirs, weighed by nearness (each normalised to its
+// total), and is scaled to the total of that wavelength; outside the stored range the nearest holds. Sampling picks one
+// of the two shapes with the same weights, so that a knot's density is exactly its shape's mixture.
+// Based on: Goodenough & Brown, section IV-D-4 and V-A.
+#include <algorithm>
+#include <cmath>
+
+#include "optics/models/rows.h"
+#include "sqt/aligned.h"
+#include "sqt/bundle.h"
+
+namespace suite {
+
+namespace {
+
+// Between two entries of an ascending table, the nearest end outside.
+struct Between {
+  size_t low = 0, high = 0;
+  double t = 0;
+};
+Between locate(const std::vector<double>& ascending, double x) {
+  const size_t n = ascending.size();
+  if (x <= ascending.front()) return {0, 0, 0};
+  if (x >= ascending.back()) return {n - 1, n - 1, 0};
+  const size_t i = static_cast<size_t>(std::upper_bound(ascending.begin(), ascending.end(), x) - ascending.begin()) - 1;
+  return {i, i + 1, (x - ascending[i]) / (ascending[i + 1] - ascending[i])};
+}
+
+class Sqt final : public ScatterModel {
+ public:
+  Sqt(std::shared_ptr<const sqt::Bundle> bundle, const SpectralState& state) : bundle_(std::move(bundle)) {
+    const sqt::Bundle::Info& info = bundle_->info();
+    // Channels in ascending wavelength (RGB data come red first).
+    std::vector<std::pair<double, size_t>> order;
+    for (size_t c = 0; c < bundle_->channels(); ++c) order.push_back({info.function.wavelength_um[c], c});
+    std::sort(order.begin(), order.end());
+    std::vector<double> um;
+    for (const auto& [wavelength, c] : order) um.push_back(wavelength);
+    for (const Bin& bin : state.bins) {
+      Between shape = locate(um, bin.center_um());
+      shape.low = order[shape.low].second, shape.high = order[shape.high].second;
+      shape_.push_back(shape);
+      magnitude_.push_back(locate(info.magnitude_um, bin.center_um()));
+    }
+    for (const size_t k : state.knots) knot_.push_back(shape_[k]);
+  }
+
+  void eval(Dir out, Dir in, std::span<float> w) const override {
+    thread_local std::vector<double> f, W;
+    f.resize(bundle_->channels());
+    bundle_->value(out, in, f);
+    for (size_t c = 0; c < f.size(); ++c) {
+      const double total = f[c] > 0 ? scattered(out, c) : 0;
+      f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
+    }
+    magnitudes(out, W);
+    for (size_t i = 0; i < w.size(); ++i)
+      w[i] =
+          static_cast<float>(at_bin(W, i) * ((1 - shape_[i].t) * f[shape_[i].low] + shape_[i].t * f[shape_[i].high]));
+  }
+  void total(Dir out, std::span<float> w) const override {
+    thread_local std::vector<double> W;
+    magnitudes(out, W);
+    for (size_t i = 0; i < w.size(); ++i) w[i] = static_cast<float>(at_bin(W, i));
+  }
+  std::optional<Sample> sample(Dir out, Vec2 u, double lobe_u, int knot) const override {
+    const Between& s = knot_[static_cast<size_t>(knot)];
+    const double first = 1 - s.t;
+    const bool low = lobe_u < first;
+    const double rest = low ? lobe_u / first : (lobe_u - first) / s.t;
+    const auto in = bundle_->sample(out, u, std::min(rest, 0x1.fffffffffffffp-1), low ? s.low : s.high);
+    if (!in) return std::nullopt;
+    return Sample{*in, out.z * in->z > 0 ? 0 : 1, false};
+  }
+  void pdf(Dir out, Dir in, std::span<float> p) const override {
+    thread_local std::vector<double> q;
+    q.resize(bundle_->channels());
+    bundle_->pdf(out, in, q);
+    for (size_t k = 0; k < p.size(); ++k)
+      p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
+  }
+  bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
+  bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
+
+ private:
+  // What the cells scatter: the total without a Dirac lobe.
+  double scattered(Dir out, size_t channel) const { return bundle_->total(out, channel); }
+  void magnitudes(Dir out, std::vector<double>& W) const {
+    W.resize(bundle_->info().magnitude_um.size());
+    bundle_->magnitude(out, W);
+  }
+  double at_bin(const std::vector<double>& W, size_t i) const {
+    const Between& m = magnitude_[i];
+    return std::min(1.0, (1 - m.t) * W[m.low] + m.t * W[m.high]);
+  }
+
+  std::shared_ptr<const sqt::Bundle> bundle_;
+  std::vector<Between> shape_, magnitude_;  // per bin
+  std::vector<Between> knot_;               // per knot
+};
+
+// A glossy lobe over a diffuse floor whose colour changes, for the conformance tests.
+class Glossy final : public sqt::Function {
+ public:
+  Glossy() {
+    info_.name = "glossy";
+    info_.wavelength_um = {0.65, 0.55, 0.45};
+  }
+  const Info& info() const override { return info_; }
+  void value(Dir out, Dir in, std::span<double> f) const override {
+    if (!(out.z > 0) || !(in.z > 0)) {
+      std::fill(f.begin(), f.end(), std::nan(""));
+      return;
+    }
+    const Dir h = normalized(out + in);
+    const double lobe = std::exp(-(1 - h.z * h.z) / (h.z * h.z * 0.01)) / std::max(0.1, in.z + out.z);
+    f[0] = 0.15 + 0.3 * lobe, f[1] = 0.06 + 0.8 * lobe, f[2] = 0.01 + 1.2 * lobe;
+  }
+
+ private:
+  Info info_;
+};
+
+std::vector<ModelSpec> examples() {
+  static const std::shared_ptr<const sqt::Bundle> bundle = [] {
+    sqt::AlignedSource::Options options;
+    options.views = 9;
+    options.base_order = 5;
+    options.max_order = 7;
+    const sqt::AlignedSource source(Glossy(), options);
+    return sqt::make_bundle(sqt::encode_aligned(source, 0.1).data);
+  }();
+  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, bundle}};
+}
+
+}  // namespace
+
+ModelRow sqt_row() {
+  using P = ModelParameter;
+  return {"sqt",
+          "fitted spherical quad-tree (Goodenough & Brown 2017)",
+          {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0}},
+          false,
+          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
+            if (!spec.bundle) throw Error("model 'sqt': the file '" + spec.texts.at("file") + "' has not been loaded");
+            if (spec.bundle->info().function.quantity != sqt::Quantity::bsdf)
+              throw Error("model 'sqt': '" + spec.texts.at("file") + "' does not hold a surface function",
+                          "fit a BRDF or BTDF");
+            return std::make_unique<Sqt>(spec.bundle, state);
+          },
+          examples};
+}
+
+}  // namespace suite

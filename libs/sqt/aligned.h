@@ -1,0 +1,110 @@
+// The aligned method: one adaptive tree per side, shared by all views and channels, over directions in which the lobes
+// of all views coincide; smooth log-domain reconstruction; transform-coded.
+//
+// f(out, in) = s(theta) 2^( blend over views of [ value + slope . (position in the leaf) ] ), in the cell coordinates
+// of lobe_map.h. s(theta) makes the integral of f |cos| equal to the total that the data had before reduction. Values
+// of a node are averages of log2 f over its cell for every view and channel; children are coded as differences from the
+// plane through their parent, transformed over views and channels (cosine transforms), quantised with a step that
+// shrinks with the weight of the cell in the cosine-weighted error, and range-coded by adaptive contexts.
+//
+// Based on: Goodenough & Brown, section IV-D-4 (the quad-tree, totals before reduction); S. Rusinkiewicz 1998 (half
+// vector); Said & Pearlman 1996 (pyramid with prediction); rate-distortion pruning: Chou, Lookabaugh & Gray, IEEE TIT
+// 35, 1989.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sqt/bundle.h"
+#include "sqt/lobe_map.h"
+
+namespace suite::sqt {
+
+// What the coder needs to know beforehand; stored by the file format beside the payload.
+struct AlignedLayout {
+  LobeFrame frame = LobeFrame::half;
+  bool half_stored = true;  // bilateral: azimuths 0..pi only
+  bool upper_only = true;   // cells of the upper half sphere only
+  bool cosine_weighted = true;
+  int sheets = 1;             // 2: reflected and transmitted side
+  std::vector<double> theta;  // view polar angles, rad, ascending
+  size_t phi_count = 1;       // view azimuths per polar angle, uniform from 0
+  size_t channels = 0;
+  double quality = 0;  // base quantisation step, log2 units; the only knob of the coder
+  size_t views() const { return theta.size() * phi_count; }
+  size_t width() const { return views() * channels; }
+};
+
+// Decoded leaves of one sheet.
+struct AlignedSheet {
+  std::vector<CellId> leaves;
+  std::vector<float> plane;  // [leaf][view][channel]{value, slope x, slope y}, log2 units per cell width
+};
+
+// Totals over view angle and wavelength, and the scale s of each channel, on a finer grid of view angles.
+struct AlignedTotals {
+  std::vector<double> theta;  // rad, ascending, from 0
+  size_t phi_count = 1;
+  std::vector<double> magnitude_um;  // ascending
+  std::vector<float> magnitudes;     // [theta][phi][magnitude]
+  std::vector<float> log2_scale;     // [theta][phi][channel]
+  std::vector<float> delta;          // [theta][channel] total of the Dirac lobe, or empty
+};
+
+struct AlignedData {
+  Function::Info function;
+  AlignedLayout layout;
+  std::vector<AlignedSheet> sheets;
+  AlignedTotals totals;
+};
+
+// The data on a pyramid of cells, asked once; coded many times at different qualities.
+class AlignedSource {
+ public:
+  struct Options {
+    size_t views = 17;
+    int base_order = 6;    // every cell of this order is asked
+    int max_order = 10;    // further only where it matters
+    double detail = 1e-6;  // share of the whole a cell's variation must have to be divided further
+  };
+  AlignedSource(const Function& function, const Options& options, const std::function<void(double)>& progress = {});
+  ~AlignedSource();
+  const Function::Info& function() const;
+  const AlignedLayout& layout() const;  // quality 0
+  const AlignedTotals& totals() const;  // log2_scale empty: it depends on what was decoded
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+// Codes the trees at a quality (> 0; smaller is better and larger). The payload holds trees only.
+// decoded: receives what decode_sheets would return, when not null.
+std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality,
+                                     std::vector<AlignedSheet>* decoded = nullptr);
+// Error: a payload that is not one (runs past its end, more than max_leaves leaves).
+std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
+                                        size_t max_leaves = size_t{1} << 22);
+// log2 of the scale that gives decoded sheets the totals of the data.
+std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<AlignedSheet>& sheets,
+                             const AlignedTotals& totals, const std::vector<double>& wavelength_um);
+
+// Codes totals and scale. The numbers are rounded in place to what a decoder sees (relative steps of 1/2000).
+std::vector<std::byte> encode_totals(AlignedTotals& totals, size_t channels);
+// Fills magnitudes, log2_scale (and delta, when has_delta); theta, phi_count and magnitude_um must be set.
+void decode_totals(std::span<const std::byte> bytes, size_t channels, bool has_delta, AlignedTotals& totals);
+
+// A whole fit at a quality: trees, totals, scale.
+struct AlignedFit {
+  AlignedData data;
+  std::vector<std::byte> totals_bytes, sheets_bytes;
+};
+AlignedFit encode_aligned(const AlignedSource& source, double quality);
+
+// Checks every invariant. Error naming the fault.
+std::shared_ptr<const Bundle> make_bundle(AlignedData data);
+
+}  // namespace suite::sqt

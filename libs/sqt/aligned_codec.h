@@ -1,0 +1,106 @@
+// What encoder and decoder of the aligned method share: the transform over views and channels, the quantisation step,
+// and the entropy model of a block. Internal to libs/sqt; the method is described in aligned.h.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "sqt/aligned.h"
+#include "sqt/lattice.h"
+#include "sqt/range_coder.h"
+
+namespace suite::sqt {
+
+// Orthonormal cosine transform over channels and view angles, Fourier over view azimuths.
+class BlockTransform {
+ public:
+  explicit BlockTransform(const AlignedLayout& layout);
+  // values [view][channel] <-> coefficients [channel frequency][view frequency]; coefficient count = layout.width().
+  void forward(std::span<const float> values, std::span<float> coefficients) const;
+  void inverse(std::span<const float> coefficients, std::span<float> values) const;
+  // "How high" a view frequency is, for contexts: polar plus azimuthal wave number.
+  int height(size_t view_frequency) const { return height_[view_frequency]; }
+
+ private:
+  size_t views_, channels_;
+  std::vector<float> view_, channel_;  // [frequency][index]
+  std::vector<int> height_;
+};
+
+// Quantisation step of the differences below a node: small where a cell weighs much in the cosine-weighted error.
+class StepRule {
+ public:
+  // reference: log2 of the mean weight of a cell direction.
+  StepRule(const AlignedLayout& layout, double reference);
+  float step(CellId cell, std::span<const float> value) const;
+
+ private:
+  const AlignedLayout& layout_;
+  double reference_, log2_quality_;
+  std::vector<LobeMap> maps_;
+  std::vector<float> view_weight_;
+};
+
+// Mean log2 weight that StepRule refers to, from the totals; rounded so that it can be stored in a byte.
+int step_reference(const AlignedTotals& totals, const AlignedLayout& layout);
+
+// Entropy model of all syntax elements. Coder: RangeEncoder (codes what it is given) or RangeDecoder (fills in).
+class BlockModel {
+ public:
+  BlockModel(const AlignedLayout& layout, const BlockTransform& transform);
+  // block: `details` (1 for roots, 3 otherwise) x channel frequency x view frequency quantised levels; parent: the
+  // block of the node above, or empty.
+  template <class Coder>
+  void code(Coder& coder, std::span<int16_t> block, size_t details, std::span<const int16_t> parent, int order);
+  template <class Coder>
+  bool code_split(Coder& coder, bool split, int order, int divided_around, bool parent_busy);
+
+ private:
+  using Magnitude = std::array<BitContext, 20>;
+  template <class Coder>
+  int code_magnitude(Coder& coder, int magnitude, Magnitude& contexts);
+  size_t views_, channels_;
+  std::vector<int> view_class_;
+  std::vector<BitContext> any_, significant_, last_, split_;
+  std::vector<Magnitude> magnitude_;
+};
+
+// What the encoder wants; a decoder has none. Nodes are named by their index in the lattice being rebuilt.
+class Targets {
+ public:
+  virtual ~Targets() = default;
+  virtual bool split(size_t node) = 0;
+  // Differences [detail][view][channel] that the block of this node should convey, given what was decoded so far.
+  virtual void differences(const Lattice& lattice, size_t node, std::span<float> details) = 0;
+  virtual void root(size_t node, std::span<const float> predicted, std::span<float> difference) = 0;
+  // The node has been divided: children follow in the lattice's order.
+  virtual void divided(const Lattice& lattice, size_t node) = 0;
+};
+
+// Rebuilds (and with targets: codes) one sheet. max_nodes bounds memory; Error when it is exceeded.
+template <class Coder>
+Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform, const StepRule& steps, Coder& coder,
+                   Targets* targets, size_t max_nodes);
+
+// Quantises x (in steps): nearest, with a dead zone that saves more bits than it costs accuracy.
+inline int16_t quantise(float x) {
+  const float a = x < 0 ? -x : x;
+  const int n = static_cast<int>(a + 0.36f);
+  const int bounded = n > 30000 ? 30000 : n;
+  return static_cast<int16_t>(x < 0 ? -bounded : bounded);
+}
+
+// Children that the region does not hold, in terms of those it does: the mirror image on the symmetry plane, else the
+// mean of the others. present: bit k set when child k exists; v: the four children's numbers, filled in place.
+inline void complete_family(unsigned present, float (&v)[4]) {
+  if (present == 15) return;
+  if (!(present & 2) && (present & 4)) v[1] = v[2], present |= 2;
+  if (!(present & 4) && (present & 2)) v[2] = v[1], present |= 4;
+  float sum = 0;
+  int n = 0;
+  for (int k = 0; k < 4; ++k)
+    if (present & (1u << k)) sum += v[k], ++n;
+  for (int k = 0; k < 4; ++k)
+    if (!(present & (1u << k))) v[k] = n ? sum / static_cast<float>(n) : 0;
+}
+
+}  // namespace suite::sqt

@@ -1,0 +1,206 @@
+// Coding the trees of the aligned method: rate-distortion pruning, then the walk with targets; and the walk without
+// them, which decodes. See aligned.h.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "sqt/aligned_source.h"
+
+namespace suite::sqt {
+
+namespace {
+
+// Which nodes of the data are worth dividing at a quality: bottom-up, a family stays when what it saves in squared
+// error (in units of squared steps) outweighs its bits.
+std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet,
+                           const StepRule& steps) {
+  constexpr double kBitPrice =
+      0.14;  // squared steps per bit: 2 ln 2 / 12 at high rate, a little more with the dead zone
+  const size_t width = layout.width();
+  std::vector<uint8_t> keep(sheet.data.size(), 0);
+  std::vector<double> benefit(sheet.data.size(), 0.0);
+  for (size_t i = sheet.data.size(); i-- > 0;) {
+    const Lattice::Node& node = sheet.data.node(i);
+    if (node.first_child < 0) continue;
+    const float step = steps.step(node.id, sheet.data.value(i));
+    const float* detail = &sheet.details[static_cast<size_t>(sheet.detail_index[i]) * 3 * width];
+    double gain = 0, bits = 6;
+    for (size_t j = 0; j < 3 * width; ++j) {
+      const float x = std::fabs(detail[j] / step);
+      const int n = std::abs(int{quantise(x)});
+      if (!n) continue;
+      gain += x * x - (x - static_cast<float>(n)) * (x - static_cast<float>(n));
+      bits += 4 + 2 * std::log2(static_cast<double>(n));
+    }
+    benefit[i] = gain - kBitPrice * bits;
+    for (int k = 0; k < node.child_count; ++k)
+      benefit[i] += std::max(0.0, benefit[static_cast<size_t>(node.first_child + k)]);
+    keep[i] = benefit[i] > 0;
+  }
+  return keep;
+}
+
+class SourceTargets final : public Targets {
+ public:
+  SourceTargets(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, std::vector<uint8_t> keep)
+      : layout_(layout), sheet_(sheet), keep_(std::move(keep)) {}
+  bool split(size_t node) override { return keep_[source(node)] != 0; }
+  void differences(const Lattice& lattice, size_t node, std::span<float> details) override {
+    family_details(layout_, sheet_, source(node), lattice, node, details);
+  }
+  void root(size_t node, std::span<const float> predicted, std::span<float> difference) override {
+    if (source_.size() <= node) source_.push_back(node);
+    const std::span<const float> value = sheet_.data.value(node);
+    for (size_t j = 0; j < value.size(); ++j) difference[j] = value[j] - predicted[j];
+  }
+  void divided(const Lattice& lattice, size_t node) override {
+    const Lattice::Node& here = lattice.node(node);
+    for (int k = 0; k < here.child_count; ++k)
+      source_.push_back(static_cast<size_t>(sheet_.data.node(source(node)).first_child + k));
+  }
+
+ private:
+  size_t source(size_t node) const { return source_[node]; }
+  const AlignedLayout& layout_;
+  const AlignedSource::Impl::Sheet& sheet_;
+  std::vector<uint8_t> keep_;
+  std::vector<size_t> source_;
+};
+
+AlignedSheet leaves_of(const AlignedLayout& layout, const Lattice& lattice) {
+  const size_t width = layout.width();
+  AlignedSheet sheet;
+  for (size_t i = 0; i < lattice.size(); ++i)
+    if (lattice.node(i).first_child < 0) sheet.leaves.push_back(lattice.node(i).id);
+  sheet.plane.resize(sheet.leaves.size() * width * 3);
+  float* to = sheet.plane.data();
+  for (size_t i = 0; i < lattice.size(); ++i) {
+    if (lattice.node(i).first_child >= 0) continue;
+    const float* value = lattice.value(i).data();
+    const float* gx = lattice.slope(i, 0).data();
+    const float* gy = lattice.slope(i, 1).data();
+    for (size_t j = 0; j < width; ++j, to += 3) to[0] = value[j], to[1] = gx[j], to[2] = gy[j];
+  }
+  return sheet;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality, std::vector<AlignedSheet>* decoded) {
+  AlignedLayout layout = source.layout();
+  layout.quality = quality;
+  const AlignedSource::Impl& m = source.impl();
+  const BlockTransform transform(layout);
+  RangeEncoder coder;
+  const int reference = step_reference(m.totals, layout);
+  for (int b = 7; b >= 0; --b) coder.even_bit((((reference + 128) >> b) & 1) != 0);
+  const StepRule steps(layout, 0.25 * reference);
+  for (const auto& sheet : m.sheets) {
+    SourceTargets targets(layout, sheet, prune(layout, sheet, steps));
+    const Lattice lattice = walk_sheet(layout, transform, steps, coder, &targets, size_t{1} << 26);
+    if (decoded) decoded->push_back(leaves_of(layout, lattice));
+  }
+  return coder.finish();
+}
+
+std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
+                                        size_t max_leaves) {
+  RangeDecoder coder(payload);
+  int reference = -128;
+  for (int b = 7; b >= 0; --b) reference += coder.even_bit() ? 1 << b : 0;
+  const BlockTransform transform(layout);
+  const StepRule steps(layout, 0.25 * reference);
+  std::vector<AlignedSheet> sheets;
+  for (int s = 0; s < layout.sheets; ++s)
+    sheets.push_back(leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, max_leaves * 4 / 3 + 16)));
+  if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
+  return sheets;
+}
+
+namespace {
+
+// A signed integer by Elias-gamma of its folded value, with learnt prefix bits.
+struct IntegerModel {
+  std::array<BitContext, 40> prefix;
+  template <class Coder>
+  int code(Coder& coder, int value) {
+    const uint32_t folded = (value < 0 ? 2 * static_cast<uint32_t>(-value) - 1 : 2 * static_cast<uint32_t>(value)) + 1;
+    int bits = 0;
+    while (bits < 24 && coder.bit(prefix[static_cast<size_t>(bits)], (folded >> (bits + 1)) != 0)) ++bits;
+    uint32_t got = 1;
+    for (int b = bits - 1; b >= 0; --b) got = (got << 1) | (coder.even_bit((folded >> b) & 1) ? 1u : 0u);
+    got -= 1;
+    return got & 1 ? -static_cast<int>((got + 1) / 2) : static_cast<int>(got / 2);
+  }
+};
+
+constexpr double kTotalSteps = 2048;  // per factor of two
+
+// A table [row][column] of log2 values, each predicted by the plane through its three predecessors.
+template <class Coder>
+void code_table(Coder& coder, std::vector<float>& log2_values, size_t columns) {
+  IntegerModel model;
+  std::vector<int> done(log2_values.size());
+  for (size_t i = 0; i < log2_values.size(); ++i) {
+    const bool left = i % columns > 0, up = i >= columns;
+    const int predicted = left && up ? done[i - 1] + done[i - columns] - done[i - columns - 1]
+                          : left     ? done[i - 1]
+                          : up       ? done[i - columns]
+                                     : 0;
+    int value = 0;
+    if constexpr (Coder::kEncodes)
+      value =
+          static_cast<int>(std::lround(std::clamp(static_cast<double>(log2_values[i]), -200.0, 100.0) * kTotalSteps));
+    done[i] = std::clamp(predicted + model.code(coder, value - predicted), -1000000, 1000000);
+    log2_values[i] = static_cast<float>(done[i] / kTotalSteps);
+  }
+}
+
+constexpr float kNoTotal = -40;  // log2 that stands for nothing at all
+
+template <class Coder>
+void code_totals(Coder& coder, AlignedTotals& totals, size_t channels) {
+  const size_t m = totals.magnitude_um.size();
+  auto code_linear = [&](std::vector<float>& values, size_t columns) {
+    if constexpr (Coder::kEncodes)
+      for (float& v : values) v = v > 0 ? std::max(kNoTotal, std::log2(v)) : kNoTotal;
+    code_table(coder, values, columns);
+    for (float& v : values) v = v <= kNoTotal ? 0.0f : std::exp2(std::min(v, 20.0f));
+  };
+  code_linear(totals.magnitudes, m);
+  code_table(coder, totals.log2_scale, channels);
+  if (!totals.delta.empty()) code_linear(totals.delta, channels);
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_totals(AlignedTotals& totals, size_t channels) {
+  RangeEncoder coder;
+  code_totals(coder, totals, channels);
+  return coder.finish();
+}
+
+void decode_totals(std::span<const std::byte> bytes, size_t channels, bool has_delta, AlignedTotals& totals) {
+  const size_t rows = totals.theta.size() * totals.phi_count;
+  totals.magnitudes.assign(rows * totals.magnitude_um.size(), 0.0f);
+  totals.log2_scale.assign(rows * channels, 0.0f);
+  totals.delta.assign(has_delta ? rows * channels : 0, 0.0f);
+  RangeDecoder coder(bytes);
+  code_totals(coder, totals, channels);
+  if (coder.overrun() > 8) throw Error("SQT payload is damaged: its totals end too early");
+}
+
+AlignedFit encode_aligned(const AlignedSource& source, double quality) {
+  AlignedFit fit;
+  AlignedData& d = fit.data;
+  d.function = source.function();
+  d.layout = source.layout();
+  d.layout.quality = quality;
+  d.totals = source.totals();
+  fit.sheets_bytes = encode_sheets(source, quality, &d.sheets);
+  d.totals.log2_scale = fit_scale(d.layout, d.sheets, d.totals, d.function.wavelength_um);
+  fit.totals_bytes = encode_totals(d.totals, d.layout.channels);
+  return fit;
+}
+
+}  // namespace suite::sqt

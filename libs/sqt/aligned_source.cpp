@@ -1,0 +1,343 @@
+// Asking the function on an adaptive pyramid of cells; see aligned.h.
+#include "sqt/aligned_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace suite::sqt {
+
+namespace {
+
+struct Cellful {
+  std::vector<float> value;    // [view][channel] log2 average
+  std::vector<uint8_t> valid;  // [view]
+  bool divided = false;
+};
+using Pyramid = std::unordered_map<uint32_t, Cellful>;
+
+// Asks one sheet of the function over one root cell and below.
+class Surveyor {
+ public:
+  Surveyor(const Function& function, const AlignedLayout& layout, const AlignedSource::Options& options, int sheet,
+           double floor, double whole)
+      : function_(function),
+        layout_(layout),
+        options_(options),
+        region_{layout.upper_only, layout.half_stored},
+        floor_(floor),
+        whole_(whole) {
+    for (const double theta : layout.theta)
+      for (size_t j = 0; j < layout.phi_count; ++j) {
+        out_.push_back(
+            dir_from_angles(theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(layout.phi_count)));
+        maps_.emplace_back(layout.frame, out_.back(), sheet == 1);
+        view_weight_.push_back((std::sin(theta) + 0.02) / static_cast<double>(layout.phi_count));
+      }
+  }
+
+  void survey(CellId id, Pyramid& into) const {
+    if (into.count(id.code)) return;
+    Cellful cell;
+    bool divide = id.order() < options_.base_order;
+    if (!divide) divide = ask(id, cell) > options_.detail * whole_ && id.order() < options_.max_order;
+    if (divide) {
+      gather(id, into, cell);
+      cell.divided = true;
+    }
+    into[id.code] = std::move(cell);
+  }
+
+ private:
+  // Averages over the children (all four count equally; see complete_family).
+  void gather(CellId id, Pyramid& into, Cellful& cell) const {
+    const size_t views = maps_.size(), channels = layout_.channels;
+    const Cellful* child[4] = {};
+    for (uint32_t k = 0; k < 4; ++k)
+      if (region_.holds(id.child(k))) survey(id.child(k), into), child[k] = &into[id.child(k).code];
+    cell.value.assign(views * channels, 0.0f);
+    cell.valid.assign(views, 0);
+    for (size_t v = 0; v < views; ++v) {
+      unsigned present = 0;
+      for (uint32_t k = 0; k < 4; ++k)
+        if (child[k] && child[k]->valid[v]) present |= 1u << k;
+      if (!present) continue;
+      cell.valid[v] = 1;
+      for (size_t c = 0; c < channels; ++c) {
+        float f[4] = {};
+        for (uint32_t k = 0; k < 4; ++k)
+          if (present & (1u << k)) f[k] = child[k]->value[v * channels + c];
+        complete_family(present, f);
+        cell.value[v * channels + c] = 0.25f * (f[0] + f[1] + f[2] + f[3]);
+      }
+    }
+  }
+
+  // Values from a 2 x 2 subdivision; returns how much of the whole the variation inside the cell amounts to.
+  double ask(CellId id, Cellful& cell) const {
+    const size_t views = maps_.size(), channels = layout_.channels;
+    const double area = cell_solid_angle(id.order());
+    cell.value.assign(views * channels, 0.0f);
+    cell.valid.assign(views, 0);
+    Dir point[4];
+    for (int k = 0; k < 4; ++k) point[k] = direction_in(id, {k & 1 ? 0.75 : 0.25, k & 2 ? 0.75 : 0.25});
+    std::vector<double> f(4 * channels);
+    double variation = 0;
+    for (size_t v = 0; v < views; ++v) {
+      double weight[4], sum_weight = 0;
+      for (int k = 0; k < 4; ++k) {
+        const Dir in = maps_[v].incident(point[k]);
+        const double cosine = maps_[v].cosine(point[k]);
+        weight[k] = 0;
+        if (layout_.upper_only && !(cosine > 0)) continue;
+        function_.value(out_[v], in, {&f[static_cast<size_t>(k) * channels], channels});
+        bool fine = true;
+        for (size_t c = 0; c < channels; ++c) fine &= std::isfinite(f[static_cast<size_t>(k) * channels + c]);
+        if (!fine) continue;
+        weight[k] = maps_[v].stretch(point[k]) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0);
+        sum_weight += weight[k];
+      }
+      if (!(sum_weight > 0)) continue;
+      cell.valid[v] = 1;
+      for (size_t c = 0; c < channels; ++c) {
+        double mean = 0, spread = 0;
+        for (size_t k = 0; k < 4; ++k)
+          if (weight[k] > 0) mean += weight[k] * std::max(floor_, f[k * channels + c]);
+        mean /= sum_weight;
+        for (size_t k = 0; k < 4; ++k)
+          if (weight[k] > 0) spread += weight[k] * std::fabs(std::max(floor_, f[k * channels + c]) - mean);
+        cell.value[v * channels + c] = static_cast<float>(std::log2(mean));
+        variation += view_weight_[v] * spread * 0.25 * area;
+      }
+    }
+    return variation;
+  }
+
+  const Function& function_;
+  const AlignedLayout& layout_;
+  const AlignedSource::Options& options_;
+  Region region_;
+  double floor_, whole_;
+  std::vector<Dir> out_;
+  std::vector<LobeMap> maps_;
+  std::vector<double> view_weight_;
+};
+
+// Totals at every fine view angle: the function at the points of the pyramid's leaves.
+void survey_totals(const Function& function, const AlignedLayout& layout,
+                   const std::vector<std::vector<CellId>>& leaves, AlignedTotals& totals) {
+  const size_t channels = layout.channels;
+  const Function::Info& info = function.info();
+  std::vector<size_t> order(channels);
+  for (size_t c = 0; c < channels; ++c)
+    order[c] = static_cast<size_t>(
+        std::lower_bound(totals.magnitude_um.begin(), totals.magnitude_um.end(), info.wavelength_um[c]) -
+        totals.magnitude_um.begin());
+  totals.magnitudes.assign(totals.theta.size() * totals.phi_count * totals.magnitude_um.size(), 0.0f);
+  parallel_for(0, totals.theta.size() * totals.phi_count, 1, [&](size_t begin, size_t end) {
+    std::vector<double> f(channels), sum(channels);
+    for (size_t t = begin; t < end; ++t) {
+      const Dir out =
+          dir_from_angles(totals.theta[t / totals.phi_count],
+                          2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count));
+      std::fill(sum.begin(), sum.end(), 0.0);
+      for (size_t s = 0; s < leaves.size(); ++s) {
+        const LobeMap map(layout.frame, out, s == 1);
+        for (const CellId id : leaves[s]) {
+          const double area = cell_solid_angle(id.order()) * (layout.half_stored && mirrored(id) != id ? 2 : 1);
+          const Dir d = center_of(id);
+          const double cosine = map.cosine(d);
+          if (layout.upper_only && !(cosine > 0)) continue;
+          function.value(out, map.incident(d), f);
+          const double weight = area * map.stretch(d) * (layout.cosine_weighted ? std::fabs(cosine) : 1.0);
+          for (size_t c = 0; c < channels; ++c)
+            if (std::isfinite(f[c]) && f[c] > 0) sum[c] += weight * f[c];
+        }
+      }
+      for (size_t c = 0; c < channels; ++c)
+        totals.magnitudes[t * totals.magnitude_um.size() + order[c]] = static_cast<float>(sum[c]);
+    }
+  });
+}
+
+// The pyramid in the lattice's order, with slopes.
+AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& pyramid) {
+  AlignedSource::Impl::Sheet sheet{Lattice({layout.upper_only, layout.half_stored}, layout.width()), {}, {}, {}};
+  Lattice& data = sheet.data;
+  std::vector<ptrdiff_t> parent(data.size(), -1);
+  size_t begin = 0;
+  while (begin < data.size()) {
+    const size_t end = data.size();
+    for (size_t i = begin; i < end; ++i) {
+      const Cellful& cell = pyramid.at(data.node(i).id.code);
+      std::vector<float> value = cell.value;
+      std::vector<int> known(cell.valid.begin(), cell.valid.end());
+      fill_unknown(layout, known, value, 1);
+      if (std::find(known.begin(), known.end(), 1) == known.end() && parent[i] >= 0)
+        std::copy_n(data.value(static_cast<size_t>(parent[i])).begin(), value.size(), value.begin());
+      std::copy(value.begin(), value.end(), data.value(i).begin());
+      sheet.valid.insert(sheet.valid.end(), cell.valid.begin(), cell.valid.end());
+    }
+    data.compute_slopes(begin, end);
+    for (size_t i = begin; i < end; ++i)
+      if (pyramid.at(data.node(i).id.code).divided)
+        data.divide(i), parent.resize(data.size(), static_cast<ptrdiff_t>(i));
+    begin = end;
+  }
+  return sheet;
+}
+
+// Transformed differences of every divided node from the plane of the data.
+void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet) {
+  const size_t width = layout.width();
+  const BlockTransform transform(layout);
+  sheet.detail_index.assign(sheet.data.size(), -1);
+  std::vector<size_t> divided;
+  for (size_t i = 0; i < sheet.data.size(); ++i)
+    if (sheet.data.node(i).first_child >= 0)
+      sheet.detail_index[i] = static_cast<int32_t>(divided.size()), divided.push_back(i);
+  sheet.details.resize(divided.size() * 3 * width);
+  parallel_for(0, divided.size(), 64, [&](size_t begin, size_t end) {
+    std::vector<float> details(3 * width);
+    for (size_t n = begin; n < end; ++n) {
+      family_details(layout, sheet, divided[n], sheet.data, divided[n], details);
+      for (size_t d = 0; d < 3; ++d)
+        transform.forward({&details[d * width], width}, {&sheet.details[(n * 3 + d) * width], width});
+    }
+  });
+}
+
+}  // namespace
+
+void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
+                    const Lattice& plane, size_t node, std::span<float> details) {
+  const size_t views = layout.views(), channels = layout.channels, width = layout.width();
+  const Lattice::Node& family = sheet.data.node(source);
+  std::vector<float> predicted(4 * width);
+  for (uint32_t k = 0; k < 4; ++k) plane.predict(node, k, {&predicted[k * width], width});
+  std::vector<int> known(views, 0);
+  for (size_t v = 0; v < views; ++v) {
+    unsigned present = 0;
+    size_t child[4] = {}, next = static_cast<size_t>(family.first_child);
+    for (uint32_t k = 0; k < 4; ++k) {
+      if (!(family.child_mask & (1u << k))) continue;
+      child[k] = next++;
+      if (sheet.valid[child[k] * views + v]) present |= 1u << k;
+    }
+    known[v] = present != 0;
+    for (size_t c = 0; c < channels; ++c) {
+      const size_t j = v * channels + c;
+      float r[4] = {};
+      for (uint32_t k = 0; k < 4; ++k)
+        if (present & (1u << k)) r[k] = sheet.data.value(child[k])[j] - predicted[k * width + j];
+      complete_family(present, r);
+      details[j] = 0.25f * (-r[0] + r[1] - r[2] + r[3]);
+      details[width + j] = 0.25f * (-r[0] - r[1] + r[2] + r[3]);
+      details[2 * width + j] = 0.25f * (r[0] - r[1] - r[2] + r[3]);
+    }
+  }
+  // Views from which the cell lies below the horizon follow their nearest neighbour: nobody will look.
+  fill_unknown(layout, known, details, 3);
+}
+
+void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::span<float> rows, size_t count) {
+  const size_t np = layout.phi_count, nt = layout.theta.size(), channels = layout.channels, width = layout.width();
+  for (size_t p = 0; p < np; ++p)
+    for (size_t t = 0; t < nt; ++t) {
+      if (known[t * np + p]) continue;
+      size_t from = nt;
+      for (size_t distance = 1; distance < nt && from == nt; ++distance) {
+        if (t >= distance && known[(t - distance) * np + p])
+          from = t - distance;
+        else if (t + distance < nt && known[(t + distance) * np + p])
+          from = t + distance;
+      }
+      for (size_t r = 0; r < count; ++r)
+        for (size_t c = 0; c < channels; ++c)
+          rows[r * width + (t * np + p) * channels + c] =
+              from < nt ? rows[r * width + (from * np + p) * channels + c] : 0.0f;
+    }
+}
+
+AlignedSource::AlignedSource(const Function& function, const Options& options,
+                             const std::function<void(double)>& progress)
+    : impl_(new Impl) {
+  Impl& m = *impl_;
+  m.function = function.info();
+  AlignedLayout& layout = m.layout;
+  const bool surface = m.function.quantity == Quantity::bsdf;
+  layout.channels = m.function.wavelength_um.size();
+  SUITE_CHECK(layout.channels > 0);
+  layout.cosine_weighted = surface;
+  layout.upper_only = surface;
+  layout.frame = surface                                  ? LobeFrame::half
+                 : m.function.quantity == Quantity::phase ? LobeFrame::forward
+                                                          : LobeFrame::direct;
+  layout.half_stored = m.function.isotropic && m.function.bilateral;
+  layout.sheets = surface && m.function.domain == Domain::sphere ? 2 : 1;
+  const size_t views = surface ? options.views : 1;
+  for (size_t v = 0; v < views; ++v)
+    layout.theta.push_back(views == 1 ? 0 : 89.9 * kDegree * static_cast<double>(v) / static_cast<double>(views - 1));
+  layout.phi_count = surface && !m.function.isotropic ? 16 : 1;
+  m.totals.phi_count = layout.phi_count;
+  m.totals.magnitude_um = m.function.wavelength_um;
+  std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
+  const size_t fine = 3;
+  for (size_t v = 0; v < views; ++v)
+    for (size_t k = 0; k < (v + 1 < views ? fine : 1); ++k)
+      m.totals.theta.push_back(v + 1 < views ? layout.theta[v] + (layout.theta[v + 1] - layout.theta[v]) *
+                                                                     static_cast<double>(k) / fine
+                                             : layout.theta[v]);
+
+  // A first look at order 4 gives the whole (mean total) and the floor below which values count as dark.
+  const Region region{layout.upper_only, layout.half_stored};
+  std::vector<std::vector<CellId>> coarse(static_cast<size_t>(layout.sheets));
+  for (auto& cells : coarse)
+    for (uint32_t i = 0; i < cell_count(4); ++i)
+      if (region.holds(CellId::of(4, i))) cells.push_back(CellId::of(4, i));
+  survey_totals(function, layout, coarse, m.totals);
+  double whole = 0, norm = 0;
+  for (size_t i = 0; i < m.totals.magnitudes.size(); ++i) whole += m.totals.magnitudes[i], norm += 1;
+  whole = whole / norm * static_cast<double>(layout.channels);
+  const double floor = std::max(1e-12, 1e-4 * whole / static_cast<double>(layout.channels) / kPi);
+  double weight = 0;
+  for (const double theta : layout.theta) weight += std::sin(theta) + 0.02;
+
+  std::vector<std::vector<CellId>> leaves;
+  for (int s = 0; s < layout.sheets; ++s) {
+    const Surveyor surveyor(function, layout, options, s, floor, std::max(1e-9, whole * weight));
+    std::vector<CellId> roots;
+    for (uint32_t i = 0; i < cell_count(3); ++i)
+      if (region.holds(CellId::of(3, i))) roots.push_back(CellId::of(3, i));
+    std::vector<Pyramid> parts(roots.size());
+    parallel_for(0, roots.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r) {
+        surveyor.survey(roots[r], parts[r]);
+        if (progress) progress(0.8 / static_cast<double>(roots.size() * static_cast<size_t>(layout.sheets)));
+      }
+    });
+    for (size_t r = 1; r < parts.size(); ++r) parts[0].merge(parts[r]);
+    for (uint32_t i = 0; i < cell_count(Lattice::kRootOrder); ++i)
+      if (region.holds(CellId::of(Lattice::kRootOrder, i)))
+        surveyor.survey(CellId::of(Lattice::kRootOrder, i), parts[0]);
+    m.sheets.push_back(assemble(layout, parts[0]));
+    leaves.emplace_back();
+    for (size_t i = 0; i < m.sheets.back().data.size(); ++i)
+      if (m.sheets.back().data.node(i).first_child < 0) leaves.back().push_back(m.sheets.back().data.node(i).id);
+    transform_details(layout, m.sheets.back());
+  }
+  survey_totals(function, layout, leaves, m.totals);
+  if (surface)  // no surface returns more than it receives
+    for (float& W : m.totals.magnitudes) W = std::min(W, 1.0f);
+  if (progress) progress(0.2);
+}
+
+AlignedSource::~AlignedSource() = default;
+const Function::Info& AlignedSource::function() const { return impl_->function; }
+const AlignedLayout& AlignedSource::layout() const { return impl_->layout; }
+const AlignedTotals& AlignedSource::totals() const { return impl_->totals; }
+
+}  // namespace suite::sqt

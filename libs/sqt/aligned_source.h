@@ -1,0 +1,29 @@
+// The data on a pyramid: what the encoder of the aligned method works from. Internal to libs/sqt.
+#pragma once
+#include <mutex>
+
+#include "sqt/aligned_codec.h"
+
+namespace suite::sqt {
+
+struct AlignedSource::Impl {
+  Function::Info function;
+  AlignedLayout layout;
+  AlignedTotals totals;
+  struct Sheet {
+    Lattice data;                // log2 averages; nodes in the order of Lattice
+    std::vector<uint8_t> valid;  // [node][view]
+    // Of divided nodes, in units of log2: transformed differences from the plane of the data itself, [3][width].
+    std::vector<int32_t> detail_index;  // [node] -> row of details, -1 for leaves
+    std::vector<float> details;
+  };
+  std::vector<Sheet> sheets;
+};
+
+// Differences [3][view][channel] of a family of the data from the plane of a node (of the data or of what was decoded).
+void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
+                    const Lattice& plane, size_t node, std::span<float> details);
+// Rows [view][channel]: views that are not known take the values of the nearest known view of the same azimuth.
+void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::span<float> rows, size_t count);
+
+}  // namespace suite::sqt

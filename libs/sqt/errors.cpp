@@ -1,0 +1,253 @@
+#include "sqt/errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "math/sampling.h"
+#include "math/warps.h"
+
+namespace suite::sqt {
+
+namespace {
+
+constexpr double kLimit = 80 * kDegree;
+const double kPeakAngles[3] = {20 * kDegree, 45 * kDegree, 70 * kDegree};
+
+// Directions near the mirror direction of `out`: half vectors with density 1 / (2 pi) a / ((1 - z) + a)^2 (1 + a - ...)
+// per steradian over z = cos theta_h in (0, 1]; heavy-tailed, so that lobes of any width are met.
+constexpr double kNear = 1e-3;
+double near_height(double u) {  // 1 - z by inversion of the cumulative (1 + a) s / (s + a), s = 1 - z in [0, 1]
+  return kNear * u / (1 + kNear - u);
+}
+double near_pdf(double s) { return (1 + kNear) * kNear / ((s + kNear) * (s + kNear)) / (2 * kPi); }
+
+}  // namespace
+
+Reference::Reference(const Function& function, size_t pairs, uint64_t seed, const std::function<void(double)>& progress)
+    : function_(function), channels_(function.info().wavelength_um.size()) {
+  const Function::Info& info = function.info();
+  weighted_ = info.quantity == Quantity::bsdf;
+  const bool sphere = info.domain == Domain::sphere;
+  const double solid_angle = sphere ? 4 * kPi : 2 * kPi;
+  const SampleStream stream(seed, 77, 0);
+  pairs_.resize(pairs);
+  value_.resize(pairs * channels_);
+  const size_t chunk = 4096;
+  parallel_for(0, pairs, chunk, [&](size_t begin, size_t end) {
+    std::vector<double> f(channels_);
+    for (size_t n = begin; n < end; ++n) {
+      const auto u = stream.draw(static_cast<uint32_t>(n), 0);
+      const auto w = stream.draw(static_cast<uint32_t>(n), 1);
+      Pair& p = pairs_[n];
+      p.out = weighted_ ? uniform_sphere({u[0] / 2, u[1]}) : Dir{0, 0, 1};
+      if (w[0] < 0.5) {
+        p.in = uniform_sphere({sphere ? u[2] : u[2] / 2, u[3]});
+      } else {
+        const double s = near_height(u[2]), r = std::sqrt(s * (2 - s));
+        const Dir h{r * std::cos(2 * kPi * u[3]), r * std::sin(2 * kPi * u[3]), 1 - s};
+        p.in = h * (2 * dot(h, p.out)) - p.out;
+        if (sphere && w[0] >= 0.75) p.in.z = -p.in.z;
+      }
+      p.weight = 0;
+      if (!sphere && !(p.in.z > 0)) continue;
+      Dir folded = p.in;
+      if (sphere) folded.z = std::fabs(folded.z);  // both sides share the near density
+      const Dir h = normalized(folded + p.out);
+      double near = near_pdf(1 - h.z) / (4 * std::max(1e-9, dot(h, p.out)));
+      if (sphere) near = folded.z == 0 ? 0 : 0.5 * near;
+      if (sphere && w[0] >= 0.5 && w[0] < 0.75 && !(p.in.z > 0)) continue;
+      if (sphere && w[0] >= 0.75 && !(p.in.z < 0)) continue;
+      function_.value(p.out, p.in, f);
+      bool valid = true;
+      for (size_t c = 0; c < channels_; ++c) valid &= std::isfinite(f[c]);
+      if (!valid) continue;
+      p.weight = static_cast<float>(1 / solid_angle / (0.5 / solid_angle + 0.5 * near));
+      p.narrow = !weighted_ || (p.out.z > std::cos(kLimit) && std::fabs(p.in.z) > std::cos(kLimit));
+      for (size_t c = 0; c < channels_; ++c) value_[n * channels_ + c] = static_cast<float>(f[c]);
+    }
+    if (progress) progress(static_cast<double>(end - begin) / static_cast<double>(pairs));
+  });
+  if (weighted_)
+    for (int k = 0; k <= 8; ++k) theta_.push_back(k * 10 * kDegree);
+  else
+    theta_.push_back(0);
+  for (const double theta : theta_) {
+    const std::vector<double> W =
+        integrate([&](Dir o, Dir i, std::span<double> f) { function_.value(o, i, f); }, dir_from_angles(theta, 0.3));
+    total_.insert(total_.end(), W.begin(), W.end());
+    for (const double t : W) findings_.largest_total = std::max(findings_.largest_total, t);
+  }
+  std::vector<double> f(channels_), back(channels_);
+  double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
+  for (size_t n = 0; n < std::min<size_t>(pairs, 50000); ++n) {
+    const Pair& p = pairs_[n];
+    if (p.weight == 0) {
+      invalid += p.in.z > 0;
+      all += p.in.z > 0;
+      continue;
+    }
+    all += 1;
+    for (size_t c = 0; c < channels_; ++c)
+      negative += value_[n * channels_ + c] < 0 ? 1.0 / static_cast<double>(channels_) : 0;
+    if (!p.narrow || !weighted_ || p.in.z <= 0) continue;
+    function_.value(p.in, p.out, back);
+    for (size_t c = 0; c < channels_; ++c) {
+      if (!std::isfinite(back[c])) continue;
+      difference += p.weight * std::fabs(back[c] - value_[n * channels_ + c]);
+      sum += p.weight * (std::fabs(back[c]) + std::fabs(value_[n * channels_ + c]));
+    }
+  }
+  findings_.reciprocity_error = sum > 0 ? difference / sum : 0;
+  findings_.negative_share = all > 0 ? negative / all : 0;
+  findings_.invalid_share = all > 0 ? invalid / all : 0;
+}
+
+// Totals over an order-6 partition of half directions (lobes fall on its dense centre through the four-fold
+// sub-points).
+std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std::span<double>)>& value, Dir out) const {
+  std::vector<double> f(channels_), W(channels_, 0.0);
+  const bool sphere = function_.info().domain == Domain::sphere;
+  const int n_r = 128, n_phi = 128;
+  for (int side = 0; side < (sphere ? 2 : 1); ++side)
+    for (int a = 0; a < n_r; ++a)
+      for (int b = 0; b < n_phi; ++b) {
+        const double s = near_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)),
+                     phi = 2 * kPi * (b + 0.5 * (a & 1)) / n_phi;
+        const Dir h{r * std::cos(phi), r * std::sin(phi), 1 - s};
+        Dir in = h * (2 * dot(h, out)) - out;
+        if (!(in.z > 0) || !(dot(h, out) > 0)) continue;
+        if (side) in.z = -in.z;
+        value(out, in, f);
+        const double weight = 4 * dot(h, out) / near_pdf(s) / (n_r * n_phi) * (weighted_ ? std::fabs(in.z) : 1.0);
+        for (size_t c = 0; c < channels_; ++c)
+          if (std::isfinite(f[c]) && f[c] > 0) W[c] += weight * f[c];
+      }
+  return W;
+}
+
+double Reference::l1(const Bundle& bundle) const {
+  const size_t chunk = 8192, chunks = (pairs_.size() + chunk - 1) / chunk;
+  std::vector<double> difference(chunks, 0.0), sum(chunks, 0.0);
+  parallel_for(0, chunks, 1, [&](size_t begin, size_t end) {
+    std::vector<double> g(channels_);
+    for (size_t k = begin; k < end; ++k)
+      for (size_t n = k * chunk; n < std::min(pairs_.size(), (k + 1) * chunk); ++n) {
+        const Pair& p = pairs_[n];
+        if (p.weight == 0 || !p.narrow) continue;
+        bundle.value(p.out, p.in, g);
+        const double w = p.weight * (weighted_ ? std::fabs(p.in.z) : 1.0);
+        for (size_t c = 0; c < channels_; ++c) {
+          const double f = value_[n * channels_ + c];
+          difference[k] += w * std::fabs(g[c] - f);
+          sum[k] += w * f;
+        }
+      }
+  });
+  double d = 0, s = 0;
+  for (size_t k = 0; k < chunks; ++k) d += difference[k], s += sum[k];
+  return s > 0 ? d / s : 0;
+}
+
+std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
+  const size_t count = channels_ + 1;
+  std::vector<ErrorFigures> out(count);
+  struct Sums {
+    double l1 = 0, f = 0, square = 0, f_square = 0, plain = 0, weight = 0, recip = 0, g = 0;
+  };
+  const size_t chunk = 8192, chunks = (pairs_.size() + chunk - 1) / chunk;
+  std::vector<Sums> parts(chunks * channels_);
+  parallel_for(0, chunks, 1, [&](size_t begin, size_t end) {
+    std::vector<double> g(channels_), back(channels_);
+    for (size_t k = begin; k < end; ++k)
+      for (size_t n = k * chunk; n < std::min(pairs_.size(), (k + 1) * chunk); ++n) {
+        const Pair& p = pairs_[n];
+        if (p.weight == 0) continue;
+        bundle.value(p.out, p.in, g);
+        const bool swap = p.narrow && weighted_ && p.in.z > 0 && n % 8 == 0;
+        if (swap) bundle.value(p.in, p.out, back);
+        const double cosine = weighted_ ? std::fabs(p.in.z) : 1.0;
+        for (size_t c = 0; c < channels_; ++c) {
+          Sums& s = parts[k * channels_ + c];
+          const double f = value_[n * channels_ + c], e = g[c] - f;
+          s.plain += p.weight * e * e;
+          s.weight += p.weight;
+          if (!p.narrow) continue;
+          s.l1 += p.weight * cosine * std::fabs(e);
+          s.f += p.weight * cosine * f;
+          s.square += p.weight * e * e * cosine * cosine;
+          s.f_square += p.weight * f * f * cosine * cosine;
+          if (swap) s.recip += p.weight * std::fabs(g[c] - back[c]), s.g += p.weight * (g[c] + back[c]);
+        }
+      }
+  });
+  std::vector<Sums> sums(count);
+  for (size_t i = 0; i < parts.size(); ++i)
+    for (Sums* s : {&sums[i % channels_], &sums[channels_]}) {
+      const Sums& p = parts[i];
+      s->l1 += p.l1, s->f += p.f, s->square += p.square, s->f_square += p.f_square, s->plain += p.plain,
+          s->weight += p.weight;
+      s->recip += p.recip, s->g += p.g;
+    }
+  for (size_t c = 0; c < count; ++c) {
+    const Sums& s = sums[c];
+    out[c].l1 = s.f > 0 ? s.l1 / s.f : 0;
+    out[c].cos_rmse = s.f_square > 0 ? std::sqrt(s.square / s.f_square) : 0;
+    out[c].rmse = s.weight > 0 ? std::sqrt(s.plain / s.weight) : 0;
+    out[c].reciprocity_error = s.g > 0 ? s.recip / s.g : 0;
+  }
+  // Totals, peaks and sampling weights, channel by channel.
+  parallel_for(0, channels_, 1, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) {
+      std::vector<double> f(channels_), g(channels_);
+      for (size_t t = 0; t < theta_.size(); ++t) {
+        const Dir view = dir_from_angles(theta_[t], 0.3);
+        const double W = integrate(
+            [&](Dir o, Dir i, std::span<double> v) {
+              std::fill(v.begin(), v.end(), 0.0);
+              v[c] = bundle.value(o, i, c);
+            },
+            view)[c];
+        const double expected = total_[t * channels_ + c];
+        if (expected > 0) out[c].total_error = std::max(out[c].total_error, std::fabs(W - expected) / expected);
+        const double whole = bundle.total(view, c);
+        const SampleStream stream(5, t, c);
+        for (uint32_t n = 0; n < 2000 && whole > 0; ++n) {
+          const auto u = stream.draw(n, 0);
+          const auto in = bundle.sample(view, {u[0], u[1]}, u[2], c);
+          if (!in) continue;
+          const double p = bundle.pdf(view, *in, c);
+          if (p > 0) out[c].max_weight = std::max(out[c].max_weight, bundle.eval(view, *in, c) / p / whole);
+        }
+      }
+      double* ratio[3] = {&out[c].peak_ratio_20, &out[c].peak_ratio_45, &out[c].peak_ratio_70};
+      for (int a = 0; a < 3; ++a) {
+        double peak_f = 0, peak_g = 0;
+        const Dir view = dir_from_angles(kPeakAngles[a], 0);
+        for (int k = -899; k <= 899; ++k) {
+          const Dir in = dir_from_angles(k * 0.1 * kDegree, 0);
+          function_.value(view, in, f);
+          if (std::isfinite(f[c]) && std::fabs(k) < 850)
+            peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
+        }
+        *ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;
+      }
+    }
+  });
+  ErrorFigures& all = out[channels_];
+  auto farther = [](double a, double b) {
+    return std::fabs(std::log(std::max(1e-9, b))) > std::fabs(std::log(std::max(1e-9, a))) ? b : a;
+  };
+  all.peak_ratio_20 = all.peak_ratio_45 = all.peak_ratio_70 = 1;
+  for (size_t c = 0; c < channels_; ++c) {
+    all.total_error = std::max(all.total_error, out[c].total_error);
+    all.max_weight = std::max(all.max_weight, out[c].max_weight);
+    all.peak_ratio_20 = farther(all.peak_ratio_20, out[c].peak_ratio_20);
+    all.peak_ratio_45 = farther(all.peak_ratio_45, out[c].peak_ratio_45);
+    all.peak_ratio_70 = farther(all.peak_ratio_70, out[c].peak_ratio_70);
+  }
+  return out;
+}
+
+}  // namespace suite::sqt

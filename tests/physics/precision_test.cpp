@@ -1,0 +1,156 @@
+// Precision at sensor distance: cameras from a metre to 36 000 km, geometry up to an Earth radius from the origin.
+// A convex dome cannot shadow itself, so every blocked sun ray is a false one; every ray aimed inside it must hit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "math/sampling.h"
+#include "tests/support/radiometry_kit.h"
+#include "trace/tracer.h"
+
+namespace suite::test {
+namespace {
+
+// A dome of 100 x 100 cells, 1000 m wide, sagging 50 m to its corners, around `centre`.
+Mesh dome(double width) {
+  constexpr uint32_t n = 101;
+  std::vector<Vec3> v;
+  std::vector<uint32_t> f;
+  for (uint32_t j = 0; j < n; ++j)
+    for (uint32_t i = 0; i < n; ++i) {
+      const double x = (i / 100.0 - 0.5) * width, y = (j / 100.0 - 0.5) * width;
+      v.push_back({x, y, -(x * x + y * y) / (10 * width)});
+    }
+  for (uint32_t j = 0; j + 1 < n; ++j)
+    for (uint32_t i = 0; i + 1 < n; ++i) {
+      const uint32_t a = j * n + i;
+      for (const uint32_t k : {a, a + 1, a + n + 1, a, a + n + 1, a + n}) f.push_back(k);
+    }
+  return mesh_of(v, f, 0);
+}
+
+struct Setting {
+  const char* name;
+  double distance;   // of the camera, m
+  Vec3 centre;       // of the dome, ENU
+  double width;      // m
+};
+
+class Precision : public testing::TestWithParam<Setting> {};
+
+TEST_P(Precision, NothingMissedNothingFalselyShadowed) {
+  const Setting& s = GetParam();
+  auto scene = scene_of({dome(s.width)}, {material("m", lambert(0.5))});
+  scene->groups[0].placements[0].to_parent = translation(s.centre);
+  const Tracer tracer(scene);
+  const Dir up = normalized(Vec3{0.2, 0.1, 1});
+  const Vec3 camera = s.centre + up * s.distance;
+  const Dir sun = normalized(Vec3{0.4, -0.3, 0.8});
+  constexpr size_t count = 20000;
+  std::vector<Ray> rays;
+  Pcg32 rng(7);
+  for (size_t i = 0; i < count; ++i) {
+    const double x = (rng.uniform() - 0.5) * 0.98 * s.width, y = (rng.uniform() - 0.5) * 0.98 * s.width;
+    const Vec3 target = s.centre + Vec3{x, y, -(x * x + y * y) / (10 * s.width)};
+    rays.push_back({camera, normalized(target - camera), 0});
+  }
+  std::vector<Hit> hits(count);
+  TraceStatistics statistics;
+  tracer.nearest(rays, hits, true, statistics);
+  size_t missed = 0;
+  std::vector<double> errors;
+  std::vector<Ray> sun_rays;
+  for (size_t i = 0; i < count; ++i) {
+    if (!hits[i].hit()) {
+      ++missed;
+      continue;
+    }
+    // Distance of the reported point from the line of sight, in double.
+    const Vec3 offset = hits[i].position - rays[i].origin;
+    errors.push_back(length(offset - rays[i].direction * dot(offset, rays[i].direction)));
+    sun_rays.push_back({tracer.leave(hits[i], sun), sun, 0});
+  }
+  std::vector<uint8_t> blocked(sun_rays.size());
+  const std::vector<double> far(sun_rays.size(), INFINITY);
+  tracer.occluded(sun_rays, far, blocked, false, statistics);
+  EXPECT_EQ(missed, 0u);
+  EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 1), 0);
+  std::sort(errors.begin(), errors.end());
+  const double p99 = errors.at(errors.size() * 99 / 100), half = s.width / 2;
+  const double ulp = std::nextafter(static_cast<float>(half), INFINITY) - static_cast<float>(half);
+  // Double itself cannot say where a line of sight from far away is to better than this.
+  const double double_limit = 4 * DBL_EPSILON * (s.distance + length(s.centre));
+  EXPECT_LE(p99, 2 * ulp + double_limit);
+  RecordProperty("hit_error_p99_in_ulp", std::to_string(p99 / ulp));
+}
+
+constexpr double kEarth = 6.378e6;
+INSTANTIATE_TEST_SUITE_P(Table, Precision,
+                         testing::Values(Setting{"camera_1m_scene_1mm", 1, {0, 0, 0}, 1e-3}, Setting{"camera_2km", 2e3, {0, 0, 0}, 1000},
+                                         Setting{"camera_700km", 7e5, {0, 0, 0}, 1000}, Setting{"camera_36000km", 3.6e7, {0, 0, 0}, 1000},
+                                         Setting{"geometry_1000km_away", 7e5, {1e6, 2e5, 0}, 1000},
+                                         Setting{"earth_centred", 7e5, {kEarth * 0.6, 0, kEarth * 0.8}, 1000},
+                                         Setting{"tile_4km", 7e5, {0, 0, 0}, 4000}),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+TEST(Precision, ManyTilesOverAThousandKilometres) {
+  // Domes every 50 km on a line of 1000 km: as many tiles, each ray finds its own.
+  auto scene = scene_of({dome(1000)}, {material("m", lambert(0.5))});
+  scene->groups[0].placements.clear();
+  for (int i = 0; i < 20; ++i) {
+    Placement p;
+    p.to_parent = translation({i * 5e4, 0, 0});
+    scene->groups[0].placements.push_back(p);
+  }
+  const Tracer tracer(scene);
+  EXPECT_EQ(tracer.tiles(), 20u);
+  TraceStatistics statistics;
+  for (int i = 0; i < 20; ++i) {
+    const Ray ray{{i * 5e4 + 3, 4, 7e5}, {0, 0, -1}, 0};
+    Hit hit;
+    tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    ASSERT_TRUE(hit.hit()) << i;
+    EXPECT_EQ(tracer.objects()[hit.object].instance, static_cast<uint32_t>(i));
+    EXPECT_NEAR(hit.position.x, i * 5e4 + 3, 1e-4);
+  }
+  // A grazing ray passes over all of them and meets the last when aimed at it.
+  const Ray along{{-1000, 0, 200}, normalized(Vec3{19 * 5e4 + 1000, 0, -205}), 0};
+  Hit hit;
+  tracer.nearest({&along, 1}, {&hit, 1}, false, statistics);
+  ASSERT_TRUE(hit.hit());
+}
+
+TEST(Instancing, NestedSixtyFourDeepAgreesWithDoubleReference) {
+  // Every level turns, moves and mirrors a little; the flattened transform is the product in double.
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {material("m", lambert(0.5))};
+  scene->meshes = {quad(1, 0, 0)};
+  Affine3 product;
+  for (uint32_t level = 0; level < 64; ++level) {
+    Group g;
+    Placement p;
+    const double scale = level % 2 ? 1.25 : 0.8;
+    p.to_parent = translation({0.3, -0.2, 0.1}) * rotation(normalized(Vec3{1, 2, 3}), 0.3) * scaling({level % 8 == 0 ? -scale : scale, scale, scale});
+    p.kind = level < 63 ? TargetKind::group : TargetKind::mesh;
+    p.target = level < 63 ? level + 1 : 0;
+    product = product * p.to_parent;
+    g.placements.push_back(p);
+    scene->groups.push_back(g);
+  }
+  check_scene(*scene, "nested");
+  const Tracer tracer(scene);
+  ASSERT_EQ(tracer.objects().size(), 1u);
+  const Vec3 centre = product.point({0.1, 0.2, 0}), normal = normalized(product.normal({0, 0, 1}));
+  const Ray ray{centre + normal * 5.0, -normal, 0};
+  Hit hit;
+  TraceStatistics statistics;
+  tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+  ASSERT_TRUE(hit.hit());
+  EXPECT_LT(length(hit.position - centre), 1e-6);
+  EXPECT_LT(length(hit.normal - normal), 1e-9);
+}
+
+}  // namespace
+}  // namespace suite::test
