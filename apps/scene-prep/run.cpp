@@ -5,8 +5,8 @@
 #include <regex>
 
 #include "base/files.h"
-#include "base/report.h"
 #include "base/params.h"
+#include "base/report.h"
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
 #include "formats/scene_hdf/scene_hdf.h"
@@ -95,7 +95,8 @@ namespace {
 void print_summary(const ScenePrepOptions& o, const Scene& scene) {
   const Provenance p = read_provenance(o.input);
   std::printf("%s", summary_text(scene).c_str());
-  std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(), p.inputs.size(), p.input_sha256.c_str());
+  std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
+              p.inputs.size(), p.input_sha256.c_str());
 }
 
 Ray parse_ray(const std::string& text) {

@@ -28,16 +28,20 @@ class ObjWriter {
       const Affine3 t = to_world * p.to_parent;
       // The override nearest to the root counts.
       const uint32_t over = material != kNone ? material : p.material_override;
-      if (p.kind == TargetKind::group) group(p.target, t, over);
-      else if (p.kind == TargetKind::mesh) mesh(scene_.meshes[p.target], t, over);
-      else ++left_out_;
+      if (p.kind == TargetKind::group)
+        group(p.target, t, over);
+      else if (p.kind == TargetKind::mesh)
+        mesh(scene_.meshes[p.target], t, over);
+      else
+        ++left_out_;
     }
   }
   void mesh(const Mesh& m, const Affine3& to_world, uint32_t over) {
     const bool mirrored = to_world.determinant() < 0;
     text_ += strf("o %s.%zu\n", m.name.c_str(), ++count_);
     for (size_t i = 0; i < m.vertex_count(); ++i) {
-      const Vec3 p = to_world.point(m.origin + Vec3{m.positions[3 * i], m.positions[3 * i + 1], m.positions[3 * i + 2]});
+      const Vec3 p =
+          to_world.point(m.origin + Vec3{m.positions[3 * i], m.positions[3 * i + 1], m.positions[3 * i + 2]});
       text_ += strf("v %.6f %.6f %.6f\n", p.x, p.y, p.z);
     }
     for (size_t i = 0; i < m.uvs.size(); i += 2) text_ += strf("vt %.9g %.9g\n", m.uvs[i], m.uvs[i + 1]);
@@ -51,7 +55,8 @@ class ObjWriter {
       if (id != kNone) text_ += "usemtl " + scene_.materials[id].id + "\n";
       for (size_t t = part.first_triangle; t < size_t{part.first_triangle} + part.triangle_count; ++t) {
         text_ += 'f';
-        for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}}) corner(m, m.indices[3 * t + k]);
+        for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
+          corner(m, m.indices[3 * t + k]);
         text_ += '\n';
         if (text_.size() > (1 << 20)) flush();
       }

@@ -15,7 +15,8 @@ const Part* part_of(const Tracer& tracer, const Hit& hit) {
   const TracedObject& object = tracer.objects()[hit.object];
   if (object.mesh == kNone) return nullptr;
   const std::vector<Part>& parts = tracer.scene().meshes[object.mesh].parts;
-  const auto after = std::upper_bound(parts.begin(), parts.end(), hit.triangle, [](uint32_t t, const Part& p) { return t < p.first_triangle; });
+  const auto after = std::upper_bound(parts.begin(), parts.end(), hit.triangle,
+                                      [](uint32_t t, const Part& p) { return t < p.first_triangle; });
   return after == parts.begin() ? nullptr : &*(after - 1);
 }
 
@@ -54,12 +55,15 @@ std::string describe_hit(const Tracer& tracer, const Ray& ray) {
   if (!hit.hit()) return "nothing\n";
   const Scene& scene = tracer.scene();
   const TracedObject& object = tracer.objects()[hit.object];
-  std::string out = "object    " + (object.mesh != kNone ? scene.meshes[object.mesh].name : scene.primitives[object.primitive].name) + strf(" (instance %u)\n", object.instance);
+  std::string out = "object    " +
+                    (object.mesh != kNone ? scene.meshes[object.mesh].name : scene.primitives[object.primitive].name) +
+                    strf(" (instance %u)\n", object.instance);
   if (const Part* part = part_of(tracer, hit)) out += "part      " + part->name + strf(", triangle %u\n", hit.triangle);
   const uint32_t material = material_of(tracer, hit);
   out += "material  " + (material == kNone ? std::string("none") : scene.materials[material].id) + "\n";
   if (object.tag != kNone) out += "tag       " + scene.tags[object.tag] + "\n";
-  out += strf("distance  %.6f m\nplace     %.6f %.6f %.6f m\nnormal    %.6f %.6f %.6f\n", hit.distance, hit.position.x, hit.position.y, hit.position.z, hit.normal.x, hit.normal.y, hit.normal.z);
+  out += strf("distance  %.6f m\nplace     %.6f %.6f %.6f m\nnormal    %.6f %.6f %.6f\n", hit.distance, hit.position.x,
+              hit.position.y, hit.position.z, hit.normal.x, hit.normal.y, hit.normal.z);
   return out;
 }
 
@@ -80,11 +84,16 @@ View view_from_above(const Tracer& tracer, int pixels) {
     std::vector<Hit> hits(rays.size());
     for (size_t j = begin; j < end; ++j) {
       for (size_t i = 0; i < rays.size(); ++i)
-        rays[i] = {{box.low.x + (static_cast<double>(i) + 0.5) * gsd, box.high.y - (static_cast<double>(j) + 0.5) * gsd, box.high.z + 1}, {0, 0, -1}, 0};
+        rays[i] = {{box.low.x + (static_cast<double>(i) + 0.5) * gsd, box.high.y - (static_cast<double>(j) + 0.5) * gsd,
+                    box.high.z + 1},
+                   {0, 0, -1},
+                   0};
       std::fill(hits.begin(), hits.end(), Hit{});
       tracer.nearest(rays, hits, true, statistics);
       for (size_t i = 0; i < rays.size(); ++i)
-        if (hits[i].hit()) colour(material_of(tracer, hits[i]), 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)), &view.rgb[3 * (j * rays.size() + i)]);
+        if (hits[i].hit())
+          colour(material_of(tracer, hits[i]), 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)),
+                 &view.rgb[3 * (j * rays.size() + i)]);
     }
   });
   return view;

@@ -14,8 +14,8 @@ uint32_t material_of(const Tracer& tracer, const Hit& hit);
 // What a ray meets, in lines: object, part, material, tag, distance, place, normal; or "nothing".
 std::string describe_hit(const Tracer& tracer, const Ray& ray);
 
-// RGB rows from the north edge down: one colour a material, shaded as by a sun in the north-west at 45 degrees; white where
-// there is nothing. The longer side of the scene's extent gets `pixels` pixels. Error for a scene without extent.
+// RGB rows from the north edge down: one colour a material, shaded as by a sun in the north-west at 45 degrees; white
+// where there is nothing. The longer side of the scene's extent gets `pixels` pixels. Error for a scene without extent.
 struct View {
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;
