@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "formats/scene_hdf/h5.h"
-#include "formats/scene_hdf/layout.h"
+#include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
 #include "scene/primitives.h"
@@ -13,31 +13,6 @@ namespace suite {
 namespace {
 
 using h5::Reader;
-
-// Hands out consecutive stretches of one dataset; Error when it is shorter or longer than what the table declares.
-template <class T>
-class Stretch {
- public:
-  Stretch(Reader& r, const std::string& name, const char* units)
-      : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
-  // n values, in a vector with `pad` more values of 0.
-  std::vector<T> next(uint64_t n, size_t pad = 0) {
-    if (n > d_.count - at_) r_.fail("dataset '" + name_ + "' is shorter than its table says");
-    std::vector<T> out(n + pad);
-    r_.read(name_, d_, h5::native<T>(), out.data(), at_, n);
-    at_ += n;
-    return out;
-  }
-  void finish() const {
-    if (at_ != d_.count) r_.fail("dataset '" + name_ + "' is longer than its table says");
-  }
-
- private:
-  Reader& r_;
-  std::string name_;
-  Reader::Opened d_;
-  size_t at_ = 0;
-};
 
 void read_meshes(Reader& r, std::vector<Mesh>& meshes) {
   const std::vector<std::string> names = r.get_names("/meshes/name");
@@ -128,22 +103,9 @@ void each_row(Reader& r, const std::string& table, std::vector<Material>& materi
   }
 }
 
-void read_curves(Reader& r, std::vector<Material>& materials) {
+void read_material_curves(Reader& r, std::vector<Material>& materials) {
   const std::string t = "/materials/curves";
-  const auto outside = r.get<uint8_t>(t + "/outside", "1");
-  const auto points = r.get<uint64_t>(t + "/points", "1", 1, static_cast<long long>(outside.size()));
-  Stretch<double> x(r, t + "/wavelength", "um"), y(r, t + "/value", "1");
-  std::vector<Curve> curves;
-  for (size_t k = 0; k < outside.size(); ++k) {
-    std::vector<double> wavelength = x.next(points[k]), value = y.next(points[k]);
-    if (outside[k] == h5::kConstantCurve && value.size() == 1 && std::isfinite(value[0]))
-      curves.push_back(Curve::constant(value[0]));
-    else if (outside[k] <= static_cast<uint8_t>(Outside::zero))
-      curves.push_back(Curve(std::move(wavelength), std::move(value), static_cast<Outside>(outside[k])));
-    else
-      r.fail("a curve has an unknown rule outside its range");
-  }
-  x.finish(), y.finish();
+  const std::vector<Curve> curves = read_curves(r, t);
   each_row(r, t, materials, [&](Material& m, const std::string& name, size_t k) {
     if (k >= curves.size()) r.fail("a curve is missing");
     m.surface.curves[name] = curves[k];
@@ -178,7 +140,7 @@ void read_materials(Reader& r, std::vector<Material>& materials) {
     if (k >= texts.size()) r.fail("a text of a material is missing");
     m.surface.texts[name] = texts[k];
   });
-  read_curves(r, materials);
+  read_material_curves(r, materials);
 }
 
 void read_maps(Reader& r, Scene& s) {
@@ -263,6 +225,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
     read_hierarchy(r, s);
     read_materials(r, s.materials);
     read_maps(r, s);
+    read_property_maps(r, s);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;

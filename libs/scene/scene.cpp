@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace suite {
@@ -37,10 +38,12 @@ void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
   const size_t n = m.vertex_count();
   if (!m.normals.empty() && m.normals.size() != n) bad(file, name + "as many normals as vertices are needed");
   if (!m.uvs.empty() && m.uvs.size() != 2 * n) bad(file, name + "two UVs a vertex are needed");
-  for (const uint32_t i : m.indices)
-    if (i >= n) bad(file, name + strf("vertex index %u of %zu", i, n));
-  for (const float p : m.positions)
-    if (!std::isfinite(p)) bad(file, name + "a coordinate is not finite");
+  // Reductions first: they vectorise, and a file is nearly always right.
+  uint32_t largest = 0, faulty = 0;
+  for (const uint32_t i : m.indices) largest = std::max(largest, i);
+  if (!m.indices.empty() && largest >= n) bad(file, name + strf("vertex index %u of %zu", largest, n));
+  for (const float p : m.positions) faulty |= (std::bit_cast<uint32_t>(p) & 0x7f800000u) == 0x7f800000u;
+  if (faulty) bad(file, name + "a coordinate is not finite");
   size_t next = 0;
   for (const Part& p : m.parts) {
     if (p.first_triangle != next) bad(file, name + "parts do not cover the triangles in order");
@@ -51,7 +54,32 @@ void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
 }
 }  // namespace
 
+namespace {
+void check_property_map(const PropertyMap& m, size_t materials, const std::string& file) {
+  const std::string name = "map '" + m.name + "': ";
+  if (m.channels == 0 || m.values.empty() || m.values.size() != size_t{m.width} * m.height * m.channels) bad(file, name + "size and data disagree");
+  const size_t expected = m.kind == MapKind::mixture ? m.materials.size() : m.kind == MapKind::cube ? m.wavelength_um.size() : m.kind == MapKind::normal ? 3 : 1;
+  if (m.channels != expected) bad(file, name + strf("%u channels, %zu are needed", m.channels, expected));
+  for (const uint32_t id : m.materials)
+    if (id >= materials) bad(file, name + "names a material that is not there");
+  for (size_t k = 0; k < m.wavelength_um.size(); ++k)
+    if (!(m.wavelength_um[k] > (k ? m.wavelength_um[k - 1] : 0)) || !std::isfinite(m.wavelength_um[k])) bad(file, name + "wavelengths do not ascend");
+  float low = INFINITY, high = -INFINITY;
+  for (const float v : m.values) {
+    if (!std::isfinite(v)) bad(file, name + "a value is not finite");
+    low = std::min(low, v), high = std::max(high, v);
+  }
+  const bool share = m.kind == MapKind::mixture || m.kind == MapKind::cube || m.kind == MapKind::opacity;
+  if (share && !(low >= 0 && high <= 1.0001f)) bad(file, name + strf("values from %g to %g, 0 to 1 are needed", low, high));
+  if (m.kind == MapKind::temperature && !(low >= 1 && high <= 1e5f)) bad(file, name + strf("temperatures from %g to %g K", low, high));
+  if (m.kind == MapKind::curve_index && !(low >= 0 && high < static_cast<float>(m.family.size()))) bad(file, name + strf("curve %g of %zu", high, m.family.size()));
+}
+}  // namespace
+
 void check_scene(const Scene& s, const std::string& file) {
+  for (const PropertyMap& m : s.property_maps) check_property_map(m, s.materials.size(), file);
+  for (const PropertyBinding& b : s.property_bindings)
+    if (b.material >= s.materials.size() || b.property_map >= s.property_maps.size()) bad(file, "a map binding names something that is not there");
   for (const Mesh& m : s.meshes) check_mesh(m, s.materials.size(), file);
   if (s.groups.empty()) bad(file, "there is no root group");
   for (const Primitive& p : s.primitives)

@@ -112,8 +112,11 @@ TEST_F(SceneText, TablesPlaceManyInTheirOrder) {
 
 TEST_F(SceneText, ScatterKeepsToItsDensityAndSurface) {
   // Two triangles of 50 and 150 m2, one of them steep: points per area agree within 4 sigma.
-  write_file(folder_ / "two.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 100 0 0\nv 110 0 0\nv 100 10 28.2842712\nusemtl grey\nf 1 2 3\nf 4 5 6\n");
-  const std::string text = whole("  - {place: two}\n  - {place: tri, on: two, scatter: {density_per_m2: 20, seed: 7, scale: [0.5, 2]}}\n", "  two: {obj: two.obj}\n");
+  write_file(folder_ / "two.obj",
+             "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 100 0 0\nv 110 0 0\nv 100 10 28.2842712\nusemtl grey\nf 1 2 3\nf 4 5 6\n");
+  const std::string text =
+      whole("  - {place: two}\n  - {place: tri, on: two, scatter: {density_per_m2: 20, seed: 7, scale: [0.5, 2]}}\n",
+            "  two: {obj: two.obj}\n");
   const Scene s = bake(text), t = bake(text);
   ASSERT_TRUE(report_.ok()) << report_.text();
   size_t flat = 0, steep = 0;
