@@ -102,8 +102,8 @@ class Cells {
 };
 
 // Integral of f over a cell by adaptive subdivision of 3 x 3 Gauss points. Wherever more than two pilot samples lie
-// together the cell is halved in any case, or a narrow lobe would fall between the nodes. The tolerance is that of every
-// piece: densities that jump (cells) leave errors of either sign, which average out over their many pieces.
+// together the cell is halved in any case, or a narrow lobe would fall between the nodes. The tolerance is that of
+// every piece: densities that jump (cells) leave errors of either sign, which average out over their many pieces.
 double integrate(const std::function<double(Dir)>& f, const Cell& cell, const std::vector<Point>& pilot,
                  double tolerance, int depth, int blind = 0) {
   static constexpr double node[3] = {0.11270166537925831, 0.5, 0.88729833462074169},
@@ -310,16 +310,11 @@ SpectralState test_state(size_t knots) {
   return make_state(bands, 0.02, 0.65, knots);
 }
 
-std::vector<Dir> test_directions(bool both) {
+std::vector<Dir> test_directions(const ScatterModel& model) {
   std::vector<Dir> d;
-  for (const double sign : {1.0, -1.0}) {
-    if (sign < 0 && !both) break;
-    for (const double deg : {0.0, 20.0, 60.0, 80.0, 89.9}) {
-      Dir v = dir_from_angles(deg * kDegree, 0.4);
-      v.z *= sign;
-      d.push_back(v);
-    }
-  }
+  for (const double deg : {0.0, 20.0, 60.0, 80.0, 89.9}) d.push_back(dir_from_angles(deg * kDegree, 0.4));
+  if (model.opaque()) d.push_back(dir_from_angles((180 - 35) * kDegree, 0.4));
+  for (size_t i = 0; i < 5 && !model.opaque(); ++i) d.push_back({d[i].x, d[i].y, -d[i].z});
   return d;
 }
 
