@@ -22,6 +22,10 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)",
              "CODE");
   cli.flag("--strict", o.strict, "warnings refuse the scene too");
+  cli.flag("--repair", o.repair,
+           "weld positions, drop triangles without area and duplicates, make the winding consistent; each is told");
+  cli.flag("--no-crossing-check", o.quick, "do not look for triangles that cross each other");
+  cli.flag("--force", o.force, "prepare again even when inputs, options and version are unchanged");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");
   cli.flag("--summary", o.summary, "print what a prepared scene holds");

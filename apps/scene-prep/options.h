@@ -10,6 +10,7 @@ namespace suite {
 struct ScenePrepOptions {
   std::string input, output, report;
   std::vector<std::string> search, mute;
+  bool repair = false, quick = false, force = false;
   bool strict = false, list_issues = false, list_models = false, summary = false;
 };
 

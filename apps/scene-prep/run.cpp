@@ -7,6 +7,7 @@
 #include "base/report.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/scene_text.h"
+#include "mesh/check.h"
 #include "optics/models.h"
 #include "scene/bake.h"
 #include "scene/issues.h"
@@ -15,6 +16,8 @@
 namespace suite {
 
 namespace {
+
+const std::string kGenerator = std::string("scene-prep ") + kVersion;
 
 void list_issues() {
   for (const IssueKind& k : scene_issues())
@@ -35,6 +38,7 @@ std::string canonical_arguments(const ScenePrepOptions& o) {
   std::string text = std::filesystem::path(o.input).filename().string();
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
+  if (o.repair) text += " --repair";
   return text;
 }
 
@@ -45,17 +49,35 @@ void write_report(const ScenePrepOptions& o, const Report& report) {
     write_file(o.report, report.json());
 }
 
+// The output was made by this version from the same inputs with the same options.
+bool up_to_date(const ScenePrepOptions& o) {
+  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
+  try {
+    const Provenance p = read_provenance(o.output);
+    return p.generator == kGenerator && p.arguments == canonical_arguments(o) && inputs_unchanged(o.input, {o.search}, p.inputs);
+  } catch (const Error&) {
+    return false;  // whatever stands there is replaced
+  }
+}
+
 int prepare(const ScenePrepOptions& o) {
+  if (up_to_date(o)) {
+    note(o.output + " is up to date: inputs, options and version are unchanged (--force prepares it again)");
+    return 0;
+  }
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  const Draft draft = read_scene_text(o.input, {o.search}, report);
+  Draft draft = read_scene_text(o.input, {o.search}, report);
+  MeshCheck check;
+  check.self_intersections = !o.quick;
+  check_draft_meshes(draft, check, o.repair, report);
   const Scene scene = bake_scene(draft, report);
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (!report.ok()) return 1;
   if (o.output.empty()) return 0;
-  write_scene(scene, {std::string("scene-prep ") + kVersion, canonical_arguments(o), input_hash(draft)}, o.output);
+  write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output);
   note(strf("wrote %s (%zu bytes)", o.output.c_str(), file_size(o.output)));
   return 0;
 }

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "base/files.h"
-#include "formats/curve/curve.h"
+#include "formats/curve/internal.h"
 
 namespace suite {
 
@@ -66,7 +66,7 @@ struct Header {
 
 }  // namespace
 
-Curve read_curve(const std::string& path, const CurveOptions& options) {
+Curve read_table(const std::string& path, const CurveOptions& options) {
   const std::string text = read_text(path, size_t{512} << 20);
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
     throw Error(Where{path, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file",

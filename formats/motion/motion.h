@@ -1,6 +1,7 @@
 // Motion as users write it: tracks and jitter in YAML, timed poses in CSV or blank-separated text. FORMAT.md has the
 // grammar; every key and column wears its unit.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ struct MotionContext {
   std::optional<SceneFrame> frame;
   std::optional<Clock> clock;
   double dut1 = 0;  // s
+  // Mean elements of a satellite (catalogue number or title) from a file; the application passes the reader of
+  // formats/tle.
+  std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
 };
 
 // The track a node describes. Marks what it reads; the caller rejects unread keys. Error, located: see FORMAT.md.

@@ -1,6 +1,5 @@
 #include "base/files.h"
 #include "formats/motion/fields.h"
-#include "formats/tle/tle.h"
 
 namespace suite {
 
@@ -114,11 +113,12 @@ TrackPtr make_spin(const Params& node, const MotionContext& context) {
 TrackPtr make_orbit(const Params& node, const MotionContext& context) {
   if (!context.frame) throw node.error("an orbit needs a scene with an origin on the Earth");
   if (!context.clock) throw node.error("an orbit needs the date of the simulation");
+  SUITE_CHECK(context.satellites != nullptr);
   const Params tle = node.at("tle");
   return located(node, [&] {
-    const TleEntry entry = read_tle_of(tle.as_path(), node.text("satellite"));
+    const OrbitElements elements = context.satellites(tle.as_path(), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
-    return orbit_track(std::make_shared<const Sgp4>(entry.elements), *context.frame, *context.clock, dut1);
+    return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
 }
 
@@ -164,7 +164,7 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
       break;
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
-      const MotionContext inside{std::nullopt, context.clock, context.dut1};
+      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }

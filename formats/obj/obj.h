@@ -8,7 +8,7 @@
 namespace suite {
 
 // Reads the triangles of a file; polygons are split, corners with the same position, normal and UV share a vertex.
-// Findings (SP201 to SP208) go to `report` with their lines; faces that are found wrong are left out. Error when the
+// Findings (SP201 to SP209) go to `report` with their lines; faces that are found wrong are left out. Error when the
 // file cannot be read or is no text.
 SourceMesh read_obj(const std::string& path, Report& report);
 SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report);

@@ -90,7 +90,7 @@ class Collector {
   void add(const char* code, const std::string& message) { report_.add(code, file_, {here(), message}); }
 
   void check_number_line(int at_least, Vec3 value);
-  bool resolve(int index, size_t count, const char* what, uint32_t& out);
+  bool resolve(int index, size_t count, const char* what, const char* code, uint32_t& out);
   uint32_t output_vertex(const Corner& c);
   void unlisted_statements();
 
@@ -143,13 +143,13 @@ void Collector::check_number_line(int at_least, Vec3 value) {
     add("SP203", strf("(%g, %g, %g) is absurdly far away", value.x, value.y, value.z));
 }
 
-bool Collector::resolve(int index, size_t count, const char* what, uint32_t& out) {
+bool Collector::resolve(int index, size_t count, const char* what, const char* code, uint32_t& out) {
   const long long i = index > 0 ? index - 1LL : static_cast<long long>(count) + index;
   if (index != 0 && i >= 0 && i < static_cast<long long>(count)) {
     out = static_cast<uint32_t>(i);
     return true;
   }
-  add("SP201", index == 0 ? strf("%s index 0", what) : strf("%s index %d of %zu", what, index, count));
+  add(code, index == 0 ? strf("%s index 0", what) : strf("%s index %d of %zu", what, index, count));
   return false;
 }
 
@@ -181,9 +181,10 @@ void Collector::face(const tinyobj::index_t* corner, int count) {
   ring_.clear();
   for (int k = 0; k < count; ++k) {
     Corner c{0, kNone, kNone};
-    if (!resolve(corner[k].vertex_index, positions_.size(), "vertex", c.v)) return;
-    if (corner[k].texcoord_index && !resolve(corner[k].texcoord_index, uvs_.size(), "texture coordinate", c.vt)) return;
-    if (corner[k].normal_index && !resolve(corner[k].normal_index, normals_.size(), "normal", c.vn)) return;
+    if (!resolve(corner[k].vertex_index, positions_.size(), "vertex", "SP201", c.v)) return;
+    // Without its normal or UV a face is still the same surface.
+    if (corner[k].texcoord_index) resolve(corner[k].texcoord_index, uvs_.size(), "texture coordinate", "SP209", c.vt);
+    if (corner[k].normal_index) resolve(corner[k].normal_index, normals_.size(), "normal", "SP209", c.vn);
     corners_.push_back(c);
     ring_.push_back(positions_[c.v]);
   }

@@ -237,9 +237,13 @@ void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
 }  // namespace
 
 Provenance read_provenance(const std::string& path) {
-  const Reader r(path);
+  Reader r(path);
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
-  return {r.text("generator"), r.text("arguments"), r.text("input_sha256")};
+  Provenance p{r.text("generator"), r.text("arguments"), r.text("input_sha256"), {}};
+  const std::vector<std::string> names = r.get_names("/inputs/name");
+  const std::vector<std::string> hashes = r.get_names("/inputs/sha256", static_cast<long long>(names.size()));
+  for (size_t k = 0; k < names.size(); ++k) p.inputs.push_back({names[k], hashes[k]});
+  return p;
 }
 
 Scene read_scene(const std::string& path, const BundleReader& decode) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "scene/draft.h"
 #include "scene/scene.h"
 
 namespace suite {
@@ -14,6 +15,7 @@ struct Provenance {
   std::string generator;     // tool and version
   std::string arguments;     // canonical: file names without folders
   std::string input_sha256;  // over all inputs
+  std::vector<InputFile> inputs;  // every file it was made from, the text itself without a name
 };
 
 // Written whole or not at all. Error when the place is not writable.

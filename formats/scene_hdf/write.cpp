@@ -193,6 +193,8 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     write_hierarchy(w, s);
     write_materials(w, s.materials);
     write_maps(w, s);
+    w.put_names("/inputs/name", pick(provenance.inputs, [](const InputFile& f) { return f.name; }));
+    w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));
     w.close();
   }
   file.commit();

@@ -33,6 +33,7 @@ Curve Reader::read_curve_map(const Params& p) {
   options.outside = read_outside(p);
   options.column = static_cast<int>(p.integer("column", 1, 100000, 1));
   options.scale = p.number("scale", 1);
+  options.spectrum = p.text("spectrum", "");
   return read_curve(input(p.at("file")), options);
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "formats/instances/instances.h"
 #include "formats/scene_text/reader.h"
 #include "math/dualquat.h"
 
@@ -49,6 +50,24 @@ Affine3 read_matrix(const Params& p) {
   return {{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
 }
 
+ScatterRule read_scatter(const Params& p) {
+  ScatterRule rule;
+  rule.density_per_m2 = p.number_in("density_per_m2", 1e-12, 1e6, "1/m2");
+  rule.seed = static_cast<uint64_t>(p.integer("seed", 0, 1LL << 53, 1));
+  rule.turn = p.boolean("turn", true);
+  if (const auto scale = p.find("scale")) {
+    const std::vector<double> range = scale->as_numbers();
+    if (range.size() != 2 || !(range[0] > 0 && range[0] <= range[1])) throw scale->error("the scale of a scatter is [low, high], above 0");
+    rule.scale_low = range[0], rule.scale_high = range[1];
+  }
+  if (const auto region = p.find("region")) {
+    const std::vector<double> r = region->as_numbers();
+    if (r.size() != 4 || !(r[0] < r[2] && r[1] < r[3])) throw region->error("a region is [x0, y0, x1, y1], low corner first");
+    rule.region = {r[0], r[1], r[2], r[3]};
+  }
+  return rule;
+}
+
 }  // namespace
 
 DraftPlacement Reader::read_placement(const Params& p) {
@@ -58,6 +77,15 @@ DraftPlacement Reader::read_placement(const Params& p) {
   if (const auto v = p.find("material")) made.material = reference(*v);
   if (const auto v = p.find("tag")) made.tag = reference(*v);
   if (const auto v = p.find("on")) made.on = reference(*v);
+  if (const auto v = p.find("table")) {
+    made.table = true;
+    made.rows = read_instances(input(*v));
+  }
+  if (const auto v = p.find("scatter")) {
+    if (made.table) throw v->error("'table' and 'scatter' cannot be combined");
+    if (!made.on.given()) throw v->error("'scatter' needs 'on', the terrain or mesh to scatter over");
+    made.scatter = read_scatter(*v);
+  }
   if (const auto m = p.find("matrix")) {
     for (const char* other : {"translate", "rotate", "scale"})
       if (p.has(other)) throw p.error(strf("'matrix' and '%s' cannot be combined", other));

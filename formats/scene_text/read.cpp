@@ -5,6 +5,19 @@
 #include "formats/scene_text/reader.h"
 
 namespace suite {
+namespace {
+
+// Beside the text, then in the search folders.
+std::string find_input(const std::string& text, const std::string& name, const SceneTextOptions& options) {
+  const std::string beside = resolve_path(text, name);
+  if (file_exists(beside)) return beside;
+  for (const std::string& folder : options.search)
+    if (const std::string other = resolve_path(folder + "/.", name); file_exists(other)) return other;
+  return beside;
+}
+
+}  // namespace
+
 namespace scene_text {
 
 void Reader::item(const char* code, const Params& p, const std::function<void()>& read) {
@@ -17,14 +30,7 @@ void Reader::item(const char* code, const Params& p, const std::function<void()>
 }
 
 std::string Reader::input(const Params& p) {
-  const std::string name = p.as_text();
-  std::string path = p.as_path();
-  if (!file_exists(path))
-    for (const std::string& folder : options_.search)
-      if (const std::string other = resolve_path(folder + "/.", name); file_exists(other)) {
-        path = other;
-        break;
-      }
+  const std::string name = p.as_text(), path = find_input(draft_.file, name, options_);
   if (!hashes_.count(path)) {
     try {
       hashes_[path] = sha256(read_bytes(path, size_t{64} << 30));
@@ -33,6 +39,10 @@ std::string Reader::input(const Params& p) {
       throw Error(p.where(), "file '" + name + "' " + e.message(), e.hint(), "SP003");
     }
     draft_.inputs.push_back({name, hashes_[path]});
+    // The header of a spectral library decides as much as its values.
+    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".sli") == 0)
+      for (const std::string& header : {name + ".hdr", name.substr(0, name.size() - 4) + ".hdr"})
+        if (const std::string at = find_input(draft_.file, header, options_); file_exists(at)) draft_.inputs.push_back({header, sha256(read_bytes(at))});
   }
   return path;
 }
@@ -82,6 +92,14 @@ void Reader::run(const Params& root) {
 }
 
 }  // namespace scene_text
+
+bool inputs_unchanged(const std::string& path, const SceneTextOptions& options, const std::vector<InputFile>& inputs) {
+  for (const InputFile& f : inputs) {
+    const std::string at = f.name.empty() ? path : find_input(path, f.name, options);
+    if (!file_exists(at) || sha256(read_bytes(at, size_t{64} << 30)) != f.sha256) return false;
+  }
+  return !inputs.empty();
+}
 
 Draft read_scene_text(const std::string& path, const SceneTextOptions& options, Report& report) {
   Draft draft;

@@ -66,6 +66,9 @@ class Baker {
   Built build_primitive(const DraftGeometry& g);
   void groups();
   std::vector<size_t> group_order();
+  std::optional<Built> target(const Reference& ref);
+  std::vector<Affine3> transforms(const DraftPlacement& p);
+  bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
   void place(const DraftPlacement& p, Group& group, bool world);
   void unused();
 
@@ -241,53 +244,73 @@ std::vector<size_t> Baker::group_order() {
   return order;
 }
 
+// What a name places; nothing when it is unknown (which is filed) or part of a circle (which has been).
+std::optional<Baker::Built> Baker::target(const Reference& ref) {
+  used_targets_.insert(ref.name);
+  if (const auto found = built_.find(ref.name); found != built_.end()) return found->second;
+  if (const auto found = group_ids_.find(ref.name); found != group_ids_.end()) return Built{TargetKind::group, found->second, 1, nullptr};
+  std::vector<std::string> known = names_of(draft_.geometry, [](const DraftGeometry& g) { return g.name; });
+  for (size_t g = 1; g < draft_.groups.size(); ++g) {
+    if (draft_.groups[g].name == ref.name) return std::nullopt;
+    known.push_back(draft_.groups[g].name);
+  }
+  add("SP401", ref.where, "unknown object '" + ref.name + "'; " + name_hint(ref.name, known));
+  return std::nullopt;
+}
+
+// The transforms of one placement: one, or as many as its table or scatter has.
+std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
+  std::vector<Affine3> all;
+  if (p.scatter) {
+    const auto ground = built_.find(p.on.name);
+    if (ground == built_.end() || ground->second.kind != TargetKind::mesh) {
+      add("SP405", p.on.where, "'" + p.on.name + "' is no terrain and no mesh");
+      return all;
+    }
+    for (const Affine3& row : scatter(std::span(scene_.meshes).subspan(ground->second.first, ground->second.count), *p.scatter)) all.push_back(row * p.to_parent);
+    return all;
+  }
+  if (!p.table) all.push_back(p.to_parent);
+  for (const Affine3& row : p.rows) all.push_back(p.to_parent * row);
+  return all;
+}
+
+// Lifts transforms onto a terrain.
+bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all) {
+  const auto ground = built_.find(p.on.name);
+  if (!world) return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand"), false;
+  if (ground == built_.end() || !ground->second.terrain) return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain"), false;
+  for (Affine3& t : all) {
+    const auto z = ground->second.terrain->height_at(t.b.x, t.b.y);
+    if (!z) return add("SP405", p.where, strf("(%g, %g) is not on '%s'", t.b.x, t.b.y, p.on.name.c_str())), false;
+    t.b.z += *z;
+  }
+  return true;
+}
+
 void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   Placement made;
-  made.to_parent = p.to_parent;
   if (p.material.given()) made.material_override = material_id(p.material);
   if (p.tag.given()) {
     const auto [tag, fresh] = tag_ids_.try_emplace(p.tag.name, static_cast<uint32_t>(scene_.tags.size()));
     if (fresh) scene_.tags.push_back(p.tag.name);
     made.tag = tag->second;
   }
-  for (const double a : made.to_parent.a)
+  const std::optional<Built> what = target(p.target);
+  for (const double a : p.to_parent.a)
     if (!std::isfinite(a)) return add("SP404", p.where, "the transform of '" + p.target.name + "' is not finite");
-  if (made.to_parent.determinant() == 0)
-    return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
-  if (p.on.given()) {
-    const auto ground = built_.find(p.on.name);
-    if (!world)
-      return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand");
-    if (ground == built_.end() || !ground->second.terrain)
-      return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain");
-    const auto z = ground->second.terrain->height_at(made.to_parent.b.x, made.to_parent.b.y);
-    if (!z)
-      return add("SP405", p.where,
-                 strf("(%g, %g) is not on '%s'", made.to_parent.b.x, made.to_parent.b.y, p.on.name.c_str()));
-    made.to_parent.b.z += *z;
-  }
-  used_targets_.insert(p.target.name);
-  if (const auto found = built_.find(p.target.name); found != built_.end()) {
-    made.kind = found->second.kind;
-    for (uint32_t k = 0; k < found->second.count; ++k) {
-      made.target = found->second.first + k;
+  if (p.to_parent.determinant() == 0) return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
+  std::vector<Affine3> all = transforms(p);
+  if (p.on.given() && !p.scatter && !put_on(p, world, all)) return;
+  if (!what) return;
+  made.kind = what->kind;
+  for (const Affine3& t : all) {
+    made.to_parent = t;
+    for (uint32_t k = 0; k < what->count; ++k) {
+      made.target = what->first + k;
       group.placements.push_back(made);
     }
-    return;
   }
-  if (const auto found = group_ids_.find(p.target.name); found != group_ids_.end()) {
-    made.kind = TargetKind::group;
-    made.target = found->second;
-    group.placements.push_back(made);
-    return;
-  }
-  std::vector<std::string> known = names_of(draft_.geometry, [](const DraftGeometry& g) { return g.name; });
-  for (const DraftGroup& g : draft_.groups)
-    if (g.name == p.target.name)
-      return;  // in a circle, reported already
-    else if (&g != &draft_.groups.front())
-      known.push_back(g.name);
-  add("SP401", p.target.where, "unknown object '" + p.target.name + "'; " + name_hint(p.target.name, known));
 }
 
 void Baker::groups() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/scatter.h"
 #include "scene/scene.h"
 
 namespace suite {
@@ -63,6 +64,9 @@ struct DraftPlacement {
   Where where;
   Reference target, material, tag, on;  // on: the terrain whose surface z counts from
   Affine3 to_parent;
+  std::vector<Affine3> rows;             // of an instance table or a scatter; each before to_parent
+  bool table = false;
+  std::optional<ScatterRule> scatter;    // over the surface `on`
 };
 
 struct DraftGroup {

@@ -29,7 +29,8 @@ std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
   std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
   for (const TracedObject& o : tracer.objects()) {
     if (o.material_override != kNone) used[o.material_override] = true;
-    else mesh_seen[o.mesh] = true;
+    else if (o.mesh != kNone) mesh_seen[o.mesh] = true;
+    else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone) used[id] = true;
   }
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const Part& p : scene.meshes[m].parts)

@@ -23,50 +23,63 @@ struct Sheet {
   Tree tree;
   std::vector<float> plane;         // [leaf][view][channel]{value, slope x, slope y}
   std::vector<float> inverse_area;  // 1/sr of one copy of the leaf (its mirror image counted in)
+  std::vector<float> side;          // cells along a face at the order of the leaf
   size_t first = 0;                 // index of the first leaf among all sheets
 };
 
 // Divides coarse leaves; the planes go on.
 void refine(AlignedSheet& sheet, const Region& region, size_t width) {
   AlignedSheet fine;
+  std::vector<uint32_t> from;  // stored leaf of every fine one
   for (size_t i = 0; i < sheet.leaves.size(); ++i) {
     const CellId id = sheet.leaves[i];
     const int extra = std::max(0, kSampleOrder - id.order());
-    const uint32_t side = 1u << extra;
-    const float n = static_cast<float>(side);
-    const CellXY at = xy_of(id);
-    const float* p = &sheet.plane[i * width * 3];
-    for (uint32_t y = 0; y < side; ++y)
-      for (uint32_t x = 0; x < side; ++x) {
-        const CellId part = cell_at(id.order() + extra, {at.face, at.x * side + x, at.y * side + y});
-        if (!region.holds(part)) continue;  // across the symmetry plane or below the horizon
-        fine.leaves.push_back(part);
-        const float dx = (static_cast<float>(x) + 0.5f) / n - 0.5f, dy = (static_cast<float>(y) + 0.5f) / n - 0.5f;
-        for (size_t j = 0; j < width; ++j) {
-          const float gx = p[3 * j + 1], gy = p[3 * j + 2];
-          fine.plane.push_back(p[3 * j] + dx * gx + dy * gy);
-          fine.plane.push_back(gx / n);
-          fine.plane.push_back(gy / n);
-        }
-      }
+    for (uint32_t k = 0; k < (1u << (2 * extra)); ++k) {
+      const CellId part = CellId::of(id.order() + extra, (id.index() << (2 * extra)) + k);
+      if (extra && !region.holds(part)) continue;  // across the symmetry plane or below the horizon
+      fine.leaves.push_back(part);
+      from.push_back(static_cast<uint32_t>(i));
+    }
+  }
+  fine.plane.resize(fine.leaves.size() * width * 3);
+  for (size_t n = 0; n < fine.leaves.size(); ++n) {
+    const CellId id = sheet.leaves[from[n]], part = fine.leaves[n];
+    const float* p = &sheet.plane[from[n] * width * 3];
+    float* q = &fine.plane[n * width * 3];
+    if (part == id) {
+      std::copy_n(p, width * 3, q);
+      continue;
+    }
+    const uint32_t side = 1u << (part.order() - id.order());
+    const float scale = 1 / static_cast<float>(side);
+    const CellXY at = xy_of(part);
+    const float dx = (static_cast<float>(at.x % side) + 0.5f) * scale - 0.5f,
+                dy = (static_cast<float>(at.y % side) + 0.5f) * scale - 0.5f;
+    for (size_t j = 0; j < 3 * width; j += 3) {
+      q[j] = p[j] + dx * p[j + 1] + dy * p[j + 2];
+      q[j + 1] = p[j + 1] * scale;
+      q[j + 2] = p[j + 2] * scale;
+    }
   }
   sheet = std::move(fine);
 }
 
-// Integral of |cos| stretch (or 1) over a cell for one view, kept above a floor near the horizon.
-double cell_weight(const AlignedLayout& layout, const LobeMap& map, CellId id, double floor) {
+// Points of a leaf at which its weight is looked up: 1, 4 or 16 by its size.
+int points_of(CellId id) { return id.order() >= 6 ? 1 : id.order() == 5 ? 4 : 16; }
+
+// Integral of |cos| stretch (or 1) over a leaf for one view, kept above a floor near the horizon.
+double leaf_weight(const AlignedLayout& layout, const LobeMap& map, CellId id, const Dir* points) {
   const double area = cell_solid_angle(id.order());
   if (!layout.cosine_weighted && !map.reflects()) return area;
-  const int side = id.order() >= 6 ? 1 : id.order() == 5 ? 2 : 4;
+  const int count = points_of(id);
   double sum = 0;
-  for (int k = 0; k < side * side; ++k) {
-    const Dir d = direction_in(id, {(k % side + 0.5) / side, (k / side + 0.5) / side});
-    const double cosine = map.cosine(d);
+  for (int k = 0; k < count; ++k) {
+    const double cosine = map.cosine(points[k]);
     if (layout.upper_only && cosine < -0.1) continue;
-    sum += map.stretch(d) *
-           (layout.cosine_weighted ? std::max(floor, layout.upper_only ? cosine : std::fabs(cosine)) : 1.0);
+    sum += map.stretch(points[k]) *
+           (layout.cosine_weighted ? std::max(kHorizonFloor, layout.upper_only ? cosine : std::fabs(cosine)) : 1.0);
   }
-  return area * sum / (side * side);
+  return area * sum / count;
 }
 
 class AlignedBundle final : public Bundle {
@@ -83,9 +96,11 @@ class AlignedBundle final : public Bundle {
     for (AlignedSheet& s : data.sheets) {
       stored_.push_back(s.leaves);
       refine(s, {layout_.upper_only, layout_.half_stored}, layout_.width());
-      Sheet sheet{Tree(s.leaves), std::move(s.plane), {}, first};
-      for (const CellId id : s.leaves)
+      Sheet sheet{Tree(s.leaves), std::move(s.plane), {}, {}, first};
+      for (const CellId id : s.leaves) {
         sheet.inverse_area.push_back(static_cast<float>(1 / (cell_solid_angle(id.order()) * copies(id))));
+        sheet.side.push_back(static_cast<float>(1u << id.order()));
+      }
       first += s.leaves.size();
       sheets_.push_back(std::move(sheet));
     }
@@ -233,7 +248,10 @@ class AlignedBundle final : public Bundle {
   LobeMap map(Dir up, size_t sheet) const { return {layout_.frame, up, sheet == 1}; }
 
   static Place place(const ThetaGrid& grid, size_t phi_count, Dir up) {
-    const ThetaGrid::At at = grid.locate(up);
+    return place(grid, phi_count, up, fast_acos(up.z));
+  }
+  static Place place(const ThetaGrid& grid, size_t phi_count, Dir up, double theta) {
+    const ThetaGrid::At at = grid.locate(theta);
     const size_t next = std::min(at.low + 1, grid.size() - 1);
     if (phi_count == 1) {
       if (at.t <= 0) return {{at.low}, {1}, 1};
@@ -272,22 +290,23 @@ class AlignedBundle final : public Bundle {
     const LobeMap m = map(up, s);
     Dir d = m.cell_direction(frame(out).to_local(in));
     if (layout_.half_stored) d.y = std::fabs(d.y);
-    FacePoint p = face_point(d);
+    FacePoint p = face_point_fast(d);
     q.sheet = &sheets_[s];
     int leaf = q.sheet->tree.leaf(p);
     if (leaf < 0 && layout_.half_stored) {  // the symmetry plane itself may count to the other half
-      p = face_point({d.x, -d.y, d.z});
+      p = face_point_fast({d.x, -d.y, d.z});
       leaf = q.sheet->tree.leaf(p);
     }
     if (leaf < 0) return false;
     q.leaf = static_cast<size_t>(leaf);
-    const double n = static_cast<double>(1u << q.sheet->tree.cell(q.leaf).order());
+    const double n = q.sheet->side[q.leaf];
     const double x = p.x * n, y = p.y * n;
     q.dx = static_cast<float>(x - std::floor(x) - 0.5);
     q.dy = static_cast<float>(y - std::floor(y) - 0.5);
     q.stretch = m.stretch(d);
-    q.at = place(views_, layout_.phi_count, up);
-    q.fine = place(fine_, totals_.phi_count, up);
+    const double theta = fast_acos(up.z);
+    q.at = place(views_, layout_.phi_count, up, theta);
+    q.fine = place(fine_, totals_.phi_count, up, theta);
     return true;
   }
   double value_at(const Query& q, size_t channel) const {
@@ -311,38 +330,53 @@ class AlignedBundle final : public Bundle {
 
   void build_tables() {
     tables_.resize(layout_.views() * channels());
+    std::vector<std::vector<Dir>> points(sheets_.size());
+    std::vector<float> weight_of_area;  // copies of every leaf
+    for (size_t s = 0; s < sheets_.size(); ++s)
+      for (const CellId id : sheets_[s].tree.cells()) {
+        const int n = points_of(id), side = n == 1 ? 1 : n == 4 ? 2 : 4;
+        weight_of_area.push_back(static_cast<float>(copies(id)));
+        for (int k = 0; k < n; ++k)
+          points[s].push_back(direction_in(id, {(k % side + 0.5) / side, (k / side + 0.5) / side}));
+      }
     parallel_for(0, layout_.views(), 1, [&](size_t begin, size_t end) {
-      std::vector<double> weight(leaves_), sum(leaves_ + 1);
+      std::vector<float> weight(leaves_);
+      std::vector<double> sum(leaves_ + 1);
       for (size_t v = begin; v < end; ++v) {
         const Bundle::View& view = info_.views[v];
         for (size_t s = 0; s < sheets_.size(); ++s) {
           const LobeMap m(layout_.frame, dir_from_angles(view.theta, view.phi), s == 1);
+          const Dir* point = points[s].data();
           for (size_t i = 0; i < sheets_[s].tree.size(); ++i) {
             const CellId id = sheets_[s].tree.cell(i);
-            weight[sheets_[s].first + i] = cell_weight(layout_, m, id, kHorizonFloor) * copies(id);
+            weight[sheets_[s].first + i] =
+                static_cast<float>(leaf_weight(layout_, m, id, point) * weight_of_area[sheets_[s].first + i]);
+            point += points_of(id);
           }
         }
-        for (size_t c = 0; c < channels(); ++c) {
-          sum[0] = 0;
-          for (const Sheet& s : sheets_)
-            for (size_t i = 0; i < s.tree.size(); ++i)
-              sum[s.first + i + 1] =
-                  sum[s.first + i] +
-                  weight[s.first + i] * portable_exp2(s.plane[(i * layout_.width() + v * channels() + c) * 3]);
-          Table& table = tables_[v * channels() + c];
-          if (!(sum.back() > 0)) continue;
-          table.cumulative.resize(leaves_);
-          for (size_t i = 0; i < leaves_; ++i)
-            table.cumulative[i] = static_cast<uint32_t>(std::min(4294967295.0, sum[i] / sum.back() * 0x1p32));
-          table.guide.resize(257);
-          size_t at = 0;
-          for (uint64_t g = 0; g < 257; ++g) {
-            while (at + 1 < leaves_ && table.cumulative[at + 1] <= (g << 24)) ++at;
-            table.guide[g] = static_cast<uint32_t>(at);
-          }
-        }
+        for (size_t c = 0; c < channels(); ++c)
+          build_table(tables_[v * channels() + c], v * channels() + c, weight, sum);
       }
     });
+  }
+  void build_table(Table& table, size_t column, std::span<const float> weight, std::span<double> sum) const {
+    sum[0] = 0;
+    for (const Sheet& s : sheets_) {
+      const float* p = s.plane.data() + column * 3;
+      for (size_t i = 0; i < s.tree.size(); ++i, p += layout_.width() * 3)
+        sum[s.first + i + 1] = sum[s.first + i] + weight[s.first + i] * portable_exp2(*p);
+    }
+    if (!(sum.back() > 0)) return;
+    const double scale = 0x1p32 / sum.back();
+    table.cumulative.resize(leaves_);
+    for (size_t i = 0; i < leaves_; ++i)
+      table.cumulative[i] = static_cast<uint32_t>(std::min(4294967295.0, sum[i] * scale));
+    table.guide.resize(257);
+    size_t at = 0;
+    for (uint64_t g = 0; g < 257; ++g) {
+      while (at + 1 < leaves_ && table.cumulative[at + 1] <= (g << 24)) ++at;
+      table.guide[g] = static_cast<uint32_t>(at);
+    }
   }
 
   AlignedLayout layout_;

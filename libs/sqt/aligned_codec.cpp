@@ -236,7 +236,7 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
   BlockModel model(layout, transform);
   std::vector<float> predicted(width, 0.0f), difference(3 * width), coefficient(3 * width), change(3 * width);
   std::vector<int16_t> levels(3 * width);
-  std::vector<std::vector<int16_t>> blocks;              // of divided nodes
+  std::vector<int16_t> blocks;                           // of divided nodes, one after the other
   std::vector<int32_t> block_above(lattice.size(), -1);  // index of the parent's block
 
   // Quantises (encoder) or not (decoder), codes, and reconstructs `count` rows of differences.
@@ -275,8 +275,9 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
       const CellId id = lattice.node(i).id;
       if (id.order() >= kMaxOrder) continue;
       const std::span<const int16_t> parent =
-          block_above[i] >= 0 ? std::span<const int16_t>(blocks[static_cast<size_t>(block_above[i])])
-                              : std::span<const int16_t>{};
+          block_above[i] >= 0
+              ? std::span<const int16_t>(&blocks[static_cast<size_t>(block_above[i]) * 3 * width], 3 * width)
+              : std::span<const int16_t>{};
       bool busy = false;
       for (const int16_t l : parent) busy |= std::abs(int{l}) > 1;
       const int around = lattice.divided_around(i);
@@ -285,9 +286,9 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
       const float step = steps.step(id, lattice.value(i));
       if (targets) targets->differences(lattice, i, difference);
       convey(3, step, parent, id.order());
-      blocks.emplace_back(levels);
+      blocks.insert(blocks.end(), levels.begin(), levels.end());
       lattice.divide(i);
-      block_above.resize(lattice.size(), static_cast<int32_t>(blocks.size()) - 1);
+      block_above.resize(lattice.size(), static_cast<int32_t>(blocks.size() / (3 * width)) - 1);
       const Lattice::Node node = lattice.node(i);
       size_t child = static_cast<size_t>(node.first_child);
       for (uint32_t k = 0; k < 4; ++k) {

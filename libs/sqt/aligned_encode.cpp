@@ -70,15 +70,16 @@ class SourceTargets final : public Targets {
 AlignedSheet leaves_of(const AlignedLayout& layout, const Lattice& lattice) {
   const size_t width = layout.width();
   AlignedSheet sheet;
+  for (size_t i = 0; i < lattice.size(); ++i)
+    if (lattice.node(i).first_child < 0) sheet.leaves.push_back(lattice.node(i).id);
+  sheet.plane.resize(sheet.leaves.size() * width * 3);
+  float* to = sheet.plane.data();
   for (size_t i = 0; i < lattice.size(); ++i) {
     if (lattice.node(i).first_child >= 0) continue;
-    sheet.leaves.push_back(lattice.node(i).id);
-    const auto value = lattice.value(i), gx = lattice.slope(i, 0), gy = lattice.slope(i, 1);
-    for (size_t j = 0; j < width; ++j) {
-      sheet.plane.push_back(value[j]);
-      sheet.plane.push_back(gx[j]);
-      sheet.plane.push_back(gy[j]);
-    }
+    const float* value = lattice.value(i).data();
+    const float* gx = lattice.slope(i, 0).data();
+    const float* gy = lattice.slope(i, 1).data();
+    for (size_t j = 0; j < width; ++j, to += 3) to[0] = value[j], to[1] = gx[j], to[2] = gy[j];
   }
   return sheet;
 }

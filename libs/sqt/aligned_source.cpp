@@ -330,6 +330,8 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
     transform_details(layout, m.sheets.back());
   }
   survey_totals(function, layout, leaves, m.totals);
+  if (surface)  // no surface returns more than it receives
+    for (float& W : m.totals.magnitudes) W = std::min(W, 1.0f);
   if (progress) progress(0.2);
 }
 

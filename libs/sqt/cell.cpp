@@ -32,9 +32,34 @@ double below_one(double v) { return std::clamp(v, 0.0, std::nextafter(1.0, 0.0))
 
 }  // namespace
 
-FacePoint face_point(Dir d) {
-  double quarter = std::atan2(d.y, d.x) * (2 / kPi);  // azimuth in right angles, [0, 4)
-  if (quarter < 0) quarter += 4;
+namespace {
+
+// Azimuth in right angles, [0, 4).
+double quarter_exact(double x, double y) {
+  const double quarter = std::atan2(y, x) * (2 / kPi);
+  return quarter < 0 ? quarter + 4 : quarter;
+}
+// The same by the Taylor series of atan within tan(pi/8); 0 for x = y = 0.
+double quarter_fast(double x, double y) {
+  const double ax = std::fabs(x), ay = std::fabs(y);
+  const double low = std::min(ax, ay), high = std::max(ax, ay);
+  const bool upper = low > 0.41421356237309503 * high;  // beyond pi/8: atan t = pi/4 - atan((1 - t) / (1 + t))
+  const double n = upper ? high - low : low, m = upper ? high + low : high;
+  const double t = m > 0 ? n / m : 0, t2 = t * t;
+  const double a =
+      t *
+      (1 -
+       t2 * (1.0 / 3 -
+             t2 * (1.0 / 5 -
+                   t2 * (1.0 / 7 - t2 * (1.0 / 9 - t2 * (1.0 / 11 - t2 * (1.0 / 13 - t2 * (1.0 / 15 - t2 / 17))))))));
+  double q = (2 / kPi) * a;
+  if (upper) q = 0.5 - q;
+  if (ay > ax) q = 1 - q;
+  if (x < 0) q = 2 - q;
+  return y < 0 ? 4 - q : q;
+}
+
+FacePoint from_azimuth(Dir d, double quarter) {
   if (quarter >= 4) quarter = 0;
   const double z_abs = std::fabs(d.z);
   if (z_abs <= 2.0 / 3) {  // equatorial belt: lines of constant x and y are straight in (azimuth, z)
@@ -51,6 +76,11 @@ FacePoint face_point(Dir d) {
   if (d.z > 0) return {q, below_one(1 - b), below_one(1 - a)};
   return {q + 8, below_one(a), below_one(b)};
 }
+
+}  // namespace
+
+FacePoint face_point(Dir d) { return from_azimuth(d, quarter_exact(d.x, d.y)); }
+FacePoint face_point_fast(Dir d) { return from_azimuth(d, quarter_fast(d.x, d.y)); }
 
 Dir direction(FacePoint p) {
   const double ring = kRing[p.face] - p.x - p.y;  // 0 at the north pole, 4 at the south pole

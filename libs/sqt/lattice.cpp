@@ -78,16 +78,13 @@ void Lattice::predict(size_t i, uint32_t k, std::span<float> out) const {
   for (size_t j = 0; j < width_; ++j) out[j] = v[j] + (sx * gx[j] + sy * gy[j]);
 }
 
-bool Lattice::estimate(CellId id, std::span<float> out) const {
+const float* Lattice::estimate(CellId id, std::span<float> room) const {
   if (!region_.holds(id)) {
-    if (!region_.half_only) return false;
+    if (!region_.half_only) return nullptr;
     id = mirrored(id);
-    if (!region_.holds(id)) return false;
+    if (!region_.holds(id)) return nullptr;
   }
-  if (const int32_t i = find(id); i >= 0) {
-    std::copy_n(&value_[static_cast<size_t>(i) * width_], width_, out.begin());
-    return true;
-  }
+  if (const int32_t i = find(id); i >= 0) return &value_[static_cast<size_t>(i) * width_];
   // Climb to the node that was not divided and take its plane at this cell's centre.
   const CellXY at = xy_of(id);
   CellId up = id;
@@ -96,7 +93,7 @@ bool Lattice::estimate(CellId id, std::span<float> out) const {
     up = up.parent();
     i = find(up);
   }
-  if (i < 0) return false;
+  if (i < 0) return nullptr;
   const CellXY over = xy_of(up);
   const float n = static_cast<float>(1u << (id.order() - up.order()));
   const float dx = (static_cast<float>(at.x) + 0.5f) / n - static_cast<float>(over.x) - 0.5f;
@@ -104,8 +101,9 @@ bool Lattice::estimate(CellId id, std::span<float> out) const {
   const float* v = &value_[static_cast<size_t>(i) * width_];
   const float* gx = &slope_[2 * static_cast<size_t>(i) * width_];
   const float* gy = gx + width_;
+  float* out = room.data();
   for (size_t j = 0; j < width_; ++j) out[j] = v[j] + (dx * gx[j] + dy * gy[j]);
-  return true;
+  return out;
 }
 
 int Lattice::divided_around(size_t i) const {
@@ -119,22 +117,24 @@ int Lattice::divided_around(size_t i) const {
 }
 
 void Lattice::compute_slopes(size_t begin, size_t end) {
-  std::vector<float> low(width_), high(width_);
+  std::vector<float> low_room(width_), high_room(width_);
   for (size_t i = begin; i < end; ++i) {
     const auto around = edge_neighbours(nodes_[i].id);
     // An edge between faces may turn the coordinates, but "the neighbour across the -x edge" stays what it is.
     for (size_t axis = 0; axis < 2; ++axis) {
-      const bool has_low = estimate(around[2 * axis], low), has_high = estimate(around[2 * axis + 1], high);
+      const float* low = estimate(around[2 * axis], low_room);
+      const float* high = estimate(around[2 * axis + 1], high_room);
       const float* v = &value_[i * width_];
       float* g = &slope_[(2 * i + axis) * width_];
-      if (has_low && has_high) {
+      if (low && high) {
         for (size_t j = 0; j < width_; ++j) {
           const float a = v[j] - low[j], b = high[j] - v[j], mid = 0.5f * (a + b);
-          const float bound = 2 * std::min(std::fabs(a), std::fabs(b));
-          g[j] = a * b <= 0 ? 0.0f : std::clamp(mid, -bound, bound);
+          const float smaller = std::fabs(a) < std::fabs(b) ? std::fabs(a) : std::fabs(b);
+          const float size = std::fabs(mid) < 2 * smaller ? std::fabs(mid) : 2 * smaller;
+          g[j] = a * b > 0 ? std::copysign(size, mid) : 0.0f;
         }
-      } else if (has_low || has_high) {
-        for (size_t j = 0; j < width_; ++j) g[j] = has_low ? v[j] - low[j] : high[j] - v[j];
+      } else if (low || high) {
+        for (size_t j = 0; j < width_; ++j) g[j] = low ? v[j] - low[j] : high[j] - v[j];
       } else {
         std::fill_n(g, width_, 0.0f);
       }

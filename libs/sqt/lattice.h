@@ -53,8 +53,9 @@ class Lattice {
   void predict(size_t i, uint32_t k, std::span<float> out) const;
 
  private:
-  int32_t find(CellId id) const;                         // -1: not there
-  bool estimate(CellId id, std::span<float> out) const;  // value at a cell of the node's level, or of a coarser plane
+  int32_t find(CellId id) const;  // -1: not there
+  // Value at a cell of the node's level, or of a coarser plane (computed into room); null where the region ends.
+  const float* estimate(CellId id, std::span<float> room) const;
   Region region_;
   size_t width_;
   std::vector<Node> nodes_;

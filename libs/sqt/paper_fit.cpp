@@ -62,7 +62,8 @@ PaperData fit_paper(const Function& function, const PaperOptions& options,
         const auto k =
             std::lower_bound(data.magnitude_um.begin(), data.magnitude_um.end(), data.function.wavelength_um[c]) -
             data.magnitude_um.begin();
-        data.magnitudes[v * channels + static_cast<size_t>(k)] = totals[c];
+        data.magnitudes[v * channels + static_cast<size_t>(k)] =
+            one_view ? totals[c] : std::min(totals[c], 1.0f);  // no surface returns more than it receives
       }
       if (progress) progress(1.0 / static_cast<double>(data.views.size()));
     }

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "base/error.h"
@@ -31,7 +32,10 @@ class ThetaGrid {
   ThetaGrid() = default;
   explicit ThetaGrid(std::vector<double> nodes) : nodes_(std::move(nodes)) {  // strictly ascending, at least one
     SUITE_CHECK(!nodes_.empty());
-    for (size_t i = 1; i < nodes_.size(); ++i) SUITE_CHECK_LT(nodes_[i - 1], nodes_[i]);
+    for (size_t i = 1; i < nodes_.size(); ++i) {
+      SUITE_CHECK_LT(nodes_[i - 1], nodes_[i]);
+      inverse_.push_back(1 / (nodes_[i] - nodes_[i - 1]));
+    }
     const double span = nodes_.back() - nodes_.front();
     scale_ = span > 0 ? kBuckets / span : 0;
     bucket_.assign(kBuckets + 1, 0);
@@ -49,14 +53,14 @@ class ThetaGrid {
     const double clamped = std::clamp(theta, nodes_.front(), nodes_.back());
     size_t i = bucket_[static_cast<size_t>((clamped - nodes_.front()) * scale_)];
     while (i + 2 < nodes_.size() && nodes_[i + 1] <= clamped) ++i;
-    return {i, std::clamp((clamped - nodes_[i]) / (nodes_[i + 1] - nodes_[i]), 0.0, 1.0)};
+    return {i, std::clamp((clamped - nodes_[i]) * inverse_[i], 0.0, 1.0)};
   }
   At locate(Dir d) const { return locate(fast_acos(d.z)); }
 
  private:
   static constexpr size_t kBuckets = 64;
-  std::vector<double> nodes_;
-  std::vector<size_t> bucket_;
+  std::vector<double> nodes_, inverse_;
+  std::vector<uint32_t> bucket_;
   double scale_ = 0;
 };
 

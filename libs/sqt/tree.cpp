@@ -20,6 +20,13 @@ Tree::Tree(std::span<const CellId> leaves) : cells_(leaves.begin(), leaves.end()
     SUITE_CHECK(nodes_[node] == 0);
     nodes_[node] = -static_cast<int>(i) - 1;
   }
+  for (size_t t = 0; t < top_.size(); ++t) {
+    const uint32_t x = t & ((1u << kTopOrder) - 1), y = (t >> kTopOrder) & ((1u << kTopOrder) - 1);
+    int node = nodes_[t >> (2 * kTopOrder)];
+    for (int bit = kTopOrder - 1; bit >= 0 && node > 0; --bit)
+      node = nodes_[static_cast<size_t>(node) + (((y >> bit) & 1) * 2 + ((x >> bit) & 1))];
+    top_[t] = node;
+  }
 }
 
 }  // namespace suite::sqt

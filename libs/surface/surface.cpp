@@ -56,7 +56,9 @@ uint32_t Surface::mapped(uint32_t material, const Hit& hit) const {
 uint32_t Surface::material(const Hit& hit) const {
   const TracedObject& object = tracer_.objects()[hit.object];
   uint32_t material = object.material_override;
-  if (material == kNone) {
+  if (material == kNone && object.primitive != kNone) {
+    material = tracer_.scene().primitives[object.primitive].material;
+  } else if (material == kNone) {
     const Mesh& mesh = tracer_.scene().meshes[object.mesh];
     const auto part = mesh.parts.size() == 1 ? mesh.parts.begin()
                                              : std::upper_bound(mesh.parts.begin(), mesh.parts.end(), hit.triangle,
@@ -67,7 +69,9 @@ uint32_t Surface::material(const Hit& hit) const {
 }
 
 Vec2 Surface::uv(const Hit& hit) const {
-  const Mesh& mesh = tracer_.scene().meshes[tracer_.objects()[hit.object].mesh];
+  const TracedObject& object = tracer_.objects()[hit.object];
+  if (object.primitive != kNone) return {hit.u, hit.v};
+  const Mesh& mesh = tracer_.scene().meshes[object.mesh];
   if (mesh.uvs.empty()) return {hit.u, hit.v};
   const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
   const double a = 1.0 - hit.u - hit.v, b = hit.u, c = hit.v;
@@ -77,11 +81,11 @@ Vec2 Surface::uv(const Hit& hit) const {
 
 void Surface::interact(const Hit& hit, Dir out, Interaction& at) const {
   const TracedObject& object = tracer_.objects()[hit.object];
-  const Mesh& mesh = tracer_.scene().meshes[object.mesh];
   at.position = hit.position;
   at.geometric_normal = hit.normal;
   Dir n = hit.normal;
-  if (!mesh.normals.empty()) {
+  if (object.mesh != kNone && !tracer_.scene().meshes[object.mesh].normals.empty()) {
+    const Mesh& mesh = tracer_.scene().meshes[object.mesh];
     const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
     const Vec3 local = oct_decode(mesh.normals[i[0]]) * (1.0 - hit.u - hit.v) + oct_decode(mesh.normals[i[1]]) * double{hit.u} +
                        oct_decode(mesh.normals[i[2]]) * double{hit.v};

@@ -16,10 +16,10 @@ struct Walk {
       const uint32_t override_id = material != kNone ? material : p.material_override;
       const uint32_t tag_id = p.tag != kNone ? p.tag : tag;
       if (p.kind == TargetKind::group) group(p.target, map, override_id, tag_id);
-      if (p.kind == TargetKind::mesh) {
-        if (out.size() >= limit) throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
-        out.push_back({map, p.target, override_id, tag_id, static_cast<uint32_t>(out.size())});
-      }
+      if (p.kind == TargetKind::group) continue;
+      if (out.size() >= limit) throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
+      const bool mesh = p.kind == TargetKind::mesh;
+      out.push_back({map, mesh ? p.target : kNone, mesh ? kNone : p.target, override_id, tag_id, map.determinant() < 0, static_cast<uint32_t>(out.size())});
     }
   }
 };

@@ -5,21 +5,6 @@
 
 namespace suite {
 
-bool clip(const Box3& box, const Ray& ray, double t_max, double& enter, double& leave) {
-  enter = 0;
-  leave = t_max;
-  for (int i = 0; i < 3; ++i) {
-    const double inverse = 1 / ray.direction[i];
-    double a = (box.low[i] - ray.origin[i]) * inverse, b = (box.high[i] - ray.origin[i]) * inverse;
-    if (a > b) std::swap(a, b);
-    // 0 * infinity when the origin lies in the slab's plane and the ray runs within it: NaN compares false and the
-    // slab does not clip.
-    if (a > enter) enter = a;
-    if (b * (1 + 4 * 2.22e-16) < leave) leave = b * (1 + 4 * 2.22e-16);
-  }
-  return enter <= leave;
-}
-
 void TileBvh::build(std::span<const Box3> boxes) {
   nodes_.clear();
   if (boxes.empty()) return;

@@ -19,12 +19,14 @@
 
 namespace suite {
 
-// One flattened instance of a mesh.
+// One flattened instance of a mesh or of an exact surface.
 struct TracedObject {
   Affine3 to_world;                 // mesh local (double, mesh origin included) -> ENU
-  uint32_t mesh = kNone;
+  uint32_t mesh = kNone;            // index into Scene::meshes, or kNone
+  uint32_t primitive = kNone;       // index into Scene::primitives, or kNone
   uint32_t material_override = kNone;
   uint32_t tag = kNone;             // nearest tag on the way down from the root
+  bool mirrored = false;            // to_world turns the winding round; the front side stays the front side
   uint32_t instance = kNone;        // number of the flattened instance, in the order of the hierarchy
 };
 
@@ -34,7 +36,7 @@ struct Hit {
   Dir normal;                       // geometric, unit, on the front side (counter-clockwise vertices), ENU
   uint32_t object = kNone;          // index into Tracer::objects(); kNone = nothing was hit
   uint32_t triangle = 0;            // in the mesh
-  float u = 0, v = 0;               // barycentrics of vertices 1 and 2
+  float u = 0, v = 0;               // barycentrics of vertices 1 and 2; of an exact surface its UV
   bool hit() const { return object != kNone; }
 };
 
@@ -42,6 +44,8 @@ struct TraceStatistics {
   uint64_t rays = 0;                // nearest + visibility
   uint64_t cycles = 0;              // time-stamp counter cycles spent inside Embree
 };
+
+struct TracerCore;
 
 class Tracer {
  public:
@@ -70,13 +74,11 @@ class Tracer {
   static std::string engine();
 
  private:
-  struct Tile;
-  struct Impl;
   std::shared_ptr<const Scene> scene_;
   std::vector<TracedObject> objects_;
   Box3 bounds_;
   size_t triangles_ = 0;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<TracerCore> core_;
 };
 
 // Makes denormals zero in this thread for as long as it lives; every thread that traces holds one (Embree requires it).

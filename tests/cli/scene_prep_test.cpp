@@ -44,6 +44,20 @@ TEST_F(ScenePrep, WritesSummarisesAndRepeats) {
   EXPECT_THAT(s.out, HasSubstr("1 with 3 vertices, 1 triangles"));
 }
 
+TEST_F(ScenePrep, SkipsWorkThatIsDone) {
+  EXPECT_EQ(run("good.yaml -o a.h5").code, 0);
+  const CommandResult again = run("good.yaml -o a.h5");
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, HasSubstr("is up to date"));
+  EXPECT_THAT(run("good.yaml -o a.h5 --force").out, HasSubstr("verdict"));
+  EXPECT_THAT(run("good.yaml -o a.h5 --repair").out, HasSubstr("verdict"));
+  EXPECT_EQ(run("good.yaml -o a.h5").code, 0);
+  write_file(folder_ / "tri.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(run("good.yaml -o a.h5").out, HasSubstr("verdict"));
+  write_file(folder_ / "a.h5", "not a scene");
+  EXPECT_THAT(run("good.yaml -o a.h5").out, HasSubstr("verdict"));
+}
+
 TEST_F(ScenePrep, StrictAndMute) {
   EXPECT_EQ(run("good.yaml -o a.h5 --strict").code, 1);
   EXPECT_FALSE(file_exists(folder_ / "a.h5"));

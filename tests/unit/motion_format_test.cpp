@@ -7,11 +7,15 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "formats/tle/tle.h"
 
 namespace suite {
 namespace {
 
-MotionContext earth() { return {SceneFrame({48.5, 9.1, 450}), Clock(parse_iso8601("2024-05-01T10:00:00Z")), 0.0}; }
+MotionContext earth() {
+  return {SceneFrame({48.5, 9.1, 450}), Clock(parse_iso8601("2024-05-01T10:00:00Z")), 0.0,
+          [](const std::string& path, const std::string& satellite) { return read_tle_of(path, satellite).elements; }};
+}
 Params yaml(const std::string& text) { return Params::parse_text(text, "m.yaml"); }
 TrackPtr track(const std::string& text, const MotionContext& context = earth()) {
   const Params p = yaml(text);
@@ -71,8 +75,8 @@ TEST(MotionFormat, OrbitsComeFromElementSets) {
   const double height = c.frame->geodetic_from_enu(track(text, c)->at(0).translation).height_m;
   EXPECT_GT(height, 7e5);
   EXPECT_LT(height, 8.2e5);
-  EXPECT_THAT(complaint(text, {std::nullopt, c.clock, 0}), HasSubstr("needs a scene with an origin"));
-  EXPECT_THAT(complaint(text, {c.frame, std::nullopt, 0}), HasSubstr("needs the date"));
+  EXPECT_THAT(complaint(text, {std::nullopt, c.clock, 0, c.satellites}), HasSubstr("needs a scene with an origin"));
+  EXPECT_THAT(complaint(text, {c.frame, std::nullopt, 0, c.satellites}), HasSubstr("needs the date"));
 }
 
 // What is written in any frame's columns reads back as the same poses.

@@ -61,7 +61,7 @@ Scene small_scene() {
 
 class SceneHdf : public ::testing::Test {
  protected:
-  SceneHdf() { write_scene(small_scene(), {"gen 1", "args", "hash"}, path_); }
+  SceneHdf() { write_scene(small_scene(), {"gen 1", "args", "hash", {{"", "00ff"}, {"a.obj", "11"}}}, path_); }
   TempFolder folder_;
   std::string path_ = folder_ / "s.h5";
 };
@@ -98,10 +98,11 @@ TEST_F(SceneHdf, RoundTrip) {
   EXPECT_EQ(b.files.at(0).bytes, a.files[0].bytes);
   EXPECT_EQ(b.bounds.high, a.bounds.high);
   EXPECT_EQ(read_provenance(path_).input_sha256, "hash");
+  EXPECT_EQ(read_provenance(path_).inputs.at(1).name, "a.obj");
 }
 
 TEST_F(SceneHdf, SameSceneSameBytes) {
-  write_scene(small_scene(), {"gen 1", "args", "hash"}, folder_ / "other.h5");
+  write_scene(small_scene(), {"gen 1", "args", "hash", {{"", "00ff"}, {"a.obj", "11"}}}, folder_ / "other.h5");
   EXPECT_EQ(read_bytes(path_), read_bytes(folder_ / "other.h5"));
 }
 

@@ -89,6 +89,51 @@ TEST_F(SceneText, GroupsNestAndChildrenComeAfterParents) {
   EXPECT_NEAR(all.a[0], std::cos(64 * a), 1e-12);
 }
 
+TEST_F(SceneText, TablesPlaceManyInTheirOrder) {
+  write_file(folder_ / "t.csv", "# trees\nx,y,z,heading_deg,scale\n1,2,3,270,2\n-1, +0.5, 0, 0, 1\n");
+  const Scene s = bake(whole("  - {place: tri, table: t.csv, translate: [100, 0, 0]}\n"));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  ASSERT_EQ(s.groups[0].placements.size(), 2u);
+  const Vec3 v = s.groups[0].placements[0].to_parent.point({1, 0, 0});
+  EXPECT_NEAR(v.x, 101, 1e-12);
+  EXPECT_NEAR(v.y, 4, 1e-12);
+  EXPECT_NEAR(s.groups[0].placements[1].to_parent.b.y, 0.5, 0);
+  const double rows[16] = {1, 2, 3, 1, 0, 0, 0, 2, 4, 5, 6, 1, 0, 0, 1, 1};
+  write_file(folder_ / "t.f64", std::as_bytes(std::span(rows)));
+  const Scene b = bake(whole("  - {place: tri, table: t.f64}\n"));
+  EXPECT_NEAR(b.groups[0].placements.at(1).to_parent.point({1, 0, 0}).y, 6, 1e-12);
+  write_file(folder_ / "t.csv", "x,y,hdg\n1,2,3\n");
+  EXPECT_THAT(findings(whole("  - {place: tri, table: t.csv}\n")), HasSubstr("t.csv:1:1: unknown column 'hdg'"));
+  write_file(folder_ / "t.csv", "x,y\n1,2\n1;2\n");
+  EXPECT_THAT(findings(whole("  - {place: tri, table: t.csv}\n")), HasSubstr("t.csv:3:1: expected 2 numbers"));
+  write_file(folder_ / "t.csv", "x,y,scale\n1,2,0\n");
+  EXPECT_THAT(findings(whole("  - {place: tri, table: t.csv}\n")), HasSubstr("t.csv:2:1: a scale of 0"));
+}
+
+TEST_F(SceneText, ScatterKeepsToItsDensityAndSurface) {
+  // Two triangles of 50 and 150 m2, one of them steep: points per area agree within 4 sigma.
+  write_file(folder_ / "two.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 100 0 0\nv 110 0 0\nv 100 10 28.2842712\nusemtl grey\nf 1 2 3\nf 4 5 6\n");
+  const std::string text = whole("  - {place: two}\n  - {place: tri, on: two, scatter: {density_per_m2: 20, seed: 7, scale: [0.5, 2]}}\n", "  two: {obj: two.obj}\n");
+  const Scene s = bake(text), t = bake(text);
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  size_t flat = 0, steep = 0;
+  for (size_t k = 1; k < s.groups[0].placements.size(); ++k) {
+    const Affine3& a = s.groups[0].placements[k].to_parent;
+    EXPECT_EQ(a, t.groups[0].placements[k].to_parent);
+    if (a.b.x < 50) {
+      ++flat;
+      EXPECT_EQ(a.b.z, 0);
+    } else {
+      ++steep;
+      EXPECT_NEAR(a.b.z, a.b.y * 2.82842712, 1e-5);
+    }
+    EXPECT_NEAR(a.a[8], 1.25, 0.7500001);
+  }
+  EXPECT_EQ(flat + steep, 4000u);
+  EXPECT_NEAR(static_cast<double>(flat), 1000, 4 * std::sqrt(4000 * 0.25 * 0.75));
+  EXPECT_THAT(findings(whole("  - {place: tri, scatter: {density_per_m2: 1}}\n")), HasSubstr("'scatter' needs 'on'"));
+}
+
 TEST_F(SceneText, AllFaultsInOneRun) {
   const std::string text = findings(
       "scene: 1\n"

@@ -44,6 +44,20 @@ TEST(Cell, PointsSurviveTheRoundTrip) {
   }
 }
 
+TEST(Cell, FastPointsAreTheSamePoints) {
+  Pcg32 rng(6);
+  for (int i = 0; i < 200000; ++i) {
+    const Dir d = random_dir(rng);
+    const FacePoint a = face_point(d), b = face_point_fast(d);
+    EXPECT_LT(length(direction(b) - d), 2e-8);
+    if (a.face == b.face) {
+      EXPECT_LT(std::fabs(a.x - b.x) + std::fabs(a.y - b.y), 2e-8);
+    }
+  }
+  for (const Dir d : {Dir{0, 0, 1}, Dir{0, 0, -1}, Dir{1, 0, 0}, Dir{-1, 0, 0}, Dir{0, 1, 0}, Dir{0, -1, 0}})
+    EXPECT_LT(length(direction(face_point_fast(d)) - d), 2e-8);
+}
+
 TEST(Cell, CodeHoldsOrderAndIndex) {
   for (int order = 0; order <= kMaxOrder; ++order)
     for (const uint32_t index : {0u, cell_count(order) / 3, cell_count(order) - 1}) {

@@ -1,0 +1,18 @@
+// The readers of single layouts, told apart in library.cpp.
+#pragma once
+#include <string_view>
+
+#include "formats/curve/curve.h"
+
+namespace suite {
+
+struct NamedCurve {
+  std::string name;          // may be empty
+  Curve curve;
+};
+
+Curve read_table(const std::string& path, const CurveOptions& options);
+std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& options);
+std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& options);
+
+}  // namespace suite

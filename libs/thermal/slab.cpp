@@ -1,0 +1,303 @@
+// The time scheme of a slab. Every stage solves
+//   heat(T) - scale * gain(T) = history,
+// heat being what each node stores (J/m2), gain what flows into it (W/m2); both stages share scale = d dt, so a slab of
+// constant properties needs one elimination for both and keeps it while the step stays.
+#include "thermal/slab.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace suite {
+
+namespace {
+
+// TR-BDF2 as a singly diagonally implicit scheme (Hosea & Shampine 1996, table 1): the middle stage at gamma, weights
+// of the result (w, w, d) and of the embedded third-order result.
+constexpr double kRoot2 = 1.41421356237309504880;
+constexpr double kGamma = 2 - kRoot2, kD = kGamma / 2, kW = kRoot2 / 4;
+constexpr double kError1 = (1 - kW) / 3 - kW, kError2 = (3 * kW + 1) / 3 - kW, kError3 = kD / 3 - kD;
+constexpr double kHottest = 1e4;  // K
+
+}  // namespace
+
+void Slab::start(double t, double kelvin) { start(t, std::vector<double>(depth_.size(), kelvin)); }
+
+void Slab::start(double t, std::span<const double> kelvin) {
+  SUITE_CHECK_EQ(kelvin.size(), depth_.size());
+  for (const double T : kelvin)
+    if (!(T >= 1 && T <= kHottest)) throw Error(strf("a slab starts at %g K", T), "1 to 10000 K");
+  t_ = t;
+  T_.assign(kelvin.begin(), kelvin.end());
+  next_step_ = std::fmin(1.0, options_.max_step);
+  last_step_ = 0;
+  reset_means();
+}
+
+void Slab::reset_means() {
+  std::fill(flux_sum_.begin(), flux_sum_.end(), 0.0);
+  sum_time_ = 0;
+}
+
+std::vector<double> Slab::mean_fluxes() const {
+  std::vector<double> means(flux_sum_);
+  for (double& m : means) m = sum_time_ > 0 ? m / sum_time_ : 0;
+  return means;
+}
+
+// Stored heat, fluxes and gains of a stage from its temperatures.
+void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
+  const size_t n = s.T.size();
+  const double* T = s.T.data();
+  double *heat = s.heat.data(), *flux = s.flux.data(), *gain = s.gain.data();
+  const std::vector<double>*h = heat_coefficients_.data(), *k = flux_coefficients_.data();
+  const double *h0 = h[0].data(), *h1 = h[1].data(), *h2 = h[2].data(), *h3 = h[3].data(), *h4 = h[4].data();
+  const double *k0 = k[0].data(), *k1 = k[1].data(), *k2 = k[2].data(), *k3 = k[3].data();
+  if (linear_) {
+#pragma GCC ivdep
+    for (size_t i = 0; i < n; ++i) heat[i] = h0[i] * T[i];
+#pragma GCC ivdep
+    for (size_t j = 0; j < n - 1; ++j) flux[j] = k0[j] * (T[j] - T[j + 1]);
+  } else {
+#pragma GCC ivdep
+    for (size_t i = 0; i < n; ++i)
+      heat[i] = T[i] * (h0[i] + T[i] * (h1[i] + T[i] * (h2[i] + T[i] * (h3[i] + T[i] * h4[i]))));
+#pragma GCC ivdep
+    for (size_t j = 0; j < n - 1; ++j) {
+      // The mean of k over both temperatures, as symmetric polynomials, so that nothing cancels when they are close.
+      const double a = T[j], b = T[j + 1], sum = a + b, squares = a * a + b * b;
+      flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) / 3 + k3[j] * sum * squares / 4) * (a - b);
+    }
+  }
+  gain[0] = source_[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
+  for (size_t i = 1; i + 1 < n; ++i) gain[i] = source_[i] + (flux[i - 1] - flux[i]);
+  gain[n - 1] = source_[n - 1] + flux[n - 2] + (bottom.fixed ? 0 : bottom.flux(T[n - 1]));
+}
+
+namespace {
+
+// Eliminates a tridiagonal system from the bottom up, leaving one equation for the top unknown: returns its
+// coefficient. Afterwards right'[i] = right[i] - up[i] right'[i+1] and x[i] = pivot[i] right'[i] - down[i] x[i-1].
+double eliminate(std::span<const double> lower, std::span<const double> diagonal, std::span<const double> upper,
+                 std::span<double> pivot, std::span<double> up, std::span<double> down) {
+  const size_t n = diagonal.size();
+  pivot[n - 1] = 1 / diagonal[n - 1];
+  for (size_t i = n - 1; i-- > 0;) {
+    down[i + 1] = pivot[i + 1] * lower[i + 1];
+    up[i] = upper[i] * pivot[i + 1];
+    const double d = diagonal[i] - upper[i] * down[i + 1];
+    if (i == 0) return d;
+    pivot[i] = 1 / d;
+  }
+  throw_bug(__FILE__, __LINE__, "a slab of fewer than two nodes", "");
+}
+
+}  // namespace
+
+void Slab::factor_linear(double scale) {
+  const size_t n = T_.size();
+  for (size_t i = 0; i < n; ++i) {
+    lower_[i] = i > 0 ? -scale * flux_coefficients_[0][i - 1] : 0;
+    upper_[i] = i + 1 < n ? -scale * flux_coefficients_[0][i] : 0;
+    diagonal_[i] = heat_coefficients_[0][i] - lower_[i] - upper_[i];
+  }
+  factored_fixed_ = spec_.bottom.kind == SlabFace::Kind::temperature;
+  if (factored_fixed_) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
+  top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+  factored_for_ = scale;
+}
+
+// Constant properties: the interior is eliminated exactly, the top face's balance is one equation in its temperature.
+bool Slab::solve_linear(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom,
+                        Stage& s) {
+  const size_t n = T_.size();
+  if (factored_for_ != scale) factor_linear(scale);
+  double below = bottom.fixed ? bottom.kelvin : history[n - 1] + scale * (source_[n - 1] + bottom.constant);
+  right_[n - 1] = below;
+  for (size_t i = n - 1; i-- > 0;) right_[i] = below = history[i] + scale * source_[i] - up_[i] * below;
+  double T = s.T[0];
+  if (top.fixed) {
+    T = top.kelvin;
+  } else {
+    // Increasing and convex for T > 0: Newton's method converges from any positive start.
+    double change = INFINITY;
+    for (int k = 0; k < 60 && std::fabs(change) > 1e-13 * T; ++k) {
+      change = (right_[0] + scale * top.flux(T) - top_diagonal_ * T) / (top_diagonal_ - scale * top.slope(T));
+      T = std::fmax(T + change, 0.1 * T);
+    }
+  }
+  s.T[0] = T;
+  for (size_t i = 1; i < n; ++i) s.T[i] = T = pivot_[i] * right_[i] - down_[i] * T;
+  evaluate(s, top, bottom);
+  return true;
+}
+
+// Derivatives of heat(T) - scale * gain(T); of the flux through an interval by its upper temperature k(T)/h there.
+void Slab::set_newton_matrix(const Stage& s, double scale, const FaceNow& top, const FaceNow& bottom) {
+  const size_t n = s.T.size();
+  const double* T = s.T.data();
+  const std::vector<double>*h = heat_coefficients_.data(), *k = flux_coefficients_.data();
+  const double *h0 = h[0].data(), *h1 = h[1].data(), *h2 = h[2].data(), *h3 = h[3].data(), *h4 = h[4].data();
+  const double *k0 = k[0].data(), *k1 = k[1].data(), *k2 = k[2].data(), *k3 = k[3].data();
+  double *lower = lower_.data(), *diagonal = diagonal_.data(), *upper = upper_.data();
+#pragma GCC ivdep
+  for (size_t i = 0; i < n; ++i)
+    diagonal[i] = h0[i] + T[i] * (2 * h1[i] + T[i] * (3 * h2[i] + T[i] * (4 * h3[i] + T[i] * 5 * h4[i])));
+#pragma GCC ivdep
+  for (size_t j = 0; j < n - 1; ++j) {
+    const double a = T[j], b = T[j + 1];
+    upper[j] = -scale * (k0[j] + b * (k1[j] + b * (k2[j] + b * k3[j])));
+    lower[j + 1] = -scale * (k0[j] + a * (k1[j] + a * (k2[j] + a * k3[j])));
+  }
+  lower[0] = upper[n - 1] = 0;
+  for (size_t j = 0; j < n - 1; ++j) {
+    diagonal[j] -= lower[j + 1];
+    diagonal[j + 1] -= upper[j];
+  }
+  if (top.fixed)
+    diagonal[0] = 1, upper[0] = 0;
+  else
+    diagonal[0] -= scale * top.slope(T[0]);
+  if (bottom.fixed)
+    diagonal[n - 1] = 1, lower[n - 1] = 0;
+  else
+    diagonal[n - 1] -= scale * bottom.slope(T[n - 1]);
+}
+
+// Properties that depend on temperature, or two radiating faces: Newton's method on all nodes from the guess in s.T.
+bool Slab::solve_newton(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom,
+                        Stage& s) {
+  const size_t n = T_.size();
+  double last = INFINITY;
+  for (int k = 0; k < 25; ++k) {
+    evaluate(s, top, bottom);
+    // Convergence is quadratic, squares weighed with d(ln k)/dT of some 1e-3/K: what is left is rounding.
+    if (last < 1e-5) return true;
+    for (size_t i = 0; i < n; ++i) right_[i] = history[i] + scale * s.gain[i] - s.heat[i];
+    if (top.fixed) right_[0] = top.kelvin - s.T[0];
+    if (bottom.fixed) right_[n - 1] = bottom.kelvin - s.T[n - 1];
+    set_newton_matrix(s, scale, top, bottom);
+    top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+    for (size_t i = n - 1; i-- > 0;) right_[i] -= up_[i] * right_[i + 1];
+    double change = right_[0] / top_diagonal_, largest = 0;
+    for (size_t i = 0; i < n; ++i) {
+      if (i > 0) change = pivot_[i] * right_[i] - down_[i] * change;
+      largest = std::fmax(largest, std::fabs(change));
+      s.T[i] += change;
+      if (!(s.T[i] > 0 && s.T[i] < kHottest)) return false;
+    }
+    ++counters_.newton;
+    // Rounding in large slabs may keep the change above the goal; it must at least not grow.
+    if (k > 8 && largest >= last) return false;
+    last = largest;
+  }
+  return false;
+}
+
+bool Slab::solve(std::span<const double> history, double scale, double t, Stage& s) {
+  const FaceNow top = face_at(spec_.top, t), bottom = face_at(spec_.bottom, t);
+  if (!linear_) return solve_newton(history, scale, top, bottom, s);
+  return solve_linear(history, scale, top, bottom, s) && s.T[0] > 0 && s.T[0] < kHottest && s.T.back() > 0;
+}
+
+// The difference to the embedded result, through the stage's own matrix so that stiff nodes do not exaggerate it.
+double Slab::filtered_error(double dt, double t_end) {
+  const size_t n = T_.size();
+  const FaceNow top = face_at(spec_.top, t_end), bottom = face_at(spec_.bottom, t_end);
+  for (size_t i = 0; i < n; ++i)
+    right_[i] = dt * (kError1 * now_.gain[i] + kError2 * middle_.gain[i] + kError3 * end_.gain[i]);
+  if (bottom.fixed) right_[n - 1] = 0;
+  for (size_t i = n - 1; i-- > 0;) right_[i] -= up_[i] * right_[i + 1];
+  const double slope = linear_ ? kD * dt * top.slope(end_.T[0]) : 0;  // Newton's matrix has it already
+  double e = top.fixed ? 0 : right_[0] / (top_diagonal_ - slope), largest = std::fabs(e);
+  for (size_t i = 1; i < n; ++i) {
+    e = pivot_[i] * right_[i] - down_[i] * e;
+    largest = std::fmax(largest, std::fabs(e));
+  }
+  return largest;
+}
+
+// Newton's start for the middle stage: the last step's trend goes on, where that is believable.
+void Slab::guess_middle(double dt) {
+  middle_.T = now_.T;
+  if (linear_ || !(last_step_ > 0) || dt > 2 * last_step_) return;
+  for (size_t i = 0; i < now_.T.size(); ++i) {
+    const double change = rate_[i] * kGamma * dt;
+    if (std::fabs(change) < 0.1 * now_.T[i]) middle_.T[i] += change;
+  }
+}
+
+bool Slab::attempt(double dt, double& error) {
+  const size_t n = T_.size();
+  const double scale = kD * dt;
+  now_.T = T_;
+  const FaceNow top = face_at(spec_.top, t_), bottom = face_at(spec_.bottom, t_);
+  if (top.fixed) now_.T[0] = top.kelvin;
+  if (bottom.fixed) now_.T[n - 1] = bottom.kelvin;
+  evaluate(now_, top, bottom);
+  // The middle stage: trapezoidal rule over gamma dt.
+  for (size_t i = 0; i < n; ++i) history_[i] = now_.heat[i] + scale * now_.gain[i];
+  guess_middle(dt);
+  if (!solve(history_, scale, t_ + kGamma * dt, middle_)) return false;
+  // The end: backward differences over both.
+  for (size_t i = 0; i < n; ++i) {
+    history_[i] = now_.heat[i] + kW * dt * (now_.gain[i] + middle_.gain[i]);
+    end_.T[i] = std::fmax(middle_.T[i] + (middle_.T[i] - now_.T[i]) * ((1 - kGamma) / kGamma), 0.5 * middle_.T[i]);
+  }
+  if (!solve(history_, scale, t_ + dt, end_)) return false;
+  error = filtered_error(dt, t_ + dt);
+  return std::isfinite(error);
+}
+
+void Slab::accept(double dt) {
+  for (size_t j = 0; j < flux_sum_.size(); ++j)
+    flux_sum_[j] += dt * (kW * (now_.flux[j] + middle_.flux[j]) + kD * end_.flux[j]);
+  sum_time_ += dt;
+  if (!linear_)
+    for (size_t i = 0; i < T_.size(); ++i) rate_[i] = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
+  last_step_ = dt;
+  T_ = end_.T;
+  t_ += dt;
+  ++counters_.steps;
+  if (recording_) recorded_.push_back(dt);
+}
+
+bool Slab::step(double dt, double* estimate) {
+  SUITE_CHECK(dt > 0 && T_.front() > 0);
+  double error = 0;
+  if (!attempt(dt, error)) return false;
+  accept(dt);
+  if (estimate) *estimate = error;
+  return true;
+}
+
+void Slab::advance(double t) {
+  SUITE_CHECK(T_.front() > 0);  // started
+  if (!(t >= t_)) throw Error(strf("a slab at %.9g s is asked to go to %.9g s", t_, t), "times ascend");
+  double dt = next_step_;
+  while (t_ < t) {
+    const double left = t - t_;
+    const bool last = dt >= left * (1 - 1e-12);
+    // Near the end two even steps are better than a long one and a crumb.
+    const double now = last ? left : dt > 0.5 * left ? 0.5 * left : dt;
+    double error = 0;
+    const bool solved = attempt(now, error);
+    if (solved && error <= options_.tolerance) {
+      accept(now);
+      if (last) t_ = t;
+      const double factor = std::clamp(0.9 * std::cbrt(options_.tolerance / std::fmax(error, 1e-300)), 0.3, 4.0);
+      // Small gains are not worth a new elimination; a step cut short for the end of the time says nothing.
+      const double wish = factor > 1 && factor < 1.15 ? now : now * factor;
+      if (now == dt || wish > dt || factor < 1) dt = std::fmin(wish, options_.max_step);
+      continue;
+    }
+    ++counters_.rejected;
+    dt = now * (solved ? std::clamp(0.9 * std::cbrt(options_.tolerance / error), 0.1, 0.9) : 0.25);
+    if (dt < options_.min_step)
+      throw Error(strf("a slab finds no step at %.9g s", t_), "its loads or its materials change too violently");
+  }
+  next_step_ = dt;
+}
+
+}  // namespace suite

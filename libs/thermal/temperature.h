@@ -1,0 +1,48 @@
+// Kelvin at a place and time: what the renderer asks. Models are described by a TemperatureSpec, made from the one
+// table in models.h, and immutable afterwards; what they need from above (loads) is passed in as a function.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+#include "thermal/loads.h"
+#include "thermal/slab.h"
+
+namespace suite {
+
+// A temperature model as a user describes it and a scene stores it.
+struct TemperatureSpec {
+  std::string model;                      // a row of temperature_models(), e.g. "constant"
+  std::map<std::string, double> numbers;  // e.g. "kelvin" -> 300; the row lists the names
+  std::vector<double> times, kelvins;     // tabulated: s, K
+  bool repeat = false;                    // tabulated: the table is one period
+  std::vector<SlabLayer> layers;          // slab; empty = one layer from the numbers
+};
+
+class TemperatureModel {
+ public:
+  virtual ~TemperatureModel() = default;
+  // Surface temperature (K) of one place at ascending times (s), given the loads of that place; out has as many
+  // entries. Error: times that do not ascend, loads or tables that do not cover them. May be called from many threads.
+  virtual void kelvin(std::span<const double> times, const Loads& loads, std::span<double> out) const = 0;
+  // Whether the loads matter; when not, an empty function may be passed.
+  virtual bool needs_loads() const { return false; }
+};
+
+// Temperatures over a scene.
+class TemperatureField {
+ public:
+  virtual ~TemperatureField() = default;
+  virtual double kelvin(Vec3 place, double time) const = 0;  // scene ENU, m; s
+};
+
+// A model over a scene whose loads differ from place to place. Every question is answered anew: a slab is simulated for
+// it, so passes that need many answers of one place should ask the model for all times at once.
+using LoadsAt = std::function<Loads(Vec3 place)>;
+std::unique_ptr<const TemperatureField> field_of(std::shared_ptr<const TemperatureModel> model, LoadsAt loads);
+
+}  // namespace suite
