@@ -14,7 +14,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kRows = 129, kPoints = 8192, kAngles = 96;
+constexpr size_t kRows = 129, kPoints = 4096, kAngles = 96;
 
 class GgxConductor final : public ScatterModel {
  public:
