@@ -365,7 +365,8 @@ class AlignedBundle final : public Bundle {
     for (const Sheet& s : sheets_) {
       const float* p = s.plane.data() + column * 3;
       for (size_t i = 0; i < s.tree.size(); ++i, p += layout_.width() * 3)
-        sum[s.first + i + 1] = sum[s.first + i] + weight[s.first + i] * portable_exp2(*p);
+        sum[s.first + i + 1] =
+            sum[s.first + i] + weight[s.first + i] * portable_exp2(p[0]) * mean_exp2(p[1]) * mean_exp2(p[2]);
     }
     if (!(sum.back() > 0)) return;
     const double scale = 0x1p32 / sum.back();
@@ -441,6 +442,7 @@ std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<Alig
           const double area =
               cell_solid_angle(id.order()) / (side * side) * (layout.half_stored && mirrored(id) != id ? 2 : 1);
           const float* leaf = &sheets[s].plane[i * layout.width() * 3];
+          const float inverse_side = 1.0f / static_cast<float>(side);
           for (int k = 0; k < side * side; ++k) {
             const double ux = (k % side + 0.5) / side, uy = (k / side + 0.5) / side;
             const Dir d = direction_in(id, {ux, uy});
@@ -451,8 +453,9 @@ std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<Alig
             for (size_t c = 0; c < channels; ++c) {
               const float* a = leaf + (low_view * channels + c) * 3;
               const float* b = leaf + (high_view * channels + c) * 3;
-              integral[c] +=
-                  weight * portable_exp2(w0 * (a[0] + dx * a[1] + dy * a[2]) + w1 * (b[0] + dx * b[1] + dy * b[2]));
+              const float gx = w0 * a[1] + w1 * b[1], gy = w0 * a[2] + w1 * b[2];
+              integral[c] += weight * portable_exp2(w0 * a[0] + w1 * b[0] + dx * gx + dy * gy) *
+                             mean_exp2(gx * inverse_side) * mean_exp2(gy * inverse_side);
             }
           }
         }

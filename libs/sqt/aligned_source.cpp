@@ -286,7 +286,7 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;
   std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
-  const size_t fine = 3;
+  const size_t fine = 6;
   for (size_t v = 0; v < views; ++v)
     for (size_t k = 0; k < (v + 1 < views ? fine : 1); ++k)
       m.totals.theta.push_back(v + 1 < views ? layout.theta[v] + (layout.theta[v + 1] - layout.theta[v]) *

@@ -154,7 +154,9 @@ class PaperBundle final : public Bundle {
     if (!cosine_weighted()) return Weighting::none;
     return hemisphere() ? Weighting::upper_side : Weighting::both_sides;
   }
-  bool below(Dir out) const { return cosine_weighted() && out.z <= 0; }
+  // Data of both sides are seen from the front: the back is taken to scatter as the front does.
+  bool below(Dir out) const { return cosine_weighted() && (hemisphere() ? out.z <= 0 : out.z == 0); }
+  bool turned_over(Dir out) const { return cosine_weighted() && out.z < 0; }
   bool outside(Dir out, Dir in) const { return below(out) || (hemisphere() && in.z <= 0); }
   const Slice& slice(size_t view, size_t channel) const { return slices_[view * channels() + channel]; }
   double view_total(size_t view, size_t channel) const {
@@ -167,10 +169,17 @@ class PaperBundle final : public Bundle {
     if (!info_.function.isotropic || info_.function.quantity == Quantity::intensity || !(r > 0)) return {};
     return {{out.x / r, out.y / r, 0}, {-out.y / r, out.x / r, 0}, {0, 0, 1}};
   }
-  Dir to_frame(Dir out, Dir in) const { return frame(out).to_local(in); }
-  Dir from_frame(Dir out, Dir d) const { return frame(out).to_world(d); }
+  Dir to_frame(Dir out, Dir in) const {
+    if (turned_over(out)) in.z = -in.z;
+    return frame(out).to_local(in);
+  }
+  Dir from_frame(Dir out, Dir d) const {
+    Dir in = frame(out).to_world(d);
+    if (turned_over(out)) in.z = -in.z;
+    return in;
+  }
   std::array<Blend, 4> blend(Dir out) const {
-    const ThetaGrid::At at = grid_.locate(out);
+    const ThetaGrid::At at = grid_.locate(Dir{out.x, out.y, cosine_weighted() ? std::fabs(out.z) : out.z});
     const size_t up = std::min(at.low + 1, grid_.size() - 1), n = data_.phi_count;
     if (n == 1) return {{{at.low, 1 - at.t}, {up, at.t}, {0, 0}, {0, 0}}};
     double turn = azimuth(out) / (2 * kPi);

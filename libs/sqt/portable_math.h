@@ -1,6 +1,7 @@
 // Elementary functions made of IEEE additions and multiplications only, so that a file decodes to the same bits with
 // any mathematical library and instruction set. Used where the decoder's control flow or step sizes depend on a value.
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,13 @@ inline float portable_exp2(float x) {
   const float p =
       1.0f + r * (0.693147180f + r * (0.240226507f + r * (0.0555041087f + r * (0.00961812911f + r * 0.00133335581f))));
   return p * std::bit_cast<float>(static_cast<uint32_t>(static_cast<int>(n) + 127) << 23);
+}
+
+// Mean of 2^(slope t) over t in [-1/2, 1/2]: sinh(a) / a with a = slope ln 2 / 2, by its series (|slope| <= 8; error <
+// 1e-4).
+inline float mean_exp2(float slope) {
+  const float a2 = std::min(8.0f, slope * slope * 0.120113254f);
+  return 1 + a2 * (1.0f / 6) * (1 + a2 * (1.0f / 20) * (1 + a2 * (1.0f / 42) * (1 + a2 * (1.0f / 72))));
 }
 
 // log2(x) for positive normal x, absolute error below 1e-7: atanh series of the mantissa.

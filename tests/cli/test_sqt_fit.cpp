@@ -85,7 +85,7 @@ TEST(SqtFitCli, RefusesBadInput) {
       {"", "one input file or --model", 2},
       {kWard + " --method best", "'aligned' or 'paper'", 2},
       {kWard + " --method paper --max-error 0.1", "need --method aligned", 2},
-      {kWard + " --order 99", "out of range", 2},
+      {"--model ward:diffuse=0.2,specular=0.1,roughness=0.2 --order 99", "out of range", 2},
       {kWard + " --max-eror 0.1", "did you mean '--max-error'", 2},
   };
   for (const auto& c : cases) {
