@@ -33,9 +33,9 @@ void declare(Cli& cli, SqtFitOptions& o) {
   cli.option("-o,--output", o.output, "file to write", "FILE.sqt");
   cli.option("--method", o.method, "aligned, or paper (one tree a view and channel, for comparison)", "NAME");
   cli.option("--order", o.order, "finest HEALPix order, 3-12 (paper: 1-8); 0 = 10 (paper: 6)", "N");
-  cli.option("--views", o.views, "view directions, 2-64; 0 = 17 (paper: 24)", "N");
+  cli.option("--views", o.views, "view directions, 2-64; 0 = as many as the function's bends ask for (paper: 24)", "N");
   cli.option("--threshold", o.threshold,
-             "paper: families whose values differ by at most this share of their mean are consolidated", "X");
+             "paper: families whose values differ by at most this share of the slice's mean are consolidated", "X");
   cli.option("--max-error", o.max_error, "aligned: find the smallest file with at most this error", "E");
   cli.option("--max-bytes", o.max_bytes, "aligned: find the best fit of at most this size", "N");
   cli.option("--report", o.report, "write sizes and errors as JSON", "FILE.json");

@@ -145,8 +145,10 @@ int run_sqt_fit(const SqtFitOptions& o) {
   check_options(o);
   const FitInput input = load_input(o);
   const Stopwatch watch;
-  Progress progress("fitting", 1, "fit");
-  auto advance = [&](double share) { return [&progress, share](double fraction) { progress.add(share * fraction); }; };
+  Progress progress("fitting", 100, "%");
+  auto advance = [&](double share) {
+    return [&progress, share](double fraction) { progress.add(100 * share * fraction); };
+  };
   const sqt::Reference reference(*input.function, kReferencePairs, 1, advance(0.2));
   judge_input(input, reference, o.strict);
   Outcome out;

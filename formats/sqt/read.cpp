@@ -11,7 +11,8 @@ namespace {
 
 constexpr size_t kMaxHeader = 16 << 20;
 constexpr size_t kMaxRaw = size_t{1} << 30;
-constexpr size_t kMaxWidth = 1 << 20;  // views x channels
+constexpr size_t kMaxSide = 1024;        // views, and channels
+constexpr size_t kMaxNumbers = 1 << 25;  // leaves x views x channels
 
 sqt::Function::Info function_of(const Params& p) {
   sqt::Function::Info f;
@@ -56,7 +57,8 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();
   // Every number of the tables costs the file something; these bounds keep memory in proportion.
-  if (layout.width() > kMaxWidth) throw l.error("views x channels exceed what this reader accepts");
+  if (layout.theta.size() * layout.phi_count > kMaxSide || layout.channels > kMaxSide)
+    throw l.error("more views or channels than this reader accepts", "at most 1024 of each");
   if (d.totals.theta.size() * d.totals.phi_count * std::max(d.totals.magnitude_um.size(), layout.channels) >
       (size_t{1} << 24))
     throw t.error("the table of totals exceeds what this reader accepts");
@@ -66,10 +68,14 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   if (!reader.ok()) throw Error("SQT payload is damaged: its totals end too early");
   sqt::decode_totals(totals, layout.channels, t.boolean("delta", false), d.totals);
   const auto trees = reader.take(reader.left());
-  // A node takes at least a hundredth of a bit, and memory for a width of floats.
-  const size_t max_leaves = std::min<size_t>(std::min<size_t>(size_t{1} << 22, (size_t{1} << 28) / layout.width() + 64),
-                                             64 + trees.size() * 800);
-  d.sheets = sqt::decode_sheets(layout, trees, max_leaves);
+  // Eight leaves to a byte is more than the coder reaches; what they need in memory is bounded as well.
+  const auto leaves = static_cast<size_t>(l.integer("leaves", 1, 1 << 28));
+  if (leaves > 64 + 8 * trees.size() || leaves * layout.width() > kMaxNumbers)
+    throw l.error("implausible number of leaves");
+  d.sheets = sqt::decode_sheets(layout, trees, leaves);
+  size_t found = 0;
+  for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.leaves.size();
+  if (found != leaves) throw Error("SQT payload is damaged: its leaves are not those announced");
   return sqt::make_bundle(std::move(d));
 }
 

@@ -64,10 +64,11 @@ struct AlignedData {
 class AlignedSource {
  public:
   struct Options {
-    size_t views = 17;
-    int base_order = 6;    // every cell of this order is asked
-    int max_order = 10;    // further only where it matters
-    double detail = 1e-6;  // share of the whole a cell's variation must have to be divided further
+    size_t views = 0;           // 0: as many as view_error asks for
+    double view_error = 0.015;  // interpolation error allowed between views, log2 units
+    int base_order = 6;         // every cell of this order is asked
+    int max_order = 10;         // further only where it matters
+    double detail = 2e-6;       // share of the whole a cell's variation must have to be divided further
   };
   AlignedSource(const Function& function, const Options& options, const std::function<void(double)>& progress = {});
   ~AlignedSource();

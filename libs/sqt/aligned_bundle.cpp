@@ -19,6 +19,9 @@ constexpr int kSampleOrder = 4;
 // A cell within reach of the horizon keeps this much of its mass when cut away, so that neighbouring views can draw it.
 constexpr double kHorizonFloor = 1e-3;
 
+// log2 of the scale that stands for a total of zero.
+constexpr float kNothing = -90;
+
 struct Sheet {
   Tree tree;
   std::vector<float> plane;         // [leaf][view][channel]{value, slope x, slope y}
@@ -312,6 +315,7 @@ class AlignedBundle final : public Bundle {
   double value_at(const Query& q, size_t channel) const {
     const float* leaf = &q.sheet->plane[q.leaf * layout_.width() * 3];
     float l = static_cast<float>(scale(q.fine, channel));
+    if (l <= kNothing) return 0;
     for (int b = 0; b < q.at.count; ++b) {
       const float* p = leaf + (q.at.view[b] * channels() + channel) * 3;
       l += static_cast<float>(q.at.weight[b]) * (p[0] + q.dx * p[1] + q.dy * p[2]);

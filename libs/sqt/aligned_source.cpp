@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "sqt/view_placement.h"
 
 namespace suite::sqt {
 
@@ -278,9 +279,9 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
                                                           : LobeFrame::direct;
   layout.half_stored = m.function.isotropic && m.function.bilateral;
   layout.sheets = surface && m.function.domain == Domain::sphere ? 2 : 1;
-  const size_t views = surface ? options.views : 1;
-  for (size_t v = 0; v < views; ++v)
-    layout.theta.push_back(views == 1 ? 0 : 89.9 * kDegree * static_cast<double>(v) / static_cast<double>(views - 1));
+  layout.theta = surface ? place_views(function, layout.frame, options.views, 89.9 * kDegree, options.view_error)
+                         : std::vector<double>{0};
+  const size_t views = layout.theta.size();
   layout.phi_count = surface && !m.function.isotropic ? 16 : 1;
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;

@@ -44,6 +44,10 @@ std::vector<Builder::Leaf> Builder::reduce(double threshold) const {
       if (value[i] < 0) ++negative_, value[i] = 0;
       state[i] = kLeaf;
     }
+  double level = 0, weight = 0;
+  for (size_t i = 0; i < sum_.size(); ++i)
+    if (count_[i]) level += value[i], weight += 1;
+  level = weight > 0 ? level / weight : 0;
   std::vector<std::vector<uint8_t>> states(static_cast<size_t>(order_) + 1);
   std::vector<std::vector<double>> values(static_cast<size_t>(order_) + 1);
   states[static_cast<size_t>(order_)] = std::move(state);
@@ -73,7 +77,7 @@ std::vector<Builder::Leaf> Builder::reduce(double threshold) const {
       if (leaves + splits == 0) continue;
       const double mean = leaves ? sum / leaves : 0;
       const bool empty_child = leaves + splits < needed && splits == 0;
-      const bool similar = splits == 0 && leaves == needed && high - low <= threshold * mean;
+      const bool similar = splits == 0 && leaves == needed && high - low <= threshold * level;
       if (empty_child || similar) {
         here[p] = kLeaf;
         here_value[p] = mean;

@@ -8,7 +8,7 @@
 
 namespace suite::sqt {
 
-inline constexpr double kDefaultQuality = 0.06;  // log2 units
+inline constexpr double kDefaultQuality = 0.08;  // log2 units
 
 struct FitTarget {
   double max_l1 = 0;     // cosine-weighted relative L1 over all channels; 0 = none

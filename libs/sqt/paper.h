@@ -30,7 +30,8 @@ class Builder {
     float value;  // >= 0: negative averages become 0 and are counted
   };
   // Averages cells with several values and aggregates empty cells into their parents until every leaf has a value, then
-  // consolidates families of four leaves whose values differ by at most `threshold` times their mean. threshold < 0
+  // consolidates families of four leaves whose values differ by at most `threshold` times the mean value of the slice
+  // ("until the overall impact necessitates angular variation"; the paper gives no number). threshold < 0
   // keeps the full partition. No value at all gives one zero leaf per face.
   std::vector<Leaf> reduce(double threshold) const;
   size_t negative_leaves() const { return negative_; }

@@ -4,12 +4,11 @@
 //   build/release/bench/sqt_compare FILE.bsdf ... [--direct]
 // The best point of the paper's curve is the one of least l1; ties go to fewer bytes. "At equal l1" searches the
 // aligned quality whose l1 does not exceed it; "at equal bytes" the one that needs no more bytes.
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
-#include "base/files.h"
 #include "formats/measured/measured.h"
 #include "formats/merl/merl.h"
 #include "formats/sqt/sqt.h"
@@ -19,51 +18,66 @@ namespace suite {
 namespace {
 
 struct Point {
-  size_t bytes = 0;
-  double l1 = 1e9, cos_rmse = 0, threshold = 0;
+  double knob;
+  size_t bytes;
+  double l1, cos_rmse;
 };
 
-Point paper_best(const sqt::Function& function, const sqt::Reference& reference) {
-  Point best;
-  for (const double threshold : {0.0, 0.05, 0.1, 0.2, 0.4, 0.8}) {
+std::vector<Point> paper_curve(const sqt::Function& function, const sqt::Reference& reference) {
+  std::vector<Point> curve;
+  for (const double threshold : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
     sqt::PaperOptions options;
     options.threshold = threshold;
+    options.samples_per_cell_side = 2;
     const sqt::PaperData data = sqt::fit_paper(function, options);
     const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(data)).back();
-    const size_t bytes = pack_sqt(data, {}, {}).size();
-    std::printf("    paper threshold %.2f: %8zu bytes  l1 %6.2f %%  cos_rmse %6.2f %%\n", threshold, bytes, 100 * e.l1,
-                100 * e.cos_rmse);
-    // The knee: the smallest file whose error is within 2 % of the least.
-    if (e.l1 < best.l1 * 0.98 || (e.l1 < best.l1 * 1.02 && bytes < best.bytes))
-      best = {bytes, e.l1, e.cos_rmse, threshold};
+    curve.push_back({threshold, pack_sqt(data, {}, {}).size(), e.l1, e.cos_rmse});
   }
-  return best;
+  return curve;
+}
+
+std::vector<Point> aligned_curve(const sqt::AlignedSource& source, const sqt::Reference& reference) {
+  std::vector<Point> curve;
+  for (double quality = 0.005; quality < 6; quality *= 1.4) {
+    const sqt::AlignedFit fit = sqt::encode_aligned(source, quality);
+    const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(fit.data)).back();
+    curve.push_back({quality, pack_sqt(fit, {}, {}).size(), e.l1, e.cos_rmse});
+  }
+  return curve;
 }
 
 void compare(const char* kind, const std::string& name, const sqt::Function& function) {
   const auto start = std::chrono::steady_clock::now();
-  auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  const sqt::Reference reference(function, 200000);
+  const sqt::Reference reference(function, 150000);
   const sqt::AlignedSource source(function, {});
   const sqt::FitResult plain = sqt::fit_to(source, reference, {});
-  const double fit_seconds = seconds();
-  const size_t plain_bytes = pack_sqt(plain.fit, {}, {}).size();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(plain.fit.data)).back();
   std::printf(
-      "%s %s\n  aligned, default quality: %zu bytes  l1 %.2f %%  cos_rmse %.2f %%  total_error %.2f %%  max_weight "
-      "%.1f  %.1f s\n",
-      kind, name.c_str(), plain_bytes, 100 * e.l1, 100 * e.cos_rmse, 100 * e.total_error, e.max_weight, fit_seconds);
-  const Point paper = paper_best(function, reference);
-  const sqt::FitResult equal_error = sqt::fit_to(source, reference, {paper.l1, 0, 0});
-  const size_t bytes = pack_sqt(equal_error.fit, {}, {}).size();
-  const sqt::FitResult equal_bytes = sqt::fit_to(source, reference, {0, paper.bytes, 1200});
-  std::printf("  paper best: %zu bytes, l1 %.2f %% (threshold %.2f)\n", paper.bytes, 100 * paper.l1, paper.threshold);
-  std::printf("  at equal l1:    %8zu bytes, l1 %.2f %%: 1/%.1f of the bytes%s\n", bytes, 100 * equal_error.l1,
-              static_cast<double>(paper.bytes) / static_cast<double>(bytes),
-              equal_error.error_met ? "" : " (error not met)");
-  std::printf("  at equal bytes: %8zu bytes, l1 %.2f %%: 1/%.1f of the error\n",
-              pack_sqt(equal_bytes.fit, {}, {}).size(), 100 * equal_bytes.l1, paper.l1 / equal_bytes.l1);
-  std::fflush(stdout);
+      "%s %s\n  aligned at default quality: %zu bytes  l1 %.2f %%  cos_rmse %.2f %%  total_error %.2f %%  max_weight "
+      "%.1f  fit %.1f s\n",
+      kind, name.c_str(), pack_sqt(plain.fit, {}, {}).size(), 100 * e.l1, 100 * e.cos_rmse, 100 * e.total_error,
+      e.max_weight, seconds);
+  const std::vector<Point> aligned = aligned_curve(source, reference);
+  std::printf("  %-34s | %-30s | %s\n", "paper: threshold bytes l1 cos_rmse", "aligned at equal l1: bytes ratio",
+              "aligned at equal bytes: l1 ratio, cos_rmse ratio");
+  for (const Point& p : paper_curve(function, reference)) {
+    const Point *small = nullptr, *good = nullptr;  // smallest that is as good; best that is as small
+    for (const Point& a : aligned) {
+      if (a.l1 <= p.l1 && (!small || a.bytes < small->bytes)) small = &a;
+      if (a.bytes <= p.bytes && (!good || a.l1 < good->l1)) good = &a;
+    }
+    std::printf("  %5.2f %9zu %6.2f %% %6.2f %%   | ", p.knob, p.bytes, 100 * p.l1, 100 * p.cos_rmse);
+    if (small)
+      std::printf("%9zu  1/%-18.1f | ", small->bytes, static_cast<double>(p.bytes) / static_cast<double>(small->bytes));
+    else
+      std::printf("%-30s | ", "not reached");
+    if (good)
+      std::printf("%6.2f %%  1/%.1f  1/%.1f\n", 100 * good->l1, p.l1 / good->l1, p.cos_rmse / good->cos_rmse);
+    else
+      std::printf("none so small\n");
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace
