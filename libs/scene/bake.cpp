@@ -84,12 +84,18 @@ class Baker {
 };
 
 void Baker::check_coverage(const DraftMaterial& m) {
-  for (const SpectralWindow& w : draft_.windows)
-    for (const auto& [name, curve] : m.material.surface.curves)
+  const auto check = [&](const std::string& what, const Curve& curve) {
+    for (const SpectralWindow& w : draft_.windows)
       if (!curve.covers(w.low_um, w.high_um))
         add("SP104", m.where,
             strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
-                 name.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+                 what.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+  };
+  for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
+  for (const DraftPropertyMap& map : draft_.property_maps)
+    for (const Reference& r : m.property_maps)
+      if (r.name == map.map.name)
+        for (const Curve& curve : map.map.family) check("a curve of map '" + r.name + "'", curve);
 }
 
 void Baker::materials() {
@@ -216,7 +222,12 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
 }
 
 Baker::Built Baker::build_terrain(const DraftGeometry& g) {
-  terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+  try {
+    terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+  } catch (const Error& e) {  // a sample that lies nowhere on Earth
+    add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
+    return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr};
+  }
   const auto first = static_cast<uint32_t>(scene_.meshes.size());
   std::vector<Mesh> tiles = terrains_.back()->tiles(g.name, g.tile_m, material_id(g.material));
   if (tiles.empty()) add("SP504", g.where, "terrain '" + g.name + "' has no two by two samples with heights");

@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "formats/scene_hdf/scene_hdf.h"
 
@@ -24,7 +25,7 @@ double seconds(const std::function<void()>& work) {
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: scene_load_bench scene.h5\n"), 2;
   const size_t size = suite::file_size(argv[1]);
   const double plain = seconds([&] {
@@ -49,4 +50,7 @@ int main(int argc, char** argv) {
       triangles, plain, static_cast<double>(size) / plain / 1e9, load, static_cast<double>(size) / load / 1e9,
       load / plain);
   return 0;
+} catch (const suite::Error& e) {
+  std::fprintf(stderr, "%s\n", e.what());
+  return 1;
 }

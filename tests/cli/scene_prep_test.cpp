@@ -161,6 +161,18 @@ TEST_F(ScenePrep, UsageAndPlaces) {
   EXPECT_THAT(run("--list-models").out, HasSubstr("lambert"));
 }
 
+TEST_F(ScenePrep, CityAndForestInSmall) {
+  if (run_command("python3 --version").code != 0) GTEST_SKIP() << "needs python3 to generate the scene";
+  const std::string generator = SUITE_SOURCE_DIR "/sample_scenes/city_forest/make_scene.py";
+  ASSERT_EQ(run_command("python3 '" + generator + "' '" + folder_.path() + "/city' 4 20 100").code, 0);
+  const CommandResult r = run("city/scene.yaml -o city.h5 --strict --mute SP103");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Scene s = read_scene(folder_ / "city.h5");
+  EXPECT_EQ(s.groups.at(0).placements.size(), 103u);
+  EXPECT_EQ(s.materials.size(), 43u);
+  EXPECT_EQ(s.meshes.at(1).triangle_count(), 800u);
+}
+
 TEST_F(ScenePrep, CalibrationRange) {
   // Everything but the measured panel, whose SQT another tool makes.
   const std::string scene = SUITE_SOURCE_DIR "/sample_scenes/calibration_range";
