@@ -81,6 +81,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
   options.pipeline = sim.pipeline;
+  options.periodic = sim.periodic;
   options.paths = static_cast<uint32_t>(o.paths);
   if (o.dry_run) return dry_run(sim, options);
 

@@ -29,6 +29,13 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");
   cli.flag("--summary", o.summary, "print what a prepared scene holds");
+  cli.option("--raycast", o.raycast,
+             "print what a ray through a prepared scene meets: from x y z along dx dy dz, ENU, m", "'X Y Z DX DY DZ'");
+  cli.option("--export-obj", o.export_obj, "write the placed meshes of a prepared scene, flattened, as OBJ",
+             "FILE.obj");
+  cli.option("--quick-look", o.quick_look, "write a picture of a prepared scene from above, one colour a material",
+             "FILE.png");
+  cli.option("--pixels", o.pixels, "longer side of the quick look, 1 to 16384", "N");
 }
 
 }  // namespace suite

@@ -8,7 +8,8 @@
 namespace suite {
 
 struct ScenePrepOptions {
-  std::string input, output, report;
+  std::string input, output, report, raycast, export_obj, quick_look;
+  long long pixels = 800;
   std::vector<std::string> search, mute;
   bool repair = false, quick = false, force = false;
   bool strict = false, list_issues = false, list_models = false, summary = false;

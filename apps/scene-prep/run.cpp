@@ -2,9 +2,13 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <regex>
 
 #include "base/files.h"
+#include "base/params.h"
 #include "base/report.h"
+#include "formats/obj/obj.h"
+#include "formats/picture/picture.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/scene_text.h"
 #include "mesh/check.h"
@@ -12,6 +16,7 @@
 #include "scene/bake.h"
 #include "scene/issues.h"
 #include "scene/summary.h"
+#include "surface/quick_look.h"
 
 namespace suite {
 
@@ -54,7 +59,8 @@ bool up_to_date(const ScenePrepOptions& o) {
   if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
   try {
     const Provenance p = read_provenance(o.output);
-    return p.generator == kGenerator && p.arguments == canonical_arguments(o) && inputs_unchanged(o.input, {o.search}, p.inputs);
+    return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
+           inputs_unchanged(o.input, {o.search}, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
@@ -84,18 +90,49 @@ int prepare(const ScenePrepOptions& o) {
 
 }  // namespace
 
+namespace {
+
+void print_summary(const ScenePrepOptions& o, const Scene& scene) {
+  const Provenance p = read_provenance(o.input);
+  std::printf("%s", summary_text(scene).c_str());
+  std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
+              p.inputs.size(), p.input_sha256.c_str());
+}
+
+Ray parse_ray(const std::string& text) {
+  const Params list = Params::parse_text("[" + std::regex_replace(text, std::regex("[ ,]+"), ", ") + "]", "--raycast");
+  const std::vector<double> v = list.as_numbers();
+  const Vec3 direction = v.size() == 6 ? Vec3{v[3], v[4], v[5]} : Vec3{};
+  if (!(length(direction) > 0)) throw UsageError("--raycast needs six numbers, the last three not all 0");
+  return {{v[0], v[1], v[2]}, normalized(direction), 0};
+}
+
+// Questions about a scene that has been prepared.
+int inspect(const ScenePrepOptions& o) {
+  if (!o.output.empty()) throw UsageError("--output goes with a scene text, not with questions about a prepared scene");
+  if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
+  const auto scene = std::make_shared<const Scene>(read_scene(o.input));
+  if (o.summary) print_summary(o, *scene);
+  if (!o.export_obj.empty())
+    if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));
+  if (o.raycast.empty() && o.quick_look.empty()) return 0;
+  const Tracer tracer(scene);
+  if (!o.raycast.empty()) std::fputs(describe_hit(tracer, parse_ray(o.raycast)).c_str(), stdout);
+  if (!o.quick_look.empty()) {
+    const View view = view_from_above(tracer, static_cast<int>(o.pixels));
+    write_png(o.quick_look, view.width, view.height, view.rgb, command_line());
+  }
+  return 0;
+}
+
+}  // namespace
+
 int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
   if (o.list_models) return list_models(), 0;
   if (o.input.empty()) throw UsageError("an input is needed");
-  if (!o.summary) return prepare(o);
-  if (!o.output.empty()) throw UsageError("--summary writes no scene");
-  const Scene scene = read_scene(o.input);
-  const Provenance p = read_provenance(o.input);
-  std::printf("%s", summary_text(scene).c_str());
-  std::printf("made by       %s: %s\ninputs        sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
-              p.input_sha256.c_str());
-  return 0;
+  const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();
+  return questions ? inspect(o) : prepare(o);
 }
 
 }  // namespace suite

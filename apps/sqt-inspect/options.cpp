@@ -1,14 +1,67 @@
 #include "options.h"
 
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "formats/measured/measured.h"
+
 namespace suite {
+
+AppInfo inspect_info() {
+  return {"sqt-inspect",
+          "Looks into a fitted scattering function (.sqt): header, checks, pictures, comparisons, single values.",
+          "Angles of options are in degrees, wavelengths in um; directions point away from the surface.\n"
+          "Inputs of --compare, recognised by content:\n" +
+              measured_formats() +
+              "Examples:\n"
+              "  sqt-inspect satin.sqt\n"
+              "  sqt-inspect satin.sqt --check\n"
+              "  sqt-inspect satin.sqt --map satin.png --channel 1\n"
+              "  sqt-inspect satin.sqt --compare satin_purple_rgb.bsdf --error-map error.png\n"
+              "  sqt-inspect satin.sqt --eval 30,0,30,180,0.55\n"
+              "Exit codes: 0 fine, 1 bad input or a failed check, 2 wrong usage, 3 a bug of ours."};
+}
 
 void declare_options(Cli& cli, InspectOptions& o) {
   cli.positional("file", o.file, "the .sqt file");
-  cli.flag("--json", o.json, "print the header as JSON");
+  cli.flag("--json", o.json, "print the header, the findings of --check or the figures of --compare as JSON");
+  cli.flag("--check", o.check, "test values, energy, masses of cells, sampling (significance 1e-3), reciprocity");
   cli.option("--map", o.map, "picture of the cells over the values of several slices", "PNG");
-  cli.option("--channel", o.channel, "channel shown, from 0", "N");
   cli.option("--panels", o.panels, "slices shown by --map, 1 to 24", "N");
   cli.flag("--no-edges", o.no_edges, "--map without the borders of the cells");
+  cli.option("--slice", o.slice, "principal plane as a table", "CSV");
+  cli.option("--plot", o.plot, "principal plane as a plot", "PNG");
+  cli.option("--views", o.views, "view angles of --slice and --plot, deg, at most 6", "DEG,...");
+  cli.option("--compare", o.compare, "errors against a measured file", "INPUT");
+  cli.option("--compare-model", o.compare_model, "errors against a scattering model", "NAME:PARAM=VALUE,...");
+  cli.option("--pairs", o.pairs, "direction pairs of the comparison, 1000 to 100000000", "N");
+  cli.option("--error-map", o.error_map, "with a comparison: picture of the errors", "PNG");
+  cli.option("--sample", o.sample, "print N directions drawn for --out in --channel as CSV", "N");
+  cli.option("--seed", o.seed, "seed of --sample", "N");
+  cli.option("--out", o.out, "outgoing direction of --sample: zenith,azimuth, deg", "DEG,DEG");
+  cli.option("--eval", o.eval, "print f, w = f |cos in|, density and total for one pair of directions",
+             "THETA_O,PHI_O,THETA_I,PHI_I,UM");
+  cli.option("--sphere", o.sphere, "preview of a sphere under sun and sky", "PNG");
+  cli.option("--size", o.size, "pixels of --sphere, 16 to 4096", "N");
+  cli.option("--channel", o.channel, "channel of --map, --plot, --sample and --error-map, from 0", "N");
+}
+
+std::vector<double> number_list(const std::string& option, const std::string& text, size_t least, size_t most) {
+  std::vector<double> list;
+  for (size_t at = 0; at <= text.size();) {
+    const size_t end = std::min(text.find(',', at), text.size());
+    double value = 0;
+    const auto [stop, code] = std::from_chars(text.data() + at, text.data() + end, value);
+    if (code != std::errc() || stop != text.data() + end || !std::isfinite(value))
+      throw UsageError(strf("%s: '%s' is not a list of numbers", option.c_str(), text.c_str()));
+    list.push_back(value);
+    at = end + 1;
+  }
+  if (list.size() < least || list.size() > most)
+    throw UsageError(least == most ? strf("%s takes %zu numbers", option.c_str(), least)
+                                   : strf("%s takes %zu to %zu numbers", option.c_str(), least, most));
+  return list;
 }
 
 }  // namespace suite

@@ -10,8 +10,8 @@ namespace suite {
 
 struct CurveOptions {
   Outside outside = Outside::error;
-  int column = 0;    // 1 = first value column after the wavelength; 0 = the only one, or the first
-  double scale = 1;  // factor on the values, after percent became shares
+  int column = 0;        // 1 = first value column after the wavelength; 0 = the only one, or the first
+  double scale = 1;      // factor on the values, after percent became shares
   std::string spectrum;  // of a library: a spectrum's name or its number from 1; empty = the first
 };
 

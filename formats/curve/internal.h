@@ -7,7 +7,7 @@
 namespace suite {
 
 struct NamedCurve {
-  std::string name;          // may be empty
+  std::string name;  // may be empty
   Curve curve;
 };
 

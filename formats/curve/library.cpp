@@ -16,7 +16,9 @@ namespace {
 
 constexpr size_t kMaxValues = 100'000'000;
 
-bool ends_with(const std::string& text, const std::string& end) { return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0; }
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
 
 std::string trimmed(std::string_view s) {
   const size_t a = s.find_first_not_of(" \t\r\n"), b = s.find_last_not_of(" \t\r\n");
@@ -32,7 +34,9 @@ bool number(std::string_view text, double& value) {
 // "key = value" lines; a value in braces may run over lines. Keys in lower case.
 std::map<std::string, std::string> header_keys(const std::string& path) {
   const std::string text = read_text(path, size_t{64} << 20);
-  if (text.rfind("ENVI", 0) != 0) throw Error(Where{path, 1, 1, {}, -1}, "does not start with 'ENVI'", "the header of a spectral library is expected");
+  if (text.rfind("ENVI", 0) != 0)
+    throw Error(Where{path, 1, 1, {}, -1}, "does not start with 'ENVI'",
+                "the header of a spectral library is expected");
   std::map<std::string, std::string> keys;
   for (size_t at = text.find('\n'); at != std::string::npos && at + 1 < text.size();) {
     const size_t start = at + 1, equal = text.find('=', start);
@@ -42,7 +46,8 @@ std::map<std::string, std::string> header_keys(const std::string& path) {
       continue;
     }
     std::string key = trimmed(std::string_view(text).substr(start, equal - start));
-    std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(key.begin(), key.end(), key.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const size_t open = text.find_first_not_of(" \t", equal + 1);
     if (open != std::string::npos && text[open] == '{') {
       const size_t close = text.find('}', open);
@@ -82,7 +87,8 @@ SliHeader read_sli_header(const std::string& path) {
   const auto whole = [&](const char* key, double low, double high, double otherwise) {
     const auto found = keys.find(key);
     double v = otherwise;
-    if (found != keys.end() ? !number(found->second, v) || v < low || v > high || v != std::floor(v) : std::isnan(otherwise))
+    if (found != keys.end() ? !number(found->second, v) || v < low || v > high || v != std::floor(v)
+                            : std::isnan(otherwise))
       throw Error(where, strf("'%s' is missing or no whole number from %g to %g", key, low, high));
     return v;
   };
@@ -93,24 +99,32 @@ SliHeader read_sli_header(const std::string& path) {
   h.offset = static_cast<size_t>(whole("header offset", 0, 1e9, 0));
   h.type = static_cast<int>(whole("data type", 1, 15, NAN));
   h.big_endian = whole("byte order", 0, 1, 0) == 1;
-  if (h.type != 4 && h.type != 5) throw Error(where, strf("'data type' %d", h.type), "4 (float32) or 5 (float64) are expected");
+  if (h.type != 4 && h.type != 5)
+    throw Error(where, strf("'data type' %d", h.type), "4 (float32) or 5 (float64) are expected");
   if (h.samples * h.lines > kMaxValues) throw Error(where, "declares too many values");
   const auto wavelength = keys.find("wavelength");
   if (wavelength == keys.end()) throw Error(where, "has no 'wavelength' list");
   std::string unit = keys.count("wavelength units") ? keys.at("wavelength units") : "";
-  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const double to_um = unit.rfind("micro", 0) == 0 || unit == "um" ? 1 : unit.rfind("nano", 0) == 0 || unit == "nm" ? 1e-3 : 0;
-  if (to_um == 0) throw Error(where, "has 'wavelength units' of '" + unit + "'", "micrometers or nanometers are expected");
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const double to_um = unit.rfind("micro", 0) == 0 || unit == "um"  ? 1
+                       : unit.rfind("nano", 0) == 0 || unit == "nm" ? 1e-3
+                                                                    : 0;
+  if (to_um == 0)
+    throw Error(where, "has 'wavelength units' of '" + unit + "'", "micrometers or nanometers are expected");
   for (const std::string& item : split(wavelength->second)) {
     double w = 0;
     if (!number(item, w)) throw Error(where, "wavelength '" + item.substr(0, 40) + "' is no number");
     h.wavelength_um.push_back(w * to_um);
   }
-  if (h.wavelength_um.size() != h.samples) throw Error(where, strf("lists %zu wavelengths for %zu samples", h.wavelength_um.size(), h.samples));
+  if (h.wavelength_um.size() != h.samples)
+    throw Error(where, strf("lists %zu wavelengths for %zu samples", h.wavelength_um.size(), h.samples));
   if (keys.count("spectra names")) h.names = split(keys.at("spectra names"));
-  if (!h.names.empty() && h.names.size() != h.lines) throw Error(where, strf("lists %zu 'spectra names' for %zu lines", h.names.size(), h.lines));
+  if (!h.names.empty() && h.names.size() != h.lines)
+    throw Error(where, strf("lists %zu 'spectra names' for %zu lines", h.names.size(), h.lines));
   double factor = 1;
-  if (keys.count("reflectance scale factor") && number(keys.at("reflectance scale factor"), factor) && factor > 0) h.scale = 1 / factor;
+  if (keys.count("reflectance scale factor") && number(keys.at("reflectance scale factor"), factor) && factor > 0)
+    h.scale = 1 / factor;
   return h;
 }
 
@@ -118,7 +132,9 @@ template <class Word, class Value>
 double decode(const std::byte* at, bool big_endian) {
   Word w;
   std::memcpy(&w, at, sizeof w);
-  if (big_endian) w = sizeof w == 4 ? static_cast<Word>(__builtin_bswap32(static_cast<uint32_t>(w))) : static_cast<Word>(__builtin_bswap64(w));
+  if (big_endian)
+    w = sizeof w == 4 ? static_cast<Word>(__builtin_bswap32(static_cast<uint32_t>(w)))
+                      : static_cast<Word>(__builtin_bswap64(w));
   return static_cast<double>(std::bit_cast<Value>(w));
 }
 
@@ -137,7 +153,8 @@ std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& op
     std::vector<double> x = h.wavelength_um, y(h.samples);
     for (size_t k = 0; k < h.samples; ++k) {
       const std::byte* at = bytes.data() + h.offset + (line * h.samples + k) * width;
-      y[k] = (width == 4 ? decode<uint32_t, float>(at, h.big_endian) : decode<uint64_t, double>(at, h.big_endian)) * h.scale * options.scale;
+      y[k] = (width == 4 ? decode<uint32_t, float>(at, h.big_endian) : decode<uint64_t, double>(at, h.big_endian)) *
+             h.scale * options.scale;
     }
     out.push_back({h.names.empty() ? "" : h.names[line], Curve(std::move(x), std::move(y), options.outside, where)});
   }
@@ -153,14 +170,19 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
     at = end + 1;
   }
   size_t at = 0;
-  const auto fault = [&](const std::string& what) { return Error(Where{path, static_cast<int>(std::min(at, lines.size() - 1) + 1), 1, {}, -1}, what, "a DIRSIG emissivity file is expected"); };
+  const auto fault = [&](const std::string& what) {
+    return Error(Where{path, static_cast<int>(std::min(at, lines.size() - 1) + 1), 1, {}, -1}, what,
+                 "a DIRSIG emissivity file is expected");
+  };
   if (lines.empty()) throw Error(Where{path, 0, 0, {}, -1}, "is empty");
   double count = 0;
-  if (!number(lines[at], count) || count < 1 || count > 100000 || count != std::floor(count)) throw fault("line 1 is no number of curves");
-  // 91 weights of the angles 0 to 90 degrees: they describe how a classical solver falls off, which the scattering models of
-  // this suite have of their own.
+  if (!number(lines[at], count) || count < 1 || count > 100000 || count != std::floor(count))
+    throw fault("line 1 is no number of curves");
+  // 91 weights of the angles 0 to 90 degrees: they describe how a classical solver falls off, which the scattering
+  // models of this suite have of their own.
   for (at = 1; at <= 91; ++at)
-    if (double weight = 0; at >= lines.size() || !number(lines[at], weight)) throw fault("one of 91 angular weights is missing");
+    if (double weight = 0; at >= lines.size() || !number(lines[at], weight))
+      throw fault("one of 91 angular weights is missing");
   std::vector<NamedCurve> out;
   while (out.size() < static_cast<size_t>(count)) {
     while (at < lines.size() && (lines[at].empty() || lines[at] == "CURVE_END")) ++at;
@@ -174,7 +196,8 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
       double w = 0, e = 0;
       if (newer && (lines[at] == "CURVE_END" || lines[at] == "CURVE_BEGIN")) break;
       if (lines[at].empty()) continue;
-      if (gap == std::string::npos || !number(std::string_view(lines[at]).substr(0, gap), w) || !number(std::string_view(lines[at]).substr(gap), e) || !(w > 0))
+      if (gap == std::string::npos || !number(std::string_view(lines[at]).substr(0, gap), w) ||
+          !number(std::string_view(lines[at]).substr(gap), e) || !(w > 0))
         throw fault("a row that is not 'wavelength value'");
       if (!(e >= -1e-9 && e <= 1 + 1e-9)) throw fault(strf("emissivity %g is not between 0 and 1", e));
       x.push_back(newer ? w : 1e4 / w);  // the older layout counts wavenumbers in 1/cm
@@ -182,7 +205,8 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
     }
     if (!newer && x.size() != 396) throw fault(strf("%zu of 396 rows", x.size()));
     if (x.empty()) throw fault("a curve without rows");
-    out.push_back({strf("%zu", out.size() + 1), Curve(std::move(x), std::move(y), options.outside, Where{path, 0, 0, {}, -1})});
+    out.push_back(
+        {strf("%zu", out.size() + 1), Curve(std::move(x), std::move(y), options.outside, Where{path, 0, 0, {}, -1})});
   }
   return out;
 }
@@ -212,8 +236,10 @@ Curve read_curve(const std::string& path, const CurveOptions& options) {
     names.push_back(c.name);
   }
   double k = 0;
-  if (number(options.spectrum, k) && k >= 1 && k <= static_cast<double>(all.size()) && k == std::floor(k)) return std::move(all[static_cast<size_t>(k) - 1].curve);
-  throw Error(Where{path, 0, 0, {}, -1}, "has no spectrum '" + options.spectrum + "'", names.size() > 1 ? name_hint(options.spectrum, names) : strf("it holds %zu", all.size()));
+  if (number(options.spectrum, k) && k >= 1 && k <= static_cast<double>(all.size()) && k == std::floor(k))
+    return std::move(all[static_cast<size_t>(k) - 1].curve);
+  throw Error(Where{path, 0, 0, {}, -1}, "has no spectrum '" + options.spectrum + "'",
+              names.size() > 1 ? name_hint(options.spectrum, names) : strf("it holds %zu", all.size()));
 }
 
 }  // namespace suite

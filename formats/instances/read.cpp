@@ -35,7 +35,8 @@ Affine3 transform(const Row& r, const Where& where) {
 std::vector<Affine3> read_binary(const std::string& path) {
   const std::vector<std::byte> bytes = read_bytes(path);
   constexpr size_t width = 8 * sizeof(double);
-  if (bytes.size() % width) throw Error(Where{path, 0, 0, {}, -1}, strf("has %zu bytes, rows have %zu", bytes.size(), width));
+  if (bytes.size() % width)
+    throw Error(Where{path, 0, 0, {}, -1}, strf("has %zu bytes, rows have %zu", bytes.size(), width));
   std::vector<Affine3> out;
   out.reserve(bytes.size() / width);
   for (size_t at = 0; at < bytes.size(); at += width) {
@@ -65,9 +66,11 @@ std::vector<int> read_header(std::string_view line, const Where& where) {
     at = end + 1;
   }
   if (!seen[x] || !seen[y]) throw Error(where, "the columns 'x' and 'y' are needed");
-  if (seen[heading] && (seen[qw] || seen[qx] || seen[qy] || seen[qz])) throw Error(where, "'heading_deg' and a quaternion exclude each other");
+  if (seen[heading] && (seen[qw] || seen[qx] || seen[qy] || seen[qz]))
+    throw Error(where, "'heading_deg' and a quaternion exclude each other");
   const bool q = seen[qw] && seen[qx] && seen[qy] && seen[qz];
-  if (!q && (seen[qw] || seen[qx] || seen[qy] || seen[qz])) throw Error(where, "a quaternion needs 'qw', 'qx', 'qy' and 'qz'");
+  if (!q && (seen[qw] || seen[qx] || seen[qy] || seen[qz]))
+    throw Error(where, "a quaternion needs 'qw', 'qx', 'qy' and 'qz'");
   return columns;
 }
 
@@ -98,7 +101,8 @@ std::vector<Affine3> read_csv(const std::string& path) {
       p = after;
       while (p < stop && (*p == ' ' || *p == '\t')) ++p;
       const bool last = k + 1 == columns.size();
-      if (code != std::errc() || (last ? p != stop : p == stop || *p != ',')) throw Error(where(), strf("expected %zu numbers separated by commas", columns.size()));
+      if (code != std::errc() || (last ? p != stop : p == stop || *p != ','))
+        throw Error(where(), strf("expected %zu numbers separated by commas", columns.size()));
       ++p;
     }
     out.push_back(transform(row, where()));

@@ -20,9 +20,11 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
                 strf("an image of %d x %d x %d with %d channels", spec.width, spec.height, spec.depth, spec.nchannels));
   const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
   if (pixels > max_pixels) throw Error(where, strf("%zu pixels, at most %zu are accepted here", pixels, max_pixels));
-  // No codec of these packs a pixel into less than a thousandth of its bits on top of its header.
-  const size_t samples = pixels * static_cast<size_t>(spec.nchannels);
-  if (samples / 8192 > bytes + 1024)
+  // What is declared must fit what is there: as it is when uncompressed, else by what deflate can do at best (1032 :
+  // 1), times eight for bits stored as bytes.
+  const size_t samples = pixels * static_cast<size_t>(spec.nchannels), stored_bytes = samples * spec.format.size();
+  const bool plain = spec.get_string_attribute("compression") == "none";
+  if (plain ? stored_bytes > bytes : stored_bytes / (8 * 1032) > bytes)
     throw Error(where, strf("declares %d x %d pixels in %zu bytes", spec.width, spec.height, bytes),
                 "the file is damaged");
   Raster raster;

@@ -210,6 +210,14 @@ void Reader::read(const std::string& name, const Opened& d, hid_t type, void* ou
   if (status < 0) fail("dataset '" + name + "' cannot be read");
 }
 
+uint64_t Reader::file_offset(const std::string& name, const Opened& d) const {
+  if (d.count == 0) return 0;
+  const haddr_t at = H5Dget_offset(d.dataset);
+  if (at == HADDR_UNDEF || at > file_size(path_) || H5Dget_storage_size(d.dataset) > file_size(path_) - at)
+    fail("dataset '" + name + "' is not whole");
+  return at;
+}
+
 std::vector<std::string> Reader::get_names(const std::string& name, long long rows) {
   const Opened d = open(name, -1, "", 1, rows);
   const Handle type(H5Dget_type(d.dataset), H5Tclose);

@@ -124,6 +124,8 @@ class Reader {
   };
   Opened open(const std::string& name, hid_t type, const char* units, size_t width, long long rows);
   void read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count);
+  // Where the values of a dataset start in the file, for reading past the library (which knows one thread only).
+  uint64_t file_offset(const std::string& name, const Opened& d) const;
   bool has(const std::string& name) const;
   std::string text(const std::string& attribute) const;
   std::vector<double> numbers(const std::string& attribute, size_t count) const;

@@ -2,8 +2,9 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/parallel.h"
 #include "formats/scene_hdf/h5.h"
-#include "formats/scene_hdf/layout.h"
+#include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
 #include "scene/primitives.h"
@@ -14,67 +15,101 @@ namespace {
 
 using h5::Reader;
 
-// Hands out consecutive stretches of one dataset; Error when it is shorter or longer than what the table declares.
+// One of the large arrays, read past the HDF5 library by several threads: contiguous and little-endian, as this machine
+// is.
 template <class T>
-class Stretch {
+class Stored {
  public:
-  Stretch(Reader& r, const std::string& name, const char* units)
-      : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
-  // n values, in a vector with `pad` more values of 0.
-  std::vector<T> next(uint64_t n, size_t pad = 0) {
-    if (n > d_.count - at_) r_.fail("dataset '" + name_ + "' is shorter than its table says");
-    std::vector<T> out(n + pad);
-    r_.read(name_, d_, h5::native<T>(), out.data(), at_, n);
-    at_ += n;
-    return out;
+  Stored(Reader& r, const std::string& name, const char* units) : name_(name) {
+    const Reader::Opened d = r.open(name, h5::native<T>(), units, 1, -1);
+    count_ = d.count;
+    offset_ = r.file_offset(name, d);
   }
-  void finish() const {
-    if (at_ != d_.count) r_.fail("dataset '" + name_ + "' is longer than its table says");
+  // Sets aside the next n values; where they start.
+  uint64_t take(Reader& r, uint64_t n) {
+    if (n > count_ - at_) r.fail("dataset '" + name_ + "' is shorter than its table says");
+    at_ += n;
+    return at_ - n;
+  }
+  void finish(Reader& r) const {
+    if (at_ != count_) r.fail("dataset '" + name_ + "' is longer than its table says");
+  }
+  std::vector<T> values(const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
+    std::vector<T> out(n + pad);
+    file.read_at(offset_ + first * sizeof(T), std::as_writable_bytes(std::span(out.data(), n)));
+    return out;
   }
 
  private:
-  Reader& r_;
   std::string name_;
-  Reader::Opened d_;
-  size_t at_ = 0;
+  uint64_t count_ = 0, offset_ = 0, at_ = 0;
 };
 
-void read_meshes(Reader& r, std::vector<Mesh>& meshes) {
-  const std::vector<std::string> names = r.get_names("/meshes/name");
-  const auto n = static_cast<long long>(names.size());
-  const auto origin = r.get<double>("/meshes/origin", "m", 3, n);
-  const auto vertices = r.get<uint64_t>("/meshes/vertices", "1", 1, n),
-             triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
-  const auto normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n),
-             uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
+struct MeshRows {
+  std::vector<std::string> names;
+  std::vector<double> origin;
+  std::vector<uint64_t> vertices, triangles;
+  std::vector<uint8_t> normals, uvs;
+};
+
+// The big arrays of all meshes, several meshes at a time.
+void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, std::vector<Mesh>& meshes) {
+  Stored<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
+  Stored<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
+  struct Start {
+    uint64_t p, i, n, uv;
+  };
+  std::vector<Start> starts;
+  for (size_t k = 0; k < meshes.size(); ++k) {
+    const uint64_t v = rows.vertices[k];
+    if (v > kNone || rows.triangles[k] > kNone) r.fail("mesh '" + rows.names[k] + "' is too large");
+    starts.push_back({p.take(r, 3 * v), i.take(r, 3 * rows.triangles[k]), nrm.take(r, rows.normals[k] ? v : 0),
+                      uv.take(r, rows.uvs[k] ? 2 * v : 0)});
+  }
+  p.finish(r), uv.finish(r), i.finish(r), nrm.finish(r);
+  const RandomAccessFile file(path);
+  parallel_for(0, meshes.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      const uint64_t v = rows.vertices[k];
+      meshes[k].positions = p.values(file, starts[k].p, 3 * v, v ? 1 : 0);
+      meshes[k].indices = i.values(file, starts[k].i, 3 * rows.triangles[k]);
+      if (rows.normals[k]) meshes[k].normals = nrm.values(file, starts[k].n, v);
+      if (rows.uvs[k]) meshes[k].uvs = uv.values(file, starts[k].uv, 2 * v);
+    }
+  });
+}
+
+void read_meshes(Reader& r, const std::string& path, std::vector<Mesh>& meshes) {
+  MeshRows rows;
+  rows.names = r.get_names("/meshes/name");
+  const auto n = static_cast<long long>(rows.names.size());
+  rows.origin = r.get<double>("/meshes/origin", "m", 3, n);
+  rows.vertices = r.get<uint64_t>("/meshes/vertices", "1", 1, n);
+  rows.triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
+  rows.normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n);
+  rows.uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
   const auto parts = r.get<uint32_t>("/meshes/parts", "1", 1, n);
   const std::vector<std::string> part_name = r.get_names("/parts/name");
   const auto part_rows = static_cast<long long>(part_name.size());
   const auto part_triangles = r.get<uint32_t>("/parts/triangles", "1", 1, part_rows),
              part_material = r.get<uint32_t>("/parts/material", "1", 1, part_rows);
-  Stretch<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
-  Stretch<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
+  meshes.resize(rows.names.size());
+  read_mesh_arrays(r, path, rows, meshes);
   size_t part = 0;
-  meshes.resize(names.size());
-  for (size_t k = 0; k < names.size(); ++k) {
+  for (size_t k = 0; k < meshes.size(); ++k) {
     Mesh& m = meshes[k];
-    m.name = names[k];
-    m.origin = {origin[3 * k], origin[3 * k + 1], origin[3 * k + 2]};
+    m.name = rows.names[k];
+    m.origin = {rows.origin[3 * k], rows.origin[3 * k + 1], rows.origin[3 * k + 2]};
     if (!finite(m.origin)) r.fail("mesh '" + m.name + "' has an origin that is not finite");
-    if (vertices[k] > kNone || triangles[k] > kNone) r.fail("mesh '" + m.name + "' is too large");
-    m.positions = p.next(3 * vertices[k], vertices[k] ? 1 : 0);
-    m.indices = i.next(3 * triangles[k]);
-    if (normals[k]) m.normals = nrm.next(vertices[k]);
-    if (uvs[k]) m.uvs = uv.next(2 * vertices[k]);
     if (parts[k] > part_name.size() - part) r.fail("mesh '" + m.name + "' declares more parts than there are");
     uint32_t first = 0;
     for (uint32_t q = 0; q < parts[k]; ++q, ++part) {
       m.parts.push_back({part_name[part], first, part_triangles[part], part_material[part]});
-      if (part_triangles[part] > triangles[k] - first) r.fail("mesh '" + m.name + "' has parts larger than itself");
+      if (part_triangles[part] > rows.triangles[k] - first)
+        r.fail("mesh '" + m.name + "' has parts larger than itself");
       first += part_triangles[part];
     }
   }
-  p.finish(), uv.finish(), i.finish(), nrm.finish();
   if (part != part_name.size()) r.fail("there are parts of no mesh");
 }
 
@@ -128,22 +163,9 @@ void each_row(Reader& r, const std::string& table, std::vector<Material>& materi
   }
 }
 
-void read_curves(Reader& r, std::vector<Material>& materials) {
+void read_material_curves(Reader& r, std::vector<Material>& materials) {
   const std::string t = "/materials/curves";
-  const auto outside = r.get<uint8_t>(t + "/outside", "1");
-  const auto points = r.get<uint64_t>(t + "/points", "1", 1, static_cast<long long>(outside.size()));
-  Stretch<double> x(r, t + "/wavelength", "um"), y(r, t + "/value", "1");
-  std::vector<Curve> curves;
-  for (size_t k = 0; k < outside.size(); ++k) {
-    std::vector<double> wavelength = x.next(points[k]), value = y.next(points[k]);
-    if (outside[k] == h5::kConstantCurve && value.size() == 1 && std::isfinite(value[0]))
-      curves.push_back(Curve::constant(value[0]));
-    else if (outside[k] <= static_cast<uint8_t>(Outside::zero))
-      curves.push_back(Curve(std::move(wavelength), std::move(value), static_cast<Outside>(outside[k])));
-    else
-      r.fail("a curve has an unknown rule outside its range");
-  }
-  x.finish(), y.finish();
+  const std::vector<Curve> curves = read_curves(r, t);
   each_row(r, t, materials, [&](Material& m, const std::string& name, size_t k) {
     if (k >= curves.size()) r.fail("a curve is missing");
     m.surface.curves[name] = curves[k];
@@ -178,7 +200,7 @@ void read_materials(Reader& r, std::vector<Material>& materials) {
     if (k >= texts.size()) r.fail("a text of a material is missing");
     m.surface.texts[name] = texts[k];
   });
-  read_curves(r, materials);
+  read_material_curves(r, materials);
 }
 
 void read_maps(Reader& r, Scene& s) {
@@ -259,10 +281,11 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
   s.bounds = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
   s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
   try {
-    read_meshes(r, s.meshes);
+    read_meshes(r, path, s.meshes);
     read_hierarchy(r, s);
     read_materials(r, s.materials);
     read_maps(r, s);
+    read_property_maps(r, s);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;

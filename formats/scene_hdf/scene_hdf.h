@@ -12,9 +12,9 @@ namespace suite {
 
 // What made a scene: no times and no paths, so that equal inputs give equal bytes.
 struct Provenance {
-  std::string generator;     // tool and version
-  std::string arguments;     // canonical: file names without folders
-  std::string input_sha256;  // over all inputs
+  std::string generator;          // tool and version
+  std::string arguments;          // canonical: file names without folders
+  std::string input_sha256;       // over all inputs
   std::vector<InputFile> inputs;  // every file it was made from, the text itself without a name
 };
 

@@ -1,6 +1,6 @@
 #include "base/files.h"
 #include "formats/scene_hdf/h5.h"
-#include "formats/scene_hdf/layout.h"
+#include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 
 namespace suite {
@@ -8,14 +8,6 @@ namespace suite {
 namespace {
 
 using h5::Writer;
-
-template <class Row, class Get>
-auto pick(const std::vector<Row>& rows, Get get) {
-  std::vector<std::decay_t<decltype(get(rows.front()))>> out;
-  out.reserve(rows.size());
-  for (const Row& r : rows) out.push_back(get(r));
-  return out;
-}
 
 // All meshes' arrays of one kind, one behind the other.
 template <class T, class Get>
@@ -119,22 +111,7 @@ void write_materials(Writer& w, const std::vector<Material>& materials) {
       [&](const std::string& t, const std::vector<std::string>& v) { w.put_names(t + "/value", v); });
   put_rows(
       "/materials/curves", [](const Material& m) -> const auto& { return m.surface.curves; },
-      [&](const std::string& t, const std::vector<Curve>& curves) {
-        w.put(t + "/outside",
-              pick(curves,
-                   [](const Curve& c) {
-                     return static_cast<uint8_t>(c.is_constant() ? h5::kConstantCurve : static_cast<int>(c.outside()));
-                   }),
-              "1");
-        w.put(t + "/points", pick(curves, [](const Curve& c) { return uint64_t{c.value().size()}; }), "1");
-        std::vector<double> x, y;
-        for (const Curve& c : curves) {
-          x.insert(x.end(), c.wavelength_um().begin(), c.wavelength_um().end());
-          y.insert(y.end(), c.value().begin(), c.value().end());
-        }
-        w.put(t + "/wavelength", x, "um");
-        w.put(t + "/value", y, "1");
-      });
+      [&](const std::string& t, const std::vector<Curve>& curves) { write_curves(w, t, curves); });
 }
 
 void write_maps(Writer& w, const Scene& s) {
@@ -193,6 +170,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     write_hierarchy(w, s);
     write_materials(w, s.materials);
     write_maps(w, s);
+    write_property_maps(w, s);
     w.put_names("/inputs/name", pick(provenance.inputs, [](const InputFile& f) { return f.name; }));
     w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));
     w.close();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/envi/envi.h"
 #include "formats/obj/obj.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
@@ -45,36 +46,89 @@ void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {
   g.mesh = read_obj(input(p.at("obj")), report_);
 }
 
-void Reader::read_terrain(const Params& p, DraftGeometry& g) {
-  g.kind = DraftGeometry::Kind::terrain;
-  if (!g.material.given()) throw p.error("terrain '" + g.name + "' needs a 'material'");
-  g.tile_m = p.number_in("tile_m", 1, 1e6, "m", 4000);
-  const std::string path = input(p.at("terrain"));
-  const Params datum = p.at("height");
-  const bool geoid = datum.as_choice({"ellipsoid", "geoid"}) == 1;
-  const double separation = geoid ? p.number_in("geoid_separation_m", -200, 200, "m, geoid above ellipsoid") : 0;
-  if (!draft_.origin.given) throw p.error("a georeferenced terrain needs the scene's 'origin'", {}, "SP504");
-  const Where where{path, 0, 0, {}, -1};
-  const GeoReference ref = read_georeference(path);
+namespace {
+
+// A grid in scene ENU without any georeferencing of its own.
+std::function<Vec3(double, double, double)> local_grid(const Params& p) {
+  const std::vector<double> origin = p.at("origin").as_numbers();
+  if (origin.size() != 2)
+    throw p.at("origin").error("an origin is [x, y] in metres: the outer corner of the first pixel");
+  const Params gsd = p.at("gsd");
+  const std::vector<double> g =
+      gsd.kind() == Params::Kind::list ? gsd.as_numbers() : std::vector<double>(2, gsd.as_number());
+  if (g.size() != 2 || g[0] == 0 || g[1] == 0)
+    throw gsd.error("a ground sample distance is one or two numbers other than 0, m");
+  return [=](double column, double row, double height) {
+    return Vec3{origin[0] + (column + 0.5) * g[0], origin[1] - (row + 0.5) * g[1], height};
+  };
+}
+
+// Where a GeoTIFF's samples are, through WGS84 into the scene's frame. separation: geoid above ellipsoid, m.
+std::function<Vec3(double, double, double)> georeferenced_grid(const GeoReference& ref, double separation,
+                                                               const GeodeticOrigin& origin, const Where& where) {
   const auto zone = ref.geographic ? std::nullopt : utm_zone_of_epsg(ref.epsg);
   if (ref.geographic ? ref.epsg != 4326 && ref.epsg != 4258 : !zone)
     throw Error(where, strf("EPSG:%d is not known here", ref.epsg), "WGS84 or ETRS89, geographic or UTM, are", "SP504");
-  const Raster raster = read_raster(path);
-  g.terrain.width = raster.width;
-  g.terrain.height = raster.height;
-  g.terrain.heights.resize(size_t{raster.width} * raster.height);
-  for (size_t i = 0; i < g.terrain.heights.size(); ++i) {
-    const float h = raster.values[i * raster.channels];
-    g.terrain.heights[i] = ref.no_data && h == static_cast<float>(*ref.no_data) ? NAN : h;
-  }
-  const SceneFrame frame({draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
-  g.terrain.place = [=](double column, double row, double height) {
+  const SceneFrame frame({origin.latitude_deg, origin.longitude_deg, origin.ellipsoid_height_m});
+  return [=](double column, double row, double height) {
     const double c = column + 0.5, r = row + 0.5;  // samples are at pixel centres
     const double x = ref.to_map[0] + ref.to_map[1] * c + ref.to_map[2] * r,
                  y = ref.to_map[3] + ref.to_map[4] * c + ref.to_map[5] * r;
     const double h = height + separation;
     return zone ? frame.enu_from_utm({*zone, x, y, h}) : frame.enu_from_geodetic({y, x, h});
   };
+}
+
+}  // namespace
+
+// Heights from any raster, or from an ENVI image by its extension; gaps become NaN.
+void Reader::read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain) {
+  std::vector<double> heights;
+  if (path.size() > 4 && path.compare(path.size() - 4, 4, ".img") == 0) {
+    const EnviImage image(path);
+    if (image.header().bands != 1)
+      throw Error(Where{path, 0, 0, {}, -1}, strf("%zu bands", image.header().bands), "heights are one band", "SP504");
+    terrain.width = static_cast<uint32_t>(image.header().samples);
+    terrain.height = static_cast<uint32_t>(image.header().lines);
+    if (image.header().values() > size_t{1} << 28)
+      throw Error(Where{path, 0, 0, {}, -1}, "too many samples", "at most 2^28", "SP504");
+    heights = image.read_all();
+    if (image.header().ignore_value) no_data = image.header().ignore_value;
+  } else {
+    const Raster raster = read_raster(path);
+    if (raster.channels != 1)
+      throw Error(Where{path, 0, 0, {}, -1}, strf("%u channels", raster.channels), "heights are one channel", "SP504");
+    terrain.width = raster.width;
+    terrain.height = raster.height;
+    heights.assign(raster.values.begin(), raster.values.end());
+  }
+  for (const double h : heights)
+    terrain.heights.push_back(no_data && static_cast<float>(h) == static_cast<float>(*no_data) ? NAN
+                                                                                               : static_cast<float>(h));
+}
+
+void Reader::read_terrain(const Params& p, DraftGeometry& g) {
+  g.kind = DraftGeometry::Kind::terrain;
+  if (!g.material.given()) throw p.error("terrain '" + g.name + "' needs a 'material'");
+  g.tile_m = p.number_in("tile_m", 1, 1e6, "m", 4000);
+  const std::string path = input(p.at("terrain"));
+  std::optional<double> no_data;
+  if (const auto value = p.find("no_data")) no_data = value->as_number();
+  if (const auto local = p.find("local")) {
+    g.terrain.place = local_grid(*local);
+  } else {
+    const Params datum = p.at("height");
+    const bool geoid = datum.as_choice({"ellipsoid", "geoid"}) == 1;
+    const double separation = geoid ? p.number_in("geoid_separation_m", -200, 200, "m, geoid above ellipsoid") : 0;
+    if (!draft_.origin.given)
+      throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
+    const GeoReference ref = read_georeference(path);
+    if (!no_data) no_data = ref.no_data;
+    g.terrain.place = georeferenced_grid(ref, separation, draft_.origin, Where{path, 0, 0, {}, -1});
+  }
+  read_heights(path, no_data, g.terrain);
+  const double scale = p.number("height_scale", 1), offset = p.number("height_offset", 0);
+  for (float& h : g.terrain.heights) h = static_cast<float>(h * scale + offset);
 }
 
 void Reader::read_primitive(const Params& p, DraftGeometry& g, const std::string& kind) {

@@ -32,14 +32,27 @@ void read_drape(const Params& p, Drape& drape) {
 
 }  // namespace
 
+void read_projection(const Params& p, Projection& projection, Drape& drape) {
+  if (const auto named = p.find("projection"); named && named->as_choice({"drape", "uv"}) == 1)
+    projection = Projection::uv;
+  if (projection == Projection::drape) read_drape(p.at("drape"), drape);
+}
+
 void Reader::read_map(const std::string& name, const Params& p) {
+  static constexpr std::initializer_list<const char*> types{"class",       "mixture", "texture", "curve_index", "cube",
+                                                            "temperature", "bump",    "normal",  "opacity"};
+  const size_t type = p.at("type").as_choice(types);
+  if (type == 0)
+    read_class_map(name, p);
+  else
+    read_property_map(name, p, types.begin()[type]);
+}
+
+void Reader::read_class_map(const std::string& name, const Params& p) {
   DraftClassMap m;
   m.where = p.where();
   m.map.name = name;
-  p.at("type").as_choice({"class"});
-  if (const auto projection = p.find("projection"); projection && projection->as_choice({"drape", "uv"}) == 1)
-    m.map.projection = Projection::uv;
-  if (m.map.projection == Projection::drape) read_drape(p.at("drape"), m.map.drape);
+  read_projection(p, m.map.projection, m.map.drape);
   const Params materials = p.at("materials");
   for (const std::string& key : materials.keys()) m.materials[class_of(key, materials)] = reference(materials.at(key));
   if (m.materials.empty()) throw materials.error("a class map needs at least one class");

@@ -89,6 +89,8 @@ void Reader::read_material(const std::string& id, const Params& p) {
   draft_.materials.push_back(m);
   m.material.description = p.text("description", "");
   if (const auto map = p.find("map")) m.map = reference(*map);
+  if (const auto maps = p.find("maps"))
+    for (const Params& map : maps->items()) m.property_maps.push_back(reference(map));
   if (p.has("model") || !m.map.given()) {
     read_model(p, m.material.surface);
     m.has_model = true;

@@ -57,12 +57,14 @@ ScatterRule read_scatter(const Params& p) {
   rule.turn = p.boolean("turn", true);
   if (const auto scale = p.find("scale")) {
     const std::vector<double> range = scale->as_numbers();
-    if (range.size() != 2 || !(range[0] > 0 && range[0] <= range[1])) throw scale->error("the scale of a scatter is [low, high], above 0");
+    if (range.size() != 2 || !(range[0] > 0 && range[0] <= range[1]))
+      throw scale->error("the scale of a scatter is [low, high], above 0");
     rule.scale_low = range[0], rule.scale_high = range[1];
   }
   if (const auto region = p.find("region")) {
     const std::vector<double> r = region->as_numbers();
-    if (r.size() != 4 || !(r[0] < r[2] && r[1] < r[3])) throw region->error("a region is [x0, y0, x1, y1], low corner first");
+    if (r.size() != 4 || !(r[0] < r[2] && r[1] < r[3]))
+      throw region->error("a region is [x0, y0, x1, y1], low corner first");
     rule.region = {r[0], r[1], r[2], r[3]};
   }
   return rule;

@@ -42,7 +42,8 @@ std::string Reader::input(const Params& p) {
     // The header of a spectral library decides as much as its values.
     if (path.size() > 4 && path.compare(path.size() - 4, 4, ".sli") == 0)
       for (const std::string& header : {name + ".hdr", name.substr(0, name.size() - 4) + ".hdr"})
-        if (const std::string at = find_input(draft_.file, header, options_); file_exists(at)) draft_.inputs.push_back({header, sha256(read_bytes(at))});
+        if (const std::string at = find_input(draft_.file, header, options_); file_exists(at))
+          draft_.inputs.push_back({header, sha256(read_bytes(at))});
   }
   return path;
 }

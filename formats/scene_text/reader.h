@@ -10,6 +10,9 @@
 
 namespace suite::scene_text {
 
+// projection and drape of a map.
+void read_projection(const Params& p, Projection& projection, Drape& drape);
+
 class Reader {
  public:
   Reader(const SceneTextOptions& options, Report& report, Draft& draft)
@@ -28,12 +31,18 @@ class Reader {
   void read_geometry(const std::string& name, const Params& p);
   void read_obj_geometry(const Params& p, DraftGeometry& g);
   void read_terrain(const Params& p, DraftGeometry& g);
+  void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
+  void read_class_map(const std::string& name, const Params& p);
+  // property_maps.cpp
+  void read_property_map(const std::string& name, const Params& p, const std::string& type);
+  void read_cube(const Params& p, PropertyMap& map);
+  std::vector<Curve> read_family(const Params& p);
 
   // Runs one item; what it throws is filed and the next item goes on. p: the item's text, not searched for unknown keys
   // any more when it failed. code: of faults that bring none.

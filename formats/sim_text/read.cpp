@@ -101,6 +101,12 @@ Simulation read_simulation(const std::string& path, const std::function<void(con
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
   if (const auto sun = root.find("sun")) read_sun(*sun, sim);
   if (const auto sky = root.find("sky")) read_sky(*sky, sim);
+  if (const auto p = root.find("periodic")) {
+    const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();
+    if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
+    if (!(size[0] > 0 && size[1] > 0)) throw p->at("size_m").error("the cell needs a positive size");
+    sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
+  }
   if (const auto output = root.find("output")) read_output(*output, sim.output);
   const SensorContext context{read_curve_value, deliver};
   std::set<std::string> names;

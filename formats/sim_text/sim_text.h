@@ -29,6 +29,7 @@ struct Simulation {
   std::string path;
   std::string scene_path;
   PipelineOptions pipeline;
+  std::optional<Periodic> periodic;
   SourceSpecs sources;
   std::optional<SunByTime> sun_by_time;   // sources.sun is there, its direction still to be computed
   std::vector<std::unique_ptr<Sensor>> sensors;

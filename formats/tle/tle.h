@@ -22,8 +22,8 @@ std::vector<TleEntry> read_tle(const std::string& path, TleChecksum checksum = T
 std::vector<TleEntry> parse_tle(std::string_view text, const std::string& file_name,
                                 TleChecksum checksum = TleChecksum::required);
 
-// The one set of a satellite, by catalogue number or title. Other sets of the file are not examined, so that one bad set
-// in a catalogue does not stop the rest. Errors as above, and: not in the file, or there several times.
+// The one set of a satellite, by catalogue number or title. Other sets of the file are not examined, so that one bad
+// set in a catalogue does not stop the rest. Errors as above, and: not in the file, or there several times.
 TleEntry read_tle_of(const std::string& path, const std::string& satellite);
 
 }  // namespace suite

@@ -2,8 +2,8 @@
 // that are visible from a direction.
 //
 // All directions on the upper side (z > 0), unit length. Based on: B. Walter et al., "Microfacet models for refraction
-// through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 3(2), 2014 (equations
-// 72, 86, 99); E. Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
+// through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 3(2), 2014
+// (equations 72, 86, 99); E. Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
 #pragma once
 #include <cmath>
 
@@ -27,8 +27,8 @@ struct Ggx {
     // (sqrt(1 + a2 / z2) - 1) / 2 without cancellation at small slopes.
     return 0.5 * a2 / (z2 + std::fabs(d.z) * std::sqrt(z2 + a2));
   }
-  double masking(Dir d) const { return 1 / (1 + lambda(d)); }                            // G1
-  double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }       // G2, same side
+  double masking(Dir d) const { return 1 / (1 + lambda(d)); }                       // G1
+  double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }  // G2, same side
   // Density per steradian of visible_normal(out, .).
   double visible_density(Dir out, Dir h) const {
     const double c = dot(out, h);
@@ -44,11 +44,10 @@ struct Ggx {
     const Vec3 n = t1 * p1 + t2 * p2 + v * std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2));
     return normalized({ax * n.x, ay * n.y, std::max(0.0, n.z)});
   }
-
 };
 
-// Points of the unit square for averages over visible normals when a model is baked (the first points of Sobol's sequence; count a
-// power of two up to 2^16).
+// Points of the unit square for averages over visible normals when a model is baked (the first points of Sobol's
+// sequence; count a power of two up to 2^16).
 inline std::vector<Vec2> baking_points(uint32_t count) {
   std::vector<Vec2> points(count);
   for (uint32_t i = 0; i < count; ++i) {

@@ -1,9 +1,11 @@
 #include "optics/model_function.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "optics/models.h"
+#include "optics/phase_function.h"
 
 namespace suite {
 
@@ -49,6 +51,41 @@ class ModelFunction final : public sqt::Function {
   Info info_;
 };
 
+class PhaseModelFunction final : public sqt::Function {
+ public:
+  PhaseModelFunction(const ModelSpec& spec, const SpectralState& state, std::string text)
+      : phase_(bake_phase(spec, state)) {
+    info_.name = spec.model;
+    info_.source = "phase function " + std::move(text) + ", evaluated where asked; straight on is in = -out";
+    info_.wavelength_um = {state.reference_um};
+    info_.domain = sqt::Domain::sphere;
+    info_.quantity = sqt::Quantity::phase;
+  }
+  const Info& info() const override { return info_; }
+  void value(Dir out, Dir in, std::span<double> f) const override {
+    float p = 0;
+    phase_->eval(std::clamp(scattering_cosine(out, in), -1.0, 1.0), {&p, 1});
+    f[0] = p;
+  }
+
+ private:
+  std::unique_ptr<const PhaseFunction> phase_;
+  Info info_;
+};
+
+// A model, or else a phase function; the names do not overlap.
+bool is_phase(const std::string& name, const Where& where) {
+  std::vector<std::string> known;
+  for (const ModelRow& row : models()) known.push_back(row.name);
+  for (const PhaseRow& row : phases()) {
+    if (row.name == name) return true;
+    known.push_back(row.name);
+  }
+  for (const std::string& k : known)
+    if (k == name) return false;
+  throw Error(where, "unknown model '" + name + "'", name_hint(name, known), "OP101");
+}
+
 }  // namespace
 
 std::shared_ptr<const sqt::Function> model_function(const std::string& text) {
@@ -67,11 +104,13 @@ std::shared_ptr<const sqt::Function> model_function(const std::string& text) {
     spec.numbers[item.substr(0, equals)] = value;
     at = next;
   }
-  check_model(spec, where);
+  const bool phase = is_phase(spec.model, where);
+  phase ? check_phase(spec, where) : check_model(spec, where);
   SpectralState state;
   state.low_um = 0.5495, state.high_um = 0.5505, state.reference_um = 0.55;
   state.bins = {{0.5495, 0.5505}};
   state.knots = {0};
+  if (phase) return std::make_shared<PhaseModelFunction>(spec, state, text);
   return std::make_shared<ModelFunction>(spec, state, text);
 }
 

@@ -31,11 +31,11 @@ class ScatterModel {
 
   // w(out, in) = BSDF |cos in|, 1/sr, without Dirac lobes. Finite, >= 0.
   virtual void eval(Dir out, Dir in, std::span<float> w) const = 0;
-  // The same as a number times a spectrum that outlives the model's use, when it factors so at these directions: spares a
-  // pass over the wavelengths. Nothing = use eval.
+  // The same as a number times a spectrum that outlives the model's use, when it factors so at these directions: spares
+  // a pass over the wavelengths. Nothing = use eval.
   struct Factored {
     float scale;
-    const float* spectrum;   // one value per bin
+    const float* spectrum;  // one value per bin
   };
   virtual std::optional<Factored> factored(Dir out, Dir in) const;
   // W(out) = integral of w over all `in`, Dirac lobes included. 0 <= W <= 1 (times the squared index ratio across an

@@ -28,6 +28,7 @@ class Baker {
     scene_.files = draft_.files;
     materials();
     class_maps();
+    property_maps();
     geometry();
     groups();
     unused();
@@ -60,6 +61,7 @@ class Baker {
   void materials();
   void check_coverage(const DraftMaterial& m);
   void class_maps();
+  void property_maps();
   void geometry();
   Built build_mesh(const DraftGeometry& g);
   Built build_terrain(const DraftGeometry& g);
@@ -82,12 +84,18 @@ class Baker {
 };
 
 void Baker::check_coverage(const DraftMaterial& m) {
-  for (const SpectralWindow& w : draft_.windows)
-    for (const auto& [name, curve] : m.material.surface.curves)
+  const auto check = [&](const std::string& what, const Curve& curve) {
+    for (const SpectralWindow& w : draft_.windows)
       if (!curve.covers(w.low_um, w.high_um))
         add("SP104", m.where,
             strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
-                 name.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+                 what.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+  };
+  for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
+  for (const DraftPropertyMap& map : draft_.property_maps)
+    for (const Reference& r : m.property_maps)
+      if (r.name == map.map.name)
+        for (const Curve& curve : map.map.family) check("a curve of map '" + r.name + "'", curve);
 }
 
 void Baker::materials() {
@@ -155,6 +163,38 @@ void Baker::class_maps() {
   }
 }
 
+void Baker::property_maps() {
+  std::map<std::string, uint32_t> ids;
+  for (const DraftPropertyMap& d : draft_.property_maps) {
+    PropertyMap map = d.map;
+    for (const Reference& r : d.materials) map.materials.push_back(material_id(r));
+    ids[map.name] = static_cast<uint32_t>(scene_.property_maps.size());
+    scene_.property_maps.push_back(std::move(map));
+  }
+  for (size_t m = 0; m < draft_.materials.size(); ++m) {
+    std::set<MapKind> kinds;
+    for (const Reference& r : draft_.materials[m].property_maps) {
+      const auto found = ids.find(r.name);
+      if (found == ids.end()) {
+        add("SP501", r.where,
+            "unknown map '" + r.name + "'; " +
+                name_hint(r.name, names_of(draft_.property_maps, [](const auto& p) { return p.map.name; })));
+        continue;
+      }
+      used_maps_.insert(r.name);
+      const PropertyMap& map = scene_.property_maps[found->second];
+      if (!kinds.insert(map.kind).second)
+        add("SP501", r.where,
+            "material '" + draft_.materials[m].material.id + "' has two maps of the kind of '" + r.name + "'");
+      if (!map.parameter.empty() && !scene_.materials[m].surface.curves.count(map.parameter))
+        add("SP501", r.where,
+            "the model of material '" + draft_.materials[m].material.id + "' has no curve '" + map.parameter +
+                "' for map '" + r.name + "'");
+      scene_.property_bindings.push_back({static_cast<uint32_t>(m), found->second});
+    }
+  }
+}
+
 Baker::Built Baker::build_mesh(const DraftGeometry& g) {
   std::vector<uint32_t> ids;
   std::set<std::string> told;
@@ -182,7 +222,12 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
 }
 
 Baker::Built Baker::build_terrain(const DraftGeometry& g) {
-  terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+  try {
+    terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+  } catch (const Error& e) {  // a sample that lies nowhere on Earth
+    add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
+    return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr};
+  }
   const auto first = static_cast<uint32_t>(scene_.meshes.size());
   std::vector<Mesh> tiles = terrains_.back()->tiles(g.name, g.tile_m, material_id(g.material));
   if (tiles.empty()) add("SP504", g.where, "terrain '" + g.name + "' has no two by two samples with heights");
@@ -248,7 +293,8 @@ std::vector<size_t> Baker::group_order() {
 std::optional<Baker::Built> Baker::target(const Reference& ref) {
   used_targets_.insert(ref.name);
   if (const auto found = built_.find(ref.name); found != built_.end()) return found->second;
-  if (const auto found = group_ids_.find(ref.name); found != group_ids_.end()) return Built{TargetKind::group, found->second, 1, nullptr};
+  if (const auto found = group_ids_.find(ref.name); found != group_ids_.end())
+    return Built{TargetKind::group, found->second, 1, nullptr};
   std::vector<std::string> known = names_of(draft_.geometry, [](const DraftGeometry& g) { return g.name; });
   for (size_t g = 1; g < draft_.groups.size(); ++g) {
     if (draft_.groups[g].name == ref.name) return std::nullopt;
@@ -267,7 +313,9 @@ std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
       add("SP405", p.on.where, "'" + p.on.name + "' is no terrain and no mesh");
       return all;
     }
-    for (const Affine3& row : scatter(std::span(scene_.meshes).subspan(ground->second.first, ground->second.count), *p.scatter)) all.push_back(row * p.to_parent);
+    for (const Affine3& row :
+         scatter(std::span(scene_.meshes).subspan(ground->second.first, ground->second.count), *p.scatter))
+      all.push_back(row * p.to_parent);
     return all;
   }
   if (!p.table) all.push_back(p.to_parent);
@@ -278,8 +326,10 @@ std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
 // Lifts transforms onto a terrain.
 bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all) {
   const auto ground = built_.find(p.on.name);
-  if (!world) return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand"), false;
-  if (ground == built_.end() || !ground->second.terrain) return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain"), false;
+  if (!world)
+    return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand"), false;
+  if (ground == built_.end() || !ground->second.terrain)
+    return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain"), false;
   for (Affine3& t : all) {
     const auto z = ground->second.terrain->height_at(t.b.x, t.b.y);
     if (!z) return add("SP405", p.where, strf("(%g, %g) is not on '%s'", t.b.x, t.b.y, p.on.name.c_str())), false;
@@ -299,7 +349,8 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   const std::optional<Built> what = target(p.target);
   for (const double a : p.to_parent.a)
     if (!std::isfinite(a)) return add("SP404", p.where, "the transform of '" + p.target.name + "' is not finite");
-  if (p.to_parent.determinant() == 0) return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
+  if (p.to_parent.determinant() == 0)
+    return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
   std::vector<Affine3> all = transforms(p);
   if (p.on.given() && !p.scatter && !put_on(p, world, all)) return;
   if (!what) return;
@@ -330,6 +381,8 @@ void Baker::unused() {
   for (const DraftMaterial& m : draft_.materials)
     if (!used_materials_.count(m.material.id)) add("SP103", m.where, "material '" + m.material.id + "' is not used");
   for (const DraftClassMap& m : draft_.class_maps)
+    if (!used_maps_.count(m.map.name)) add("SP503", m.where, "map '" + m.map.name + "' is not used");
+  for (const DraftPropertyMap& m : draft_.property_maps)
     if (!used_maps_.count(m.map.name)) add("SP503", m.where, "map '" + m.map.name + "' is not used");
   for (const DraftGeometry& g : draft_.geometry)
     if (!used_targets_.count(g.name)) add("SP403", g.where, "object '" + g.name + "' is never placed");

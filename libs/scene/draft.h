@@ -64,9 +64,9 @@ struct DraftPlacement {
   Where where;
   Reference target, material, tag, on;  // on: the terrain whose surface z counts from
   Affine3 to_parent;
-  std::vector<Affine3> rows;             // of an instance table or a scatter; each before to_parent
+  std::vector<Affine3> rows;  // of an instance table or a scatter; each before to_parent
   bool table = false;
-  std::optional<ScatterRule> scatter;    // over the surface `on`
+  std::optional<ScatterRule> scatter;  // over the surface `on`
 };
 
 struct DraftGroup {
@@ -80,12 +80,19 @@ struct DraftMaterial {
   Material material;
   Reference map;  // a class map that decides instead
   bool has_model = false;
+  std::vector<Reference> property_maps;
 };
 
 struct DraftClassMap {
   Where where;
   ClassMap map;                             // `materials` still empty; `classes` hold the values of the raster
   std::map<uint16_t, Reference> materials;  // value -> material id
+};
+
+struct DraftPropertyMap {
+  Where where;
+  PropertyMap map;                   // `materials` still empty
+  std::vector<Reference> materials;  // mixture: of each channel
 };
 
 struct SpectralWindow {
@@ -104,6 +111,7 @@ struct Draft {
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;
+  std::vector<DraftPropertyMap> property_maps;
   std::vector<DraftGeometry> geometry;
   std::vector<DraftGroup> groups;  // [0] = world
   std::vector<DataFile> files;

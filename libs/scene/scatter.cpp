@@ -1,5 +1,5 @@
-// Based on: area-proportional choice by the cumulative sum of triangle areas; the square-root map of two uniform numbers
-// onto a triangle (Turk, Graphics Gems, 1990).
+// Based on: area-proportional choice by the cumulative sum of triangle areas; the square-root map of two uniform
+// numbers onto a triangle (Turk, Graphics Gems, 1990).
 #include "scene/scatter.h"
 
 #include <algorithm>
@@ -37,10 +37,15 @@ std::vector<Affine3> scatter(std::span<const Mesh> meshes, const ScatterRule& ru
   for (size_t i = 0; i < count; ++i) {
     // Every point draws the same number of random numbers, so that a region only leaves points out.
     const double pick = random.uniform() * total, a = std::sqrt(random.uniform()), b = random.uniform();
-    const double heading = random.uniform() * 2 * kPi, scale = rule.scale_low + (rule.scale_high - rule.scale_low) * random.uniform();
-    const Place p = places[static_cast<size_t>(std::min<std::ptrdiff_t>(std::upper_bound(area.begin(), area.end(), pick) - area.begin(), static_cast<std::ptrdiff_t>(area.size()) - 1))];
+    const double heading = random.uniform() * 2 * kPi,
+                 scale = rule.scale_low + (rule.scale_high - rule.scale_low) * random.uniform();
+    const Place p = places[static_cast<size_t>(
+        std::min<std::ptrdiff_t>(std::upper_bound(area.begin(), area.end(), pick) - area.begin(),
+                                 static_cast<std::ptrdiff_t>(area.size()) - 1))];
     const Vec3 at = corner(p, 0) * (1 - a) + corner(p, 1) * (a * (1 - b)) + corner(p, 2) * (a * b);
-    if (rule.region && !(at.x >= (*rule.region)[0] && at.y >= (*rule.region)[1] && at.x <= (*rule.region)[2] && at.y <= (*rule.region)[3])) continue;
+    if (rule.region && !(at.x >= (*rule.region)[0] && at.y >= (*rule.region)[1] && at.x <= (*rule.region)[2] &&
+                         at.y <= (*rule.region)[3]))
+      continue;
     Affine3 t = scaling({scale, scale, scale});
     if (rule.turn) t = rotation({0, 0, 1}, heading) * t;
     t.b = at;

@@ -9,10 +9,10 @@
 namespace suite {
 
 struct ScatterRule {
-  double density_per_m2 = 0;             // of surface area, > 0
+  double density_per_m2 = 0;  // of surface area, > 0
   uint64_t seed = 1;
-  double scale_low = 1, scale_high = 1;  // uniform between, > 0
-  bool turn = true;                      // random heading
+  double scale_low = 1, scale_high = 1;         // uniform between, > 0
+  bool turn = true;                             // random heading
   std::optional<std::array<double, 4>> region;  // x0, y0, x1, y1: only points inside are kept
 };
 

@@ -89,6 +89,28 @@ struct MapBinding {
   uint32_t class_map = kNone;           // index into Scene::class_maps
 };
 
+// Rasters of numbers that vary a material from point to point. mixture: one channel a material of `materials`, fractions
+// that sum to 1 in every pixel. curve_index: one channel, whole numbers into `family`, which replaces the curve `parameter` of
+// the model (texture maps are baked to this). cube: the curve `parameter` is piecewise linear through the channels, which
+// stand at `wavelength_um`, and constant beyond them. temperature: one channel, K. bump: one channel, height in m along
+// the normal. normal: three channels, the normal in the tangent frame (any length). opacity: one channel, 0 to 1.
+enum class MapKind : uint8_t { mixture, curve_index, cube, temperature, bump, normal, opacity };
+struct PropertyMap {
+  std::string name;
+  MapKind kind = MapKind::mixture;
+  uint32_t width = 0, height = 0, channels = 1;
+  std::vector<float> values;            // row-major, top row first, channels together
+  std::vector<uint32_t> materials;      // mixture: index into Scene::materials of each channel
+  std::string parameter;                // curve_index, cube: a curve parameter of the material's model
+  std::vector<Curve> family;            // curve_index
+  std::vector<double> wavelength_um;    // cube: ascending
+  Projection projection = Projection::drape;
+  Drape drape;
+};
+struct PropertyBinding {
+  uint32_t material = kNone, property_map = kNone;
+};
+
 // A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
 struct DataFile {
   std::string name;                     // unique within the scene
@@ -111,6 +133,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<ClassMap> class_maps;
   std::vector<MapBinding> map_bindings;
+  std::vector<PropertyMap> property_maps;
+  std::vector<PropertyBinding> property_bindings;  // a material may have several, one of each kind
   std::vector<std::string> tags;
   std::vector<DataFile> files;
   Box3 bounds;                          // ENU

@@ -63,6 +63,8 @@ std::string summary_text(const Scene& s) {
   }
   for (const Material& m : s.materials)
     if (m.temperature_k > 0) uses.insert("temperatures");
+  for (const PropertyMap& m : s.property_maps)
+    uses.insert(m.kind == MapKind::temperature ? "temperature maps" : "property maps");
   if (!s.class_maps.empty()) uses.insert("class maps");
   if (!s.primitives.empty()) uses.insert("exact primitives");
   if (!s.files.empty()) uses.insert("embedded files");

@@ -134,7 +134,7 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   const Clock::time_point start = Clock::now();
   JobReport report;
-  const Tracer tracer(scene);
+  const Tracer tracer(scene, options.periodic);
   report.tracer_builds = 1;
   report.build_seconds = seconds_since(start);
   std::vector<double> relative_errors;

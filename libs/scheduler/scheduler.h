@@ -15,6 +15,7 @@ namespace suite {
 
 struct JobOptions {
   PipelineOptions pipeline;
+  std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   uint32_t paths = 0;              // replaces every capture's own convergence by a fixed number of paths; 0 = does not
   bool progress = true;
 };

@@ -298,14 +298,11 @@ class AlignedBundle final : public Bundle {
     const Dir up = upright(out);
     const LobeMap m = map(up, s);
     Dir d = m.cell_direction(frame(out).to_local(in));
-    if (layout_.half_stored) d.y = std::fabs(d.y);
-    FacePoint p = face_point_fast(d);
+    // Strictly inside the stored half: at azimuth pi the symmetry plane itself belongs to cells that are not stored.
+    if (layout_.half_stored) d.y = std::max(std::fabs(d.y), 1e-9);
+    const FacePoint p = face_point_fast(d);
     q.sheet = &sheets_[s];
-    int leaf = q.sheet->tree.leaf(p);
-    if (leaf < 0 && layout_.half_stored) {  // the symmetry plane itself may count to the other half
-      p = face_point_fast({d.x, -d.y, d.z});
-      leaf = q.sheet->tree.leaf(p);
-    }
+    const int leaf = q.sheet->tree.leaf(p);
     if (leaf < 0) return false;
     q.leaf = static_cast<size_t>(leaf);
     const double n = q.sheet->side[q.leaf];

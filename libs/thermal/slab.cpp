@@ -30,6 +30,9 @@ void Slab::start(double t, std::span<const double> kelvin) {
     if (!(T >= 1 && T <= kHottest)) throw Error(strf("a slab starts at %g K", T), "1 to 10000 K");
   t_ = t;
   T_.assign(kelvin.begin(), kelvin.end());
+  now_.T = T_;
+  evaluate(now_, {}, {});
+  heat_ = now_.heat;
   next_step_ = std::fmin(1.0, options_.max_step);
   last_step_ = 0;
   reset_means();
@@ -67,12 +70,14 @@ void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
     for (size_t j = 0; j < n - 1; ++j) {
       // The mean of k over both temperatures, as symmetric polynomials, so that nothing cancels when they are close.
       const double a = T[j], b = T[j + 1], sum = a + b, squares = a * a + b * b;
-      flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) / 3 + k3[j] * sum * squares / 4) * (a - b);
+      flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) * (1.0 / 3) + k3[j] * sum * squares / 4) * (a - b);
     }
   }
-  gain[0] = source_[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
-  for (size_t i = 1; i + 1 < n; ++i) gain[i] = source_[i] + (flux[i - 1] - flux[i]);
-  gain[n - 1] = source_[n - 1] + flux[n - 2] + (bottom.fixed ? 0 : bottom.flux(T[n - 1]));
+  const double* source = source_.data();
+  gain[0] = source[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
+#pragma GCC ivdep
+  for (size_t i = 1; i < n - 1; ++i) gain[i] = source[i] + (flux[i - 1] - flux[i]);
+  gain[n - 1] = source[n - 1] + flux[n - 2] + (bottom.fixed ? 0 : bottom.flux(T[n - 1]));
 }
 
 namespace {
@@ -102,10 +107,10 @@ void Slab::factor_linear(double scale) {
     upper_[i] = i + 1 < n ? -scale * flux_coefficients_[0][i] : 0;
     diagonal_[i] = heat_coefficients_[0][i] - lower_[i] - upper_[i];
   }
-  factored_fixed_ = spec_.bottom.kind == SlabFace::Kind::temperature;
-  if (factored_fixed_) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
+  if (spec_.bottom.kind == SlabFace::Kind::temperature) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
   top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
   factored_for_ = scale;
+  ++counters_.eliminations;
 }
 
 // Constant properties: the interior is eliminated exactly, the top face's balance is one equation in its temperature.
@@ -165,33 +170,46 @@ void Slab::set_newton_matrix(const Stage& s, double scale, const FaceNow& top, c
     diagonal[n - 1] -= scale * bottom.slope(T[n - 1]);
 }
 
-// Properties that depend on temperature, or two radiating faces: Newton's method on all nodes from the guess in s.T.
+// Properties that depend on temperature, or two radiating faces: Newton's method on all nodes from the guess in s.T. An
+// elimination is kept, over stages and steps, as long as it makes the change shrink fiftyfold at each turn.
 bool Slab::solve_newton(std::span<const double> history, double scale, const FaceNow& top, const FaceNow& bottom,
                         Stage& s) {
   const size_t n = T_.size();
+  constexpr double kShrinks = 0.02, kEnough = 1e-10;  // K
+  bool renew = factored_for_ != scale, done = false;
   double last = INFINITY;
-  for (int k = 0; k < 25; ++k) {
+  for (int k = 0; k < 40; ++k) {
     evaluate(s, top, bottom);
-    // Convergence is quadratic, squares weighed with d(ln k)/dT of some 1e-3/K: what is left is rounding.
-    if (last < 1e-5) return true;
+    if (done) return true;
     for (size_t i = 0; i < n; ++i) right_[i] = history[i] + scale * s.gain[i] - s.heat[i];
     if (top.fixed) right_[0] = top.kelvin - s.T[0];
     if (bottom.fixed) right_[n - 1] = bottom.kelvin - s.T[n - 1];
-    set_newton_matrix(s, scale, top, bottom);
-    top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+    if (renew) {
+      set_newton_matrix(s, scale, top, bottom);
+      top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
+      factored_for_ = scale;
+      ++counters_.eliminations;
+    }
     for (size_t i = n - 1; i-- > 0;) right_[i] -= up_[i] * right_[i + 1];
-    double change = right_[0] / top_diagonal_, largest = 0;
+    double change = right_[0] / top_diagonal_, largest = 0, coldest = kHottest, hottest = 0;
     for (size_t i = 0; i < n; ++i) {
       if (i > 0) change = pivot_[i] * right_[i] - down_[i] * change;
-      largest = std::fmax(largest, std::fabs(change));
-      s.T[i] += change;
-      if (!(s.T[i] > 0 && s.T[i] < kHottest)) return false;
+      largest = std::fabs(change) > largest ? std::fabs(change) : largest;  // fmax would be a call a node
+      const double T = s.T[i] += change;
+      coldest = T < coldest ? T : coldest;
+      hottest = T > hottest ? T : hottest;
     }
-    ++counters_.newton;
-    // Rounding in large slabs may keep the change above the goal; it must at least not grow.
-    if (k > 8 && largest >= last) return false;
+    if (!(coldest > 0 && hottest < kHottest && std::isfinite(change))) break;
+    // The next change would be smaller by the same ratio: stop when that is too little to matter. The heat it leaves
+    // out of place is carried over by accept().
+    const double ratio = largest / last;
+    done = largest < kEnough || (k > 0 && largest * ratio < kEnough);
+    if (k > 10 && renew && ratio >= 1) break;
+    renew = k == 0 ? false : ratio > kShrinks;
+    if (k == 0 && largest > 1) renew = true;
     last = largest;
   }
+  factored_for_ = -1;
   return false;
 }
 
@@ -213,18 +231,29 @@ double Slab::filtered_error(double dt, double t_end) {
   double e = top.fixed ? 0 : right_[0] / (top_diagonal_ - slope), largest = std::fabs(e);
   for (size_t i = 1; i < n; ++i) {
     e = pivot_[i] * right_[i] - down_[i] * e;
-    largest = std::fmax(largest, std::fabs(e));
+    largest = std::fabs(e) > largest ? std::fabs(e) : largest;
   }
-  return largest;
+  return std::isfinite(e) ? largest : e;  // what is not finite stays so to the last node
 }
 
-// Newton's start for the middle stage: the last step's trend goes on, where that is believable.
+// Newton's starts: the parabola through the last step goes on to the middle; the end continues from there.
 void Slab::guess_middle(double dt) {
   middle_.T = now_.T;
   if (linear_ || !(last_step_ > 0) || dt > 2 * last_step_) return;
+  const double ahead = kGamma * dt;
   for (size_t i = 0; i < now_.T.size(); ++i) {
-    const double change = rate_[i] * kGamma * dt;
-    if (std::fabs(change) < 0.1 * now_.T[i]) middle_.T[i] += change;
+    const double change = ahead * (rate_[i] + ahead * bend_[i]);
+    middle_.T[i] += std::fabs(change) < 0.1 * now_.T[i] ? change : 0;
+  }
+}
+
+void Slab::guess_end(double dt) {
+  // On the parabola's bend when there is one, else straight on through now and the middle; never far.
+  const bool curved = !linear_ && last_step_ > 0 && dt <= 2 * last_step_;
+  for (size_t i = 0; i < now_.T.size(); ++i) {
+    const double slope = (middle_.T[i] - now_.T[i]) / (kGamma * dt), rest = (1 - kGamma) * dt;
+    const double change = rest * (slope + (curved ? dt * bend_[i] : 0));
+    end_.T[i] = middle_.T[i] + (std::fabs(change) < 0.1 * middle_.T[i] ? change : 0);
   }
 }
 
@@ -236,15 +265,14 @@ bool Slab::attempt(double dt, double& error) {
   if (top.fixed) now_.T[0] = top.kelvin;
   if (bottom.fixed) now_.T[n - 1] = bottom.kelvin;
   evaluate(now_, top, bottom);
+  now_.heat = heat_;
   // The middle stage: trapezoidal rule over gamma dt.
   for (size_t i = 0; i < n; ++i) history_[i] = now_.heat[i] + scale * now_.gain[i];
   guess_middle(dt);
   if (!solve(history_, scale, t_ + kGamma * dt, middle_)) return false;
   // The end: backward differences over both.
-  for (size_t i = 0; i < n; ++i) {
-    history_[i] = now_.heat[i] + kW * dt * (now_.gain[i] + middle_.gain[i]);
-    end_.T[i] = std::fmax(middle_.T[i] + (middle_.T[i] - now_.T[i]) * ((1 - kGamma) / kGamma), 0.5 * middle_.T[i]);
-  }
+  for (size_t i = 0; i < n; ++i) history_[i] = now_.heat[i] + kW * dt * (now_.gain[i] + middle_.gain[i]);
+  guess_end(dt);
   if (!solve(history_, scale, t_ + dt, end_)) return false;
   error = filtered_error(dt, t_ + dt);
   return std::isfinite(error);
@@ -254,8 +282,19 @@ void Slab::accept(double dt) {
   for (size_t j = 0; j < flux_sum_.size(); ++j)
     flux_sum_[j] += dt * (kW * (now_.flux[j] + middle_.flux[j]) + kD * end_.flux[j]);
   sum_time_ += dt;
+  // The heat that flowed, not the heat of the temperatures found: what the iteration left over is made up for by the
+  // next step, so that nothing is ever lost or gained.
+  for (size_t i = 0; i < heat_.size(); ++i)
+    heat_[i] += dt * (kW * (now_.gain[i] + middle_.gain[i]) + kD * end_.gain[i]);
+  if (spec_.top.kind == SlabFace::Kind::temperature) heat_.front() = end_.heat.front();
+  if (spec_.bottom.kind == SlabFace::Kind::temperature) heat_.back() = end_.heat.back();
   if (!linear_)
-    for (size_t i = 0; i < T_.size(); ++i) rate_[i] = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
+    for (size_t i = 0; i < T_.size(); ++i) {
+      const double first = (middle_.T[i] - now_.T[i]) / (kGamma * dt);
+      const double second = (end_.T[i] - middle_.T[i]) / ((1 - kGamma) * dt);
+      bend_[i] = (second - first) / dt;
+      rate_[i] = second + bend_[i] * (1 - kGamma) * dt;
+    }
   last_step_ = dt;
   T_ = end_.T;
   t_ += dt;

@@ -88,7 +88,7 @@ class Slab {
   std::vector<double> mean_fluxes() const;
 
   struct Counters {
-    long long steps = 0, rejected = 0, newton = 0;
+    long long steps = 0, rejected = 0, eliminations = 0;
   };
   const Counters& counters() const { return counters_; }
   // Lengths of accepted steps, recorded while on.
@@ -117,6 +117,7 @@ class Slab {
   bool solve(std::span<const double> history, double scale, double t, Stage& s);
   double filtered_error(double dt, double t_end);
   void guess_middle(double dt);
+  void guess_end(double dt);
   bool attempt(double dt, double& error);  // into end_
   void accept(double dt);                  // end_ becomes the present
 
@@ -124,7 +125,7 @@ class Slab {
   SlabOptions options_;
   bool linear_ = false;  // constant properties and a bottom without radiation: one elimination a stage
   double t_ = 0, next_step_ = 0;
-  std::vector<double> T_, depth_;
+  std::vector<double> T_, heat_, depth_;  // K, conserved heat in J/m2, m
   // Per node: coefficients of the stored heat in T^1..T^5 (J/m2 K^-m) and heat generation (W/m2); per interval:
   // coefficients of the conductance in T^0..T^3. One array a power.
   std::array<std::vector<double>, 5> heat_coefficients_;
@@ -133,10 +134,9 @@ class Slab {
   Stage now_, middle_, end_;
   // Elimination from the bottom up, for one product of stage weight and step.
   double factored_for_ = -1;
-  bool factored_fixed_ = false;
   std::vector<double> pivot_, up_, down_, right_, diagonal_, lower_, upper_, history_;
   double top_diagonal_ = 0;
-  std::vector<double> rate_;  // K/s at the end of the last step, for guesses; used while last_step_ > 0
+  std::vector<double> rate_, bend_;  // K/s, K/s2 at the end of the last step, for guesses; used while last_step_ > 0
   double last_step_ = 0;
   std::vector<double> flux_sum_;
   double sum_time_ = 0;

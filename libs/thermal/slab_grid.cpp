@@ -93,7 +93,8 @@ Slab::Slab(SlabSpec spec, SlabOptions options) : spec_(std::move(spec)), options
     s->gain.resize(n);
     s->flux.resize(n - 1);
   }
-  for (auto* v : {&pivot_, &up_, &down_, &right_, &diagonal_, &lower_, &upper_, &history_, &rate_}) v->resize(n);
+  for (auto* v : {&pivot_, &up_, &down_, &right_, &diagonal_, &lower_, &upper_, &history_, &rate_, &bend_})
+    v->resize(n);
   flux_sum_.resize(n - 1);
   T_.assign(n, 0);
 }

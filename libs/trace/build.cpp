@@ -172,12 +172,40 @@ void Build::commit() {
   core.bvh.build(tile_boxes);
 }
 
+// What sticks out of the cell comes in again on the other side: copies shifted by whole cells, where they reach it.
+void repeat_at_sides(const Scene& scene, const Periodic& cell, std::vector<TracedObject>& objects) {
+  if (!(cell.size.x > 0 && cell.size.y > 0)) throw Error("the cell of a periodic scene needs a positive size");
+  const size_t count = objects.size();
+  std::vector<Box3> mesh_boxes;
+  for (const Mesh& m : scene.meshes) mesh_boxes.push_back(local_bounds(m));
+  for (size_t i = 0; i < count; ++i) {
+    const TracedObject o = objects[i];
+    const Box3 b = transformed(o.mesh != kNone ? mesh_boxes[o.mesh] : primitive_box(scene.primitives[o.primitive]), o.to_world);
+    if (b.empty()) continue;
+    const auto reach = [](double low, double high, double from, double size) {
+      return std::pair{static_cast<long>(std::floor((low - from) / size)), static_cast<long>(std::ceil((high - from) / size)) - 1};
+    };
+    const auto [x0, x1] = reach(b.low.x, b.high.x, cell.low.x, cell.size.x);
+    const auto [y0, y1] = reach(b.low.y, b.high.y, cell.low.y, cell.size.y);
+    if (x1 - x0 > 64 || y1 - y0 > 64) throw Error("an object is more than 64 times as wide as the cell of the periodic scene", "make the cell larger");
+    for (long x = x0; x <= std::max(x0, x1); ++x)
+      for (long y = y0; y <= std::max(y0, y1); ++y) {
+        TracedObject copy = o;
+        copy.to_world = translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) * o.to_world;
+        if (x == x0 && y == y0) objects[i] = copy;
+        else objects.push_back(copy);
+      }
+  }
+}
+
 }  // namespace
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)), objects_(flatten(*scene_)), core_(new TracerCore) {
+Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic)
+    : scene_(std::move(scene)), periodic_(periodic), objects_(flatten(*scene_)), core_(new TracerCore) {
   const FlushDenormals flush;
   const Scene& s = *scene_;
   std::erase_if(objects_, [&](const TracedObject& o) { return o.mesh != kNone && s.meshes[o.mesh].triangle_count() == 0; });
+  if (periodic_) repeat_at_sides(s, *periodic_, objects_);
   for (const TracedObject& o : objects_)
     if (o.mesh != kNone) triangles_ += s.meshes[o.mesh].triangle_count();
   Build build{s, objects_, *core_, {}, {}, {}, {}};

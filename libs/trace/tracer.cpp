@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "trace/embree_internal.h"
+#include "trace/cell_walk.h"
 
 namespace suite {
 
@@ -221,9 +222,8 @@ void TracerCore::continue_long_way(Itinerary& way, const Ray& ray, double reach)
   });
 }
 
-void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
-  thread_local std::vector<double> reach;
-  reach.assign(rays.size(), INFINITY);
+// reach: how far each ray may go on entry, where it was stopped on return.
+void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
   std::fill(hits.begin(), hits.end(), Hit{});
   s.rays += rays.size();
   for (size_t i = 0; i < rays.size() && !core_->unbounded.empty(); ++i) core_->meet_unbounded(*this, rays[i], reach[i], &hits[i]);
@@ -231,10 +231,7 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool cohere
   core_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { core_->trace_packet(*this, tile, packet, rays, hits, reach, coherent, s); });
 }
 
-void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
-                      TraceStatistics& s) const {
-  thread_local std::vector<double> reach;
-  reach.assign(distance.begin(), distance.end());
+void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& s) const {
   std::fill(blocked.begin(), blocked.end(), uint8_t{0});
   s.rays += rays.size();
   for (size_t i = 0; i < rays.size() && !core_->unbounded.empty(); ++i) {
@@ -244,6 +241,49 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distanc
   }
   if (core_->tiles.empty()) return;
   core_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { core_->occlude_packet(tile, packet, rays, blocked, reach, coherent, s); });
+}
+
+void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
+  thread_local std::vector<double> reach;
+  thread_local CellWalk walk;
+  if (!periodic_) {
+    reach.assign(rays.size(), INFINITY);
+    return nearest_in_tiles(rays, reach, hits, coherent, s);
+  }
+  std::fill(hits.begin(), hits.end(), Hit{});
+  walk.start(*periodic_, bounds_, rays, {});
+  thread_local std::vector<Hit> found;
+  while (walk.next(reach)) {
+    found.resize(walk.rays().size());
+    nearest_in_tiles(walk.rays(), reach, found, coherent, s);
+    for (size_t i = 0; i < found.size(); ++i) {
+      if (!found[i].hit()) continue;
+      found[i].distance += walk.travelled(i);
+      hits[walk.owner(i)] = found[i];
+      walk.stop(i);
+    }
+    walk.advance();
+  }
+}
+
+void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
+                      TraceStatistics& s) const {
+  thread_local std::vector<double> reach;
+  thread_local CellWalk walk;
+  if (!periodic_) {
+    reach.assign(distance.begin(), distance.end());
+    return occluded_in_tiles(rays, reach, blocked, coherent, s);
+  }
+  std::fill(blocked.begin(), blocked.end(), uint8_t{0});
+  walk.start(*periodic_, bounds_, rays, distance);
+  thread_local std::vector<uint8_t> found;
+  while (walk.next(reach)) {
+    found.resize(walk.rays().size());
+    occluded_in_tiles(walk.rays(), reach, found, coherent, s);
+    for (size_t i = 0; i < found.size(); ++i)
+      if (found[i]) blocked[walk.owner(i)] = 1, walk.stop(i);
+    walk.advance();
+  }
 }
 
 Vec3 Tracer::leave(const Hit& hit, Dir direction) const {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,12 +46,18 @@ struct TraceStatistics {
   uint64_t cycles = 0;              // time-stamp counter cycles spent inside Embree
 };
 
+// A scene that repeats itself in both horizontal directions: what leaves the cell on one side comes in on the other.
+struct Periodic {
+  Vec2 low, size;                   // the cell, m ENU; size > 0
+};
+
 struct TracerCore;
 
 class Tracer {
  public:
   // Builds acceleration structures in parallel. The scene must have passed check_scene and outlive nothing: it is kept.
-  explicit Tracer(std::shared_ptr<const Scene> scene);
+  // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
+  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -75,6 +82,9 @@ class Tracer {
 
  private:
   std::shared_ptr<const Scene> scene_;
+  void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& statistics) const;
+  void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& statistics) const;
+  std::optional<Periodic> periodic_;
   std::vector<TracedObject> objects_;
   Box3 bounds_;
   size_t triangles_ = 0;

@@ -25,7 +25,7 @@ def faces(n):
         for i in range(n):
             a, b = j * n + i + 1, j * n + (i + 1) % n + 1
             c, d = (j + 1) % n * n + (i + 1) % n + 1, (j + 1) % n * n + i + 1
-            rows.append("f %d/%d/%d %d/%d/%d %d/%d/%d\nf %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, b, b, b, c, c, c, a, a, a, c, c, c, d, d, d))
+            rows.append("f %d/%d/%d %d/%d/%d %d/%d/%d\nf %d/%d/%d %d/%d/%d %d/%d/%d\n" % (a, a, a, c, c, c, b, b, b, a, a, a, d, d, d, c, c, c))
     return rows
 
 

@@ -58,6 +58,49 @@ TEST_F(ScenePrep, SkipsWorkThatIsDone) {
   EXPECT_THAT(run("good.yaml -o a.h5").out, HasSubstr("verdict"));
 }
 
+TEST_F(ScenePrep, AnswersQuestionsAboutAPreparedScene) {
+  write_file(
+      folder_ / "q.yaml",
+      "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}, red: {model: lambert, reflectance: 0.3}}\n"
+      "objects: {tri: {obj: tri.obj, material: grey}, ball: {sphere: {radius: 1}, material: red}}\n"
+      "groups: {pair: [{place: tri}, {place: tri, translate: [2, 0, 0], scale: [-1, 1, 1]}]}\n"
+      "world: [{place: pair, translate: [10, 0, 5], tag: two}, {place: ball, translate: [0, 0, 1]}]\n");
+  ASSERT_EQ(run("q.yaml -o q.h5").code, 0);
+  const CommandResult ray = run("q.h5 --raycast '10.2 0.2 100 0 0 -2'");
+  EXPECT_EQ(ray.code, 0) << ray.err;
+  EXPECT_THAT(ray.out, HasSubstr("object    tri"));
+  EXPECT_THAT(
+      ray.out,
+      HasSubstr("material  grey\ntag       two\ndistance  95.000000 m\nplace     10.200000 0.200000 5.000000 m"));
+  EXPECT_THAT(run("q.h5 --raycast '0 0 100 0 0 -1'").out, HasSubstr("material  red\ndistance  98.000000 m"));
+  EXPECT_THAT(run("q.h5 --raycast '50 50 100 0 0 -1'").out, HasSubstr("nothing"));
+  EXPECT_EQ(run("q.h5 --raycast '1 2 3'").code, 2);
+  EXPECT_EQ(run("q.h5 --raycast '1 2 3 x 1 1'").code, 1);
+  // The export read back has the same triangles, facing the same way, where they were placed.
+  const CommandResult exported = run("q.h5 --export-obj out.obj");
+  EXPECT_EQ(exported.code, 0);
+  EXPECT_THAT(exported.err, HasSubstr("1 exact primitives were left out"));
+  write_file(folder_ / "r.yaml",
+             "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {all: {obj: out.obj}}\nworld: "
+             "[{place: all}]\n");
+  ASSERT_EQ(run("r.yaml -o r.h5").code, 0);
+  const Scene back = read_scene(folder_ / "r.h5");
+  EXPECT_EQ(back.meshes.at(0).triangle_count(), 2u);
+  EXPECT_NEAR(back.bounds.low.x, 10, 1e-6);
+  EXPECT_NEAR(back.bounds.high.x, 12, 1e-6);
+  const Mesh& m = back.meshes[0];
+  for (size_t t = 0; t < 2; ++t) {
+    const auto p = [&](size_t k) {
+      const float* q = &m.positions[3 * size_t{m.indices[3 * t + k]}];
+      return Vec3{q[0], q[1], q[2]};
+    };
+    EXPECT_GT(cross(p(1) - p(0), p(2) - p(0)).z, 0);
+  }
+  EXPECT_EQ(run("q.h5 --quick-look q.png --pixels 40").code, 0);
+  EXPECT_GT(file_size(folder_ / "q.png"), 100u);
+  EXPECT_EQ(run("q.h5 --quick-look q.png --pixels 0").code, 2);
+}
+
 TEST_F(ScenePrep, StrictAndMute) {
   EXPECT_EQ(run("good.yaml -o a.h5 --strict").code, 1);
   EXPECT_FALSE(file_exists(folder_ / "a.h5"));
@@ -116,6 +159,18 @@ TEST_F(ScenePrep, UsageAndPlaces) {
   EXPECT_EQ(run("good.yaml -o .").code, 1);
   EXPECT_THAT(run("--list-issues").out, HasSubstr("SP201"));
   EXPECT_THAT(run("--list-models").out, HasSubstr("lambert"));
+}
+
+TEST_F(ScenePrep, CityAndForestInSmall) {
+  if (run_command("python3 --version").code != 0) GTEST_SKIP() << "needs python3 to generate the scene";
+  const std::string generator = SUITE_SOURCE_DIR "/sample_scenes/city_forest/make_scene.py";
+  ASSERT_EQ(run_command("python3 '" + generator + "' '" + folder_.path() + "/city' 4 20 100").code, 0);
+  const CommandResult r = run("city/scene.yaml -o city.h5 --strict --mute SP103");
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  const Scene s = read_scene(folder_ / "city.h5");
+  EXPECT_EQ(s.groups.at(0).placements.size(), 103u);
+  EXPECT_EQ(s.materials.size(), 43u);
+  EXPECT_EQ(s.meshes.at(1).triangle_count(), 800u);
 }
 
 TEST_F(ScenePrep, CalibrationRange) {

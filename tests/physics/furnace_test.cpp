@@ -60,7 +60,9 @@ TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
       const double expected = 2.0 * in_bands[b], got = run.result.radiance[i * bands.size() + b], se = run.result.standard_error[i * bands.size() + b];
       // 0.1 % of the value; the 5-sigma term covers models whose sampling weights vary.
       EXPECT_NEAR(got, expected, 1e-3 * expected + 5 * se + 1e-9) << "zenith " << zeniths[i] << " band " << b;
-      EXPECT_LE(se, 5e-3 * expected + 1e-4) << "sampling weights vary too much for the furnace to mean anything";
+      // A dispersive interface carries each wavelength on one knot's paths only: most paths then bring nothing.
+      const double share = model->has_delta() && !model->spectrally_uniform_shape() ? 10 : 1;
+      EXPECT_LE(se, share * 5e-3 * expected + 1e-4) << "sampling weights vary too much for the furnace to mean anything";
     }
   }
   EXPECT_EQ(run.report.statistics.failures, 0u);

@@ -43,7 +43,8 @@ double worst_reciprocity_error(const ScatterModel& model, const SpectralState& s
 
 // A state of a few bins with `knots` knots: 0.45, 0.65, 0.85, 1.65 um.
 SpectralState test_state(size_t knots);
-// Directions that the tests look along: normal, 20, 60, 80, 89.9 deg, and the same from below (when `both`).
-std::vector<Dir> test_directions(bool both);
+// Directions that the tests look along: normal, 20, 60, 80, 89.9 deg; the same from below for models that let something
+// pass, one from below for the others.
+std::vector<Dir> test_directions(const ScatterModel& model);
 
 }  // namespace suite::test

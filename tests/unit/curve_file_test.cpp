@@ -58,8 +58,10 @@ TEST_F(CurveFile, FaultsAreLocated) {
 }
 
 TEST_F(CurveFile, EnviSpectralLibrary) {
-  write_file(folder_ / "l.hdr", "ENVI\ndescription = {two\nspectra}\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\nfile type = ENVI Spectral Library\n"
-                                "wavelength units = Nanometers\nspectra names = {dark, bright}\nwavelength = {400, 500,\n 800}\n");
+  write_file(folder_ / "l.hdr",
+             "ENVI\ndescription = {two\nspectra}\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\nfile type = ENVI "
+             "Spectral Library\n"
+             "wavelength units = Nanometers\nspectra names = {dark, bright}\nwavelength = {400, 500,\n 800}\n");
   const float values[6] = {0.1f, 0.2f, 0.3f, 0.5f, 0.6f, 0.75f};
   write_file(folder_ / "l.sli", std::as_bytes(std::span(values)));
   EXPECT_NEAR(read_curve(folder_ / "l.sli", {}).at(0.8), 0.3, 1e-7);
@@ -72,7 +74,8 @@ TEST_F(CurveFile, EnviSpectralLibrary) {
   EXPECT_THAT(message_of([&] { read_curve(folder_ / "l.sli", options); }), HasSubstr("did you mean 'bright'?"));
   EXPECT_EQ(read_curve_family(folder_ / "l.sli", {}).size(), 2u);
   write_file(folder_ / "l.sli", std::as_bytes(std::span(values, 5)));
-  EXPECT_THAT(message_of([&] { read_curve(folder_ / "l.sli", {}); }), HasSubstr("has 20 bytes, its header declares 24"));
+  EXPECT_THAT(message_of([&] { read_curve(folder_ / "l.sli", {}); }),
+              HasSubstr("has 20 bytes, its header declares 24"));
 }
 
 TEST_F(CurveFile, DirsigEmissivityBothLayouts) {

@@ -54,6 +54,23 @@ Scene small_scene() {
   s.tags = {"first"};
   s.class_maps = {{"map", 2, 2, {0, 1, 1, 0}, {0, 1}, Projection::drape, {10, 20, 2, 3, Drape::Extend::repeat}}};
   s.map_bindings = {{0, 0}};
+  PropertyMap cube;
+  cube.name = "cube";
+  cube.kind = MapKind::cube;
+  cube.width = 2, cube.height = 1, cube.channels = 2;
+  cube.values = {0.1f, 0.2f, 0.3f, 0.4f};
+  cube.wavelength_um = {0.5, 0.6};
+  cube.parameter = "reflectance";
+  PropertyMap index = cube;
+  index.name = "index";
+  index.kind = MapKind::curve_index;
+  index.channels = 1;
+  index.values = {1, 0};
+  index.wavelength_um = {};
+  index.family = {Curve::constant(0.5), Curve({0.4, 0.5}, {0.1, 0.2}, Outside::zero)};
+  index.projection = Projection::uv;
+  s.property_maps = {cube, index};
+  s.property_bindings = {{0, 1}};
   s.files = {{"data.bin", {std::byte{1}, std::byte{2}, std::byte{3}}}, {"empty.bin", {}}};
   s.bounds = scene_bounds(s);
   return s;
@@ -95,6 +112,12 @@ TEST_F(SceneHdf, RoundTrip) {
   EXPECT_TRUE(b.materials[1].surface.curves.at("reflectance").is_constant());
   EXPECT_EQ(b.class_maps.at(0).classes, a.class_maps[0].classes);
   EXPECT_EQ(b.class_maps.at(0).drape.gsd_y, 3);
+  ASSERT_EQ(b.property_maps.size(), 2u);
+  EXPECT_EQ(b.property_maps[0].values, a.property_maps[0].values);
+  EXPECT_EQ(b.property_maps[0].wavelength_um, a.property_maps[0].wavelength_um);
+  EXPECT_EQ(b.property_maps[1].family.at(1).outside(), Outside::zero);
+  EXPECT_EQ(b.property_maps[1].projection, Projection::uv);
+  EXPECT_EQ(b.property_bindings.at(0).property_map, 1u);
   EXPECT_EQ(b.files.at(0).bytes, a.files[0].bytes);
   EXPECT_EQ(b.bounds.high, a.bounds.high);
   EXPECT_EQ(read_provenance(path_).input_sha256, "hash");
@@ -127,6 +150,9 @@ TEST_F(SceneHdf, BadIndicesAreRefused) {
               HasSubstr("places something that is not there"));
   EXPECT_THAT(refused([](Scene& s) { s.groups[1].placements[0].kind = TargetKind::group; }), HasSubstr("not below it"));
   EXPECT_THAT(refused([](Scene& s) { s.class_maps[0].classes[0] = 5; }), HasSubstr("class 5 has no material"));
+  EXPECT_THAT(refused([](Scene& s) { s.property_maps[1].values[0] = 2; }), HasSubstr("curve 2 of 2"));
+  EXPECT_THAT(refused([](Scene& s) { s.property_maps[0].wavelength_um = {0.6, 0.5}; }), HasSubstr("do not ascend"));
+  EXPECT_THAT(refused([](Scene& s) { s.property_bindings[0].material = 9; }), HasSubstr("a map binding"));
   EXPECT_THAT(refused([](Scene& s) { s.primitives[0].parameters = {1, 2}; }), HasSubstr("has 2 parameters"));
   EXPECT_THAT(refused([](Scene& s) { s.materials[0].surface.model = "nothing"; }),
               HasSubstr("unknown model 'nothing'"));

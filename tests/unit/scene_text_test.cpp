@@ -112,8 +112,11 @@ TEST_F(SceneText, TablesPlaceManyInTheirOrder) {
 
 TEST_F(SceneText, ScatterKeepsToItsDensityAndSurface) {
   // Two triangles of 50 and 150 m2, one of them steep: points per area agree within 4 sigma.
-  write_file(folder_ / "two.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 100 0 0\nv 110 0 0\nv 100 10 28.2842712\nusemtl grey\nf 1 2 3\nf 4 5 6\n");
-  const std::string text = whole("  - {place: two}\n  - {place: tri, on: two, scatter: {density_per_m2: 20, seed: 7, scale: [0.5, 2]}}\n", "  two: {obj: two.obj}\n");
+  write_file(folder_ / "two.obj",
+             "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 100 0 0\nv 110 0 0\nv 100 10 28.2842712\nusemtl grey\nf 1 2 3\nf 4 5 6\n");
+  const std::string text =
+      whole("  - {place: two}\n  - {place: tri, on: two, scatter: {density_per_m2: 20, seed: 7, scale: [0.5, 2]}}\n",
+            "  two: {obj: two.obj}\n");
   const Scene s = bake(text), t = bake(text);
   ASSERT_TRUE(report_.ok()) << report_.text();
   size_t flat = 0, steep = 0;
@@ -132,6 +135,48 @@ TEST_F(SceneText, ScatterKeepsToItsDensityAndSurface) {
   EXPECT_EQ(flat + steep, 4000u);
   EXPECT_NEAR(static_cast<double>(flat), 1000, 4 * std::sqrt(4000 * 0.25 * 0.75));
   EXPECT_THAT(findings(whole("  - {place: tri, scatter: {density_per_m2: 1}}\n")), HasSubstr("'scatter' needs 'on'"));
+}
+
+TEST_F(SceneText, TerrainInSceneCoordinatesFromPngAndEnvi) {
+  // 3 x 2 samples of 16 bit: PNG by OpenImageIO is tested with the sample scene; ENVI is written here.
+  const float heights[6] = {100, 200, 300, 400, 500, 65535};
+  write_file(folder_ / "h.img", std::as_bytes(std::span(heights)));
+  write_file(folder_ / "h.img.hdr",
+             "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\ninterleave = bsq\nbyte order = 0\n");
+  const Scene s = bake(
+      "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {t: {terrain: h.img, local: {origin: "
+      "[10, 20], gsd: [2, 4]}, height_scale: 0.01, height_offset: -1, no_data: 65535, material: grey}}\nworld: "
+      "[{place: t}]\n");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  // Samples at pixel centres: x 11, 13, 15; y 18, 14; the last one is a gap, which leaves out two of four triangles.
+  EXPECT_EQ(s.meshes.at(0).triangle_count(), 2u);
+  EXPECT_NEAR(s.bounds.low.x, 11, 1e-6);
+  EXPECT_NEAR(s.bounds.high.y, 18, 1e-6);
+  EXPECT_NEAR(s.bounds.low.z, 0, 1e-6);
+}
+
+TEST_F(SceneText, PropertyMapsAreCheckedAndBound) {
+  const float cube[8] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f};
+  write_file(folder_ / "c.img", std::as_bytes(std::span(cube)));
+  write_file(folder_ / "c.img.hdr",
+             "ENVI\nsamples = 2\nlines = 2\nbands = 2\ndata type = 4\ninterleave = bip\nbyte order = 0\nwavelength "
+             "units = um\nwavelength = {0.5, 0.6}\n");
+  const std::string head =
+      "scene: 1\nwindows_um: [[0.45, 0.7]]\nmaterials:\n  grey: {model: lambert, reflectance: 0.2, maps: "
+      "[cube]}\nobjects: {tri: {obj: tri.obj}}\nworld: [{place: tri}]\nmaps:\n";
+  const Scene s = bake(head + "  cube: {type: cube, file: c.img, projection: uv}\n");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  EXPECT_EQ(s.property_maps.at(0).values, std::vector<float>(cube, cube + 8));
+  EXPECT_EQ(s.property_bindings.at(0).material, 0u);
+  EXPECT_NO_THROW(check_scene(s, "t"));
+  EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, projection: uv, scale: 10}\n"),
+              HasSubstr("a value of 2"));
+  EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, projection: uv, parameter: roughness}\n"),
+              HasSubstr("has no curve 'roughness'"));
+  EXPECT_THAT(findings(head + "  cub: {type: cube, file: c.img, projection: uv}\n"),
+              HasSubstr("unknown map 'cube'; did you mean 'cub'?"));
+  EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, drape: {origin: [0, 0]}}\n"),
+              HasSubstr("the key 'gsd' is missing"));
 }
 
 TEST_F(SceneText, AllFaultsInOneRun) {

@@ -53,9 +53,9 @@ class Dielectric final : public ScatterModel {
   void delta_probability(Dir out, int lobe, int knot, std::span<float> probability) const override {
     for (size_t k = 0; k < probability.size(); ++k) {
       const Fresnel f = fresnel(out, k);
-      probability[k] = lobe == kReflect                              ? static_cast<float>(f.reflectance)
+      probability[k] = lobe == kReflect                         ? static_cast<float>(f.reflectance)
                        : together(k, static_cast<size_t>(knot)) ? static_cast<float>(1 - f.reflectance)
-                                                                     : 0.0f;
+                                                                : 0.0f;
     }
   }
   bool has_delta() const override { return true; }
@@ -65,7 +65,9 @@ class Dielectric final : public ScatterModel {
  private:
   // Index beyond the interface over the index on the side of `out`.
   double ratio(Dir out, size_t knot) const { return out.z > 0 ? index_[knot] : 1 / index_[knot]; }
-  Fresnel fresnel(Dir out, size_t knot) const { return fresnel_dielectric(std::min(1.0, std::fabs(out.z)), ratio(out, knot)); }
+  Fresnel fresnel(Dir out, size_t knot) const {
+    return fresnel_dielectric(std::min(1.0, std::fabs(out.z)), ratio(out, knot));
+  }
   double radiance_scale(Dir out, size_t knot) const {
     const double eta = ratio(out, knot);
     return 1 / (eta * eta);

@@ -9,14 +9,19 @@ namespace suite {
 
 DirectionalTable::DirectionalTable(double ax, double ay, size_t rows, size_t width,
                                    const std::function<void(Dir, std::span<float>)>& fill)
-    : ax_(ax), ay_(ay), rows_(rows), columns_(ax == ay ? 1 : 9), width_(width), values_(rows * columns_ * width) {
+    : ax_(ax), ay_(ay), rows_(rows), columns_(ax == ay ? 1 : 17), width_(width), values_(rows * columns_ * width) {
   parallel_for(0, columns_ * rows_, 4, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
-      const double phi = columns_ == 1 ? 0 : kPi / 2 * static_cast<double>(e % columns_) / static_cast<double>(columns_ - 1);
-      const double roughness = std::hypot(ax * std::cos(phi), ay * std::sin(phi)), wanted = static_cast<double>(e / columns_) / static_cast<double>(rows_ - 1);
+      // Columns are even in the azimuth of the ellipse of roughness.
+      const double turn =
+          columns_ == 1 ? 0 : kPi / 2 * static_cast<double>(e % columns_) / static_cast<double>(columns_ - 1);
+      const double phi = columns_ == 1 ? 0 : std::atan2(ax * std::sin(turn), ay * std::cos(turn));
+      const double roughness = std::hypot(ax * std::cos(phi), ay * std::sin(phi));
+      const double wanted = static_cast<double>(e / columns_) / static_cast<double>(rows_ - 1);
       // Find the angle of the row by bisection; the coordinate is monotone.
       double low = 0, high = kPi / 2 - 1e-5;
-      for (int step = 0; step < 60; ++step) (coordinate(0.5 * (low + high), roughness) < wanted ? low : high) = 0.5 * (low + high);
+      for (int step = 0; step < 60; ++step)
+        (coordinate(0.5 * (low + high), roughness) < wanted ? low : high) = 0.5 * (low + high);
       fill(dir_from_angles(wanted == 0 ? 0 : high, phi), {values_.data() + e * width_, width_});
     }
   });
@@ -27,7 +32,8 @@ double DirectionalTable::coordinate(double theta, double roughness) const {
 }
 
 DirectionalTable::Place DirectionalTable::locate(Dir out) const {
-  const double scaled = std::sqrt(ax_ * ax_ * out.x * out.x + ay_ * ay_ * out.y * out.y), v = 1 - std::sqrt(out.z / (out.z + scaled));
+  const double scaled = std::sqrt(ax_ * ax_ * out.x * out.x + ay_ * ay_ * out.y * out.y),
+               v = 1 - std::sqrt(out.z / (out.z + scaled));
   const double row = std::min(1.0, 0.5 * (polar_angle(out) / (kPi / 2) + v)) * static_cast<double>(rows_ - 1);
   const size_t r = std::min(rows_ - 2, static_cast<size_t>(row));
   const double t = row - static_cast<double>(r), t2 = t * t, t3 = t2 * t;
@@ -36,7 +42,9 @@ DirectionalTable::Place DirectionalTable::locate(Dir out) const {
   double w[4] = {0.5 * (-t3 + 2 * t2 - t), 0.5 * (3 * t3 - 5 * t2 + 2), 0.5 * (-3 * t3 + 4 * t2 + t), 0.5 * (t3 - t2)};
   if (after == r + 1) w[2] += 2 * w[3], w[1] -= w[3], w[3] = 0;
   const size_t rows[4] = {before, r, r + 1, after};
-  const double column = columns_ == 1 ? 0 : std::atan2(std::fabs(out.y), std::fabs(out.x)) / (kPi / 2) * static_cast<double>(columns_ - 1);
+  const double column = columns_ == 1 ? 0
+                                      : std::atan2(ay_ * std::fabs(out.y), ax_ * std::fabs(out.x)) / (kPi / 2) *
+                                            static_cast<double>(columns_ - 1);
   const size_t c = columns_ == 1 ? 0 : std::min(columns_ - 2, static_cast<size_t>(column));
   Place p{};
   for (int k = 0; k < 4; ++k)

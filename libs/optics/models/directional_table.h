@@ -1,8 +1,8 @@
 // Numbers tabulated over the outgoing direction when a model is baked: directional totals that have no closed form.
 //
-// Rows run over (theta / (pi/2) + v) / 2 with v = 1 - 1 / sqrt(1 + s), s = sqrt(ax^2 x^2 + ay^2 y^2) / |z|: the polar angle, which
-// Fresnel's equations follow, and the tangent in units of the roughness, which shadowing follows; columns over the azimuth
-// in the first quadrant (one when isotropic). Every entry holds `width` numbers.
+// Rows run over (theta / (pi/2) + v) / 2 with v = 1 - 1 / sqrt(1 + s), s = sqrt(ax^2 x^2 + ay^2 y^2) / |z|: the polar
+// angle, which Fresnel's equations follow, and the tangent in units of the roughness, which shadowing follows; columns
+// over the azimuth in the first quadrant (one when isotropic). Every entry holds `width` numbers.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -16,9 +16,10 @@ namespace suite {
 class DirectionalTable {
  public:
   DirectionalTable() = default;
-  // fill(direction, entry), called from several threads: the width numbers of a direction with z > 0 in the first quadrant. rows >= 2. The last row is
-  // filled 1e-5 rad from the horizon.
-  DirectionalTable(double ax, double ay, size_t rows, size_t width, const std::function<void(Dir, std::span<float>)>& fill);
+  // fill(direction, entry), called from several threads: the width numbers of a direction with z > 0 in the first
+  // quadrant. rows >= 2. The last row is filled 1e-5 rad from the horizon.
+  DirectionalTable(double ax, double ay, size_t rows, size_t width,
+                   const std::function<void(Dir, std::span<float>)>& fill);
   // Cubic (Catmull-Rom) along rows, linear along azimuth; out.z > 0. out_values.size() == width.
   void at(Dir out, std::span<float> out_values) const;
   float at(Dir out, size_t index) const;

@@ -1,6 +1,7 @@
 // Rough metal: a GGX micro-facet surface of perfect conductors' mirrors, isotropic or anisotropic, single scattering.
-// Assumes: the same on both sides, nothing transmitted; light scattered twice between facets is lost (the total says so).
-// Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals).
+// Assumes: the same on both sides, nothing transmitted; light scattered twice between facets is lost (the total says
+// so). Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible
+// normals).
 #include <cmath>
 
 #include "optics/fresnel.h"
@@ -13,7 +14,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kRows = 129, kPoints = 8192, kAngles = 96;
+constexpr size_t kRows = 129, kPoints = 4096, kAngles = 96;
 
 class GgxConductor final : public ScatterModel {
  public:
@@ -23,7 +24,8 @@ class GgxConductor final : public ScatterModel {
         k_(state.sample(spec.curves.at("k"))),
         facets_{spec.numbers.at("roughness"),
                 spec.numbers.at("roughness_y") > 0 ? spec.numbers.at("roughness_y") : spec.numbers.at("roughness")} {
-    if (facets_.ay < 1e-4) throw Error("model 'ggx': roughness_y is below 1e-4", "give 1e-4 to 1, or 0 for the same as roughness");
+    if (facets_.ay < 1e-4)
+      throw Error("model 'ggx': roughness_y is below 1e-4", "give 1e-4 to 1, or 0 for the same as roughness");
     const float n_low = *std::min_element(n_.begin(), n_.end()), n_high = *std::max_element(n_.begin(), n_.end());
     const bool given_f0 = *std::max_element(f0_.begin(), f0_.end()) > 0;
     indexed_ = n_high > 0;
@@ -31,7 +33,9 @@ class GgxConductor final : public ScatterModel {
     if (indexed_ == given_f0) throw Error("model 'ggx' needs f0, or n and k, but not both");
     tabulate();
     const std::vector<float>&first = indexed_ ? n_ : f0_, &second = indexed_ ? k_ : f0_;
-    auto constant = [](const std::vector<float>& v) { return std::all_of(v.begin(), v.end(), [&](float x) { return x == v[0]; }); };
+    auto constant = [](const std::vector<float>& v) {
+      return std::all_of(v.begin(), v.end(), [&](float x) { return x == v[0]; });
+    };
     uniform_ = constant(first) && constant(second);
   }
 
@@ -64,8 +68,8 @@ class GgxConductor final : public ScatterModel {
   double reflectance(double c, size_t bin) const {
     return indexed_ ? fresnel_conductor(c, n_[bin], k_[bin]) : fresnel_schlick(c, f0_[bin]);
   }
-  // W(out) = integral of F(o.h) G2/G1 over visible normals. The distribution of c = o.h, weighed with G2/G1, is put into
-  // hats over c = t^2 (F bends near grazing), then multiplied with F of every wavelength.
+  // W(out) = integral of F(o.h) G2/G1 over visible normals. The distribution of c = o.h, weighed with G2/G1, is put
+  // into hats over c = t^2 (F bends near grazing), then multiplied with F of every wavelength.
   void tabulate() {
     std::vector<float> fresnel(f0_.size() * kAngles);
     for (size_t b = 0; b < f0_.size(); ++b)
@@ -85,7 +89,8 @@ class GgxConductor final : public ScatterModel {
         const double t = std::min(1.0, std::sqrt(c)) * (kAngles - 1);
         const size_t a = std::min(kAngles - 2, static_cast<size_t>(t));
         // Linear in c between the nodes, as F is nearly.
-        const double c0 = static_cast<double>(a * a), c1 = static_cast<double>((a + 1) * (a + 1)), share = (t * t - c0) / (c1 - c0);
+        const double c0 = static_cast<double>(a * a), c1 = static_cast<double>((a + 1) * (a + 1)),
+                     share = (t * t - c0) / (c1 - c0);
         hats[a] += weight * (1 - share);
         hats[a + 1] += weight * share;
       }
@@ -111,8 +116,8 @@ std::vector<ModelSpec> examples() {
   auto metal = [](double rough, double rough_y, std::map<std::string, Curve> curves) {
     return ModelSpec{"ggx", {{"roughness", rough}, {"roughness_y", rough_y}}, std::move(curves), {}, nullptr};
   };
-  return {metal(0.2, 0, {{"n", n}, {"k", k}}), metal(0.5, 0.1, {{"f0", gold}}), metal(1, 0, {{"f0", Curve::constant(1)}}),
-          metal(1e-3, 0, {{"n", n}, {"k", k}})};
+  return {metal(0.2, 0, {{"n", n}, {"k", k}}), metal(0.5, 0.1, {{"f0", gold}}),
+          metal(1, 0, {{"f0", Curve::constant(1)}}), metal(1e-3, 0, {{"n", n}, {"k", k}})};
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // A rough interface between air (front) and a transparent medium (back): GGX micro-facets that reflect and refract.
 // Assumes: isotropic, single scattering (the total tells what is lost); radiance is scaled by the squared index ratio
 // across the interface, so W seen from the dense side may exceed 1.
-// Based on: B. Walter, S. Marschner, H. Li, K. Torrance, "Microfacet models for refraction through rough surfaces", EGSR
-// 2007, equations 16, 17, 20, 21; E. Heitz 2018 (visible normals). Shadowing: height-correlated for reflection, the
-// product of both maskings for transmission (Walter, equation 23).
+// Based on: B. Walter, S. Marschner, H. Li, K. Torrance, "Microfacet models for refraction through rough surfaces",
+// EGSR 2007, equations 16, 17, 20, 21; E. Heitz 2018 (visible normals). Shadowing: height-correlated for reflection,
+// the product of both maskings for transmission (Walter, equation 23).
 #include <array>
 #include <cmath>
 
@@ -35,7 +35,8 @@ class GgxDielectric final : public ScatterModel {
     if (same_side(out, in)) {
       const Dir o = up(out), i = up(in), h = normalized(o + i);
       const double shape = facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z), c = dot(o, h);
-      for (size_t b = 0; b < w.size(); ++b) w[b] = finite_float(fresnel_dielectric(c, ratio(out, index_[b])).reflectance * shape);
+      for (size_t b = 0; b < w.size(); ++b)
+        w[b] = finite_float(fresnel_dielectric(c, ratio(out, index_[b])).reflectance * shape);
       return;
     }
     for (size_t b = 0; b < w.size(); ++b)

@@ -12,7 +12,8 @@ constexpr double kWeight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607
 void panels(double a, double b, int count, bool toward_low, std::vector<std::pair<double, double>>& rule) {
   for (int p = 0; p < count; ++p) {
     const double s = static_cast<double>(p) / count, t = static_cast<double>(p + 1) / count;
-    const double from = toward_low ? a + (b - a) * s * s : b - (b - a) * t * t, to = toward_low ? a + (b - a) * t * t : b - (b - a) * s * s;
+    const double from = toward_low ? a + (b - a) * s * s : b - (b - a) * t * t,
+                 to = toward_low ? a + (b - a) * t * t : b - (b - a) * s * s;
     for (int k = 0; k < 4; ++k) rule.push_back({from + (to - from) * kNode[k], (to - from) * kWeight[k]});
   }
 }

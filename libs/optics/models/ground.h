@@ -7,8 +7,8 @@
 
 namespace suite {
 
-// Beyond 85 deg these models are evaluated at 85 deg: they were made for satellite and field geometries and grow without
-// bound towards the horizon.
+// Beyond 85 deg these models are evaluated at 85 deg: they were made for satellite and field geometries and grow
+// without bound towards the horizon.
 inline constexpr double kGroundMinCosine = 0.08715574274765817;
 inline Dir not_grazing(Dir d) {
   if (d.z >= kGroundMinCosine) return d;

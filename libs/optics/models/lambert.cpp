@@ -35,7 +35,8 @@ class Lambert final : public ScatterModel {
     for (size_t i = 0; i < w.size(); ++i) w[i] = r[i] * scale;
   }
   std::optional<Factored> factored(Dir out, Dir in) const override {
-    return Factored{out.z * in.z == 0 ? 0.0f : static_cast<float>(std::fabs(in.z) / kPi), (out.z * in.z > 0 ? rho_ : tau_).data()};
+    return Factored{out.z * in.z == 0 ? 0.0f : static_cast<float>(std::fabs(in.z) / kPi),
+                    (out.z * in.z > 0 ? rho_ : tau_).data()};
   }
   void total(Dir out, std::span<float> W) const override {
     for (size_t i = 0; i < W.size(); ++i) W[i] = out.z == 0 ? 0.0f : rho_[i] + tau_[i];

@@ -16,7 +16,8 @@ class Leaf final : public ScatterModel {
   // side 0: seen from the front. Light that is seen transmitted there entered at the back.
   Leaf(const ModelSpec& spec, const SpectralState& state)
       : reflect_{state.sample(spec.curves.at("reflectance_front")), state.sample(spec.curves.at("reflectance_back"))},
-        transmit_{state.sample(spec.curves.at("transmittance_back")), state.sample(spec.curves.at("transmittance_front"))},
+        transmit_{state.sample(spec.curves.at("transmittance_back")),
+                  state.sample(spec.curves.at("transmittance_front"))},
         knots_(state.knots) {
     // Energy is a matter of the side where light enters.
     require_sum_below_one({&reflect_[0], &transmit_[1]}, "reflectance_front + transmittance_front", state);
@@ -83,7 +84,10 @@ ModelRow leaf_row() {
             const Curve through({0.4, 0.55, 0.65, 0.8, 2.0}, {0.01, 0.1, 0.02, 0.46, 0.25}, Outside::hold);
             return {{"leaf",
                      {},
-                     {{"reflectance_front", front}, {"reflectance_back", back}, {"transmittance_front", through}, {"transmittance_back", through.scaled(0.9)}},
+                     {{"reflectance_front", front},
+                      {"reflectance_back", back},
+                      {"transmittance_front", through},
+                      {"transmittance_back", through.scaled(0.9)}},
                      {},
                      nullptr}};
           }};

@@ -1,8 +1,8 @@
-// A rough matte surface of V-shaped grooves, each facet Lambert: flatter than Lambert towards the limb, brighter towards
-// the light.
-// Assumes: the qualitative model without interreflection; the same on both sides, nothing transmitted.
-// Based on: M. Oren & S. Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994, equation 30. The total is
-// its integral in closed form (the two ranges theta_i < theta_o and theta_i > theta_o are elementary).
+// A rough matte surface of V-shaped grooves, each facet Lambert: flatter than Lambert towards the limb, brighter
+// towards the light. Assumes: the qualitative model without interreflection; the same on both sides, nothing
+// transmitted. Based on: M. Oren & S. Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994,
+// equation 30. The total is its integral in closed form (the two ranges theta_i < theta_o and theta_i > theta_o are
+// elementary).
 #include <cmath>
 
 #include "math/warps.h"
@@ -23,7 +23,8 @@ class OrenNayar final : public ScatterModel {
     for (int deg = 0; deg <= 900; ++deg) most = std::max(most, albedo(std::cos(deg * 0.1 * kDegree)));
     for (const float r : rho_)
       if (r * most > 1)
-        throw Error(strf("model 'oren_nayar': reflectance %g with sigma %g returns up to %.4f of the light", r, spec.numbers.at("sigma"), r * most),
+        throw Error(strf("model 'oren_nayar': reflectance %g with sigma %g returns up to %.4f of the light", r,
+                         spec.numbers.at("sigma"), r * most),
                     strf("the model is not bounded; reflectance up to %.4f is possible", 1 / most));
   }
 

@@ -1,7 +1,7 @@
-// Natural ground: isotropic, volumetric (RossThick) and geometric (LiSparse, reciprocal) kernels, as in satellite products.
-// Assumes: crowns with h/b = 2 and b/r = 1; negative sums count as 0; beyond 85 deg evaluated at 85 deg (see ground.h).
-// Based on: W. Lucht, C. Schaaf, A. Strahler, "An algorithm for the retrieval of albedo from space using semiempirical BRDF
-// models", IEEE TGRS 38(2), 2000, equations 37-44.
+// Natural ground: isotropic, volumetric (RossThick) and geometric (LiSparse, reciprocal) kernels, as in satellite
+// products. Assumes: crowns with h/b = 2 and b/r = 1; negative sums count as 0; beyond 85 deg evaluated at 85 deg (see
+// ground.h). Based on: W. Lucht, C. Schaaf, A. Strahler, "An algorithm for the retrieval of albedo from space using
+// semiempirical BRDF models", IEEE TGRS 38(2), 2000, equations 37-44.
 #include <cmath>
 
 #include "math/warps.h"
@@ -47,7 +47,8 @@ class RossLi final : public ScatterModel {
       for (size_t i = 0; i < W.size(); ++i) {
         W[i] = static_cast<float>(sum[i]);
         if (W[i] > 1)
-          throw Error(strf("model 'ross_li': seen from %.1f deg the ground returns %.3f of the light at %g um", polar_angle(out) / kDegree, sum[i], state.bins[i].center_um()),
+          throw Error(strf("model 'ross_li': seen from %.1f deg the ground returns %.3f of the light at %g um",
+                           polar_angle(out) / kDegree, sum[i], state.bins[i].center_um()),
                       "more than it receives; lower the kernel weights");
       }
     });
@@ -74,10 +75,14 @@ class RossLi final : public ScatterModel {
   bool single_lobe() const override { return true; }
 
  private:
-  double f(const Kernels& k, size_t i) const { return std::max(0.0, isotropic_[i] + volume_[i] * k.volume + geometry_[i] * k.geometry) / kPi; }
+  double f(const Kernels& k, size_t i) const {
+    return std::max(0.0, isotropic_[i] + volume_[i] * k.volume + geometry_[i] * k.geometry) / kPi;
+  }
   bool same_shares() const {
     for (size_t i = 1; i < isotropic_.size(); ++i)
-      if (volume_[i] * isotropic_[0] != volume_[0] * isotropic_[i] || geometry_[i] * isotropic_[0] != geometry_[0] * isotropic_[i]) return false;
+      if (volume_[i] * isotropic_[0] != volume_[0] * isotropic_[i] ||
+          geometry_[i] * isotropic_[0] != geometry_[0] * isotropic_[i])
+        return false;
     return true;
   }
   std::vector<float> isotropic_, volume_, geometry_;
@@ -101,7 +106,13 @@ ModelRow ross_li_row() {
             const Curve volume({0.4, 0.65, 0.85, 2.0}, {0.02, 0.03, 0.2, 0.1}, Outside::hold);
             const Curve geometry({0.4, 0.65, 0.85, 2.0}, {0.01, 0.012, 0.03, 0.03}, Outside::hold);
             return {{"ross_li", {}, {{"isotropic", level}, {"volume", volume}, {"geometry", geometry}}, {}, nullptr},
-                    {"ross_li", {}, {{"isotropic", Curve::constant(0.2)}, {"volume", Curve::constant(0.1)}, {"geometry", Curve::constant(0.1)}}, {}, nullptr}};
+                    {"ross_li",
+                     {},
+                     {{"isotropic", Curve::constant(0.2)},
+                      {"volume", Curve::constant(0.1)},
+                      {"geometry", Curve::constant(0.1)}},
+                     {},
+                     nullptr}};
           }};
 }
 

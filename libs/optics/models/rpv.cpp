@@ -36,8 +36,8 @@ class Rpv final : public ScatterModel {
       }
       for (size_t i = 0; i < W.size(); ++i)
         if (W[i] > 1)
-          throw Error(strf("model 'rpv': seen from %.1f deg the ground returns %.3f of the light at %g um", polar_angle(out) / kDegree, static_cast<double>(W[i]),
-                           state.bins[i].center_um()),
+          throw Error(strf("model 'rpv': seen from %.1f deg the ground returns %.3f of the light at %g um",
+                           polar_angle(out) / kDegree, static_cast<double>(W[i]), state.bins[i].center_um()),
                       "more than it receives; lower rho0 or raise k");
     });
   }
@@ -74,14 +74,17 @@ class Rpv final : public ScatterModel {
   };
   double f(const Geometry& g, size_t i) const {
     const double t = asymmetry_[i], d = 1 + 2 * t * g.cos_phase + t * t;
-    return rho0_[i] / kPi * std::pow(g.bowl, k_[i] - 1) * (1 - t * t) / (d * std::sqrt(d)) * (1 + (1 - rho_c_[i]) / (1 + g.distance));
+    return rho0_[i] / kPi * std::pow(g.bowl, k_[i] - 1) * (1 - t * t) / (d * std::sqrt(d)) *
+           (1 + (1 - rho_c_[i]) / (1 + g.distance));
   }
   double integral(Dir out, const std::vector<GroundNode>& nodes, size_t i) const {
     double sum = 0;
     for (const GroundNode& n : nodes) sum += n.weight * f(Geometry(out, n.in), i);
     return sum;
   }
-  bool same_shape(size_t a, size_t b) const { return k_[a] == k_[b] && asymmetry_[a] == asymmetry_[b] && rho_c_[a] == rho_c_[b]; }
+  bool same_shape(size_t a, size_t b) const {
+    return k_[a] == k_[b] && asymmetry_[a] == asymmetry_[b] && rho_c_[a] == rho_c_[b];
+  }
 
   std::vector<float> rho0_, k_, asymmetry_, rho_c_;
   bool uniform_ = true;
@@ -105,7 +108,11 @@ ModelRow rpv_row() {
             const Curve bowl({0.4, 0.65, 0.85, 2.0}, {0.7, 0.75, 0.85, 0.8}, Outside::hold);
             const Curve back({0.4, 0.85, 2.0}, {-0.2, -0.1, -0.15}, Outside::hold);
             return {{"rpv", {}, {{"rho0", level}, {"k", bowl}, {"asymmetry", back}, {"rho_c", level}}, {}, nullptr},
-                    {"rpv", {}, {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}}, {}, nullptr}};
+                    {"rpv",
+                     {},
+                     {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
+                     {},
+                     nullptr}};
           }};
 }
 

@@ -24,8 +24,9 @@ class WardAlbedo {
   }
   double integral(double tangent, double cos_phi, double sin_phi) const;
   double ax_, ay_;
-  size_t columns_;             // azimuths in the first quadrant; 1 when isotropic
-  std::vector<double> table_;  // rows over v = 1 - 1 / sqrt(1 + s), s = slope width x tan(theta); columns over azimuth
+  size_t columns_;  // azimuths in the first quadrant; 1 when isotropic
+  std::vector<double>
+      table_;  // rows over v = 1 - 1 / sqrt(1 + s), s = slope width x tan(theta); columns over azimuth of the ellipse
 };
 
 }  // namespace suite

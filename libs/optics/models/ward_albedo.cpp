@@ -8,7 +8,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kRows = 129, kColumns = 17;
+constexpr size_t kRows = 129, kColumns = 33;
 
 // Nodes and weights of Gauss-Legendre quadrature with 16 points on [-1, 1] (Newton's iteration on P_16).
 struct Legendre16 {
@@ -48,7 +48,9 @@ double across(double a, double b, double mean, double sigma, double limit) {
 WardAlbedo::WardAlbedo(double alpha_x, double alpha_y)
     : ax_(alpha_x), ay_(alpha_y), columns_(alpha_x == alpha_y ? 1 : kColumns), table_(kRows * columns_) {
   for (size_t c = 0; c < columns_; ++c) {
-    const double phi = columns_ == 1 ? 0 : kPi / 2 * static_cast<double>(c) / static_cast<double>(columns_ - 1);
+    // Columns are even in the azimuth of the slopes' ellipse, where anisotropic albedos change evenly.
+    const double turn = columns_ == 1 ? 0 : kPi / 2 * static_cast<double>(c) / static_cast<double>(columns_ - 1);
+    const double phi = std::atan2(ax_ * std::sin(turn), ay_ * std::cos(turn));
     const double cp = std::cos(phi), sp = std::sin(phi), width = slope_width(cp, sp);
     for (size_t r = 0; r + 1 < kRows; ++r) {
       const double v = 1 - static_cast<double>(r) / (kRows - 1), s = 1 / (v * v) - 1;
@@ -99,7 +101,7 @@ double WardAlbedo::at(Dir out) const {
   const double wr = row - static_cast<double>(r);
   auto along = [&](size_t c) { return table_[r * columns_ + c] * (1 - wr) + table_[(r + 1) * columns_ + c] * wr; };
   if (columns_ == 1) return along(0);
-  const double column = std::atan2(sp, cp) / (kPi / 2) * static_cast<double>(columns_ - 1);
+  const double column = std::atan2(ay_ * sp, ax_ * cp) / (kPi / 2) * static_cast<double>(columns_ - 1);
   const size_t c = std::min(columns_ - 2, static_cast<size_t>(column));
   const double wc = column - static_cast<double>(c);
   return along(c) * (1 - wc) + along(c + 1) * wc;

@@ -1,0 +1,58 @@
+// Names, numbers and helpers that reader and writer share.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "formats/scene_hdf/h5.h"
+#include "scene/scene.h"
+
+namespace suite {
+
+namespace h5 {
+inline constexpr const char* kFormat = "suite.scene";
+inline constexpr const char* kVersionText = "1";
+inline constexpr int kConstantCurve = 255;  // in place of an Outside rule
+}  // namespace h5
+
+// One column of a table of structs.
+template <class Row, class Get>
+auto pick(const std::vector<Row>& rows, Get get) {
+  std::vector<std::decay_t<decltype(get(rows.front()))>> out;
+  out.reserve(rows.size());
+  for (const Row& r : rows) out.push_back(get(r));
+  return out;
+}
+
+// Hands out consecutive stretches of one dataset; Error when it is shorter or longer than what the table declares.
+template <class T>
+class Stretch {
+ public:
+  Stretch(h5::Reader& r, const std::string& name, const char* units)
+      : r_(r), name_(name), d_(r.open(name, h5::native<T>(), units, 1, -1)) {}
+  // n values, in a vector with `pad` more values of 0.
+  std::vector<T> next(uint64_t n, size_t pad = 0) {
+    if (n > d_.count - at_) r_.fail("dataset '" + name_ + "' is shorter than its table says");
+    std::vector<T> out(n + pad);
+    r_.read(name_, d_, h5::native<T>(), out.data(), at_, n);
+    at_ += n;
+    return out;
+  }
+  void finish() const {
+    if (at_ != d_.count) r_.fail("dataset '" + name_ + "' is longer than its table says");
+  }
+
+ private:
+  h5::Reader& r_;
+  std::string name_;
+  h5::Reader::Opened d_;
+  size_t at_ = 0;
+};
+
+// Curves as four datasets below `table`.
+void write_curves(h5::Writer& w, const std::string& table, const std::vector<Curve>& curves);
+std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
+
+void write_property_maps(h5::Writer& w, const Scene& scene);
+void read_property_maps(h5::Reader& r, Scene& scene);
+
+}  // namespace suite

@@ -1,0 +1,17 @@
+// One line per phase function file: the row it adds to the table in phase_function.cpp.
+#pragma once
+#include "optics/phase_function.h"
+
+namespace suite {
+
+PhaseRow hg_row();
+PhaseRow double_hg_row();
+PhaseRow rayleigh_row();
+PhaseRow tabulated_row();
+
+template <class Phase>
+std::unique_ptr<const PhaseFunction> make_phase(const ModelSpec& spec, const SpectralState& state) {
+  return std::make_unique<Phase>(spec, state);
+}
+
+}  // namespace suite

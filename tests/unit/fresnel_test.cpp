@@ -1,0 +1,74 @@
+#include "optics/fresnel.h"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "math/sampling.h"
+#include "optics/models.h"
+#include "support/conformance.h"
+
+namespace suite {
+namespace {
+
+// The textbook formulas with complex indices in long double.
+long double textbook(long double c, std::complex<long double> n) {
+  const std::complex<long double> ct = std::sqrt(std::complex<long double>(1) - (1 - c * c) / (n * n));
+  const auto rs = (c - n * ct) / (c + n * ct), rp = (n * c - ct) / (n * c + ct);
+  return 0.5L * (std::norm(rs) + std::norm(rp));
+}
+
+TEST(Fresnel, DielectricAgreesWithTheTextbookToTwelveDigits) {
+  for (const double eta : {1.0001, 1.33, 1.5, 2.4, 5.0, 1 / 1.5, 1 / 1.0001})
+    for (const double c : {1.0, 0.9, 0.5, 0.1, 1e-3, 1e-6}) {
+      const Fresnel f = fresnel_dielectric(c, eta);
+      const double wanted = static_cast<double>(textbook(c, eta));
+      EXPECT_NEAR(f.reflectance, wanted, 1e-12 * wanted + 1e-18) << eta << ' ' << c;
+      EXPECT_NEAR(f.reflectance + f.transmittance, 1, 1e-14);
+    }
+}
+TEST(Fresnel, LimitsOfDielectrics) {
+  EXPECT_NEAR(fresnel_dielectric(1, 1.5).reflectance, 0.04, 1e-15);
+  EXPECT_EQ(fresnel_dielectric(0.5, 1).reflectance, 0);
+  EXPECT_EQ(fresnel_dielectric(0.3, 1 / 1.5).transmittance, 0);  // beyond the critical angle
+  EXPECT_EQ(fresnel_dielectric(0, 1.5).reflectance, 1);
+  const double brewster = std::cos(std::atan(1.5));
+  const Fresnel f = fresnel_dielectric(brewster, 1.5);
+  EXPECT_NEAR(f.reflectance, 0.5 * std::pow((1 - 2.25) / (1 + 2.25), 2),
+              1e-14);  // p vanishes, s = ((1 - n^2)/(1 + n^2))^2
+  // Transmittance at grazing keeps its relative precision: 2 c (1 + n^2) / sqrt(n^2 - 1) to first order in c.
+  EXPECT_NEAR(fresnel_dielectric(1e-9, 1.5).transmittance / (2e-9 * (1 + 2.25) / std::sqrt(1.25)), 1, 1e-8);
+}
+TEST(Fresnel, ConductorAgreesWithTheTextbook) {
+  for (const auto& [n, k] : {std::pair{0.2, 3.4}, {1.35, 9.6}, {2.0, 0.0}, {0.05, 0.01}, {3.0, 50.0}})
+    for (const double c : {1.0, 0.7, 0.2, 1e-3, 1e-6}) {
+      const double wanted = static_cast<double>(textbook(c, {n, k}));
+      EXPECT_NEAR(fresnel_conductor(c, n, k), wanted, 1e-11) << n << ' ' << k << ' ' << c;
+    }
+  EXPECT_EQ(fresnel_conductor(0, 1.3, 9), 1);
+}
+
+// Across an interface, f / n^2 of the side it leaves to is reciprocal.
+TEST(Fresnel, RoughInterfaceIsReciprocalInBasicRadiance) {
+  const SpectralState state = test::test_state(1);
+  ModelSpec spec{"ggx_dielectric", {{"roughness", 0.4}}, {{"index", Curve::constant(1.6)}}, {}, nullptr};
+  check_model(spec);
+  const auto model = bake(spec, state);
+  std::vector<float> there(state.size()), back(state.size());
+  Pcg32 random(5);
+  int compared = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Dir a = dir_from_angles(1.5 * random.uniform(), 7 * random.uniform()),
+              b = dir_from_angles(kPi - 1.5 * random.uniform(), 7 * random.uniform());
+    model->eval(a, b, there);  // leaves to the front, n = 1
+    model->eval(b, a, back);   // leaves to the back, n = 1.6
+    const double f = there[0] / std::fabs(b.z), g = back[0] / std::fabs(a.z) / (1.6 * 1.6);
+    if (f + g < 1e-12) continue;
+    ++compared;
+    EXPECT_NEAR(f, g, 1e-5 * (f + g));
+  }
+  EXPECT_GT(compared, 500);
+}
+
+}  // namespace
+}  // namespace suite
