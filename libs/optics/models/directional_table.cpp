@@ -9,7 +9,7 @@ namespace suite {
 
 DirectionalTable::DirectionalTable(double ax, double ay, size_t rows, size_t width,
                                    const std::function<void(Dir, std::span<float>)>& fill)
-    : ax_(ax), ay_(ay), rows_(rows), columns_(ax == ay ? 1 : 17), width_(width), values_(rows * columns_ * width) {
+    : ax_(ax), ay_(ay), rows_(rows), columns_(ax == ay ? 1 : 33), width_(width), values_(rows * columns_ * width) {
   parallel_for(0, columns_ * rows_, 4, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
       // Columns are even in the azimuth of the ellipse of roughness.
