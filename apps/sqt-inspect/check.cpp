@@ -119,7 +119,7 @@ class Check {
       return bundle_.sample(o, u, r.uniform(), channel);
     };
     std::vector<Dir> pilot;
-    for (int n = 0; n < 6000; ++n)
+    for (int n = 0; n < 30000; ++n)
       if (const auto d = draw(pilot_random)) pilot.push_back(*d);
     DirectionHistogram histogram(pilot, 48);
     RunningStats weight;
