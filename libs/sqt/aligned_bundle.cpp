@@ -75,10 +75,13 @@ double leaf_weight(const AlignedLayout& layout, const LobeMap& map, CellId id, c
   const double area = cell_solid_angle(id.order());
   if (!layout.cosine_weighted && !map.reflects()) return area;
   const int count = points_of(id);
+  // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
+  // the angle, and a leaf reaches about 0.8 of its width from its middle.
+  const double reach = 2 * std::sqrt(area);
   double sum = 0;
   for (int k = 0; k < count; ++k) {
     const double cosine = map.cosine(points[k]);
-    if (layout.upper_only && cosine < -0.1) continue;
+    if (layout.upper_only && cosine < -reach) continue;
     sum += map.stretch(points[k]) *
            (layout.cosine_weighted ? std::max(kHorizonFloor, layout.upper_only ? cosine : std::fabs(cosine)) : 1.0);
   }
@@ -444,7 +447,13 @@ std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<Alig
         const LobeMap map(layout.frame, dir_from_angles(theta, phi), s == 1);
         for (size_t i = 0; i < sheets[s].leaves.size(); ++i) {
           const CellId id = sheets[s].leaves[i];
-          const int side = id.order() >= 7 ? 1 : id.order() == 6 ? 2 : 1 << std::max(2, 7 - id.order());
+          // Near the horizon the cosine changes within a leaf, and what lies below does not count: look more closely.
+          const double width = std::sqrt(cell_solid_angle(id.order()));
+          const double above = layout.cosine_weighted ? map.cosine(direction_in(id, {0.5, 0.5})) : 1;
+          if (layout.upper_only && above < -2 * width) continue;
+          const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
+          const int usual = id.order() >= 7 ? 1 : id.order() == 6 ? 2 : 1 << std::max(2, 7 - id.order());
+          const int side = closer * usual;
           const double area =
               cell_solid_angle(id.order()) / (side * side) * (layout.half_stored && mirrored(id) != id ? 2 : 1);
           const float* leaf = &sheets[s].plane[i * layout.width() * 3];
