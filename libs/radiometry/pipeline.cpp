@@ -26,25 +26,26 @@ Accumulators::Accumulators(size_t problems, size_t bands, int scrambles)
       truncated_(problems), largest_(problems), truth_(problems) {}
 
 void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
-  // Samples are dealt to the scrambles in turn, so their counts differ by one at most.
   const uint32_t n = paths_[problem];
   mean = standard_error = 0;
-  if (!n) return;
+  if (!n || failures_[problem] >= n) return;
   double total = 0;
   for (int s = 0; s < scrambles_; ++s) total += sums(problem, s)[band];
-  if (failures_[problem] >= n) return;
   mean = total / (n - failures_[problem]);  // rejected samples are not averaged in
-  double square = 0;
+  double shares = 0, square = 0, plain = 0;
   int used = 0;
+  bool half = false;
   for (int s = 0; s < scrambles_; ++s) {
-    const uint32_t count = n / static_cast<uint32_t>(scrambles_) + (static_cast<uint32_t>(s) < n % static_cast<uint32_t>(scrambles_) ? 1 : 0);
+    const uint32_t count = dealt(n, static_cast<uint32_t>(s));
     if (!count) continue;
-    const double d = sums(problem, s)[band] / count - mean;
-    square += d * d;
+    const double share = static_cast<double>(count) / n, d = sums(problem, s)[band] / count - mean;
+    if (share < 0.5) shares += share * share / (1 - 2 * share), square += share * share / (1 - 2 * share) * d * d;
+    else half = true;
+    plain += d * d;
     ++used;
   }
-  if (used > 1) standard_error = std::sqrt(square / (used - 1) / used);
-  else standard_error = INFINITY;  // one scramble tells nothing about its own error
+  if (used < 2) standard_error = INFINITY;  // one scramble tells nothing about its own error
+  else standard_error = std::sqrt(half ? plain / (used - 1) / used : square / (1 + shares));
 }
 
 std::vector<Block> blocks_of(const Capture& capture) {
@@ -113,27 +114,33 @@ void collect_truth(Wave& wave, size_t p, const Tracer& tracer, ProblemTruth& tru
 
 }  // namespace
 
-void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, uint32_t from,
+void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
                    std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const {
   const FlushDenormals flush;
   const uint64_t start = __rdtsc();
   const size_t width = size_t{block.columns} * block.rows, bands = projection_.bands();
-  const int scrambles = sums.scrambles();
   std::unique_ptr<Workspace> workspace = borrow(width);
   Wave& wave = workspace->wave;
   PathGenerator& generator = workspace->generator;
   auto problem_of = [&](size_t i) {
     return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
   };
-  uint32_t last = from;
-  for (size_t i = 0; i < width; ++i) last = std::max(last, to[problem_of(i)]);
+  const bool stop_on_change = options_.stop == StopRule::change;
+  auto sum_of = [&](size_t problem) {
+    double sum = 0;
+    for (int s = 0; s < sums.scrambles(); ++s) sum += sums.sums(problem, s)[reference_band_];
+    return sum;
+  };
+  std::vector<uint32_t> next(width), end(width);
+  for (size_t i = 0; i < width; ++i) next[i] = sums.paths(problem_of(i)), end[i] = to[problem_of(i)];
+  const uint32_t first = *std::min_element(next.begin(), next.end()), last = *std::max_element(end.begin(), end.end());
 
-  for (uint32_t sample = from; sample < last; ++sample) {
-    const uint32_t scramble = sample % static_cast<uint32_t>(scrambles), index = sample / static_cast<uint32_t>(scrambles);
+  for (uint32_t sample = first; sample < last; ++sample) {
+    const auto [scramble, index] = deal(sample);
     wave.active.clear();
     for (size_t i = 0; i < width; ++i) {
+      if (sample < next[i] || sample >= end[i]) continue;
       const size_t problem = problem_of(i);
-      if (sample >= to[problem]) continue;
       const SampleStream stream(options_.seed, capture_id, problem, scramble);
       const std::array<double, 4> u = stream.draw(index, 0);
       generator.start(wave, i, sensor.ray(capture, problem, u), stream, index);
@@ -141,8 +148,8 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
     generator.complete(wave, statistics);
 
     for (size_t i = 0; i < width; ++i) {
+      if (sample < next[i] || sample >= end[i]) continue;
       const size_t problem = problem_of(i);
-      if (sample >= to[problem]) continue;
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
       // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
@@ -157,8 +164,12 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
         continue;
       }
       double* target = sums.sums(problem, static_cast<int>(scramble));
-      const double before = target[reference_band_];
+      const double before = target[reference_band_], sum_before = stop_on_change ? sum_of(problem) : 0;
       projection_.add(radiance, {target, bands});
+      if (stop_on_change && sample >= options_.change_after) {
+        const double mean = sum_of(problem) / (sample + 1.0);
+        if (std::fabs(mean - sum_before / sample) <= options_.change * mean) end[i] = 0;
+      }
       sums.largest(problem) = std::max(sums.largest(problem), static_cast<float>(target[reference_band_] - before));
       sums.truncated(problem) += static_cast<float>(wave.path(i).truncated);
       collect_truth(wave, i, surface_.tracer(), sums.truth(problem));

@@ -57,6 +57,7 @@ struct CaptureResult {
   std::vector<uint8_t> quality;             // [problem], bits of QualityFlag
   std::vector<std::string> truth_names;     // "material", "range_m", ...
   std::vector<double> truth;                // [problem][truth_names]; NaN = no data
+  std::vector<double> error_correlation;    // [band][band]: bands share paths, so their errors do too
 };
 enum QualityFlag : uint8_t {
   quality_heavy_tail = 1,   // a few samples dominate: the interval may not cover
@@ -74,7 +75,7 @@ class Sensor {
   // The ray of a sample: u are uniform numbers (pixel x, pixel y, time, pupil), stratified over the samples of the
   // problem. Called from many threads.
   virtual SensorRay ray(const Capture& capture, size_t problem, std::span<const double, 4> u) const = 0;
-  // Called once per capture, from one thread, in the order of tasks and captures.
+  // Called once per capture, from one thread, in the order in which captures run: the one that changes states least.
   virtual void accept(CaptureResult&& result) = 0;
 };
 
