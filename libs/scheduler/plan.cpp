@@ -9,7 +9,7 @@ std::vector<uint32_t> plan_paths(const Capture& capture, const Accumulators& pil
   const Convergence& c = capture.convergence;
   const long columns = capture.columns, rows = capture.rows;
   std::vector<uint32_t> plan(capture.problems(), c.max_paths);
-  if (columns * rows < 2) return plan;
+  if (columns * rows < 2 || !capture.neighbours) return plan;
   // Variance of one path and mean of every problem's pilot.
   std::vector<double> variance(plan.size()), mean(plan.size());
   for (size_t i = 0; i < plan.size(); ++i) {

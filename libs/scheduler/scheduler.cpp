@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include "base/parallel.h"
@@ -72,37 +71,29 @@ void run_stage(const Pipeline& pipeline, const Sensor& sensor, const Capture& ca
   });
 }
 
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t reference_band, const Scene& scene) {
+CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth) {
   CaptureResult r;
   r.columns = capture.columns;
   r.rows = capture.rows;
   r.bands = bands;
-  r.truth_names = {"material", "instance", "range [m]", "east [m]", "north [m]", "up [m]", "paths", "nodes hit"};
-  const size_t n = capture.problems();
-  r.radiance.resize(n * bands);
-  r.standard_error.resize(n * bands);
+  r.channels = channels;
+  r.time_bins = capture.time_bins;
+  r.truth_names = truth.columns();
+  const size_t n = capture.problems(), values = r.values_per_problem();
+  r.radiance.resize(n * values);
+  r.standard_error.resize(n * values);
   r.paths.resize(n);
   r.quality.resize(n);
-  r.truth.assign(n * r.truth_names.size(), std::numeric_limits<double>::quiet_NaN());
+  r.truth.resize(n * r.truth_names.size());
   for (size_t i = 0; i < n; ++i) {
-    for (size_t b = 0; b < bands; ++b) sums.estimate(i, b, r.radiance[i * bands + b], r.standard_error[i * bands + b]);
+    for (size_t b = 0; b < values; ++b) sums.estimate(i, b, r.radiance[i * values + b], r.standard_error[i * values + b]);
     r.paths[i] = sums.paths(i);
-    const double mean = r.radiance[i * bands + reference_band];
+    const double mean = r.radiance[i * values + reference_band];
     // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
     if (sums.paths(i) >= 16 && sums.largest(i) > 0.1 * mean * sums.paths(i)) r.quality[i] |= quality_heavy_tail;
     if (sums.failures(i)) r.quality[i] |= quality_failures;
     if (sums.truncated(i) > 0.01f * static_cast<float>(sums.paths(i))) r.quality[i] |= quality_truncated;
-    const ProblemTruth& t = sums.truth(i);
-    double* truth = &r.truth[i * r.truth_names.size()];
-    truth[6] = sums.paths(i);
-    truth[7] = t.hits;
-    if (!t.hits) continue;
-    auto most = [](const auto& votes) { return *std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) { return a.count < b.count; }); };
-    const auto material = most(t.material), instance = most(t.instance);
-    if (material.id < scene.materials.size()) truth[0] = material.id;
-    if (instance.id != kNone) truth[1] = instance.id;
-    truth[2] = t.range / t.hits;
-    truth[3] = t.position.x / t.hits, truth[4] = t.position.y / t.hits, truth[5] = t.position.z / t.hits;
+    truth.finish(sums.truth(i), sums.paths(i), r.truth.data() + i * r.truth_names.size());
   }
   return r;
 }
@@ -153,10 +144,13 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
           kit = std::make_unique<StateKit>(*scene, tracer, sources, sensor->states()[capture.state], sensor->bands(capture.state));
           ++report.optics_bakes;
         }
-        const Pipeline pipeline(kit->surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, options.pipeline);
+        const TruthPlan truth(sensor->truth(), {tracer, kit->optics.state(), capture.state, sensor->bands(capture.state), kit->projection, kit->environment});
+        const Pipeline pipeline(kit->surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, truth, options.pipeline);
         const size_t bands = kit->projection.bands();
         const Convergence goal = goal_of(capture, options);
-        Accumulators sums(capture.problems(), bands, Accumulators::scrambles_for(goal.max_paths));
+        const size_t channels = sensor->channels().size();
+        Accumulators sums(capture.problems(), bands * channels * capture.time_bins, Accumulators::scrambles_for(goal.max_paths), truth.slots());
+        sensor->begin(capture);
         std::vector<uint32_t> plan(capture.problems(), goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
         run_stage(pipeline, *sensor, capture, capture_id, 0, plan, sums, report.statistics, progress.get());
         if (goal.relative_error > 0) {
@@ -164,12 +158,12 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
           plan = plan_paths(capture, sums, kit->reference_band);
           run_stage(pipeline, *sensor, capture, capture_id, goal.min_paths, plan, sums, report.statistics, progress.get());
         }
-        CaptureResult result = to_result(capture, sums, bands, kit->reference_band, *scene);
+        CaptureResult result = to_result(capture, sums, bands, channels, kit->reference_band, truth);
         result.task = t;
         result.capture = c;
         for (size_t i = 0; i < capture.problems(); ++i)
-          if (const double mean = result.radiance[i * bands + kit->reference_band]; mean > 0)
-            relative_errors.push_back(result.standard_error[i * bands + kit->reference_band] / mean);
+          if (const double mean = result.radiance[i * result.values_per_problem() + kit->reference_band]; mean > 0)
+            relative_errors.push_back(result.standard_error[i * result.values_per_problem() + kit->reference_band] / mean);
         report.problems += capture.problems();
         ++report.captures;
         sensor->accept(std::move(result));
