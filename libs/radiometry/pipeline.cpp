@@ -21,9 +21,9 @@ void RunStatistics::merge(const RunStatistics& o) {
   cycles += o.cycles;
 }
 
-Accumulators::Accumulators(size_t problems, size_t bands, int scrambles)
+Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
     : bands_(bands), scrambles_(scrambles), sums_(problems * bands * static_cast<size_t>(scrambles)), paths_(problems), failures_(problems),
-      truncated_(problems), largest_(problems), truth_(problems) {}
+      truncated_(problems), largest_(problems), truth_slots_(truth_slots), truth_(problems * truth_slots) {}
 
 void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
   const uint32_t n = paths_[problem];
@@ -58,14 +58,18 @@ std::vector<Block> blocks_of(const Capture& capture) {
 }
 
 Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-                   const BandProjection& projection, size_t reference_band, const PipelineOptions& options)
-    : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), options_(options) {
+                   const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
+                   const PipelineOptions& options)
+    : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
 struct Pipeline::Workspace {
   Wave wave;
   PathGenerator generator;
+  std::vector<float> weights;     // [path][bin], of rays that weigh wavelengths
+  std::vector<uint8_t> weighted;  // [path]
+  std::vector<float> single;      // [bin]
 };
 
 Pipeline::~Pipeline() = default;
@@ -82,34 +86,35 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
       }
   }
   return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
-                                                  PathGenerator(surface_, optics_, environment_, options_)});
+                                                  PathGenerator(surface_, optics_, environment_, options_),
+                                                  std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
+                                                  std::vector<float>(state_.size())});
 }
 
 namespace {
 
-void vote(std::array<ProblemTruth::Vote, 4>& votes, uint32_t id) {
-  // Misra & Gries 1982: any id seen in more than a fifth of the samples survives, which includes every majority.
-  for (auto& v : votes)
-    if (v.count && v.id == id) {
-      ++v.count;
-      return;
-    }
-  for (auto& v : votes)
-    if (!v.count) {
-      v = {id, 1};
-      return;
-    }
-  for (auto& v : votes) --v.count;
+// The second block of numbers that a sensor may ask for; nodes take the blocks from 1 on, their lobes those from 128 on.
+constexpr uint32_t kSecondSensorBlock = 250;
+
+// Asks the sensor for the ray of a sample. weights: where it may leave spectral weights.
+SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream, uint32_t index, std::span<float> weights) {
+  const size_t numbers = static_cast<size_t>(sensor.numbers());
+  std::array<double, 8> u;
+  const std::array<double, 4> first = stream.draw(index, 0);
+  std::copy(first.begin(), first.end(), u.begin());
+  if (numbers > 4) {
+    const std::array<double, 4> second = stream.draw(index, kSecondSensorBlock);
+    std::copy(second.begin(), second.end(), u.begin() + 4);
+  }
+  return sensor.ray({capture, problem, {u.data(), numbers}, weights});
 }
 
-void collect_truth(Wave& wave, size_t p, const Tracer& tracer, ProblemTruth& truth) {
-  if (wave.path(p).size == 0) return;
-  const Node& first = wave.node(p, 0);
-  ++truth.hits;
-  truth.range += first.optical_length;
-  truth.position += first.at.position;
-  vote(truth.material, first.at.material);
-  vote(truth.instance, tracer.objects()[first.hit.object].instance);
+// The time bin of a capture that a moment falls into.
+size_t time_bin(const Capture& capture, double time) {
+  const double span = capture.window.end - capture.window.begin;
+  if (capture.time_bins < 2 || !(span > 0)) return 0;
+  const double at = std::floor((time - capture.window.begin) / span * capture.time_bins);
+  return static_cast<size_t>(std::clamp(at, 0.0, capture.time_bins - 1.0));
 }
 
 }  // namespace
@@ -122,6 +127,7 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
   std::unique_ptr<Workspace> workspace = borrow(width);
   Wave& wave = workspace->wave;
   PathGenerator& generator = workspace->generator;
+  const bool single = sensor.channels().size() > 1;
   auto problem_of = [&](size_t i) {
     return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
   };
@@ -142,8 +148,9 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       if (sample < next[i] || sample >= end[i]) continue;
       const size_t problem = problem_of(i);
       const SampleStream stream(options_.seed, capture_id, problem, scramble);
-      const std::array<double, 4> u = stream.draw(index, 0);
-      generator.start(wave, i, sensor.ray(capture, problem, u), stream, index);
+      const SensorRay ray = ask_ray(sensor, capture, problem, stream, index, {&workspace->weights[i * state_.size()], state_.size()});
+      workspace->weighted[i] = ray.spectral;
+      generator.start(wave, i, ray, stream, index);
     }
     generator.complete(wave, statistics);
 
@@ -152,6 +159,15 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       const size_t problem = problem_of(i);
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
+      if (single) process_single(wave, i, radiance, workspace->single);
+      if (workspace->weighted[i] || capture.time_bins > 1) {
+        const float* weights = workspace->weighted[i] ? &workspace->weights[i * state_.size()] : nullptr;
+        for (size_t k = 0; k < radiance.size(); ++k) {
+          const float factor = (weights ? weights[k] : 1.0f) * static_cast<float>(capture.time_bins);
+          radiance[k] *= factor;
+          if (single) workspace->single[k] *= factor;
+        }
+      }
       // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
       unsigned bad = 0;
       for (const float L : radiance) bad |= static_cast<unsigned>(!(L >= 0 && L < 3e38f));
@@ -163,16 +179,18 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
         ++sums.failures(problem);
         continue;
       }
-      double* target = sums.sums(problem, static_cast<int>(scramble));
+      double* const target = sums.sums(problem, static_cast<int>(scramble));
       const double before = target[reference_band_], sum_before = stop_on_change ? sum_of(problem) : 0;
-      projection_.add(radiance, {target, bands});
+      double* const cell = target + time_bin(capture, wave.path(i).ray.time) * bands;
+      projection_.add(radiance, {cell, bands});
+      if (single) projection_.add(workspace->single, {cell + capture.time_bins * bands, bands});
       if (stop_on_change && sample >= options_.change_after) {
         const double mean = sum_of(problem) / (sample + 1.0);
         if (std::fabs(mean - sum_before / sample) <= options_.change * mean) end[i] = 0;
       }
       sums.largest(problem) = std::max(sums.largest(problem), static_cast<float>(target[reference_band_] - before));
       sums.truncated(problem) += static_cast<float>(wave.path(i).truncated);
-      collect_truth(wave, i, surface_.tracer(), sums.truth(problem));
+      truth_.add(wave, i, sums.truth(problem));
     }
   }
   statistics.cycles += __rdtsc() - start;

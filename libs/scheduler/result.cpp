@@ -6,47 +6,36 @@
 
 namespace suite {
 
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t reference_band, const Scene& scene) {
-  const size_t bands = sums.bands();
+CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth) {
   CaptureResult r;
   r.columns = capture.columns;
   r.rows = capture.rows;
   r.bands = bands;
-  r.truth_names = {"material", "instance", "range [m]", "east [m]", "north [m]", "up [m]", "paths", "nodes hit"};
-  const size_t n = capture.problems();
-  r.radiance.resize(n * bands);
-  r.standard_error.resize(n * bands);
+  r.channels = channels;
+  r.time_bins = capture.time_bins;
+  r.truth_names = truth.columns();
+  const size_t n = capture.problems(), values = r.values_per_problem();
+  r.radiance.resize(n * values);
+  r.standard_error.resize(n * values);
   r.paths.resize(n);
   r.quality.resize(n);
-  r.truth.assign(n * r.truth_names.size(), std::numeric_limits<double>::quiet_NaN());
+  r.truth.resize(n * r.truth_names.size());
   for (size_t i = 0; i < n; ++i) {
-    for (size_t b = 0; b < bands; ++b) sums.estimate(i, b, r.radiance[i * bands + b], r.standard_error[i * bands + b]);
+    for (size_t b = 0; b < values; ++b) sums.estimate(i, b, r.radiance[i * values + b], r.standard_error[i * values + b]);
     r.paths[i] = sums.paths(i);
-    const double mean = r.radiance[i * bands + reference_band];
+    const double mean = r.radiance[i * values + reference_band];
     // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
     if (sums.paths(i) >= 16 && sums.largest(i) > 0.1 * mean * sums.paths(i)) r.quality[i] |= quality_heavy_tail;
     if (sums.failures(i)) r.quality[i] |= quality_failures;
     if (sums.truncated(i) > 0.01f * static_cast<float>(sums.paths(i))) r.quality[i] |= quality_truncated;
-    const ProblemTruth& t = sums.truth(i);
-    double* truth = &r.truth[i * r.truth_names.size()];
-    truth[6] = sums.paths(i);
-    truth[7] = t.hits;
-    if (!t.hits) continue;
-    auto most = [](const auto& votes) {
-      return *std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) { return a.count < b.count; });
-    };
-    const auto material = most(t.material), instance = most(t.instance);
-    if (material.id < scene.materials.size()) truth[0] = material.id;
-    if (instance.id != kNone) truth[1] = instance.id;
-    truth[2] = t.range / t.hits;
-    truth[3] = t.position.x / t.hits, truth[4] = t.position.y / t.hits, truth[5] = t.position.z / t.hits;
+    truth.finish(sums.truth(i), sums.paths(i), r.truth.data() + i * r.truth_names.size());
   }
-  r.error_correlation = error_correlation(sums);
+  r.error_correlation = error_correlation(sums, bands);
   return r;
 }
 
-std::vector<double> error_correlation(const Accumulators& sums) {
-  const size_t bands = sums.bands(), n = sums.problems(), step = std::max<size_t>(1, n / 4096);
+std::vector<double> error_correlation(const Accumulators& sums, size_t bands) {
+  const size_t n = sums.problems(), step = std::max<size_t>(1, n / 4096);
   std::vector<double> products(bands * bands, 0.0), means(bands), deviation(bands);
   for (size_t i = 0; i < n; i += step) {
     double error = 0;

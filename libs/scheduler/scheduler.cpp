@@ -119,6 +119,7 @@ class Job {
     tracer_ = std::make_unique<Tracer>(scene_, options_.periodic);
     report_.tracer_builds = 1;
     report_.build_seconds = seconds_since(start_);
+    if (options_.store) options_.store->begin(shapes(items));
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
@@ -141,6 +142,26 @@ class Job {
     return b;
   }
 
+  // What the store has to hold of each capture, by number.
+  std::vector<CaptureShape> shapes(const std::vector<Item>& items) const {
+    std::vector<CaptureShape> all(items.size());
+    std::map<std::pair<size_t, size_t>, size_t> slots;  // of truth, by sensor and state
+    for (const Item& item : items) {
+      const Sensor& sensor = *sensors_[item.sensor];
+      const Capture& capture = capture_of(item);
+      const auto [known, fresh] = slots.try_emplace({item.sensor, capture.state}, 0);
+      if (fresh) {
+        const SpectralState& state = sensor.states()[capture.state];
+        const BandProjection projection(state, sensor.bands(capture.state));
+        const Environment none;
+        known->second = TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none}).slots();
+      }
+      all[item.id] = {capture.columns, capture.rows, sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+                      Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
+    }
+    return all;
+  }
+
   StateKit& kit_of(const Item& item, CaptureLog& log) {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
@@ -159,8 +180,8 @@ class Job {
     const Capture& capture = capture_of(item);
     CaptureLog log;
     StateKit& kit = kit_of(item, log);
-    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
-                            kit.reference_band, options_.pipeline);
+    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state), kit.projection, kit.environment});
+    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection, kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
                      judged_bands(kit), options_.store, progress_.get(), {}};
@@ -170,10 +191,12 @@ class Job {
       };
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
-    Accumulators sums(capture.problems(), kit.projection.bands(), Accumulators::scrambles_for(work.goal.max_paths));
+    const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
+    Accumulators sums(capture.problems(), bands * channels * capture.time_bins, Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
+    sensors_[item.sensor]->begin(capture);
     run_capture(work, sums, log.statistics);
 
-    CaptureResult result = to_result(capture, sums, kit.reference_band, *scene_);
+    CaptureResult result = to_result(capture, sums, bands, channels, kit.reference_band, truth);
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
@@ -213,15 +236,16 @@ class Job {
 
   void judge(const Item& item, const CaptureWork& work, const StateKit& kit, const CaptureResult& r, CaptureLog& log) {
     const Convergence& goal = work.goal;
+    const size_t values = r.values_per_problem();
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
       flagged_ += r.quality[i] & quality_heavy_tail ? 1 : 0;
-      if (const double mean = r.radiance[i * r.bands + kit.reference_band]; mean > 0)
-        errors.add(r.standard_error[i * r.bands + kit.reference_band] / mean);
+      if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
+        errors.add(r.standard_error[i * values + kit.reference_band] / mean);
       double worst = 0;
       for (const size_t b : work.judged) {
-        const double scale = std::max(r.radiance[i * r.bands + b], goal.absolute_floor);
-        if (scale > 0) worst = std::max(worst, r.standard_error[i * r.bands + b] / scale);
+        const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
+        if (scale > 0) worst = std::max(worst, r.standard_error[i * values + b] / scale);
       }
       if (worst > report_.worst.relative_error)
         report_.worst = {sensors_[item.sensor]->name(), work.capture.name,
@@ -304,7 +328,7 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
         const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
         most = std::max(most,
-                        static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + sizeof(ProblemTruth) + 100));
+                        static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }
   return most;
 }
