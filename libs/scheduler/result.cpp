@@ -6,7 +6,8 @@
 
 namespace suite {
 
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth) {
+CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels,
+                        size_t reference_band, const TruthPlan& truth) {
   CaptureResult r;
   r.columns = capture.columns;
   r.rows = capture.rows;
@@ -21,7 +22,8 @@ CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t
   r.quality.resize(n);
   r.truth.resize(n * r.truth_names.size());
   for (size_t i = 0; i < n; ++i) {
-    for (size_t b = 0; b < values; ++b) sums.estimate(i, b, r.radiance[i * values + b], r.standard_error[i * values + b]);
+    for (size_t b = 0; b < values; ++b)
+      sums.estimate(i, b, r.radiance[i * values + b], r.standard_error[i * values + b]);
     r.paths[i] = sums.paths(i);
     const double mean = r.radiance[i * values + reference_band];
     // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.

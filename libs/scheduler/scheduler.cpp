@@ -154,9 +154,12 @@ class Job {
         const SpectralState& state = sensor.states()[capture.state];
         const BandProjection projection(state, sensor.bands(capture.state));
         const Environment none;
-        known->second = TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none}).slots();
+        known->second =
+            TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none})
+                .slots();
       }
-      all[item.id] = {capture.columns, capture.rows, sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+      all[item.id] = {capture.columns, capture.rows,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
                       Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
     }
     return all;
@@ -180,8 +183,10 @@ class Job {
     const Capture& capture = capture_of(item);
     CaptureLog log;
     StateKit& kit = kit_of(item, log);
-    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state), kit.projection, kit.environment});
-    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection, kit.reference_band, truth, options_.pipeline);
+    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
+                                           kit.projection, kit.environment});
+    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
+                            kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
                      judged_bands(kit), options_.store, progress_.get(), {}};
@@ -192,7 +197,8 @@ class Job {
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    Accumulators sums(capture.problems(), bands * channels * capture.time_bins, Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
+    Accumulators sums(capture.problems(), bands * channels * capture.time_bins,
+                      Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
     sensors_[item.sensor]->begin(capture);
     run_capture(work, sums, log.statistics);
 
@@ -327,8 +333,7 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
       for (const Capture& c : t.captures) {
         const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
-        most = std::max(most,
-                        static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
+        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }
   return most;
 }
