@@ -197,12 +197,10 @@ class Job {
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    Accumulators sums(capture.problems(), bands * channels * capture.time_bins,
-                      Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, sums, log.statistics);
-
-    CaptureResult result = to_result(capture, sums, bands, channels, kit.reference_band, truth);
+    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
