@@ -222,12 +222,12 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
         }
       }
       // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-      unsigned bad = 0;
-      for (const float L : radiance) bad |= static_cast<unsigned>(!(L >= 0 && L < 3e38f));
+      unsigned good = 1;
+      for (const float L : radiance) good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
       ++statistics.paths;
       statistics.truncated += wave.path(i).truncated;
       sums.set_paths(slot, sample + 1);
-      if (bad) {
+      if (!good) {
         ++statistics.failures;
         ++sums.failures(slot);
         continue;
