@@ -45,12 +45,11 @@ std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
 struct StateKit {
   Optics optics;
   Environment environment;
-  Surface surface;
   BandProjection projection;
   size_t reference_band = 0;
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state, std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)), environment(bake_sources(sources, state)), surface(tracer, optics), projection(state, bands) {
+      : optics(scene, state, used_materials(scene, tracer)), environment(bake_sources(sources, state)), projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) < std::fabs(bands[reference_band].center_um - state.reference_um)) reference_band = b;
   }
@@ -134,8 +133,7 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   const Clock::time_point start = Clock::now();
   JobReport report;
-  const Tracer tracer(scene, options.periodic);
-  report.tracer_builds = 1;
+  TracerCache tracers(scene, options.periodic);
   report.build_seconds = seconds_since(start);
   std::vector<double> relative_errors;
   bool adaptive = false;
@@ -148,12 +146,16 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
       const Task& task = sensor->tasks()[t];
       for (size_t c = 0; c < task.captures.size(); ++c, ++capture_id) {
         const Capture& capture = task.captures[c];
+        const Clock::time_point before = Clock::now();
+        const std::shared_ptr<const Tracer> tracer = tracers.get({capture.window.begin, capture.window.end});
+        report.build_seconds += seconds_since(before);
         std::unique_ptr<StateKit>& kit = kits[capture.state];
         if (!kit) {
-          kit = std::make_unique<StateKit>(*scene, tracer, sources, sensor->states()[capture.state], sensor->bands(capture.state));
+          kit = std::make_unique<StateKit>(*scene, *tracer, sources, sensor->states()[capture.state], sensor->bands(capture.state));
           ++report.optics_bakes;
         }
-        const Pipeline pipeline(kit->surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, options.pipeline);
+        const Surface surface(*tracer, kit->optics);
+        const Pipeline pipeline(surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, options.pipeline);
         const size_t bands = kit->projection.bands();
         const Convergence goal = goal_of(capture, options);
         Accumulators sums(capture.problems(), bands, Accumulators::scrambles_for(goal.max_paths));
@@ -177,6 +179,7 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
     }
   }
   if (progress) progress->finish();
+  report.tracer_builds = tracers.builds();
   report.seconds = seconds_since(start);
   report.median_relative_error = median_of(relative_errors);
   report.share_in_embree = report.statistics.cycles ? static_cast<double>(report.statistics.trace.cycles) / static_cast<double>(report.statistics.cycles) : 0;
