@@ -162,7 +162,7 @@ struct MovingPart {
     double radius = 0;               // of what moves with the node, m
     double bound = 0;                // m, between keys; 0 for an instant, which is exact
     Affine3 at(double time) const;
-    bool at_rest() const { return poses.size() == 1; }
+    bool at_rest() const { return poses.size() <= 1; }   // none: nothing hangs on the node itself
   };
   const World& world;
   TimeSpan window;

@@ -37,7 +37,8 @@ float MovingPart::fraction(double time) const {
 MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan window, uint32_t node, double radius) {
   Keys keys;
   keys.radius = radius;
-  const double bound = motion_bound(radius);
+  // Double cannot place far things better than this.
+  const double bound = motion_bound(radius) + 1e-13 * length(world.pose(node, window.begin).b);
   if (window.end > window.begin) keys.bound = bound;
   std::vector<double> times{window.begin};
   for (uint32_t n = node; n != kNone; n = world.flat.nodes[n].parent)
@@ -104,18 +105,20 @@ std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, cons
 MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   const size_t first = w.flat.fixed, count = w.flat.objects.size() - first;
   check_motion(*w.scene, span.begin, span.end, {});
-  std::vector<double> radius(w.flat.nodes.size(), 0);
+  std::vector<double> radius(w.flat.nodes.size(), -1);   // of what hangs on a node itself; negative: nothing does
   std::vector<Box3> own(count);   // in the axes of the node
   for (size_t i = 0; i < count; ++i) {
     const TracedObject& o = w.flat.objects[first + i];
     own[i] = transformed(w.local_box(o), *o.place);
+    if (own[i].empty()) radius[o.node] = std::max(radius[o.node], 10.0);   // without bounds: motion_bound is at its largest
     if (own[i].empty()) continue;
     const Vec3 a = own[i].low, b = own[i].high;
     radius[o.node] = std::max(radius[o.node], length(Vec3{std::fmax(-a.x, b.x), std::fmax(-a.y, b.y), std::fmax(-a.z, b.z)}));
   }
   nodes.resize(w.flat.nodes.size());
   parallel_for(0, nodes.size(), 16, [&](size_t b, size_t e) {
-    for (size_t n = b; n < e; ++n) nodes[n] = keys_of(w, span, static_cast<uint32_t>(n), radius[n]);
+    for (size_t n = b; n < e; ++n)
+      if (radius[n] >= 0) nodes[n] = keys_of(w, span, static_cast<uint32_t>(n), radius[n]);
   });
   std::vector<std::vector<Box3>> over(count);
   std::vector<Box3> whole(count);

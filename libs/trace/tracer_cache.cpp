@@ -39,6 +39,7 @@ std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
     bool same = true;
     for (uint32_t n = 0; n < part.nodes.size() && same; ++n) {
       const MovingPart::Keys& there = part.nodes[n];
+      if (there.poses.empty()) continue;
       if (!(world_->pose(n, window.begin) == there.poses.front())) same = false;
       else same = MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
     }
