@@ -26,6 +26,26 @@ void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id) {
 
 bool pure_translation(const Affine3& m) { return m.a == Affine3{}.a; }
 
+// Neighbours in space become neighbours in memory (Morton 1966): rays that visit many small instances wait less.
+void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, const Box3& all) {
+  const auto spread = [](uint64_t x) {  // 21 bits to every third bit
+    x = (x | x << 32) & 0x1f00000000ffff, x = (x | x << 16) & 0x1f0000ff0000ff, x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+  };
+  const Vec3 size = all.size();
+  const double widest = std::max({size.x, size.y, size.z, 1e-300});
+  std::vector<std::pair<uint64_t, uint32_t>> keys(objects.size());
+  parallel_for(0, keys.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t k = b; k < e; ++k) {
+      const Vec3 c = (boxes[objects[k]].center() - all.low) / widest * 2097151.0;
+      keys[k] = {spread(static_cast<uint64_t>(c.x)) | spread(static_cast<uint64_t>(c.y)) << 1 | spread(static_cast<uint64_t>(c.z)) << 2, objects[k]};
+    }
+  });
+  std::sort(keys.begin(), keys.end());
+  for (size_t k = 0; k < keys.size(); ++k) objects[k] = keys[k].second;
+}
+
 }  // namespace
 
 RTCScene new_scene() {
@@ -123,7 +143,7 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell)
     if (boxes[i].empty()) unbounded.push_back(i);
     else members.push_back(i);
   }
-  arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own); });
+  arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });
   // The boxes of a set are needed in its own order.
   for (const auto& tile : tiles.tiles)
     for (const auto& set : tile->sets) {
@@ -136,7 +156,7 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell)
 
 // The largest unrotated, once-used mesh of a tile gives it its origin and is attached without an instance, with all
 // others that stand at the same origin.
-void World::fill(Tile& tile, std::span<const uint32_t> members) {
+void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes) {
   size_t most = 0;
   const auto lone = [&](const TracedObject& o) { return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place); };
   const auto place = [&](const TracedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
@@ -155,6 +175,7 @@ void World::fill(Tile& tile, std::span<const uint32_t> members) {
   }
   if (set->objects.empty()) return;
   set->objects.shrink_to_fit();
+  sort_in_space(set->objects, boxes, tile.bounds);
   set->origin = tile.origin;
   set->inverse.resize(set->objects.size());
   parallel_for(0, set->objects.size(), 4096, [&](size_t b, size_t e) {

@@ -145,7 +145,7 @@ struct World {
 
  private:
   void repeat_at_sides();
-  void fill(Tile& tile, std::span<const uint32_t> members);
+  void fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes);
 };
 
 // What moves in a window.
