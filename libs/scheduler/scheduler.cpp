@@ -50,7 +50,6 @@ std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
 struct StateKit {
   Optics optics;
   Environment environment;
-  Surface surface;
   BandProjection projection;
   size_t reference_band = 0;
 
@@ -58,7 +57,6 @@ struct StateKit {
            std::span<const Band> bands)
       : optics(scene, state, used_materials(scene, tracer)),
         environment(bake_sources(sources, state)),
-        surface(tracer, optics),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) <
@@ -79,8 +77,10 @@ struct Item {
   StatePair state;
 };
 
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+// moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   std::vector<Item> items;
+  std::map<std::pair<double, double>, size_t> windows;
   std::vector<const SpectralState*> distinct;
   for (size_t s = 0; s < sensors.size(); ++s) {
     std::vector<size_t> number;  // of each of the sensor's states
@@ -91,8 +91,11 @@ std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
       if (known == distinct.end()) distinct.push_back(&state);
     }
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c)
-        items.push_back({s, t, c, items.size(), {0, number[sensors[s]->tasks()[t].captures[c].state]}});
+      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
+        const Capture& capture = sensors[s]->tasks()[t].captures[c];
+        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
+      }
   }
   return items;
 }
@@ -115,9 +118,9 @@ class Job {
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
 
   JobReport run() {
-    const std::vector<Item> items = in_cheapest_order(items_of(sensors_), report_.state_changes);
-    tracer_ = std::make_unique<Tracer>(scene_, options_.periodic);
-    report_.tracer_builds = 1;
+    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic);
+    if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
@@ -140,6 +143,14 @@ class Job {
     if (b.seconds <= 0) return b;
     b.max_paths = cap_ ? cap_ : b.max_paths.value_or(kDefaultMost);
     return b;
+  }
+
+  // Makes the tracer of a capture's time window the current one; true when it had to be built.
+  bool tracer_of(const Capture& capture) {
+    const size_t before = tracers_->builds();
+    tracer_ = tracers_->get({capture.window.begin, capture.window.end});
+    report_.tracer_builds = tracers_->builds();
+    return tracers_->builds() > before;
   }
 
   // What the store has to hold of each capture, by number.
@@ -182,10 +193,12 @@ class Job {
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
     CaptureLog log;
+    log.new_tracer = tracer_of(capture);
     StateKit& kit = kit_of(item, log);
+    const Surface surface(*tracer_, kit.optics);
     const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
                                            kit.projection, kit.environment});
-    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
+    const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
                             kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
@@ -197,12 +210,10 @@ class Job {
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    Accumulators sums(capture.problems(), bands * channels * capture.time_bins,
-                      Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, sums, log.statistics);
-
-    CaptureResult result = to_result(capture, sums, bands, channels, kit.reference_band, truth);
+    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
@@ -305,7 +316,8 @@ class Job {
   const JobOptions& options_;
   Clock::time_point start_ = Clock::now();
   JobReport report_;
-  std::unique_ptr<Tracer> tracer_;
+  std::unique_ptr<TracerCache> tracers_;
+  std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
   std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
   ErrorHistogram errors_;
@@ -338,9 +350,9 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   return most;
 }
 
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors), order.state_changes)) order.captures.push_back(i.id);
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
   return order;
 }
 
