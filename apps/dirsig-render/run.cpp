@@ -13,6 +13,7 @@
 #include "motion/ephemeris.h"
 #include "optics/models.h"
 #include "output.h"
+#include "study.h"
 
 namespace suite {
 
@@ -81,7 +82,9 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   std::vector<std::string> material_names;
   std::string folder = o.output;
   OutputSpec output;
+  StudyImage* study = nullptr;  // where captures go while a study runs
   const auto deliver = [&](const Sensor& sensor, const CaptureResult& result) {
+    if (study) return append(*study, sensor.name(), sensor.bands(sensor.tasks()[result.task].captures[result.capture].state), result);
     for (const std::string& file : write_capture(folder, sensor, result, output, material_names)) note("wrote " + file);
   };
   Simulation sim = read_simulation(o.simulation, deliver);
@@ -92,6 +95,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
+    throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
+  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
+    throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
@@ -102,6 +109,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
                 "prepare it with class maps only");
   resolve_sun(sim, *scene);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
+  if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   make_folder(folder);
   if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
