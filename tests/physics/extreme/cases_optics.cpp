@@ -33,12 +33,12 @@ std::unique_ptr<const PhaseFunction> henyey(double g) {
   ModelSpec spec{"hg", {}, {{"g", Curve::constant(g)}}, {}, nullptr};
   return bake_phase(spec, one_state());
 }
-// x = 1 - |g|.
+// x = 1 - abs(g).
 Case henyey_mean(double sign) {
   return {"phase function",
           sign > 0 ? "mean cosine of draws, g = 0.9999" : "mean cosine of draws, g = -0.9999",
           "closed form: g",
-          "1 - |g|",
+          "1 - abs(g)",
           0.02,
           [sign](const Numerics&, double x) {
             const double g = sign * static_cast<float>(1 - x);
@@ -48,7 +48,7 @@ Case henyey_mean(double sign) {
             for (int i = 0; i < n; ++i) sum += 1 - sign * p->sample((i + 0.5) / n, 0);
             return std::fabs(sum / n / (1 - std::fabs(g)) - 1);
           },
-          {"1 - |g|", "1", 1e-4, 1, 10},
+          {"1 - abs(g)", "1", 1e-4, 1, 10},
           {}};
 }
 Case henyey_mass(double g) {
