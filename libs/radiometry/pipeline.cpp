@@ -109,7 +109,7 @@ void collect_truth(Wave& wave, size_t p, const Tracer& tracer, ProblemTruth& tru
   truth.range += first.optical_length;
   truth.position += first.at.position;
   vote(truth.material, first.at.material);
-  vote(truth.instance, tracer.objects()[first.hit.object].instance);
+  if (first.hit.hit()) vote(truth.instance, tracer.objects()[first.hit.object].instance);  // the Earth has none
 }
 
 }  // namespace

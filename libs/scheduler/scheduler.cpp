@@ -19,16 +19,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
-  Environment e;
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  return e;
-}
-
 // Materials that some geometry can show; the others are never baked.
-std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
+std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
   std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
+  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
   for (const TracedObject& o : tracer.objects()) {
     if (o.material_override != kNone)
       used[o.material_override] = true;
@@ -55,9 +49,9 @@ struct StateKit {
   size_t reference_band = 0;
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)),
-        environment(bake_sources(sources, state)),
+           bool periodic, std::span<const Band> bands)
+      : optics(scene, state, used_materials(scene, tracer, sources)),
+        environment(bake_environment(sources, tracer, periodic, state)),
         surface(tracer, optics),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
@@ -146,7 +140,7 @@ class Job {
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
       kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
-                                       sensors_[item.sensor]->bands(state));
+                                       options_.periodic.has_value(), sensors_[item.sensor]->bands(state));
       ++report_.optics_bakes;
       log.new_optics = true;
     }
