@@ -1,6 +1,6 @@
-// Lamps against closed forms: inverse-square and cosine laws, form factors of disk, rectangle and sphere, sums over many
-// lamps, cavities lit by glowing walls. Each estimate is compared by its own standard error; a value off by 2 % must be
-// refused by the same comparison.
+// Lamps against closed forms: inverse-square and cosine laws, form factors of disk, rectangle and sphere, sums over
+// many lamps, cavities lit by glowing walls. Each estimate is compared by its own standard error; a value off by 2 %
+// must be refused by the same comparison.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +90,8 @@ TEST(PointLamp, SpotAndTable) {
 
 TEST(PointLamp, ShadowEndsAtTheLamp) {
   // A plate behind the lamp does not darken the floor; the same plate before it does.
-  const auto behind = scene_of({quad(20, 0, 0), quad(3, 2.0, 1)}, {material("floor", lambert(0.5)), material("plate", lambert(0))});
+  const auto behind =
+      scene_of({quad(20, 0, 0), quad(3, 2.0, 1)}, {material("floor", lambert(0.5)), material("plate", lambert(0))});
   EXPECT_GT(render(behind, lit_by({point_lamp({{0, 0, 1.9}}, 1)}), look(4)).result.radiance[0], 0);
   EXPECT_EQ(render(behind, lit_by({point_lamp({{0, 0, 2.1}}, 1)}), look(4)).result.radiance[0], 0);
 }
@@ -112,7 +113,10 @@ std::vector<AreaCase> area_cases() {
           {"near disk", {"d", PrimitiveKind::disk, {5, 0}, 0}, translation({0, 0, 0.5}) * kFlip, 25 / 25.25},
           {"rectangle", {"r", PrimitiveKind::plane, {2, 1}, 0}, translation({0, 0, 1}) * kFlip, 4 * corner(1, 0.5)},
           {"sphere", {"s", PrimitiveKind::sphere, {0.25}, 0}, translation({0, 0, 2}), std::pow(0.25 / 2, 2)},
-          {"scaled sphere", {"s", PrimitiveKind::sphere, {1}, 0}, translation({0, 0, 2}) * scaling({0.25, -0.25, 0.25}), std::pow(0.25 / 2, 2)}};
+          {"scaled sphere",
+           {"s", PrimitiveKind::sphere, {1}, 0},
+           translation({0, 0, 2}) * scaling({0.25, -0.25, 0.25}),
+           std::pow(0.25 / 2, 2)}};
 }
 
 TEST(AreaLamp, FormFactors) {
@@ -129,8 +133,10 @@ TEST(AreaLamp, ChanceAloneGivesTheSameMean) {
   for (const AreaCase& c : area_cases()) {
     SCOPED_TRACE(c.name);
     const auto scene = floor_and(c.primitive, c.to_parent);
-    const auto both = render(scene, lit_by({glow("lamp", 4)}), look(1 << 12)), alone = render(scene, lit_by({glow("lamp", 4)}), look(1 << 17), chance);
-    EXPECT_NEAR(both.result.radiance[0], alone.result.radiance[0], 4.5 * std::hypot(both.result.standard_error[0], alone.result.standard_error[0]));
+    const auto both = render(scene, lit_by({glow("lamp", 4)}), look(1 << 12)),
+               alone = render(scene, lit_by({glow("lamp", 4)}), look(1 << 17), chance);
+    EXPECT_NEAR(both.result.radiance[0], alone.result.radiance[0],
+                4.5 * std::hypot(both.result.standard_error[0], alone.result.standard_error[0]));
     EXPECT_LT(alone.result.standard_error[0], 0.03 * alone.result.radiance[0]);
   }
 }
@@ -148,7 +154,9 @@ TEST(AreaLamp, MeshOfTrianglesOnBothSidesAndMirrored) {
   const double F = 4 * (a / A * std::atan(b / A) + b / B * std::atan(a / B)) / (2 * kPi);
   EXPECT_EQ(render(scene(translation({0, 0, 1})), lit_by({glow("lamp", 4)}), look(64)).result.radiance[0], 0);
   expect_mean(render(scene(translation({0, 0, 1})), lit_by({glow("lamp", 4, true)}), look(1 << 13)).result, 2 * F);
-  expect_mean(render(scene(translation({0, 0, 1}) * scaling({1, 1, -1})), lit_by({glow("lamp", 4)}), look(1 << 13)).result, 2 * F);
+  expect_mean(
+      render(scene(translation({0, 0, 1}) * scaling({1, 1, -1})), lit_by({glow("lamp", 4)}), look(1 << 13)).result,
+      2 * F);
 }
 
 TEST(ManyLamps, SumOverAStreet) {
@@ -178,7 +186,8 @@ TEST(Cavity, GlowingSphereWithAHole) {
     for (int k = 0; k < around; ++k) v.push_back(dir_from_angles(kPi * r / rings, 2 * kPi * k / around));
   for (int r = open; r < rings; ++r)
     for (int k = 0; k < around; ++k) {
-      const auto i = static_cast<uint32_t>(r * around + k), j = static_cast<uint32_t>(r * around + (k + 1) % around), w = static_cast<uint32_t>(around);
+      const auto i = static_cast<uint32_t>(r * around + k), j = static_cast<uint32_t>(r * around + (k + 1) % around),
+                 w = static_cast<uint32_t>(around);
       for (const uint32_t n : {i, j, j + w, i, j + w, i + w}) f.push_back(n);  // fronts look in
     }
   const double rho = 0.6, hole = 0.5 * (1 - std::cos(kPi * open / rings));
@@ -187,8 +196,10 @@ TEST(Cavity, GlowingSphereWithAHole) {
   options.max_nodes = 40;
   for (const bool explicit_sources : {true, false}) {
     options.explicit_sources = explicit_sources;
-    auto sensor = std::make_unique<RaySensor>(std::vector<Ray>{{{0.1, 0.2, 3}, normalized(Vec3{-0.1, -0.15, -3.5}), 0}}, one_band(), 1 << 14);
-    expect_mean(render(scene, lit_by({glow("wall", 2)}), std::move(sensor), options).result, 2 / (1 - rho * (1 - hole)));
+    auto sensor = std::make_unique<RaySensor>(std::vector<Ray>{{{0.1, 0.2, 3}, normalized(Vec3{-0.1, -0.15, -3.5}), 0}},
+                                              one_band(), 1 << 14);
+    expect_mean(render(scene, lit_by({glow("wall", 2)}), std::move(sensor), options).result,
+                2 / (1 - rho * (1 - hole)));
   }
 }
 

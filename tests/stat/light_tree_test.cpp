@@ -16,7 +16,8 @@ std::vector<LightBounds> random_lights(size_t n, uint64_t seed) {
   std::vector<LightBounds> lights;
   for (size_t i = 0; i < n; ++i) {
     LightBounds b;
-    const Vec3 p{20 * random.uniform(), 20 * random.uniform(), 5 * random.uniform()}, s{random.uniform(), random.uniform(), random.uniform()};
+    const Vec3 p{20 * random.uniform(), 20 * random.uniform(), 5 * random.uniform()},
+        s{random.uniform(), random.uniform(), random.uniform()};
     b.box = {p, p + s * 0.3};
     b.axis = uniform_sphere({random.uniform(), random.uniform()});
     b.cone = random.uniform() < 0.2 ? kPi : 0.3 * random.uniform();
@@ -29,7 +30,10 @@ std::vector<LightBounds> random_lights(size_t n, uint64_t seed) {
 }
 
 std::vector<LightReceiver> receivers() {
-  return {{{10, 10, 1}, {0, 0, 1}, false}, {{-30, 5, 2}, {1, 0, 0}, false}, {{10, 3, 40}, {0, 0, -1}, true}, {{4, 4, 4}, {}, false}};
+  return {{{10, 10, 1}, {0, 0, 1}, false},
+          {{-30, 5, 2}, {1, 0, 0}, false},
+          {{10, 3, 40}, {0, 0, -1}, true},
+          {{4, 4, 4}, {}, false}};
 }
 
 TEST(LightTree, FrequenciesFollowTheProbabilities) {
@@ -70,8 +74,11 @@ TEST(LightTree, EveryLampThatReachesThePlaceHasAChance) {
   for (int trial = 0; trial < 200000; ++trial) {
     const auto i = static_cast<uint32_t>(random.uniform() * 300);
     const LightBounds& b = lights[i];
-    const Vec3 s = b.box.size(), p = b.box.low + Vec3{s.x * random.uniform(), s.y * random.uniform(), s.z * random.uniform()};
-    LightReceiver at{{40 * random.uniform() - 10, 40 * random.uniform() - 10, 10 * random.uniform() - 2}, uniform_sphere({random.uniform(), random.uniform()}), trial % 3 == 0};
+    const Vec3 s = b.box.size(),
+               p = b.box.low + Vec3{s.x * random.uniform(), s.y * random.uniform(), s.z * random.uniform()};
+    LightReceiver at{{40 * random.uniform() - 10, 40 * random.uniform() - 10, 10 * random.uniform() - 2},
+                     uniform_sphere({random.uniform(), random.uniform()}),
+                     trial % 3 == 0};
     const Vec3 to = p - at.position;
     const double d = length(to), off = angle_between(b.axis, -to / d);
     const bool sends = off < b.cone + b.spread || (b.both_sides && kPi - off < b.cone + b.spread);

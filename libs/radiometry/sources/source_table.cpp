@@ -21,7 +21,8 @@ std::span<const SourceRow> source_kinds() {
        "sky: {kind: thermal, zeniths: 31, layers: [{temperature_k: 2500, optical_depth: 0.3}, {temperature_k: 2200, "
        "optical_depth: 0.5}]}\n"},
       {"lamps", "point", "a point of intensity W/(sr um), with a table or SQT of its distribution if given",
-       "lamps: [{kind: point, position_m: [0.5, -0.3, 2], intensity: 100, distribution: {table: [[1], [0.5], [0.2]]}}]\n"},
+       "lamps: [{kind: point, position_m: [0.5, -0.3, 2], intensity: 100, distribution: {table: [[1], [0.5], "
+       "[0.2]]}}]\n"},
       {"lamps", "spot", "a point that shines into a cone with a smooth rim",
        "lamps: [{kind: spot, position_m: [0.3, 0.4, 3], intensity: 50, outer_deg: 30, axis: [-0.1, -0.1, -1]}]\n"},
       {"lamps", "surface", "everything of one material glows with a radiance W/(m2 sr um)",

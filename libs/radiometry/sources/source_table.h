@@ -6,8 +6,8 @@
 namespace suite {
 
 struct SourceRow {
-  std::string key;      // of the simulation text: "sun", "sky", "lamps", ...
-  std::string kind;     // its `kind`, or empty when the key has one kind only
+  std::string key;   // of the simulation text: "sun", "sky", "lamps", ...
+  std::string kind;  // its `kind`, or empty when the key has one kind only
   std::string summary;
   std::string example;  // a simulation text that holds nothing else; lamps name the material "lamp"
 };
