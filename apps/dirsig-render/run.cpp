@@ -12,6 +12,7 @@
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
+#include "radiometry/sources/source_table.h"
 
 namespace suite {
 
@@ -19,6 +20,11 @@ namespace {
 
 int list_sensors() {
   for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
+  return 0;
+}
+
+int list_sources() {
+  for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
   return 0;
 }
 
@@ -61,6 +67,7 @@ void tell(const JobReport& r) {
 
 int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sensors) return list_sensors();
+  if (o.list_sources) return list_sources();
   if (o.list_models) return list_models();
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");

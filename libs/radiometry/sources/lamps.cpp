@@ -72,6 +72,27 @@ double relative_intensity(const LampSpec& s, Dir local) {
          ((1 - fr) * ((1 - fc) * at(r, c) + fc * at(r, n)) + fr * ((1 - fc) * at(r + 1, c) + fc * at(r + 1, n)));
 }
 
+// The profile of a point lamp: means over 32 azimuths and 9 places within each step, its edges included. A table may
+// have light between these, so none of its steps counts as dark.
+LightProfile profile_of(const LampSpec& s) {
+  LightProfile profile{};
+  for (int step = 0; step < 32; ++step) {
+    double sum = 0;
+    for (int k = 0; k <= 8; ++k) {
+      const double z = std::clamp(-1 + (step + k / 8.0) / 16, -1.0, 1.0), r = std::sqrt(std::max(0.0, 1 - z * z));
+      for (int a = 0; a < 32; ++a) {
+        const double phi = 2 * kPi * (a + 0.5) / 32;
+        sum += relative_intensity(s, {r * std::cos(phi), r * std::sin(phi), z});
+      }
+    }
+    profile[static_cast<size_t>(step)] = static_cast<float>(sum / (9 * 32));
+  }
+  // A spot's rim may lie between two places as well.
+  const float least = 1e-3f * *std::max_element(profile.begin(), profile.end());
+  for (float& p : profile) p = std::max(p, least);
+  return profile;
+}
+
 void check(const LampSpec& s) {
   const auto fail = [&](const std::string& what) { throw Error(s.where, "lamp '" + s.name + "': " + what); };
   if (s.kind == LampSpec::Kind::surface) {
@@ -148,6 +169,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   core.back = core.front;
   std::vector<uint32_t> spec_of_material(scene.materials.size(), kNone);
   std::vector<LightBounds> bounds;
+  std::vector<LightProfile> profiles;
   auto add = [&](Shape shape, LightBounds b, uint32_t spec) {
     b.power *= mean_of(core.spectra[spec]);
     if (!(b.power > 0)) return kNone;
@@ -189,11 +211,15 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
         if (s.table->value[v] > 0) last = std::max(last, v / s.table->azimuths + 1);
       widest = std::min(widest, kPi * static_cast<double>(last) / static_cast<double>(s.table->polars - 1));
     }
+    // Lamps of one kind share a profile, whatever their spectra.
+    const LightProfile profile = profile_of(s);
+    const auto index = static_cast<int>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
+    if (index == static_cast<int>(profiles.size())) profiles.push_back(profile);
     Shape shape;
     shape.light = i;
     for (const Vec3& p : s.positions) {
       shape.origin = p;
-      add(shape, {{p, p}, core.frames[i].z, widest, 0.01, kPi, false}, i);
+      add(shape, {{p, p}, core.frames[i].z, widest, 0.01, kPi, false, index}, i);
     }
   }
   for (uint32_t m = 0; m < spec_of_material.size(); ++m)
@@ -265,7 +291,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   }
   any_ = !core.shapes.empty() ||
          std::any_of(core.front.begin(), core.front.end(), [](const float* f) { return f != nullptr; });
-  if (!bounds.empty()) core.tree = std::make_unique<LightTree>(bounds);
+  if (!bounds.empty()) core.tree = std::make_unique<LightTree>(bounds, std::move(profiles));
 }
 
 const float* Lamps::glow(uint32_t material, bool front) const {

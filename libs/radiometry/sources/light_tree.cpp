@@ -18,6 +18,7 @@ LightBounds united(const LightBounds& a, const LightBounds& b) {
   r.power = a.power + b.power;
   r.both_sides = a.both_sides || b.both_sides;
   r.spread = std::max(a.spread, b.spread);
+  if (a.profile != b.profile || length(a.axis - b.axis) > 1e-9) r.profile = -1;
   const LightBounds &wide = a.cone >= b.cone ? a : b, &narrow = a.cone >= b.cone ? b : a;
   const double between = angle_between(wide.axis, narrow.axis);
   r.axis = wide.axis;
@@ -44,6 +45,8 @@ double cost(const LightBounds& b, double longest, double extent) {
   return b.power * solid * area * (longest / std::max(extent, 1e-3 * longest));
 }
 
+constexpr double kShareOfBound = 0.05;
+
 // cos of max(0, a - b).
 double cos_difference(double sin_a, double cos_a, double sin_b, double cos_b) {
   return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
@@ -55,7 +58,8 @@ double sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)
 
 }  // namespace
 
-LightTree::LightTree(std::span<const LightBounds> lights) : trail_(lights.size()) {
+LightTree::LightTree(std::span<const LightBounds> lights, std::vector<LightProfile> profiles)
+    : profiles_(std::move(profiles)), trail_(lights.size()) {
   std::vector<uint32_t> order(lights.size());
   std::iota(order.begin(), order.end(), 0u);
   nodes_.reserve(2 * lights.size());
@@ -76,6 +80,7 @@ uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_
   node.cos_spread = all.spread >= kPi ? -2 : std::cos(all.spread);
   node.power = all.power;
   node.both_sides = all.both_sides;
+  node.profile = all.profile;
   if (order.size() == 1) {
     node.leaf = true;
     node.next = order[0];
@@ -124,12 +129,14 @@ uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_
   return index;
 }
 
-// The most that the lamps under a node can send to a place, up to a common factor (section 4.3).
-double LightTree::importance(const Node& node, const LightReceiver& at) {
+// What the lamps under a node send to a place, up to a common factor (section 4.3): what one at its centre would send,
+// and a share of the most they can, which alone keeps every lamp drawable but takes wide flat clusters, whose sphere
+// reaches high above them, for much brighter than they are.
+double LightTree::importance(const Node& node, const LightReceiver& at) const {
   const Vec3 to = node.center - at.position;
   const double d2 = dot(to, to);
   // Inside the sphere around the node nothing is known about directions.
-  if (d2 <= node.radius2 || d2 == 0) return node.power / std::max(node.radius2, 1e-300);
+  if (d2 <= node.radius2 || d2 == 0) return 2 * node.power / std::max(node.radius2, 1e-300);
   const Dir towards = to / std::sqrt(d2);
   const double sin_b2 = node.radius2 / d2, cos_b = std::sqrt(1 - sin_b2), sin_b = std::sqrt(sin_b2);
   double cos_w = -dot(node.axis, towards);
@@ -139,14 +146,28 @@ double LightTree::importance(const Node& node, const LightReceiver& at) {
                sin_x = sin_difference(sin_w, cos_w, node.sin_cone, node.cos_cone);
   const double cos_out = cos_difference(sin_x, cos_x, sin_b, cos_b);
   if (cos_out <= node.cos_spread) return 0;
-  // The cosine falls off with the angle; where a lamp sends beyond a right angle it is only known to be positive.
-  double value = node.power * std::max(cos_out, 0.05) / d2;
+  // Twice: the most that any lamp of the node can send, and what one at its centre would.
+  double most, middle;
+  if (node.profile >= 0) {
+    const double high = cos_difference(sin_w, cos_w, sin_b, cos_b),
+                 low = cos_w < -cos_b ? -1 : cos_w * cos_b - sin_w * sin_b;
+    const auto step = [](double cosine) { return std::clamp(static_cast<int>((cosine + 1) * 16), 0, 31); };
+    const LightProfile& profile = profiles_[static_cast<size_t>(node.profile)];
+    // Steps that the bounds only touch count too: rounding must not hide a lamp.
+    most = *std::max_element(profile.begin() + step(low - 1e-9), profile.begin() + step(high + 1e-9) + 1);
+    middle = profile[static_cast<size_t>(step(cos_w))];
+  } else {
+    // Falls off with the cosine; where a lamp sends beyond a right angle it is only known to be positive.
+    most = std::max(cos_out, 0.05);
+    middle = cos_x <= node.cos_spread ? 0 : std::max(cos_x, 0.05);
+  }
   if (const double norm = dot(at.normal, at.normal); norm > 0) {
     double cos_i = dot(at.normal, towards);
     if (at.two_sided) cos_i = std::fabs(cos_i);
-    value *= std::max(0.0, cos_difference(sine(cos_i), cos_i, sin_b, cos_b));
+    most *= std::max(0.0, cos_difference(sine(cos_i), cos_i, sin_b, cos_b));
+    middle *= std::max(0.0, cos_i);
   }
-  return value;
+  return node.power / d2 * (middle + kShareOfBound * most);
 }
 
 std::optional<LightTree::Choice> LightTree::sample(const LightReceiver& at, double u) const {

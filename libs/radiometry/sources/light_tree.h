@@ -4,8 +4,11 @@
 //
 // Based on: A. Conty Estevez & C. Kulla, "Importance sampling of many lights with adaptive tree splitting", Proc. ACM
 // Comput. Graph. Interact. Tech. 1(2), 2018: orientation cones (section 4.1), importance (4.3), the surface-area
-// orientation heuristic (4.4). No adaptive splitting: one lamp per node of the path.
+// orientation heuristic (4.4). No adaptive splitting: one lamp per node of the path. Added to it: profiles of
+// intensity, so that a cluster of street lamps is worth what it sends in the direction asked for, not what it sends at
+// most.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +17,10 @@
 #include "math/vec.h"
 
 namespace suite {
+
+// Relative intensity by cosine of the angle to the axis, 32 equal steps from -1 to 1: the mean over azimuth, and
+// positive wherever the lamp sends anything within a step.
+using LightProfile = std::array<float, 32>;
 
 // Where a lamp (or many) can be, and where they send light: into directions within `spread` of their axes, which
 // themselves lie within `cone` of `axis`. Angles in rad.
@@ -24,6 +31,7 @@ struct LightBounds {
   double spread = kPi / 2;  // theta_e, 0..pi
   double power = 0;         // > 0, any unit common to all
   bool both_sides = false;  // sends along -axis as along axis
+  int profile = -1;         // index into the tree's profiles; -1 = falls off with the cosine
 };
 
 // A place that asks for light. normal: on the side from which it looks; null vector = takes light from everywhere.
@@ -37,7 +45,7 @@ struct LightReceiver {
 class LightTree {
  public:
   // lights: at least one. Deterministic.
-  explicit LightTree(std::span<const LightBounds> lights);
+  explicit LightTree(std::span<const LightBounds> lights, std::vector<LightProfile> profiles = {});
 
   struct Choice {
     uint32_t light;
@@ -56,12 +64,14 @@ class LightTree {
     Dir axis;
     double cos_cone = 1, sin_cone = 0, cos_spread = 0, power = 0;
     bool both_sides = false;
+    int profile = -1;
     bool leaf = false;
     uint32_t next = 0;  // second child (the first follows), or the light of a leaf
   };
-  static double importance(const Node& node, const LightReceiver& at);
+  double importance(const Node& node, const LightReceiver& at) const;
   uint32_t build(std::span<const LightBounds> lights, std::span<uint32_t> order, uint64_t trail, int depth);
 
+  std::vector<LightProfile> profiles_;
   std::vector<Node> nodes_;
   std::vector<uint64_t> trail_;  // per light: bit d = second child taken at depth d
 };
