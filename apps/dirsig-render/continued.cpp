@@ -42,13 +42,11 @@ std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string
         throw UsageError("--more continues with the paths of the run before; leave out --paths and --time");
       budget.more += static_cast<uint32_t>(o.more);
       if (options.budget.relative_error) budget.relative_error = options.budget.relative_error;
-      extend_state(path, identity, budget, shapes_of(sim.sensors, budget));
     }
     options.budget = budget;
-  } else {
-    create_state(path, identity, options.budget, shapes_of(sim.sensors, options.budget));
+    return make_state(path, more ? StateUse::extend : StateUse::resume, identity, budget);
   }
-  return open_state(path, identity, shapes_of(sim.sensors, options.budget));
+  return make_state(path, StateUse::start, identity, options.budget);
 }
 
 }  // namespace suite

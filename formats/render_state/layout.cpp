@@ -46,13 +46,11 @@ Budget read_budget(h5::Reader& reader) {
   return b;
 }
 
-}  // namespace render_state
-
 namespace {
 
 double bytes_of(const CaptureShape& s) {
   return static_cast<double>(s.problems()) *
-         (8.0 * static_cast<double>(s.bands) * s.scrambles + 8 + 16 + sizeof(ProblemTruth));
+         (8.0 * static_cast<double>(s.values) * s.scrambles + 8 + 16 + 8.0 * static_cast<double>(s.truth_slots));
 }
 
 void check_room(const std::string& path, const std::vector<CaptureShape>& shapes) {
@@ -69,22 +67,8 @@ void check_room(const std::string& path, const std::vector<CaptureShape>& shapes
 
 }  // namespace
 
-std::vector<CaptureShape> shapes_of(std::span<const std::unique_ptr<Sensor>> sensors, const Budget& budget) {
-  std::vector<CaptureShape> shapes;
-  for (const auto& sensor : sensors)
-    for (const Task& t : sensor->tasks())
-      for (const Capture& c : t.captures) {
-        Convergence goal = goal_of(c, budget);
-        if (budget.seconds > 0 && !budget.max_paths) goal.max_paths = std::max(goal.max_paths, kDefaultMost);
-        shapes.push_back(
-            {c.columns, c.rows, sensor->bands(c.state).size(), Accumulators::scrambles_for(goal.max_paths)});
-      }
-  return shapes;
-}
-
 void create_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
                   const std::vector<CaptureShape>& shapes) {
-  using namespace render_state;
   check_room(path, shapes);
   AtomicFile file(path);
   {
@@ -98,25 +82,27 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
       const CaptureShape& s = shapes[c];
       const std::string g = group_of(c);
       const size_t n = s.problems();
-      w.put(
-          g + "/shape",
-          std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.bands), static_cast<uint32_t>(s.scrambles)},
-          "1");
+      w.put(g + "/shape",
+            std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.values),
+                                  static_cast<uint32_t>(s.scrambles), static_cast<uint32_t>(s.truth_slots)},
+            "1");
       // Zeros by being a hole in the file: nothing is valid yet, and no value is looked at before it is.
       w.put(g + "/valid", std::vector<uint8_t>(ranges_of(s), 0), "1");
       w.put(g + "/piloted", std::vector<uint8_t>{0}, "1");
       w.column(g + "/needs", h5::native<double>(), n, "1");
-      w.column(g + "/sums", h5::native<double>(), n * s.bands * static_cast<size_t>(s.scrambles), "W/(m2 sr um)");
+      w.column(g + "/sums", h5::native<double>(), n * s.values * static_cast<size_t>(s.scrambles), "W/(m2 sr um)");
       w.column(g + "/paths", h5::native<uint32_t>(), n, "1");
       w.column(g + "/failures", h5::native<uint32_t>(), n, "1");
       w.column(g + "/truncated", h5::native<float>(), n, "1");
       w.column(g + "/largest", h5::native<float>(), n, "W/(m2 sr um)");
-      w.column(g + "/truth", h5::native<uint8_t>(), n * sizeof(ProblemTruth), "1");
+      w.column(g + "/truth", h5::native<double>(), n * s.truth_slots, "1");
     }
     w.close();
   }
   file.commit();
 }
+
+}  // namespace render_state
 
 Budget read_state_budget(const std::string& path, const StateIdentity& identity) {
   h5::Reader reader(path, render_state::kHint);

@@ -17,29 +17,18 @@ namespace suite {
 // equal; the first that differs is named in the Error.
 using StateIdentity = std::map<std::string, std::string>;
 
-struct CaptureShape {
-  uint32_t columns = 0, rows = 0;
-  size_t bands = 0;
-  int scrambles = 4;
-  bool operator==(const CaptureShape&) const = default;
-  size_t problems() const { return size_t{columns} * rows; }
+enum class StateUse {
+  start,   // a new state, which replaces one that stands there
+  resume,  // finish a run as it was begun
+  extend,  // continue with another budget
 };
-std::vector<CaptureShape> shapes_of(std::span<const std::unique_ptr<Sensor>> sensors, const Budget& budget);
 
-// Makes a new state file, empty. Error when the disk has no room for it.
-void create_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
-                  const std::vector<CaptureShape>& shapes);
-
-// The budget of the run that a state belongs to; as it was when the state was made or extended last.
+// The budget of the run that a state belongs to, as it was when the state was made or extended last. Error: of another
+// scene, simulation, seed, build or engine; damaged.
 Budget read_state_budget(const std::string& path, const StateIdentity& identity);
 
-// Changes the budget of a state. Captures that need more scrambles than the file has room for make it be written anew.
-void extend_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
-                  const std::vector<CaptureShape>& shapes);
-
-// Opens a state to continue it. Error: of another scene, simulation, seed, build or engine; damaged; in use by another
-// run.
-std::unique_ptr<StateStore> open_state(const std::string& path, const StateIdentity& identity,
-                                       const std::vector<CaptureShape>& shapes);
+// A state for a run. The file is made, checked or widened when the run tells its shapes. Errors then: no room on the disk;
+// a state of another run; damaged; in use by another run.
+std::unique_ptr<StateStore> make_state(const std::string& path, StateUse use, const StateIdentity& identity, const Budget& budget);
 
 }  // namespace suite

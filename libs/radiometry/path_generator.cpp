@@ -66,8 +66,10 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
-      if (!wave.blocked[i] && !(environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i])))
-        add_explicit(wave, p, wave.light[i]);
+      if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
+      Node& node = wave.node(p, wave.path(p).size - 1);
+      node.sunlit = node.sunlit || wave.light[i] == light_sun;
+      add_explicit(wave, p, wave.light[i]);
     }
 
     // Draw the continuations.
@@ -88,7 +90,7 @@ Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   live.length += hit.distance;
   node.optical_length = live.length;
   node.spectral_factor = 1 / live.shares;
-  node.continues = node.has_direct = false;
+  node.continues = node.has_direct = node.sunlit = false;
   node.lights = 0;
   node.glow = nullptr;
   return node;
@@ -120,6 +122,8 @@ bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   hit.distance = met->distance;
   hit.position = met->position;
   hit.normal = met->normal;
+  hit.step = Earth::step;
+  hit.time = wave.path(p).ray.time;
   Node& node = add_node(wave, p, hit);
   node.at = Interaction{};
   node.at.position = met->position;
@@ -130,9 +134,6 @@ bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   return scatters(wave.path(p), node);
 }
 
-Vec3 PathGenerator::leave(const Node& node, Dir direction) const {
-  return node.hit.hit() ? surface_.tracer().leave(node.hit, direction) : Earth::leave(node.hit.position, node.hit.normal);
-}
 
 // Draws where the path goes from its last node; false when it ends there.
 bool PathGenerator::go_on(Wave& wave, uint32_t p) {
@@ -196,7 +197,7 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   node.bounce_scale = static_cast<float>((factored ? factored->scale : 1) / node.density);
   live.last_density = drawn->delta ? 0 : own;
   live.direction = node.in;
-  live.origin = leave(node, node.in);
+  live.origin = surface_.tracer().leave(node.hit, node.in);
   return true;
 }
 

@@ -38,11 +38,12 @@ void add_emission(const Node& node, std::span<float> scratch, std::span<float> r
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * std::max(0.0f, 1 - scratch[i]) * blackbody[i];
 }
 
-// L = S + w / p L for what factors: one pass over the wavelengths in the usual case of one source.
-void propagate(const Node& node, size_t n, float* __restrict L) {
+// L = S + w / p L for what factors: one pass over the wavelengths in the usual case of one source. Without `continues`
+// the continuation is left out.
+void propagate(const Node& node, bool continues, size_t n, float* __restrict L) {
   const ExplicitLight& sun = node.light[light_sun];
-  const bool sunlit = node.lights & (1u << light_sun), together = sunlit && node.continues && sun.scatter == node.bounce_spectrum;
-  if (node.continues) {
+  const bool sunlit = node.lights & (1u << light_sun), together = sunlit && continues && sun.scatter == node.bounce_spectrum;
+  if (continues) {
     const float* __restrict w = node.bounce_spectrum;
     const float b = node.bounce_scale;
     if (together) {
@@ -63,6 +64,20 @@ void propagate(const Node& node, size_t n, float* __restrict L) {
   }
 }
 
+void add_node(Wave& wave, size_t p, int n, bool continues, std::span<float> radiance) {
+  const Node& node = wave.node(p, n);
+  propagate(node, continues, radiance.size(), radiance.data());
+  if (node.has_direct) {
+    const float* direct = wave.direct(p, n).data();
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
+  }
+  if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
+  if (node.glow) {
+    const float factor = static_cast<float>(node.glow_factor);
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * node.glow[i];
+  }
+}
+
 }  // namespace
 
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
@@ -72,21 +87,26 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
   auto start_of = [&](int n) { return n == 0 ? path.ray.origin : wave.node(p, n - 1).at.position; };
   if (air && path.end == PathEnd::escaped) through_air(*air, start_of(path.size), path.escape, std::numeric_limits<double>::infinity(), path.escape_factor, wave, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
-    const Node& node = wave.node(p, n);
-    propagate(node, radiance.size(), radiance.data());
-    if (node.has_direct) {
-      const float* direct = wave.direct(p, n).data();
-      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
-    }
-    if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
-    if (node.glow) {
-      const float factor = static_cast<float>(node.glow_factor);
-      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * node.glow[i];
-    }
-    if (air) through_air(*air, start_of(n), -node.out, node.hit.distance, node.spectral_factor, wave, radiance);
+    add_node(wave, p, n, wave.node(p, n).continues, radiance);
+    if (air) through_air(*air, start_of(n), -wave.node(p, n).out, wave.node(p, n).hit.distance, wave.node(p, n).spectral_factor, wave, radiance);
   }
   if (path.weight != 1)
     for (float& x : radiance) x *= static_cast<float>(path.weight);
+}
+
+void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance,
+                    std::span<float> single) {
+  const Path& path = wave.path(p);
+  if (path.size < 2) {
+    std::copy(radiance.begin(), radiance.end(), single.begin());
+    return;
+  }
+  add_node(wave, p, 0, false, single);
+  const Node& first = wave.node(p, 0);
+  if (environment.atmosphere)
+    through_air(*environment.atmosphere, path.ray.origin, path.ray.direction, first.hit.distance, first.spectral_factor, wave, single);
+  if (path.weight != 1)
+    for (float& x : single) x *= static_cast<float>(path.weight);
 }
 
 }  // namespace suite

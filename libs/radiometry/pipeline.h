@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radiometry/sources/environment.h"
+#include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"
 
@@ -52,18 +53,6 @@ constexpr uint32_t dealt(uint32_t n, uint32_t scramble) {
   return (early + 3 - lane) / 4 + (late + 7 - scramble) / 8;
 }
 
-// What one problem has gathered. Sums are kept per independent scramble, which is where standard errors come from.
-struct ProblemTruth {
-  uint32_t hits = 0;
-  double range = 0;              // sums over the hits
-  Vec3 position;
-  // Materials and instances of the first node: the most frequent of the first few seen.
-  struct Vote {
-    uint32_t id = kNone, count = 0;
-  };
-  std::array<Vote, 4> material, instance;
-};
-
 struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
   double truncated = 0;          // sum over paths of the throughput cut at max_nodes
@@ -72,10 +61,11 @@ struct RunStatistics {
   void merge(const RunStatistics& o);
 };
 
-// Accumulators of the problems of one capture.
+// Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
+// come from. bands: values a problem ([channel][time bin][band]); truth_slots: doubles of truth a problem.
 class Accumulators {
  public:
-  Accumulators(size_t problems, size_t bands, int scrambles);
+  Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);
   // Number of scrambles that `paths` samples are dealt to.
   static int scrambles_for(uint32_t paths) { return paths > 256 ? 8 : 4; }
 
@@ -93,14 +83,19 @@ class Accumulators {
   // Largest single sample at the reference band, for the tail indicator.
   float& largest(size_t problem) { return largest_[problem]; }
   float largest(size_t problem) const { return largest_[problem]; }
-  ProblemTruth& truth(size_t problem) { return truth_[problem]; }
-  const ProblemTruth& truth(size_t problem) const { return truth_[problem]; }
+  size_t truth_slots() const { return truth_slots_; }
+  double* truth(size_t problem) { return truth_.data() + problem * truth_slots_; }
+  const double* truth(size_t problem) const { return truth_.data() + problem * truth_slots_; }
 
   // Mean and standard error of one band of one problem. The variance of the mean, sum of (share^2 variance) over the
   // scrambles, is estimated without bias for any shares and variances of the scrambles below one half each:
   //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
   // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples.
   void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
+  // The same for all values of a problem at once; spans of bands() values.
+  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
+  // Forgets everything.
+  void clear();
 
  private:
   size_t bands_;
@@ -108,27 +103,33 @@ class Accumulators {
   std::vector<double> sums_;     // [problem][scramble][band]
   std::vector<uint32_t> paths_, failures_;
   std::vector<float> truncated_, largest_;
-  std::vector<ProblemTruth> truth_;
+  size_t truth_slots_;
+  std::vector<double> truth_;    // [problem][slot]
 };
 
 // A rectangle of problems that run together.
 struct Block {
   uint32_t column = 0, row = 0, columns = 0, rows = 0;
 };
-// Square blocks (8 x 8) that cover a capture, row by row.
+// Square blocks that cover a capture, row by row.
+inline constexpr uint32_t kBlockEdge = 8;
 std::vector<Block> blocks_of(const Capture& capture);
+
+// Where the accumulators of a block's problems stand: at their own numbers, for accumulators of a whole capture, or at
+// their places in the block, for accumulators of one block.
+enum class Slots : uint8_t { by_problem, by_place };
 
 class Pipeline {
  public:
   // Keeps references; all must outlive it.
   Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-           const BandProjection& projection, size_t reference_band, const PipelineOptions& options);
+           const BandProjection& projection, size_t reference_band, const TruthPlan& truth, const PipelineOptions& options);
   ~Pipeline();
 
   // Continues each problem of a block from the paths that its accumulators hold up to to[problem]. Thread-safe for
   // distinct blocks.
-  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
-           std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const;
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, std::span<const uint32_t> to,
+           Accumulators& sums, Slots slots, RunStatistics& statistics) const;
 
  private:
   const Surface& surface_;
@@ -137,6 +138,7 @@ class Pipeline {
   const SpectralState& state_;
   const BandProjection& projection_;
   size_t reference_band_;
+  const TruthPlan& truth_;
   PipelineOptions options_;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;

@@ -47,7 +47,7 @@ void pool_band(const Capture& capture, const std::vector<Moments>& of, double fl
 
 }  // namespace
 
-bool has_neighbours(const Capture& capture) { return capture.problems() >= 2; }
+bool has_neighbours(const Capture& capture) { return capture.neighbours && capture.problems() >= 2; }
 
 std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const size_t> judged,
                              double absolute_floor) {

@@ -44,7 +44,6 @@ std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer, const
 struct StateKit {
   Optics optics;
   Environment environment;
-  Surface surface;
   BandProjection projection;
   size_t reference_band = 0;
 
@@ -52,7 +51,6 @@ struct StateKit {
            bool periodic, std::span<const Band> bands)
       : optics(scene, state, used_materials(scene, tracer, sources)),
         environment(bake_environment(sources, tracer, periodic, state)),
-        surface(tracer, optics),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) <
@@ -73,8 +71,10 @@ struct Item {
   StatePair state;
 };
 
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+// moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   std::vector<Item> items;
+  std::map<std::pair<double, double>, size_t> windows;
   std::vector<const SpectralState*> distinct;
   for (size_t s = 0; s < sensors.size(); ++s) {
     std::vector<size_t> number;  // of each of the sensor's states
@@ -85,8 +85,11 @@ std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
       if (known == distinct.end()) distinct.push_back(&state);
     }
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c)
-        items.push_back({s, t, c, items.size(), {0, number[sensors[s]->tasks()[t].captures[c].state]}});
+      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
+        const Capture& capture = sensors[s]->tasks()[t].captures[c];
+        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
+      }
   }
   return items;
 }
@@ -109,10 +112,11 @@ class Job {
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
 
   JobReport run() {
-    const std::vector<Item> items = in_cheapest_order(items_of(sensors_), report_.state_changes);
-    tracer_ = std::make_unique<Tracer>(scene_, options_.periodic);
-    report_.tracer_builds = 1;
+    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic);
+    if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
+    if (options_.store) options_.store->begin(shapes(items));
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
@@ -135,6 +139,37 @@ class Job {
     return b;
   }
 
+  // Makes the tracer of a capture's time window the current one; true when it had to be built.
+  bool tracer_of(const Capture& capture) {
+    const size_t before = tracers_->builds();
+    tracer_ = tracers_->get({capture.window.begin, capture.window.end});
+    report_.tracer_builds = tracers_->builds();
+    return tracers_->builds() > before;
+  }
+
+  // What the store has to hold of each capture, by number.
+  std::vector<CaptureShape> shapes(const std::vector<Item>& items) const {
+    std::vector<CaptureShape> all(items.size());
+    std::map<std::pair<size_t, size_t>, size_t> slots;  // of truth, by sensor and state
+    for (const Item& item : items) {
+      const Sensor& sensor = *sensors_[item.sensor];
+      const Capture& capture = capture_of(item);
+      const auto [known, fresh] = slots.try_emplace({item.sensor, capture.state}, 0);
+      if (fresh) {
+        const SpectralState& state = sensor.states()[capture.state];
+        const BandProjection projection(state, sensor.bands(capture.state));
+        const Environment none;
+        known->second =
+            TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none})
+                .slots();
+      }
+      all[item.id] = {capture.columns, capture.rows,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+                      Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
+    }
+    return all;
+  }
+
   StateKit& kit_of(const Item& item, CaptureLog& log) {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
@@ -152,9 +187,13 @@ class Job {
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
     CaptureLog log;
+    log.new_tracer = tracer_of(capture);
     StateKit& kit = kit_of(item, log);
-    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
-                            kit.reference_band, options_.pipeline);
+    const Surface surface(*tracer_, kit.optics);
+    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
+                                           kit.projection, kit.environment});
+    const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
+                            kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
                      judged_bands(kit), options_.store, progress_.get(), {}};
@@ -164,10 +203,11 @@ class Job {
       };
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
-    Accumulators sums(capture.problems(), kit.projection.bands(), Accumulators::scrambles_for(work.goal.max_paths));
-    run_capture(work, sums, log.statistics);
-
-    CaptureResult result = to_result(capture, sums, kit.reference_band, *scene_);
+    const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
+    sensors_[item.sensor]->begin(capture);
+    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
@@ -207,15 +247,16 @@ class Job {
 
   void judge(const Item& item, const CaptureWork& work, const StateKit& kit, const CaptureResult& r, CaptureLog& log) {
     const Convergence& goal = work.goal;
+    const size_t values = r.values_per_problem();
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
       flagged_ += r.quality[i] & quality_heavy_tail ? 1 : 0;
-      if (const double mean = r.radiance[i * r.bands + kit.reference_band]; mean > 0)
-        errors.add(r.standard_error[i * r.bands + kit.reference_band] / mean);
+      if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
+        errors.add(r.standard_error[i * values + kit.reference_band] / mean);
       double worst = 0;
       for (const size_t b : work.judged) {
-        const double scale = std::max(r.radiance[i * r.bands + b], goal.absolute_floor);
-        if (scale > 0) worst = std::max(worst, r.standard_error[i * r.bands + b] / scale);
+        const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
+        if (scale > 0) worst = std::max(worst, r.standard_error[i * values + b] / scale);
       }
       if (worst > report_.worst.relative_error)
         report_.worst = {sensors_[item.sensor]->name(), work.capture.name,
@@ -269,7 +310,8 @@ class Job {
   const JobOptions& options_;
   Clock::time_point start_ = Clock::now();
   JobReport report_;
-  std::unique_ptr<Tracer> tracer_;
+  std::unique_ptr<TracerCache> tracers_;
+  std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
   std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
   ErrorHistogram errors_;
@@ -297,15 +339,14 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
       for (const Capture& c : t.captures) {
         const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
-        most = std::max(most,
-                        static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + sizeof(ProblemTruth) + 100));
+        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }
   return most;
 }
 
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors), order.state_changes)) order.captures.push_back(i.id);
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
   return order;
 }
 

@@ -9,10 +9,21 @@
 
 namespace suite {
 
+// Size of what a capture gathers: the arguments of its Accumulators.
+struct CaptureShape {
+  uint32_t columns = 0, rows = 0;
+  size_t values = 0;       // [channel][time bin][band]
+  int scrambles = 4;
+  size_t truth_slots = 0;
+  size_t problems() const { return size_t{columns} * rows; }
+};
+
 class StateStore {
  public:
   virtual ~StateStore() = default;
-  // What is stored of a capture (counted over all sensors). sums comes in empty and of the capture's size. needs stays
+  // Called once, before anything else, with the shapes of all captures, counted over all sensors.
+  virtual void begin(const std::vector<CaptureShape>& shapes) = 0;
+  // What is stored of a capture. sums comes in empty and of the capture's size. needs stays
   // empty unless the capture's pilot was finished.
   virtual void load(size_t capture, Accumulators& sums, std::vector<double>& needs) = 0;
   // The pilot of a capture is finished.
