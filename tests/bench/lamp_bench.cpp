@@ -1,5 +1,5 @@
-// Cost and noise of a path among 1 to 10 000 lamps over a floor, per lamp count: cycles of CPU per path, rays per path, and
-// the relative standard deviation of one path. Usage: lamp_bench [paths = 256]
+// Cost and noise of a path among 1 to 10 000 lamps over a floor, per lamp count: cycles of CPU per path, rays per path,
+// and the relative standard deviation of one path. Usage: lamp_bench [paths = 256]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -32,9 +32,11 @@ int main(int argc, char** argv) {
     const JobReport report = run_job(scene, sources, sensors, options);
     const CaptureResult& r = static_cast<TerrainCamera&>(*sensors[0]).result;
     double error = 0, mean = 0;
-    for (size_t i = 0; i < r.radiance.size(); ++i) error += r.standard_error[i] * r.standard_error[i], mean += r.radiance[i];
+    for (size_t i = 0; i < r.radiance.size(); ++i)
+      error += r.standard_error[i] * r.standard_error[i], mean += r.radiance[i];
     const double count = static_cast<double>(r.radiance.size()), done = static_cast<double>(report.statistics.paths);
     std::printf("%8d %14.0f %12.2f %14.3f\n", n, static_cast<double>(report.statistics.cycles) / done,
-                static_cast<double>(report.statistics.trace.rays) / done, std::sqrt(error / count * paths) / (mean / count));
+                static_cast<double>(report.statistics.trace.rays) / done,
+                std::sqrt(error / count * paths) / (mean / count));
   }
 }
