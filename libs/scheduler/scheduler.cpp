@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "scheduler/plan.h"
+#include "surface/cut_out.h"
 
 namespace suite {
 
@@ -24,23 +25,6 @@ Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
   return e;
 }
 
-// Materials that some geometry can show; the others are never baked.
-std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
-  std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
-  for (const TracedObject& o : tracer.objects()) {
-    if (o.material_override != kNone) used[o.material_override] = true;
-    else if (o.mesh != kNone) mesh_seen[o.mesh] = true;
-    else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone) used[id] = true;
-  }
-  for (size_t m = 0; m < scene.meshes.size(); ++m)
-    for (const Part& p : scene.meshes[m].parts)
-      if (mesh_seen[m] && p.material != kNone) used[p.material] = true;
-  for (const MapBinding& b : scene.map_bindings)
-    if (used[b.material])
-      for (const uint32_t id : scene.class_maps[b.class_map].materials) used[id] = true;
-  return used;
-}
-
 // Everything that belongs to one spectral state; kept while captures ask for the same one.
 struct StateKit {
   Optics optics;
@@ -50,7 +34,7 @@ struct StateKit {
   size_t reference_band = 0;
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state, std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)), environment(bake_sources(sources, state)), surface(tracer, optics), projection(state, bands) {
+      : optics(scene, state, used_materials(scene, tracer.objects())), environment(bake_sources(sources, state)), surface(tracer, optics), projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) < std::fabs(bands[reference_band].center_um - state.reference_um)) reference_band = b;
   }
@@ -134,7 +118,7 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   const Clock::time_point start = Clock::now();
   JobReport report;
-  const Tracer tracer(scene, options.periodic);
+  const Tracer tracer(scene, options.periodic, cut_out(*scene));
   report.tracer_builds = 1;
   report.build_seconds = seconds_since(start);
   std::vector<double> relative_errors;

@@ -24,11 +24,16 @@ RTCScene new_scene() {
 }
 
 // Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
-void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id) {
+// holes: hits are put to the filter.
+void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
   rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
+  if (holes) {
+    rtcSetGeometryIntersectFilterFunction(g, filter_triangles);
+    rtcSetGeometryOccludedFilterFunction(g, filter_triangles);
+  }
   rtcCommitGeometry(g);
   rtcAttachGeometryByID(scene, g, id);
   rtcReleaseGeometry(g);
@@ -150,10 +155,14 @@ void Build::make_tile(const std::vector<uint32_t>& members) {
 }
 
 void Build::commit() {
+  std::vector<char> holes(scene.meshes.size(), 0);
+  if (core.filter)
+    for (size_t i = 0; i < objects.size(); ++i)
+      if (core.may_pass[i] && objects[i].mesh != kNone) holes[objects[i].mesh] = 1;
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     if (needs_scene[m]) {
       core.mesh_scenes[m].scene = new_scene();
-      attach_mesh(core.mesh_scenes[m].scene, scene.meshes[m], 0);
+      attach_mesh(core.mesh_scenes[m].scene, scene.meshes[m], 0, holes[m]);
       rtcCommitScene(core.mesh_scenes[m].scene);
     }
   std::vector<Box3> tile_boxes;
@@ -162,7 +171,7 @@ void Build::commit() {
     for (uint32_t id = 0; id < tile.objects.size(); ++id) {
       const TracedObject& o = objects[tile.objects[id]];
       const Mesh& mesh = scene.meshes[o.mesh];
-      if (direct[tile.objects[id]]) attach_mesh(tile.scene.scene, mesh, id);
+      if (direct[tile.objects[id]]) attach_mesh(tile.scene.scene, mesh, id, holes[o.mesh]);
       else attach_instance(tile.scene.scene, core.mesh_scenes[o.mesh].scene, translation(-tile.origin) * o.to_world * translation(mesh.origin), id);
     }
     if (tile.primitives) attach_primitives(tile.scene.scene, *tile.primitives, static_cast<unsigned>(tile.objects.size()));
@@ -200,7 +209,7 @@ void repeat_at_sides(const Scene& scene, const Periodic& cell, std::vector<Trace
 
 }  // namespace
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic)
+Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter)
     : scene_(std::move(scene)), periodic_(periodic), objects_(flatten(*scene_)), core_(new TracerCore) {
   const FlushDenormals flush;
   const Scene& s = *scene_;
@@ -208,6 +217,9 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> perio
   if (periodic_) repeat_at_sides(s, *periodic_, objects_);
   for (const TracedObject& o : objects_)
     if (o.mesh != kNone) triangles_ += s.meshes[o.mesh].triangle_count();
+  core_->filter = std::move(filter);
+  if (core_->filter)
+    for (const TracedObject& o : objects_) core_->may_pass.push_back(core_->filter->concerns(o));
   Build build{s, objects_, *core_, {}, {}, {}, {}};
   bounds_ = build.measure();
   for (uint32_t i = 0; i < objects_.size(); ++i)

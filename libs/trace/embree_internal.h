@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
 #include "trace/tile_bvh.h"
 #include "trace/tracer.h"
@@ -104,7 +105,22 @@ struct Packet {
   uint32_t size = 0;
 };
 
+struct TracerCore;
+
+// Goes with every query, so that callbacks find the unrounded rays: a ray's id is its place in the packet.
+struct FilterContext {
+  RTCIntersectContext base;   // first, because Embree hands back its address
+  const Tracer* tracer;
+  const TracerCore* core;
+  const Tile* tile;
+  const Packet* packet;
+  const Ray* rays;
+};
+void filter_triangles(const RTCFilterFunctionNArguments* args);
+
 struct TracerCore {
+  std::shared_ptr<const HitFilter> filter;
+  std::vector<char> may_pass;             // objects with holes; empty without a filter
   std::vector<Tile> tiles;
   std::vector<SceneHandle> mesh_scenes;   // one per mesh that is instanced; empty handles otherwise
   std::vector<uint32_t> tile_of_object;   // kNone for unbounded ones
@@ -112,10 +128,13 @@ struct TracerCore {
   TileBvh bvh;
 
   void finish(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
+  bool keeps(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position) const;
+  // First hit of an exact surface that the filter does not let through.
+  std::optional<LocalHit> meet_kept(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double t_min, double t_max) const;
   void finish_exact(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double near, Hit& hit) const;
   void trace_packet(const Tracer& t, uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<Hit> hits, std::span<double> reach,
                     bool coherent, TraceStatistics& s) const;
-  void occlude_packet(uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<double> reach,
+  void occlude_packet(const Tracer& t, uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<double> reach,
                       bool coherent, TraceStatistics& s) const;
   template <class Send>
   void through_tiles(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;

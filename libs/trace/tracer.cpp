@@ -62,12 +62,10 @@ void TracerCore::finish(const Tracer& t, const Ray& ray, uint32_t object, uint32
 // `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one.
 void TracerCore::finish_exact(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double near, Hit& hit) const {
   const TracedObject& o = t.objects()[object];
-  const Primitive& primitive = t.scene().primitives[o.primitive];
-  const Vec3 origin = to_local.point(ray.origin), direction = to_local.vector(ray.direction);
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
   const double window = 1e-5 * std::fabs(near) + 1e-4 * length(t.bounds().empty() ? Vec3{} : t.bounds().size()) + 1e-9;
-  auto found = intersect(primitive, origin, direction, near - window, near + window);
-  if (!found || found->t <= 0) found = intersect(primitive, origin, direction, 0, INFINITY);
+  auto found = meet_kept(t, ray, object, to_local, near - window, near + window);
+  if (!found || found->t <= 0) found = meet_kept(t, ray, object, to_local, 0, INFINITY);
   if (!found) {
     hit = Hit{};
     return;
@@ -83,8 +81,7 @@ void TracerCore::finish_exact(const Tracer& t, const Ray& ray, uint32_t object, 
 
 void TracerCore::meet_unbounded(const Tracer& t, const Ray& ray, double& reach, Hit* hit) const {
   for (const Unbounded& plane : unbounded) {
-    const Primitive& primitive = t.scene().primitives[t.objects()[plane.object].primitive];
-    const auto found = intersect(primitive, plane.to_local.point(ray.origin), plane.to_local.vector(ray.direction), 0, reach);
+    const auto found = meet_kept(t, ray, plane.object, plane.to_local, 0, reach);
     if (!found) continue;
     reach = found->t;
     if (hit) finish_exact(t, ray, plane.object, plane.to_local, reach, *hit);
@@ -94,9 +91,9 @@ void TracerCore::meet_unbounded(const Tracer& t, const Ray& ray, double& reach, 
 void TracerCore::trace_packet(const Tracer& t, uint32_t tile_index, const Packet& packet, std::span<const Ray> rays, std::span<Hit> hits,
                                 std::span<double> reach, bool coherent, TraceStatistics& s) const {
   const Tile& tile = tiles[tile_index];
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  FilterContext context{{}, &t, this, &tile, &packet, rays.data()};
+  rtcInitIntersectContext(&context.base);
+  context.base.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   alignas(32) RTCRayHit8 rh;
   alignas(32) int valid[kWidth];
   for (uint32_t i = 0; i < kWidth; ++i) {
@@ -109,11 +106,11 @@ void TracerCore::trace_packet(const Tracer& t, uint32_t tile_index, const Packet
     rh.ray.dir_x[i] = static_cast<float>(ray.direction.x), rh.ray.dir_y[i] = static_cast<float>(ray.direction.y);
     rh.ray.dir_z[i] = static_cast<float>(ray.direction.z);
     rh.ray.tnear[i] = 0, rh.ray.tfar[i] = static_cast<float>(reach[packet.ray[j]] - packet.advance[j]), rh.ray.time[i] = 0;
-    rh.ray.mask[i] = 0xffffffffu, rh.ray.id[i] = 0, rh.ray.flags[i] = 0;
+    rh.ray.mask[i] = 0xffffffffu, rh.ray.id[i] = j, rh.ray.flags[i] = 0;
     rh.hit.geomID[i] = rh.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   const uint64_t start = cycles();
-  rtcIntersect8(valid, tile.scene.scene, &context, &rh);
+  rtcIntersect8(valid, tile.scene.scene, &context.base, &rh);
   s.cycles += cycles() - start;
   for (uint32_t i = 0; i < packet.size; ++i) {
     if (rh.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -129,12 +126,12 @@ void TracerCore::trace_packet(const Tracer& t, uint32_t tile_index, const Packet
   }
 }
 
-void TracerCore::occlude_packet(uint32_t tile_index, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked,
+void TracerCore::occlude_packet(const Tracer& t, uint32_t tile_index, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked,
                                   std::span<double> reach, bool coherent, TraceStatistics& s) const {
   const Tile& tile = tiles[tile_index];
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  FilterContext context{{}, &t, this, &tile, &packet, rays.data()};
+  rtcInitIntersectContext(&context.base);
+  context.base.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   alignas(32) RTCRay8 q;
   alignas(32) int valid[kWidth];
   for (uint32_t i = 0; i < kWidth; ++i) {
@@ -147,10 +144,10 @@ void TracerCore::occlude_packet(uint32_t tile_index, const Packet& packet, std::
     q.dir_x[i] = static_cast<float>(ray.direction.x), q.dir_y[i] = static_cast<float>(ray.direction.y);
     q.dir_z[i] = static_cast<float>(ray.direction.z);
     q.tnear[i] = 0, q.tfar[i] = static_cast<float>(reach[packet.ray[j]] - packet.advance[j]), q.time[i] = 0;
-    q.mask[i] = 0xffffffffu, q.id[i] = 0, q.flags[i] = 0;
+    q.mask[i] = 0xffffffffu, q.id[i] = j, q.flags[i] = 0;
   }
   const uint64_t start = cycles();
-  rtcOccluded8(valid, tile.scene.scene, &context, &q);
+  rtcOccluded8(valid, tile.scene.scene, &context.base, &q);
   s.cycles += cycles() - start;
   for (uint32_t i = 0; i < packet.size; ++i)
     if (q.tfar[i] < 0) {
@@ -240,7 +237,7 @@ void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reac
     if (reach[i] < before) blocked[i] = 1, reach[i] = -1;
   }
   if (core_->tiles.empty()) return;
-  core_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { core_->occlude_packet(tile, packet, rays, blocked, reach, coherent, s); });
+  core_->through_tiles(rays, reach, [&](uint32_t tile, const Packet& packet) { core_->occlude_packet(*this, tile, packet, rays, blocked, reach, coherent, s); });
 }
 
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {

@@ -52,12 +52,15 @@ struct Periodic {
 };
 
 struct TracerCore;
+class HitFilter;
 
 class Tracer {
  public:
   // Builds acceleration structures in parallel. The scene must have passed check_scene and outlive nothing: it is kept.
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
-  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt);
+  // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
+  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
+                  std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
