@@ -45,7 +45,8 @@ class CutOut final : public HitFilter {
     if (opacity <= 0 || opacity >= 1) return opacity >= 1;
     uint64_t key = hash_of(bits(ray.origin.x), bits(ray.origin.y), bits(ray.origin.z), bits(ray.time));
     key = hash_of(key, bits(ray.direction.x), bits(ray.direction.y), bits(ray.direction.z));
-    key = hash_of(key, ray.draw, object.instance, hit.triangle);
+    const uint64_t inwards = dot(ray.direction, hit.normal) < 0;
+    key = hash_of(key, ray.draw, object.instance, (uint64_t{hit.triangle} << 1) | inwards);
     return unit_double(key) < opacity;
   }
 

@@ -128,7 +128,7 @@ struct TracerCore {
   TileBvh bvh;
 
   void finish(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
-  bool keeps(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position) const;
+  bool keeps(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal = {}) const;
   // First hit of an exact surface that the filter does not let through.
   std::optional<LocalHit> meet_kept(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double t_min, double t_max) const;
   void finish_exact(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double near, Hit& hit) const;

@@ -10,9 +10,10 @@
 namespace suite {
 
 bool TracerCore::keeps(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, double u, double v,
-                       Vec3 position) const {
+                       Vec3 position, Vec3 normal) const {
   Hit hit;
   hit.position = position;
+  hit.normal = normal;
   hit.object = object;
   hit.triangle = triangle;
   hit.u = static_cast<float>(u), hit.v = static_cast<float>(v);
@@ -25,7 +26,8 @@ std::optional<LocalHit> TracerCore::meet_kept(const Tracer& t, const Ray& ray, u
   const Vec3 origin = to_local.point(ray.origin), direction = to_local.vector(ray.direction);
   auto found = intersect(primitive, origin, direction, t_min, t_max);
   if (!filter || !may_pass[object]) return found;
-  while (found && !keeps(t, ray, object, 0, found->u, found->v, ray.origin + ray.direction * found->t))
+  while (found && !keeps(t, ray, object, 0, found->u, found->v, ray.origin + ray.direction * found->t,
+                         t.objects()[object].to_world.normal(found->normal)))
     found = intersect(primitive, origin, direction, found->t + 1e-12 * std::max(1.0, std::fabs(found->t)), t_max);
   return found;
 }

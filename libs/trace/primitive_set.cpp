@@ -28,7 +28,8 @@ std::optional<LocalHit> meet_kept(const PrimitiveSet& set, const RTCIntersectCon
   auto found = set.meet(id, o, d, t_min, t_max);
   if (!context.core->filter || !context.core->may_pass[object]) return found;
   const Ray& ray = context.rays[context.packet->ray[lane]];
-  while (found && !context.core->keeps(*context.tracer, ray, object, 0, found->u, found->v, set.origin + o + d * found->t))
+  while (found && !context.core->keeps(*context.tracer, ray, object, 0, found->u, found->v, set.origin + o + d * found->t,
+                                                     context.tracer->objects()[object].to_world.normal(found->normal)))
     found = set.meet(id, o, d, found->t + 1e-12 * std::max(1.0, std::fabs(found->t)), t_max);
   return found;
 }
