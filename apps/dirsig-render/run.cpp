@@ -96,10 +96,6 @@ int run_render(const Cli& cli, const RenderOptions& o) {
 
   // Everything that can be refused is refused before rendering starts.
   auto scene = std::make_shared<Scene>(read_scene(sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
-  // A map that is stored but not evaluated would be a picture of another scene.
-  if (!scene->property_bindings.empty())
-    throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene has property maps (mixture, texture, cube, temperature, bump, opacity), which this renderer does not evaluate yet",
-                "prepare it with class maps only");
   resolve_sun(sim, *scene);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);

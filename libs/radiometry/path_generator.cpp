@@ -34,6 +34,7 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   Path& path = wave.path(p);
   path = Path{};
   path.ray = ray.ray;
+  path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   path.weight = ray.weight;
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
@@ -46,7 +47,7 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
-    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time});
+    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
     size_t kept = 0;
@@ -108,7 +109,7 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   node.spectral_factor = 1 / live.shares;
   node.continues = false;
   node.light = {};
-  surface_.interact(hit, node.out, node.at);
+  surface_.interact(hit, node.out, node.at, path.ray.time);
   node.has_direct = node.sunlit = false;
   if (node.at.baked && node.at.baked->model) return true;
   path.end = PathEnd::absorbed;
@@ -126,7 +127,7 @@ void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
     // Light may come in only from the side of the surface that the shading frame says it comes from.
     if (in_side * dot(drawn.direction, node.at.frame.z) <= 0) return;
     node.light[which] = {drawn.direction, drawn.density, static_cast<float>(relative_radiance), spectrum, nullptr, 0};
-    wave.rays.push_back({surface_.tracer().leave(node.hit, drawn.direction), drawn.direction, wave.path(p).ray.time});
+    wave.rays.push_back({surface_.tracer().leave(node.hit, drawn.direction), drawn.direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.owner.push_back(p);
     wave.light.push_back(which);
   };

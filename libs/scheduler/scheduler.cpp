@@ -11,6 +11,7 @@
 #include "scheduler/order.h"
 #include "scheduler/plan.h"
 #include "scheduler/result.h"
+#include "surface/cut_out.h"
 
 namespace suite {
 
@@ -26,26 +27,6 @@ Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
   return e;
 }
 
-// Materials that some geometry can show; the others are never baked.
-std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
-  std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
-  for (const TracedObject& o : tracer.objects()) {
-    if (o.material_override != kNone)
-      used[o.material_override] = true;
-    else if (o.mesh != kNone)
-      mesh_seen[o.mesh] = true;
-    else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone)
-      used[id] = true;
-  }
-  for (size_t m = 0; m < scene.meshes.size(); ++m)
-    for (const Part& p : scene.meshes[m].parts)
-      if (mesh_seen[m] && p.material != kNone) used[p.material] = true;
-  for (const MapBinding& b : scene.map_bindings)
-    if (used[b.material])
-      for (const uint32_t id : scene.class_maps[b.class_map].materials) used[id] = true;
-  return used;
-}
-
 // Everything that belongs to one spectral state; kept while captures ask for the same one.
 struct StateKit {
   Optics optics;
@@ -55,7 +36,7 @@ struct StateKit {
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
            std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)),
+      : optics(scene, state, used_materials(scene, tracer.objects())),
         environment(bake_sources(sources, state)),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
@@ -119,7 +100,7 @@ class Job {
 
   JobReport run() {
     const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
-    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
