@@ -91,6 +91,9 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (!scene->property_bindings.empty())
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene has property maps (mixture, texture, cube, temperature, bump, opacity), which this renderer does not evaluate yet",
                 "prepare it with class maps only");
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   resolve_sun(sim, *scene);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);

@@ -1,7 +1,9 @@
 #include <cmath>
 
 #include "formats/instances/instances.h"
+#include "formats/motion/motion.h"
 #include "formats/scene_text/reader.h"
+#include "formats/tle/tle.h"
 #include "math/dualquat.h"
 
 namespace suite::scene_text {
@@ -72,7 +74,18 @@ ScatterRule read_scatter(const Params& p) {
 
 }  // namespace
 
-DraftPlacement Reader::read_placement(const Params& p) {
+// Geodetic places mean something in `world` only: groups do not know where they will stand.
+std::shared_ptr<const Track> Reader::read_motion(const Params& p, bool world) {
+  MotionContext context;
+  if (world && draft_.origin.given)
+    context.frame.emplace(Geodetic{draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
+  if (!draft_.epoch.empty()) context.clock.emplace(parse_iso8601(draft_.epoch));
+  context.satellites = [](const std::string& path, const std::string& satellite) { return read_tle_of(path, satellite).elements; };
+  context.resolve = [this](const Params& file) { return input(file); };
+  return track_from(p, context);
+}
+
+DraftPlacement Reader::read_placement(const Params& p, bool world) {
   DraftPlacement made;
   made.where = p.where();
   made.target = reference(p.at("place"));
@@ -87,6 +100,10 @@ DraftPlacement Reader::read_placement(const Params& p) {
     if (made.table) throw v->error("'table' and 'scatter' cannot be combined");
     if (!made.on.given()) throw v->error("'scatter' needs 'on', the terrain or mesh to scatter over");
     made.scatter = read_scatter(*v);
+  }
+  if (const auto v = p.find("motion")) {
+    made.motion = read_motion(*v, world);
+    made.motion_where = v->where();
   }
   if (const auto m = p.find("matrix")) {
     for (const char* other : {"translate", "rotate", "scale"})
@@ -117,7 +134,7 @@ void Reader::read_group(const std::string& name, const Params& p) {
   const size_t slot = draft_.groups.size();
   draft_.groups.push_back({name, p.where(), {}});
   for (const Params& row : p.items())
-    item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row)); });
+    item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row, slot == 0)); });
 }
 
 }  // namespace suite::scene_text

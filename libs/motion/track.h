@@ -16,6 +16,8 @@
 
 namespace suite {
 
+struct TrackRecord;
+
 // Immutable; all members may be called from many threads.
 class Track {
  public:
@@ -28,6 +30,8 @@ class Track {
   virtual TimeSpan covered() const;  // all times by default
   // Times inside the span where the motion has a kink (keyframes), ascending; none by default.
   virtual std::vector<double> kinks(TimeSpan span) const;
+  // As plain data (track_record.h). Error for a kind that cannot be stored.
+  virtual TrackRecord record() const;
 
  protected:
   void check_time(double t) const;  // Error outside covered()
