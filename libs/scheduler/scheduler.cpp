@@ -77,8 +77,10 @@ struct Item {
   StatePair state;
 };
 
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+// moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   std::vector<Item> items;
+  std::map<std::pair<double, double>, size_t> windows;
   std::vector<const SpectralState*> distinct;
   for (size_t s = 0; s < sensors.size(); ++s) {
     std::vector<size_t> number;  // of each of the sensor's states
@@ -89,8 +91,11 @@ std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
       if (known == distinct.end()) distinct.push_back(&state);
     }
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c)
-        items.push_back({s, t, c, items.size(), {0, number[sensors[s]->tasks()[t].captures[c].state]}});
+      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
+        const Capture& capture = sensors[s]->tasks()[t].captures[c];
+        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
+      }
   }
   return items;
 }
@@ -113,9 +118,9 @@ class Job {
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
 
   JobReport run() {
-    const std::vector<Item> items = in_cheapest_order(items_of(sensors_), report_.state_changes);
+    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic);
-    take_tracer(items.empty() ? TimeWindow{} : capture_of(items.front()).window);
+    if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
@@ -132,18 +137,20 @@ class Job {
     return sensors_[item.sensor]->tasks()[item.task].captures[item.capture];
   }
 
-  // The scene as it moves in a window; windows in which it does not share one tracer.
-  void take_tracer(const TimeWindow& window) {
-    tracer_ = tracers_->get({window.begin, window.end});
-    report_.tracer_builds = tracers_->builds();
-  }
-
   // The budget, with a time budget turned into a maximum of paths as soon as that is known.
   Budget budget() const {
     Budget b = options_.budget;
     if (b.seconds <= 0) return b;
     b.max_paths = cap_ ? cap_ : b.max_paths.value_or(kDefaultMost);
     return b;
+  }
+
+  // Makes the tracer of a capture's time window the current one; true when it had to be built.
+  bool tracer_of(const Capture& capture) {
+    const size_t before = tracers_->builds();
+    tracer_ = tracers_->get({capture.window.begin, capture.window.end});
+    report_.tracer_builds = tracers_->builds();
+    return tracers_->builds() > before;
   }
 
   // What the store has to hold of each capture, by number.
@@ -186,8 +193,7 @@ class Job {
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
     CaptureLog log;
-    take_tracer(capture.window);
-    report_.build_seconds += seconds_since(begun);
+    log.new_tracer = tracer_of(capture);
     StateKit& kit = kit_of(item, log);
     const Surface surface(*tracer_, kit.optics);
     const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
@@ -311,7 +317,7 @@ class Job {
   Clock::time_point start_ = Clock::now();
   JobReport report_;
   std::unique_ptr<TracerCache> tracers_;
-  std::shared_ptr<const Tracer> tracer_;
+  std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
   std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
   ErrorHistogram errors_;
@@ -344,9 +350,9 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   return most;
 }
 
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors), order.state_changes)) order.captures.push_back(i.id);
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
   return order;
 }
 
