@@ -269,6 +269,13 @@ Provenance read_provenance(const std::string& path) {
   return p;
 }
 
+SceneOrigin read_scene_origin(const std::string& path) {
+  Reader r(path);
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  const auto o = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
+  return {{o[0], o[1], o[2], o[3] != 0}, r.text("epoch_utc")};
+}
+
 Scene read_scene(const std::string& path, const BundleReader& decode) {
   Reader r(path);
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");

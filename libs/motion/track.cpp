@@ -207,6 +207,29 @@ class Composed final : public Track {
   TrackPtr outer_, inner_;
 };
 
+class Delayed final : public Track {
+ public:
+  Delayed(TrackPtr track, double seconds) : track_(std::move(track)), later_(seconds) {
+    SUITE_CHECK(track_ != nullptr);
+    need_finite(std::isfinite(seconds), "delay");
+  }
+  Pose at(double t) const override { return track_->at(t - later_); }
+  Vec3 velocity(double t) const override { return track_->velocity(t - later_); }
+  TimeSpan covered() const override {
+    const TimeSpan c = track_->covered();
+    return {c.begin + later_, c.end + later_};
+  }
+  std::vector<double> kinks(TimeSpan span) const override {
+    std::vector<double> times = track_->kinks({span.begin - later_, span.end - later_});
+    for (double& t : times) t += later_;
+    return times;
+  }
+
+ private:
+  TrackPtr track_;
+  double later_;
+};
+
 class Orbit final : public Track {
  public:
   Orbit(std::shared_ptr<const Sgp4> orbit, const SceneFrame& frame, const Clock& clock, double dut1)
@@ -389,6 +412,7 @@ TrackPtr spin_track(const SpinMotion& motion) { return std::make_shared<Spin>(mo
 TrackPtr composed_track(TrackPtr outer, TrackPtr inner) {
   return std::make_shared<Composed>(std::move(outer), std::move(inner));
 }
+TrackPtr delayed_track(TrackPtr track, double seconds) { return std::make_shared<Delayed>(std::move(track), seconds); }
 TrackPtr orbit_track(std::shared_ptr<const Sgp4> orbit, const SceneFrame& frame, const Clock& clock, double dut1) {
   return std::make_shared<Orbit>(std::move(orbit), frame, clock, dut1);
 }

@@ -99,6 +99,9 @@ TrackPtr spin_track(const SpinMotion& motion);
 // inner, given in the moving frame of outer: a camera on a gimbal on an aircraft.
 TrackPtr composed_track(TrackPtr outer, TrackPtr inner);
 
+// The same motion, `seconds` later: at t where `track` is at t - seconds. Cannot be stored.
+TrackPtr delayed_track(TrackPtr track, double seconds);
+
 // A satellite: position from SGP4, in the scene's frame; clock and dut1 (s) tie simulation time to UTC. Orientation:
 // z away from the Earth's ellipsoid, y along the velocity over the rotating Earth as nearly as that allows.
 // Error at times where the theory refuses the elements.
