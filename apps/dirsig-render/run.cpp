@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/files.h"
 #include "base/progress.h"
@@ -12,6 +13,7 @@
 #include "log.h"
 #include "motion/ephemeris.h"
 #include "optics/models.h"
+#include "scene/combine.h"
 #include "output.h"
 
 namespace suite {
@@ -41,6 +43,21 @@ void resolve_sun(Simulation& sim, const Scene& scene) {
   sim.sources.sun->direction = sun.direction;
   if (sim.sun_by_time->disk_from_distance) sim.sources.sun->half_angle = sun.angular_radius;
   note(strf("sun at %s: %.3f degrees above the horizon, %.5f AU", to_iso8601(sim.sun_by_time->utc, 0).c_str(), sun.elevation / kDegree, sun.distance / kAstronomicalUnit));
+}
+
+// All scenes of the simulation as one.
+Scene load_scenes(const Simulation& sim) {
+  std::vector<ScenePart> parts;
+  for (const SimulationScene& s : sim.scenes) {
+    Scene scene = read_scene(s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; });
+    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
+  }
+  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
+  try {
+    return combine_scenes(std::move(parts));
+  } catch (const Error& e) {
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
+  }
 }
 
 int dry_run(const Simulation& sim, const JobOptions& options) {
@@ -95,7 +112,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  auto scene = std::make_shared<Scene>(read_scene(sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
+  const auto scene = std::make_shared<const Scene>(load_scenes(sim));
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   resolve_sun(sim, *scene);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);

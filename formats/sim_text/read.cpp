@@ -3,6 +3,7 @@
 #include <set>
 
 #include "formats/curve/curve.h"
+#include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 
 namespace suite {
@@ -96,7 +97,7 @@ Simulation read_simulation(const std::string& path, const std::function<void(con
   const Params root = Params::parse_file(path);
   Simulation sim;
   sim.path = path;
-  sim.scene_path = root.at("scene").as_path();
+  read_scenes(root, sim);
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
   if (const auto sun = root.find("sun")) read_sun(*sun, sim);

@@ -25,9 +25,17 @@ struct OutputSpec {
   std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
 };
 
+// One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
+struct SimulationScene {
+  std::string path;
+  std::optional<Affine3> placement;      // none: by its origin on the Earth
+  std::shared_ptr<const Track> motion;   // null: at rest
+};
+
 struct Simulation {
   std::string path;
-  std::string scene_path;
+  std::vector<SimulationScene> scenes;
+  std::string scene_path;                // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
   SourceSpecs sources;
