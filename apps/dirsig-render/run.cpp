@@ -11,10 +11,10 @@
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
 #include "log.h"
-#include "motion/ephemeris.h"
 #include "optics/models.h"
 #include "scene/combine.h"
 #include "output.h"
+#include "radiometry/sources/source_table.h"
 
 namespace suite {
 
@@ -25,24 +25,17 @@ int list_sensors() {
   return 0;
 }
 
+int list_sources() {
+  for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
+  return 0;
+}
+
 int list_models() {
   for (const ModelRow& row : models()) {
     std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
     for (const ModelParameter& p : row.parameters) std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(), p.required ? "" : ", optional");
   }
   return 0;
-}
-
-// The Sun's direction (and size) from date and place.
-void resolve_sun(Simulation& sim, const Scene& scene) {
-  if (!sim.sun_by_time) return;
-  if (!scene.origin.given)
-    throw Error(sim.sun_by_time->where, "a sun by date needs a scene with a geodetic origin", "give the scene an origin, or the sun {zenith_deg, azimuth_deg}");
-  const SceneFrame frame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
-  const SkyBody sun = sun_at(frame, {}, instant_from_utc(sim.sun_by_time->utc));
-  sim.sources.sun->direction = sun.direction;
-  if (sim.sun_by_time->disk_from_distance) sim.sources.sun->half_angle = sun.angular_radius;
-  note(strf("sun at %s: %.3f degrees above the horizon, %.5f AU", to_iso8601(sim.sun_by_time->utc, 0).c_str(), sun.elevation / kDegree, sun.distance / kAstronomicalUnit));
 }
 
 // All scenes of the simulation as one.
@@ -91,6 +84,7 @@ void tell(const JobReport& r) {
 
 int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sensors) return list_sensors();
+  if (o.list_sources) return list_sources();
   if (o.list_models) return list_models();
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
@@ -116,10 +110,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
-  resolve_sun(sim, *scene);
+  for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);
-  if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
+  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);

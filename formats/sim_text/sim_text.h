@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "motion/time.h"
 #include "scheduler/scheduler.h"
 #include "sensor/sensors.h"
 
 namespace suite {
-
-// A Sun whose direction follows from date and place.
-struct SunByTime {
-  Utc utc;
-  Where where;
-  bool disk_from_distance = true;    // half angle from the Earth-Sun distance of the date
-};
 
 struct OutputSpec {
   enum class Type { float32, float64 } type = Type::float32;
@@ -38,8 +30,7 @@ struct Simulation {
   std::string scene_path;                // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
-  SourceSpecs sources;
-  std::optional<SunByTime> sun_by_time;   // sources.sun is there, its direction still to be computed
+  SourceSpecs sources;               // as written: dates, phases and clear skies are still to be resolved
   std::vector<std::unique_ptr<Sensor>> sensors;
   OutputSpec output;
 };
