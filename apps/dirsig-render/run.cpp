@@ -70,14 +70,17 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--paths") && (o.paths < 1 || o.paths > (1LL << 30))) throw UsageError("--paths wants a number from 1 to 2^30");
 
-  std::vector<std::string> material_names;
-  std::string folder = o.output;
-  OutputSpec output;
-  const auto deliver = [&](const Sensor& sensor, const CaptureResult& result) {
-    for (const std::string& file : write_capture(folder, sensor, result, output, material_names)) note("wrote " + file);
+  // The scene is read when a sensor asks where on the Earth it is, else before rendering.
+  std::shared_ptr<Scene> scene;
+  const auto load = [&](const std::string& path) -> const Scene& {
+    if (!scene) scene = std::make_shared<Scene>(read_scene(path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
+    return *scene;
   };
-  Simulation sim = read_simulation(o.simulation, deliver);
-  output = sim.output;
+  std::unique_ptr<OutputWriter> writer;
+  SimulationCallbacks callbacks;
+  callbacks.deliver = [&](const Delivery& delivery) { writer->take(delivery); };
+  callbacks.origin = [&](const std::string& path) { return load(path).origin; };
+  Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -86,16 +89,21 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  auto scene = std::make_shared<Scene>(read_scene(sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
+  load(sim.scene_path);
   // A map that is stored but not evaluated would be a picture of another scene.
   if (!scene->property_bindings.empty())
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene has property maps (mixture, texture, cube, temperature, bump, opacity), which this renderer does not evaluate yet",
                 "prepare it with class maps only");
   resolve_sun(sim, *scene);
-  for (const Material& m : scene->materials) material_names.push_back(m.id);
-  make_folder(folder);
+  for (const auto& sensor : sim.sensors) check_preview(*sensor, sim.output);
+  SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
+  for (const Material& m : scene->materials) notes.materials.push_back(m.id);
+  make_folder(o.output);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
   if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
   tell(run_job(scene, sim.sources, sim.sensors, options));
+  for (const auto& sensor : sim.sensors)
+    for (const TextFile& log : sensor->logs()) writer->write_text(log);
   return 0;
 }
 

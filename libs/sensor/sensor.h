@@ -89,6 +89,12 @@ enum QualityFlag : uint8_t {
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
 };
 
+// A text that a sensor writes: a log, a table of results.
+struct TextFile {
+  std::string name;  // file name without folder
+  std::string text;
+};
+
 class Sensor {
  public:
   virtual ~Sensor() = default;
@@ -108,6 +114,8 @@ class Sensor {
   virtual SensorRay ray(const RayRequest& request) const = 0;
   // Called once per capture, from one thread, in any order of captures. The job is over when all have been accepted.
   virtual void accept(CaptureResult&& result) = 0;
+  // Texts that do not depend on rendering (logs of pose and time), asked for when the job is over.
+  virtual std::vector<TextFile> logs() const { return {}; }
 };
 
 // What is collected unless a sensor or its user says otherwise.

@@ -5,5 +5,6 @@
 namespace suite {
 
 SensorRow frame_camera_row();
+SensorRow platform_row();
 
 }  // namespace suite
