@@ -104,9 +104,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   h.interleave = static_cast<Interleave>(spec_.order);
   h.data_units = kUnits[static_cast<size_t>(spec_.units)];
   for (size_t c = 0; c < d.result.channels; ++c)
-    for (size_t t = 0; t < d.result.time_bins; ++t)
+    for (size_t t = 0; t < d.result.bins; ++t)
       for (const Band& b : d.bands) {
-        h.band_names.push_back(b.name + (c ? " single" : "") + (d.result.time_bins > 1 ? strf(" t%zu", t) : ""));
+        h.band_names.push_back(b.name + (c ? " single" : "") + (d.result.bins > 1 ? strf(" t%zu", t) : ""));
         h.wavelength_um.push_back(b.center_um);
         h.fwhm_um.push_back(b.fwhm_um);
         m.factor.push_back(unit_factor(spec_.units, b));

@@ -77,7 +77,7 @@ CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t
   r.rows = capture.rows;
   r.bands = bands;
   r.channels = channels;
-  r.time_bins = capture.time_bins;
+  r.bins = capture.bins;
   r.truth_names = truth.columns();
   const size_t n = capture.problems(), values = r.values_per_problem();
   r.radiance.resize(n * values);
@@ -149,7 +149,7 @@ JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& 
         const size_t bands = kit->projection.bands();
         const Convergence goal = goal_of(capture, options);
         const size_t channels = sensor->channels().size();
-        Accumulators sums(capture.problems(), bands * channels * capture.time_bins, Accumulators::scrambles_for(goal.max_paths), truth.slots());
+        Accumulators sums(capture.problems(), bands * channels * capture.bins, Accumulators::scrambles_for(goal.max_paths), truth.slots());
         sensor->begin(capture);
         std::vector<uint32_t> plan(capture.problems(), goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
         run_stage(pipeline, *sensor, capture, capture_id, 0, plan, sums, report.statistics, progress.get());

@@ -9,7 +9,7 @@ namespace suite {
 
 namespace {
 std::vector<SensorRow>& table() {
-  static std::vector<SensorRow> rows{frame_camera_row(), platform_row()};
+  static std::vector<SensorRow> rows{frame_camera_row(), platform_row(), orthographic_row(), fisheye_row(), point_row(), goniometer_row(), rami_row()};
   return rows;
 }
 }  // namespace

@@ -49,6 +49,7 @@ struct FocalArray {
   uint32_t columns = 0, rows = 0;  // of detectors, over all chips
   Readout readout;
   Convergence convergence;
+  uint32_t time_bins = 1;          // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
   size_t instrument = 0;
   std::vector<size_t> segments;

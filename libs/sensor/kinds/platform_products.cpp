@@ -45,8 +45,8 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
     for (size_t b = 0; b < bands; ++b) {
       // The photon bands follow the listed ones; every band has detectors of its own.
       double signal = 0;
-      for (size_t t = 0; t < result.time_bins; ++t)
-        signal += result.radiance[(i * result.time_bins + t) * result.bands + bands + b] / static_cast<double>(result.time_bins);
+      for (size_t t = 0; t < result.bins; ++t)
+        signal += result.radiance[(i * result.bins + t) * result.bands + bands + b] / static_cast<double>(result.bins);
       signal *= factor * segment.electrons[b];
       const uint64_t own = hash_of(segment.array, b, uint64_t{detector_row} * 0x100000000ull + column);
       Detector::Character character = detector.character(own);

@@ -130,6 +130,8 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   read_chips(p, array, own_bands);
   if (static_cast<double>(array.image_columns()) * array.rows > 4e9) throw p.error("an array of more than 4e9 detectors");
   array.convergence = read_convergence(p);
+  array.time_bins = static_cast<uint32_t>(p.integer("time_bins", 1, 10000, 1));
+  if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global) throw p.at("time_bins").error("time bins need a global read-out");
   array.detector = read_detector(p, context);
   const Lens& lens = spec.instruments[instrument].lens;
   if (array.detector && !(lens.aperture > 0)) throw p.at("detector").error("a detector needs to know how much light comes in", "give the instrument aperture_mm or f_number");

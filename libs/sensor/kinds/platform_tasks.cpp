@@ -56,6 +56,7 @@ void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
     c.rows = rows;
     c.state = s;
     c.convergence = array.convergence;
+    if (array.time_bins > 1) c.bin_by = Capture::BinBy::time, c.bins = array.time_bins;
     task.captures.push_back(std::move(c));
     parts.push_back({array_number, s, event});
   }
