@@ -11,6 +11,7 @@ AppInfo render_info() {
           "  NAME_error.img   standard error of the radiance, same bands\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
           "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
+          "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"
           "The same seed gives the same bytes for any number of threads.\n\n"
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
@@ -26,6 +27,8 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
+  cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }
 

@@ -10,6 +10,8 @@
 #include "motion/ephemeris.h"
 #include "optics/models.h"
 #include "output.h"
+#include "radiometry/truth/truth.h"
+#include "sensor/plugin.h"
 
 namespace suite {
 
@@ -17,6 +19,11 @@ namespace {
 
 int list_sensors() {
   for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
+  return 0;
+}
+
+int list_truth() {
+  for (const TruthRow& row : truth_rows()) std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [", row.unit.c_str(), row.unit.empty() ? "" : "]");
   return 0;
 }
 
@@ -65,7 +72,9 @@ void tell(const JobReport& r) {
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
+  for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (o.list_sensors) return list_sensors();
+  if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--paths") && (o.paths < 1 || o.paths > (1LL << 30))) throw UsageError("--paths wants a number from 1 to 2^30");
@@ -95,7 +104,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene has property maps (mixture, texture, cube, temperature, bump, opacity), which this renderer does not evaluate yet",
                 "prepare it with class maps only");
   resolve_sun(sim, *scene);
-  for (const auto& sensor : sim.sensors) check_preview(*sensor, sim.output);
+  for (const auto& sensor : sim.sensors) {
+    check_preview(*sensor, sim.output);
+    for (const std::string& truth : sensor->truth()) find_truth(truth);
+  }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   make_folder(o.output);

@@ -13,7 +13,8 @@ namespace suite {
 
 namespace {
 
-constexpr int kViews = 76;  // -75, -73 ... 75 degrees in each plane
+constexpr int kViews = 76;        // -75, -73 ... 75 degrees in each plane
+constexpr double kAbove = 1e-3;  // m: where the look at the ground starts
 
 class Rami final : public SimpleSensor {
  public:
@@ -52,7 +53,7 @@ class Rami final : public SimpleSensor {
       const Dir out = cosine_hemisphere({r.u[2], r.u[3]});
       return {{patch_.at(r.u[0], r.u[1], top_), -out, moment(0)}};
     }
-    return {{patch_.at(r.u[0], r.u[1], ground_ + 1e-4), {0, 0, -1}, moment(0)}};  // the ground itself
+    return {{patch_.at(r.u[0], r.u[1], ground_ + kAbove), {0, 0, -1}, moment(0)}};  // the ground itself
   }
 
  private:
