@@ -80,9 +80,10 @@ class Platform final : public Sensor {
     // Find the place in the focal plane whose light it collects.
     Vec2 place = place_of(array, column, row, u[0], u[1]).place;
     if (r.stages > 1) place.y += r.direction * (stage - 0.5 * (r.stages - 1)) * array.pitch.y;
+    // (Radius and wavelength come from one block, so that weights are stratified together.)
     SensorRay out;
     if (s.psf) {
-      const Vec2 offset = s.psf->sample(u[3], u[4], u[5]);
+      const Vec2 offset = s.psf->sample(u[4], u[5], u[6]);
       place = {place.x - offset.x, place.y - offset.y};
       if (s.psf->spectral()) {
         s.psf->weights(offset, request.spectral);
@@ -95,7 +96,7 @@ class Platform final : public Sensor {
     Dir direction = instrument.lens.look(place);
     Vec3 origin;
     if (instrument.lens.thin()) {
-      const Vec2 pupil = instrument.lens.pupil(u[6], u[7]);
+      const Vec2 pupil = instrument.lens.pupil(u[3], u[7]);
       origin = {pupil.x, pupil.y, 0};
       direction = direction * (instrument.lens.focus_distance / -direction.z) - origin;
     }
