@@ -10,7 +10,10 @@ namespace suite {
 struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins;
-  long long paths = 0, seed = -1;
+  std::string paths, target_error, target_bands = "reference", time, stop = "plan";
+  double target_floor = -1;
+  long long seed = -1, more = -1;
+  bool state = false, resume = false;
   bool dry_run = false, list_sensors = false, list_models = false, list_truth = false;
 };
 

@@ -76,6 +76,7 @@ struct OutputWriter::Image {
   std::vector<double> preview;   // [pixel][chosen]
   std::vector<std::string> names;
   std::vector<float> all;        // [pixel][value], for formats that take a whole picture
+  std::vector<double> correlation;  // [band][band], summed over rows
   std::optional<MapGrid> map;
   std::string description;
 };
@@ -183,6 +184,9 @@ void OutputWriter::take(const Delivery& delivery) {
     m.error->append(error);
     if (m.truth) m.truth->append(d.result.truth);
     for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
+    // Of an image in parts the correlation is the mean over its rows.
+    m.correlation.resize(d.result.bands * d.result.bands);
+    for (size_t i = 0; i < m.correlation.size(); ++i) m.correlation[i] += d.result.error_correlation[i] * d.result.rows;
     m.next += d.result.rows;
     m.waiting.erase(next);
   }
@@ -204,6 +208,15 @@ void OutputWriter::take(const Delivery& delivery) {
     write_exr(base + ".exr", m.columns, m.rows, m.names, m.all, strf("suite %s: ", kVersion) + command_line() + m.description);
     m.files.push_back(base + ".exr");
   }
+  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
+  const size_t bands = delivery.bands.size();
+  for (const Band& b : delivery.bands) correlation += "," + b.name;
+  for (size_t a = 0; a < bands; ++a) {
+    correlation += "\n" + delivery.bands[a].name;
+    for (size_t b = 0; b < bands; ++b) correlation += strf(",%.4f", m.correlation[a * bands + b] / m.rows);
+  }
+  m.files.push_back(base + "_error_correlation.csv");
+  write_file(m.files.back(), correlation + "\n");
   write_preview(base + ".png", m.preview, m.columns, m.rows, m.chosen.size());
   m.files.push_back(base + ".png");
   for (const std::string& file : m.files) note("wrote " + file);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/scene_hdf/h5.h"
+#include "formats/hdf5/h5.h"
 #include "scene/scene.h"
 
 namespace suite {

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
-#include "formats/scene_hdf/h5.h"
+#include "formats/hdf5/h5.h"
 #include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"

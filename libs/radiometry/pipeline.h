@@ -17,12 +17,41 @@ namespace suite {
 
 inline constexpr int kMaxNodes = 64;
 
+// When a problem stops taking samples.
+enum class StopRule : uint8_t {
+  plan,    // at the count that was planned for it beforehand: unbiased
+  change,  // the paper's: when one more sample changes the running mean at the reference band by less than a threshold.
+           // It looks at the samples that it keeps and is biased low where rare events carry the light.
+};
+
 struct PipelineOptions {
   uint64_t seed = 1;
   int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
   int roulette_after = 3;        // nodes before paths may end by chance
   bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
+  StopRule stop = StopRule::plan;
+  uint32_t change_after = 20;    // StopRule::change: samples before the first test
+  double change = 1e-3;          // StopRule::change: relative change that counts as convergence
 };
+
+// Samples are dealt to independent scrambles of the sequence, from whose spread the standard error comes. The rule depends
+// on the sample's number alone, so that a run that is continued deals like one that never stopped: four scrambles share
+// the first 256 samples, four more the next 256, all eight take turns from there on.
+struct Deal {
+  uint32_t scramble, index;
+};
+constexpr Deal deal(uint32_t sample) {
+  if (sample < 256) return {sample % 4, sample / 4};
+  if (sample < 512) return {4 + sample % 4, (sample - 256) / 4};
+  return {sample % 8, 64 + (sample - 512) / 8};
+}
+// How many of the first n samples went to a scramble.
+constexpr uint32_t dealt(uint32_t n, uint32_t scramble) {
+  const uint32_t begin = scramble < 4 ? 0 : 256, lane = scramble % 4;
+  const uint32_t early = n <= begin ? 0 : n - begin < 256 ? n - begin : 256;
+  const uint32_t late = n > 512 ? n - 512 : 0;
+  return (early + 3 - lane) / 4 + (late + 7 - scramble) / 8;
+}
 
 struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
@@ -37,7 +66,7 @@ struct RunStatistics {
 class Accumulators {
  public:
   Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);
-  // Number of scrambles for a count of paths: 4 up to 256, 8 above (both cover 95-97 % at the nominal 95 %).
+  // Number of scrambles that `paths` samples are dealt to.
   static int scrambles_for(uint32_t paths) { return paths > 256 ? 8 : 4; }
 
   int scrambles() const { return scrambles_; }
@@ -54,11 +83,19 @@ class Accumulators {
   // Largest single sample at the reference band, for the tail indicator.
   float& largest(size_t problem) { return largest_[problem]; }
   float largest(size_t problem) const { return largest_[problem]; }
+  size_t truth_slots() const { return truth_slots_; }
   double* truth(size_t problem) { return truth_.data() + problem * truth_slots_; }
   const double* truth(size_t problem) const { return truth_.data() + problem * truth_slots_; }
 
-  // Mean and standard error of one band of one problem.
+  // Mean and standard error of one band of one problem. The variance of the mean, sum of (share^2 variance) over the
+  // scrambles, is estimated without bias for any shares and variances of the scrambles below one half each:
+  //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
+  // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples.
   void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
+  // The same for all values of a problem at once; spans of bands() values.
+  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
+  // Forgets everything.
+  void clear();
 
  private:
   size_t bands_;
@@ -74,8 +111,13 @@ class Accumulators {
 struct Block {
   uint32_t column = 0, row = 0, columns = 0, rows = 0;
 };
-// Square blocks (8 x 8) that cover a capture, row by row.
+// Square blocks that cover a capture, row by row.
+inline constexpr uint32_t kBlockEdge = 8;
 std::vector<Block> blocks_of(const Capture& capture);
+
+// Where the accumulators of a block's problems stand: at their own numbers, for accumulators of a whole capture, or at
+// their places in the block, for accumulators of one block.
+enum class Slots : uint8_t { by_problem, by_place };
 
 class Pipeline {
  public:
@@ -84,10 +126,10 @@ class Pipeline {
            const BandProjection& projection, size_t reference_band, const TruthPlan& truth, const PipelineOptions& options);
   ~Pipeline();
 
-  // Runs the samples [from, to[problem]) of each problem of a block and adds them to the accumulators; sample s goes to
-  // scramble s % scrambles. Problems whose `to` is not above `from` are left alone. Thread-safe for distinct blocks.
-  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, uint32_t from,
-           std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const;
+  // Continues each problem of a block from the paths that its accumulators hold up to to[problem]. Thread-safe for
+  // distinct blocks.
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, std::span<const uint32_t> to,
+           Accumulators& sums, Slots slots, RunStatistics& statistics) const;
 
  private:
   const Surface& surface_;

@@ -85,6 +85,7 @@ struct CaptureResult {
   std::vector<uint8_t> quality;          // [problem], bits of QualityFlag
   std::vector<std::string> truth_names;  // "material", "range [m]", ...
   std::vector<double> truth;             // [problem][truth_names]; NaN = no data
+  std::vector<double> error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
   size_t problems() const { return size_t{columns} * rows; }
   size_t values_per_problem() const { return channels * bins * bands; }
 };

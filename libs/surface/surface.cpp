@@ -89,7 +89,7 @@ void Surface::interact(const Hit& hit, Dir out, Interaction& at) const {
     const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
     const Vec3 local = oct_decode(mesh.normals[i[0]]) * (1.0 - hit.u - hit.v) + oct_decode(mesh.normals[i[1]]) * double{hit.u} +
                        oct_decode(mesh.normals[i[2]]) * double{hit.v};
-    const Vec3 world = object.to_world.normal(local);
+    const Vec3 world = tracer_.to_world(hit).normal(local);
     if (const double len = length(world); len > 0) n = world / len;
     if (dot(n, hit.normal) < 0) n = -n;  // vertex normals against the winding: the winding decides the front
     // A shading normal that turns away from the viewer would make a black edge: bend it back just into view.

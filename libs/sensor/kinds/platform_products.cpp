@@ -17,6 +17,8 @@ void keep_bands(CaptureResult& r, size_t keep) {
   };
   cut(r.radiance);
   cut(r.standard_error);
+  cut(r.error_correlation);  // its first rows are the ones to keep
+  r.error_correlation.resize(keep * keep);
   r.bands = keep;
 }
 
