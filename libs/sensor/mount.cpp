@@ -62,6 +62,7 @@ struct Tabulated final : Mount {
 struct LookAt final : Mount {
   Quat at(double t, const Pose& carrier) const override {
     const Vec3 to = target->at(t).translation - carrier.translation;
+    if (!(length(to) > 0)) throw Error("a mount's target is in the mount's own place", "give another target");
     const Dir z = -normalized(to);
     // The picture's top is as nearly up as it can be; looking straight down it is the carrier's forward axis.
     const bool down = std::fabs(z.z) > 1 - 1e-9;

@@ -50,7 +50,7 @@ materials:
   soil: {{model: lambert, reflectance: {soil}}}
 objects:
   disc: {{disk: {{radius: {radius}}}, material: leaf}}
-  ground: {{plane: {{width: 0, depth: 0}}, material: soil}}
+  ground: {{plane: {{width: {2 * half}, depth: {2 * half}}}, material: soil}}
 world:
   - {{place: disc, table: leaves.csv, tag: leaves}}
   - {{place: ground, tag: soil}}
