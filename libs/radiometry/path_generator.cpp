@@ -33,6 +33,7 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   Path& path = wave.path(p);
   path = Path{};
   path.ray = ray.ray;
+  path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   path.weight = ray.weight;
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
@@ -45,7 +46,7 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
-    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time});
+    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
     size_t kept = 0;
@@ -105,7 +106,7 @@ bool PathGenerator::scatters(Path& path, const Node& node) const {
 
 bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   Node& node = add_node(wave, p, hit);
-  surface_.interact(hit, node.out, node.at);
+  surface_.interact(hit, node.out, node.at, wave.path(p).ray.time);
   if (environment_.lamps) meet_glow(wave, p);
   return scatters(wave.path(p), node);
 }
@@ -133,7 +134,6 @@ bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   node.at.baked = &optics_.material(node.at.material);
   return scatters(wave.path(p), node);
 }
-
 
 // Draws where the path goes from its last node; false when it ends there.
 bool PathGenerator::go_on(Wave& wave, uint32_t p) {

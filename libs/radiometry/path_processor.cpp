@@ -72,10 +72,9 @@ void add_node(Wave& wave, size_t p, int n, bool continues, std::span<float> radi
     for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
   }
   if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
-  if (node.glow) {
-    const float factor = static_cast<float>(node.glow_factor);
-    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * node.glow[i];
-  }
+  if (!node.glow) return;
+  const float factor = static_cast<float>(node.glow_factor);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * node.glow[i];
 }
 
 }  // namespace
@@ -94,8 +93,7 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
     for (float& x : radiance) x *= static_cast<float>(path.weight);
 }
 
-void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance,
-                    std::span<float> single) {
+void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance, std::span<float> single) {
   const Path& path = wave.path(p);
   if (path.size < 2) {
     std::copy(radiance.begin(), radiance.end(), single.begin());
@@ -103,8 +101,7 @@ void process_single(Wave& wave, size_t p, const Environment& environment, std::s
   }
   add_node(wave, p, 0, false, single);
   const Node& first = wave.node(p, 0);
-  if (environment.atmosphere)
-    through_air(*environment.atmosphere, path.ray.origin, path.ray.direction, first.hit.distance, first.spectral_factor, wave, single);
+  if (const Atmosphere* air = environment.atmosphere.get()) through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
   if (path.weight != 1)
     for (float& x : single) x *= static_cast<float>(path.weight);
 }
