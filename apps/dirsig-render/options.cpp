@@ -41,6 +41,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");

@@ -27,6 +27,9 @@ class Reader {
   Curve read_curve_map(const Params& p);
   void read_model(const Params& p, ModelSpec& spec);
   std::string embed(const Params& p);
+  // temperatures.cpp
+  void read_thermal(const Params& p, DraftMaterial& m);
+  void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_obj_geometry(const Params& p, DraftGeometry& g);
@@ -35,7 +38,8 @@ class Reader {
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
-  DraftPlacement read_placement(const Params& p);
+  DraftPlacement read_placement(const Params& p, bool world);
+  std::shared_ptr<const Track> read_motion(const Params& p, bool world);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);

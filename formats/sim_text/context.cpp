@@ -24,8 +24,8 @@ void read_epoch(const Params& root, Simulation& sim) {
     } catch (const Error& e) {
       throw epoch->error(e.message(), e.hint());
     }
-  } else if (sim.sun_by_time) {
-    sim.epoch = sim.sun_by_time->utc;
+  } else if (sim.sources.sun && sim.sources.sun->time) {
+    sim.epoch = parse_iso8601(sim.sources.sun->time->utc);
   }
   sim.dut1 = root.number_in("dut1_s", -0.9, 0.9, "s", 0);
 }
@@ -42,9 +42,9 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   shared->motion.satellites = [](const std::string& path, const std::string& name) {
     return read_tle_of(path, name).elements;
   };
-  auto motion = [shared, origin = callbacks.origin, scene = sim.scene_path]() -> const MotionContext& {
+  auto motion = [shared, origin = callbacks.origin, path = sim.path, scenes = sim.scenes]() -> const MotionContext& {
     if (!shared->asked && origin) {
-      const GeodeticOrigin at = origin(scene);
+      const GeodeticOrigin at = origin(path, scenes);
       if (at.given) shared->motion.frame = SceneFrame({at.latitude_deg, at.longitude_deg, at.ellipsoid_height_m});
     }
     shared->asked = true;

@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "motion/time.h"
 #include "scheduler/scheduler.h"
 #include "sensor/sensors.h"
 
 namespace suite {
-
-// A Sun whose direction follows from date and place.
-struct SunByTime {
-  Utc utc;
-  Where where;
-  bool disk_from_distance = true;    // half angle from the Earth-Sun distance of the date
-};
 
 struct OutputSpec {
   enum class Type { float32, float64, uint16 } type = Type::float32;
@@ -30,15 +22,22 @@ struct OutputSpec {
   std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
 };
 
+// One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
+struct SimulationScene {
+  std::string path;
+  std::optional<Affine3> placement;      // none: by its origin on the Earth
+  std::shared_ptr<const Track> motion;   // null: at rest
+};
+
 struct Simulation {
   std::string path;
-  std::string scene_path;
+  std::vector<SimulationScene> scenes;
+  std::string scene_path;                // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
-  SourceSpecs sources;
-  std::optional<SunByTime> sun_by_time;   // sources.sun is there, its direction still to be computed
-  std::optional<Utc> epoch;               // of second 0: key `epoch`, or the sun's date
-  double dut1 = 0;                        // s, UT1 - UTC
+  SourceSpecs sources;               // as written: dates, phases and clear skies are still to be resolved
+  std::optional<Utc> epoch;          // of second 0: key `epoch`, or the sun's date
+  double dut1 = 0;                   // s, UT1 - UTC
   std::vector<std::unique_ptr<Sensor>> sensors;
   OutputSpec output;
 };
@@ -47,7 +46,7 @@ struct Simulation {
 struct SimulationCallbacks {
   std::function<void(const Delivery&)> deliver;  // receives the finished captures of the sensors
   // Origin on the Earth of a prepared scene; asked only when a motion needs to know.
-  std::function<GeodeticOrigin(const std::string& scene_path)> origin;
+  std::function<GeodeticOrigin(const std::string& path, const std::vector<SimulationScene>& scenes)> origin;
 };
 // Error located in the text for anything wrong, unread keys included.
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks);

@@ -219,7 +219,7 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       const size_t slot = slot_of(i);
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
-      if (single) process_single(wave, i, radiance, workspace->single);
+      if (single) process_single(wave, i, environment_, radiance, workspace->single);
       const bool timed = capture.bin_by == Capture::BinBy::time;
       if (workspace->weighted[i] || timed) {
         const float* weights = workspace->weighted[i] ? &workspace->weights[i * state_.size()] : nullptr;
