@@ -246,11 +246,16 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
                  {box, shape.normal, 0, kPi / 2, kPi * shape.area * (shape.both_sides ? 2 : 1), shape.both_sides != 0},
                  spec);
     };
+    const Affine3& to_world = *object.place;
+    auto at_rest = [&] {
+      if (object.node != kNone) throw Error("a glowing surface moves", "surfaces that are lamps stand still");
+    };
     if (object.primitive != kNone) {
       const Primitive& primitive = scene.primitives[object.primitive];
       const uint32_t spec = spec_of(object.material_override != kNone ? object.material_override : primitive.material);
       if (spec == kNone) continue;
-      shapes_of_primitive<Shape>(primitive, object.to_world, [&](Shape shape, uint32_t) {
+      at_rest();
+      shapes_of_primitive<Shape>(primitive, to_world, [&](Shape shape, uint32_t) {
         uint32_t index = kNone;
         if (shape.kind == Shape::Kind::sphere) {
           const Vec3 r{shape.a.x, shape.a.x, shape.a.x};
@@ -269,19 +274,20 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
     for (const Part& part : mesh.parts) {
       const uint32_t spec = spec_of(object.material_override != kNone ? object.material_override : part.material);
       if (spec == kNone) continue;
+      at_rest();
       std::vector<uint32_t>& map = core.shape_of_triangle[o];
       map.resize(mesh.triangle_count(), kNone);
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
         Vec3 v[3];
         for (int k = 0; k < 3; ++k) {
           const float* x = &mesh.positions[3 * size_t{mesh.indices[3 * size_t{t} + static_cast<size_t>(k)]}];
-          v[k] = object.to_world.point(
+          v[k] = to_world.point(
               mesh.origin + Vec3{static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])});
         }
         Shape shape;
         shape.kind = Shape::Kind::triangle;
         shape.origin = v[0], shape.a = v[1] - v[0], shape.b = v[2] - v[0];
-        const Vec3 n = cross(shape.a, shape.b) * (object.mirrored ? -1.0 : 1.0);
+        const Vec3 n = cross(shape.a, shape.b) * (to_world.determinant() < 0 ? -1.0 : 1.0);
         shape.area = 0.5 * length(n);
         if (!(shape.area > 0)) continue;
         shape.normal = n / (2 * shape.area);
