@@ -67,6 +67,13 @@ void host_fail(void* context, const char* message) {
   static_cast<Making*>(context)->failure = message ? message : "no reason given";
 }
 
+// Element i of a plug-in's array, whose elements are as large as the plug-in knows them. Error: smaller than ours.
+template <class T>
+const T& element(const T* first, uint32_t i, const char* what) {
+  if (first->size < sizeof(T)) throw Error(strf("its %s are %u bytes, %zu are expected", what, first->size, sizeof(T)));
+  return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(first) + size_t{i} * first->size);
+}
+
 Band band_of(const suite_band& b) {
   if (!b.name) throw Error("a band has no name");
   if (b.shape == SUITE_BAND_TABULATED) {
@@ -182,20 +189,21 @@ class PluginSensor final : public Sensor {
     if (!sensor_.state_count || !sensor_.capture_count || !sensor_.states || !sensor_.captures)
       throw Error("it has no states or no captures");
     for (uint32_t s = 0; s < sensor_.state_count; ++s) {
-      const suite_state& state = sensor_.states[s];
+      const suite_state& state = element(sensor_.states, s, "states");
       bands_.emplace_back();
-      for (uint32_t b = 0; b < state.band_count; ++b) bands_.back().push_back(band_of(state.bands[b]));
+      for (uint32_t b = 0; b < state.band_count; ++b)
+        bands_.back().push_back(band_of(element(state.bands, b, "bands")));
       states_.push_back(make_state(bands_.back(), state.step_um > 0 ? state.step_um : 0.01, state.reference_um));
     }
-    for (uint32_t t = 0; t < sensor_.task_count; ++t)
-      tasks_.push_back({sensor_.tasks[t].name ? sensor_.tasks[t].name : strf("task_%u", t),
-                        {sensor_.tasks[t].begin_s, sensor_.tasks[t].end_s},
-                        {}});
+    for (uint32_t t = 0; t < sensor_.task_count; ++t) {
+      const suite_task& task = element(sensor_.tasks, t, "tasks");
+      tasks_.push_back({task.name ? task.name : strf("task_%u", t), {task.begin_s, task.end_s}, {}});
+    }
     if (tasks_.empty()) tasks_.push_back({"task", {}, {}});
     numbers_.resize(tasks_.size());
     std::vector<std::vector<ImageKey>> keys(tasks_.size());
     for (uint32_t c = 0; c < sensor_.capture_count; ++c) {
-      const suite_capture& from = sensor_.captures[c];
+      const suite_capture& from = element(sensor_.captures, c, "captures");
       if (from.task >= tasks_.size() || from.state >= states_.size())
         throw Error(strf("capture %u belongs to no task or state", c));
       if (!from.columns || !from.rows || !(from.end_s >= from.begin_s) || !from.min_paths ||

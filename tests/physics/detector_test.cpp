@@ -147,7 +147,8 @@ TEST(Detector, TdiGainsItsNumberOfStagesAndItsRoot) {
 TEST(Detector, ChipsHaveTheirOwnResponsesAndGains) {
   PlatformKit kit;
   kit.render(plane(0.3), sun_at_60(1500),
-             "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ninstruments:\n  - "
+             "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: [material, "
+             "instance, range, location, paths, hits, reflectance]\ninstruments:\n  - "
              "focal_length_mm: 100\n    f_number: 4\n    arrays:\n      - rows: 3\n        pitch_um: 10\n        "
              "integration_time_s: 0.001\n        paths: 4\n"
              "        bands: [{name: a, center_um: 0.6, fwhm_um: 0.1, shape: rectangular}]\n"
@@ -168,6 +169,7 @@ TEST(Detector, ChipsHaveTheirOwnResponsesAndGains) {
   // Truth stands beside each other too: the second chip looks 0.2 mm further up, 0.2 m on the ground.
   const size_t north = 4, columns = s.result.truth_names.size();
   ASSERT_EQ(s.result.truth_names[north], "north [m]");
+  EXPECT_EQ(columns, 9u);  // and of reflectance only the listed band's
   EXPECT_NEAR(s.result.truth[8 * columns + north] - s.result.truth[2 * columns + north], 0.2, 1e-3);
 }
 

@@ -23,6 +23,24 @@ void keep_bands(CaptureResult& r, size_t keep) {
   r.bands = keep;
 }
 
+// Drops the truth of the photon bands, which are the computation's own affair.
+void drop_truth_of(CaptureResult& r, const std::vector<Band>& bands, size_t keep) {
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < r.truth_names.size(); ++i) {
+    const bool theirs = std::any_of(bands.begin() + static_cast<long>(keep), bands.end(),
+                                    [&](const Band& b) { return r.truth_names[i] == "reflectance " + b.name; });
+    if (!theirs) kept.push_back(i);
+  }
+  if (kept.size() == r.truth_names.size()) return;
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const size_t i : kept) names.push_back(r.truth_names[i]);
+  for (size_t p = 0; p < r.problems(); ++p)
+    for (const size_t i : kept) values.push_back(r.truth[p * r.truth_names.size() + i]);
+  r.truth_names = std::move(names);
+  r.truth = std::move(values);
+}
+
 }  // namespace
 
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result,
@@ -65,6 +83,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
           detector.counts(signal, array.readout.exposure(), character, hash_of(own, read_out, i));
     }
   }
+  drop_truth_of(result, segment.bands, bands);
   keep_bands(result, bands);
   std::vector<Product> out;
   out.push_back(std::move(electrons));

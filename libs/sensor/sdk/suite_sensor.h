@@ -207,6 +207,10 @@ class Sensor {
 
 template <class T>
 int make(const suite_host* host, suite_sensor* out) noexcept {
+  if (out->size < sizeof(suite_sensor)) {
+    host->fail(host->context, "this program knows a smaller suite_sensor than the plug-in");
+    return 1;
+  }
   try {
     T* sensor = new T(Keys(*host));
     out->self = static_cast<Sensor*>(sensor);
