@@ -231,6 +231,8 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   const std::span<const TracedObject> objects = tracer.objects();
   for (uint32_t o = 0; o < objects.size(); ++o) {
     const TracedObject& object = objects[o];
+    if (object.node != kNone) continue;  // what moves has no one place to aim at; paths meet its glow by chance
+    const Affine3 to_world = tracer.to_world(object, 0);
     auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
     auto add_flat = [&](Shape shape, uint32_t spec) {
       Box3 box;
@@ -246,15 +248,10 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
                  {box, shape.normal, 0, kPi / 2, kPi * shape.area * (shape.both_sides ? 2 : 1), shape.both_sides != 0},
                  spec);
     };
-    const Affine3& to_world = *object.place;
-    auto at_rest = [&] {
-      if (object.node != kNone) throw Error("a glowing surface moves", "surfaces that are lamps stand still");
-    };
     if (object.primitive != kNone) {
       const Primitive& primitive = scene.primitives[object.primitive];
       const uint32_t spec = spec_of(object.material_override != kNone ? object.material_override : primitive.material);
       if (spec == kNone) continue;
-      at_rest();
       shapes_of_primitive<Shape>(primitive, to_world, [&](Shape shape, uint32_t) {
         uint32_t index = kNone;
         if (shape.kind == Shape::Kind::sphere) {
@@ -274,7 +271,6 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
     for (const Part& part : mesh.parts) {
       const uint32_t spec = spec_of(object.material_override != kNone ? object.material_override : part.material);
       if (spec == kNone) continue;
-      at_rest();
       std::vector<uint32_t>& map = core.shape_of_triangle[o];
       map.resize(mesh.triangle_count(), kNone);
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
