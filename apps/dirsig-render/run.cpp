@@ -17,6 +17,7 @@
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/plugin.h"
+#include "study.h"
 
 namespace suite {
 
@@ -106,7 +107,11 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   };
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
-  callbacks.deliver = [&](const Delivery& delivery) { writer->take(delivery); };
+  StudyImage* study = nullptr;  // where captures go while a study runs
+  callbacks.deliver = [&](const Delivery& delivery) {
+    if (study) append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    else writer->take(delivery);
+  };
   callbacks.origin = [&](const std::string& path, const std::vector<SimulationScene>& scenes) { return load(path, scenes).origin; };
   Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
@@ -115,6 +120,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
+    throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
+  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
+    throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
@@ -129,6 +138,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
+  if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   make_folder(o.output);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
