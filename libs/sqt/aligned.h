@@ -40,8 +40,11 @@ struct AlignedLayout {
 
 // Decoded leaves of one sheet.
 struct AlignedSheet {
+  static constexpr size_t kStride = 4;
   std::vector<CellId> leaves;
-  std::vector<float> plane;  // [leaf][view][channel]{value, slope x, slope y}, log2 units per cell width
+  // [leaf][view][channel]{value, slope x, slope y, mean}: log2 units, per cell width; mean over the leaf of 2^(value +
+  // slope . offset)
+  std::vector<float> plane;
 };
 
 // Totals over view angle and wavelength, and the scale s of each channel, on a finer grid of view angles.
