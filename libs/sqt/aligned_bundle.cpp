@@ -53,9 +53,11 @@ class AlignedBundle final : public Bundle {
       const size_t m = totals_.magnitude_um.size();
       const ThetaGrid::At at = fine_.locate(fast_acos(std::fabs(out.z)));
       const size_t next = std::min(at.low + 1, fine_.size() - 1);
-      return (1 - at.t) * totals_.magnitudes[at.low * m + k] + at.t * totals_.magnitudes[next * m + k];
+      const double W = (1 - at.t) * totals_.magnitudes[at.low * m + k] + at.t * totals_.magnitudes[next * m + k];
+      return totals_.delta.empty() ? W : W + delta_total(place(fine_, at), channel);
     }
-    return fine_total(place(fine_, upright(out)), k);
+    const Place at = place(fine_, upright(out));
+    return fine_total(at, k) + (totals_.delta.empty() ? 0 : delta_total(at, channel));
   }
   void magnitude(Dir out, std::span<double> W) const override {
     if (!faces(out)) {
@@ -64,6 +66,8 @@ class AlignedBundle final : public Bundle {
     }
     const Place at = place(fine_, upright(out));
     for (size_t k = 0; k < W.size(); ++k) W[k] = fine_total(at, k);
+    if (!totals_.delta.empty())
+      for (size_t c = 0; c < channels(); ++c) W[channel_magnitude_[c]] += delta_total(at, c);
   }
 
   std::optional<Dir> sample(Dir out, Vec2 u, double lobe_u, size_t channel) const override {
@@ -96,7 +100,12 @@ class AlignedBundle final : public Bundle {
     const bool there = query(out, in, q);
     for (size_t c = 0; c < p.size(); ++c) p[c] = there ? density(q, c) : 0;
   }
-  std::optional<DeltaLobe> delta(Dir, size_t) const override { return std::nullopt; }
+  std::optional<DeltaLobe> delta(Dir out, size_t channel) const override {
+    if (totals_.delta.empty() || !faces(out)) return std::nullopt;
+    const Dir mirror = {-out.x, -out.y, out.z};
+    const Dir in = totals_.delta_kind == Dirac::mirror ? mirror : totals_.delta_kind == Dirac::retro ? out : -out;
+    return DeltaLobe{in, delta_total(place(fine_, upright(out)), channel)};
+  }
 
   std::vector<Cell> cells(size_t view, size_t channel) const override {
     std::vector<Cell> out;
@@ -182,6 +191,11 @@ class AlignedBundle final : public Bundle {
     double W = 0;
     for (int b = 0; b < at.count; ++b)
       W += at.weight[b] * totals_.magnitudes[at.view[b] * totals_.magnitude_um.size() + k];
+    return W;
+  }
+  double delta_total(const Place& at, size_t c) const {
+    double W = 0;
+    for (int b = 0; b < at.count; ++b) W += at.weight[b] * totals_.delta[at.view[b] * channels() + c];
     return W;
   }
   double scale(const Place& at, size_t c) const {
@@ -274,6 +288,13 @@ void check(const AlignedData& d) {
     require(std::binary_search(t.magnitude_um.begin(), t.magnitude_um.end(), um), "a wavelength has no total");
   require(t.magnitudes.size() == t.theta.size() * t.phi_count * t.magnitude_um.size(), "number of totals");
   require(t.log2_scale.size() == t.theta.size() * t.phi_count * l.channels, "number of scales");
+  if (t.delta_kind != Dirac::none) {
+    require(d.function.quantity == Quantity::bsdf, "a Dirac lobe of something that is no surface");
+    require(t.delta_kind != Dirac::through || l.sheets == 2, "a Dirac lobe on a side without data");
+    require(t.delta.size() == t.theta.size() * t.phi_count * l.channels, "number of Dirac totals");
+    require(t.magnitude_um.size() == l.channels, "a Dirac lobe with totals finer than channels");
+    for (const float m : t.delta) require(std::isfinite(m) && m >= 0 && m <= 1.001f, "a Dirac total is out of range");
+  }
   for (const float m : t.magnitudes) require(std::isfinite(m) && m >= 0, "a total is negative or not finite");
   for (const float s : t.log2_scale) require(std::isfinite(s) && std::fabs(s) <= 200, "a scale is not finite");
   require(d.sheets.size() == static_cast<size_t>(l.sheets) && (l.sheets == 1 || l.sheets == 2), "number of sheets");
@@ -296,6 +317,8 @@ std::shared_ptr<const Bundle> make_bundle(AlignedData data) {
   const char* frames[] = {"half", "retro", "direct", "forward"};
   info.frame = frames[static_cast<size_t>(data.layout.frame)];
   info.magnitude_um = data.totals.magnitude_um;
+  info.delta = data.totals.delta_kind;
+  info.delta_core = data.totals.delta_core;
   for (const double theta : data.layout.theta)
     for (size_t j = 0; j < data.layout.phi_count; ++j)
       info.views.push_back({theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(data.layout.phi_count)});

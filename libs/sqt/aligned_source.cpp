@@ -164,6 +164,23 @@ void survey_totals(const Function& function, const AlignedLayout& layout,
   });
 }
 
+void survey_dirac(const Function& function, const AlignedLayout& layout, AlignedTotals& totals) {
+  totals.delta_kind = function.dirac();
+  totals.delta_core = function.dirac_core();
+  if (totals.delta_kind == Dirac::none) return;
+  const size_t channels = layout.channels, rows = totals.theta.size() * totals.phi_count;
+  totals.delta.assign(rows * channels, 0.0f);
+  parallel_for(0, rows, 1, [&](size_t begin, size_t end) {
+    std::vector<double> W(channels);
+    for (size_t t = begin; t < end; ++t) {
+      const double phi = 2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count);
+      function.dirac_total(dir_from_angles(totals.theta[t / totals.phi_count], phi), W);
+      for (size_t c = 0; c < channels; ++c)
+        totals.delta[t * channels + c] = static_cast<float>(std::clamp(W[c], 0.0, 1.0));
+    }
+  });
+}
+
 // The pyramid in the lattice's order, with slopes.
 AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& pyramid) {
   AlignedSource::Impl::Sheet sheet{Lattice({layout.upper_only, layout.half_stored}, layout.width()), {}, {}, {}};
@@ -353,8 +370,16 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
     transform_details(layout, m.sheets.back());
   }
   survey_totals(function, layout, leaves, m.totals);
+  survey_dirac(function, layout, m.totals);
   if (surface)  // no surface returns more than it receives
-    for (float& W : m.totals.magnitudes) W = std::min(W, 1.0f);
+    for (size_t t = 0; t < m.totals.theta.size() * m.totals.phi_count; ++t)
+      for (size_t k = 0; k < layout.channels; ++k) {
+        const size_t c = static_cast<size_t>(
+            std::find(m.function.wavelength_um.begin(), m.function.wavelength_um.end(), m.totals.magnitude_um[k]) -
+            m.function.wavelength_um.begin());
+        float& W = m.totals.magnitudes[t * layout.channels + k];
+        W = std::min(W, 1 - (m.totals.delta.empty() ? 0.0f : m.totals.delta[t * layout.channels + c]));
+      }
   if (progress) progress(0.2);
 }
 

@@ -211,7 +211,8 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
             view)[c];
         const double expected = total_[t * channels_ + c];
         if (expected > 0) out[c].total_error = std::max(out[c].total_error, std::fabs(W - expected) / expected);
-        const double whole = bundle.total(view, c);
+        const auto dirac = bundle.delta(view, c);
+        const double whole = bundle.total(view, c) - (dirac ? dirac->total : 0);
         const SampleStream stream(5, t, c);
         for (uint32_t n = 0; n < 2000 && whole > 0; ++n) {
           const auto u = stream.draw(n, 0);

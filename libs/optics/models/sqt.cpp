@@ -53,7 +53,7 @@ class Sqt final : public ScatterModel {
     f.resize(bundle_->channels());
     bundle_->value(out, in, f);
     for (size_t c = 0; c < f.size(); ++c) {
-      const double total = f[c] > 0 ? scattered(out, c) : 0;
+      const double total = f[c] > 0 ? bundle_->total(out, c) : 0;
       f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
     }
     magnitudes(out, W);
@@ -71,7 +71,14 @@ class Sqt final : public ScatterModel {
     const double first = 1 - s.t;
     const bool low = lobe_u < first;
     const double rest = low ? lobe_u / first : (lobe_u - first) / s.t;
-    const auto in = bundle_->sample(out, u, std::min(rest, 0x1.fffffffffffffp-1), low ? s.low : s.high);
+    const size_t channel = low ? s.low : s.high;
+    double within = rest;
+    if (has_delta()) {
+      const Dirac d = dirac(out, channel);
+      if (rest < d.share) return Sample{d.in, kDirac, true};
+      within = d.share < 1 ? (rest - d.share) / (1 - d.share) : 0;
+    }
+    const auto in = bundle_->sample(out, u, std::min(within, 0x1.fffffffffffffp-1), channel);
     if (!in) return std::nullopt;
     return Sample{*in, out.z * in->z > 0 ? 0 : 1, false};
   }
@@ -79,15 +86,39 @@ class Sqt final : public ScatterModel {
     thread_local std::vector<double> q;
     q.resize(bundle_->channels());
     bundle_->pdf(out, in, q);
+    if (has_delta())
+      for (size_t c = 0; c < q.size(); ++c) q[c] *= 1 - dirac(out, c).share;
     for (size_t k = 0; k < p.size(); ++k)
       p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
+  }
+  bool has_delta() const override { return bundle_->info().has_delta(); }
+  void delta_weight(Dir out, int, int, std::span<float> weight) const override {
+    thread_local std::vector<double> W;
+    magnitudes(out, W);
+    for (size_t i = 0; i < weight.size(); ++i) weight[i] = static_cast<float>(at_bin(W, i) * share(out, shape_[i]));
+  }
+  void delta_probability(Dir out, int, int, std::span<float> probability) const override {
+    for (size_t k = 0; k < probability.size(); ++k) probability[k] = static_cast<float>(share(out, knot_[k]));
   }
   bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
   bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
 
  private:
-  // What the cells scatter: the total without a Dirac lobe.
-  double scattered(Dir out, size_t channel) const { return bundle_->total(out, channel); }
+  static constexpr int kDirac = 2;  // lobe number; 0 and 1 are the reflected and the transmitted side
+  struct Dirac {
+    Dir in;
+    double share;  // of the total
+  };
+  Dirac dirac(Dir out, size_t channel) const {
+    const auto lobe = bundle_->delta(out, channel);
+    const double total = lobe ? bundle_->total(out, channel) : 0;
+    return total > 0 ? Dirac{lobe->in, std::min(1.0, lobe->total / total)} : Dirac{{0, 0, 1}, 0};
+  }
+  // The Dirac lobe's share between two channels.
+  double share(Dir out, const Between& b) const {
+    const double low = dirac(out, b.low).share;
+    return b.t > 0 ? (1 - b.t) * low + b.t * dirac(out, b.high).share : low;
+  }
   void magnitudes(Dir out, std::vector<double>& W) const {
     W.resize(bundle_->info().magnitude_um.size());
     bundle_->magnitude(out, W);
