@@ -9,7 +9,7 @@ namespace suite::sqt {
 
 namespace {
 
-constexpr size_t kRings = 72, kAzimuths = 12;
+constexpr size_t kRings = 160, kAzimuths = 12;
 constexpr double kInnermost = 1e-8;    // rad; what lies closer to the axis counts as constant
 constexpr double kSignificant = 1e-4;  // part of the total below which a lobe is left alone
 constexpr double kCoreWidths = 4;      // cells

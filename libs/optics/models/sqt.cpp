@@ -136,7 +136,7 @@ class Sqt final : public ScatterModel {
 // A glossy lobe over a diffuse floor whose colour changes, for the conformance tests.
 class Glossy final : public sqt::Function {
  public:
-  Glossy() {
+  explicit Glossy(double dirac = 0) : dirac_(dirac) {
     info_.name = "glossy";
     info_.wavelength_um = {0.65, 0.55, 0.45};
   }
@@ -151,20 +151,27 @@ class Glossy final : public sqt::Function {
     f[0] = 0.15 + 0.3 * lobe, f[1] = 0.06 + 0.8 * lobe, f[2] = 0.01 + 1.2 * lobe;
   }
 
+  sqt::Dirac dirac() const override { return dirac_ > 0 ? sqt::Dirac::mirror : sqt::Dirac::none; }
+  void dirac_total(Dir out, std::span<double> W) const override {
+    for (size_t c = 0; c < 3; ++c) W[c] = dirac_ * (1 + static_cast<double>(c)) * (1 - 0.5 * out.z);
+  }
+
  private:
   Info info_;
+  double dirac_;
 };
 
 std::vector<ModelSpec> examples() {
-  static const std::shared_ptr<const sqt::Bundle> bundle = [] {
+  auto fitted = [](double dirac) {
     sqt::AlignedSource::Options options;
     options.views = 9;
     options.base_order = 5;
     options.max_order = 7;
-    const sqt::AlignedSource source(Glossy(), options);
-    return sqt::make_bundle(sqt::encode_aligned(source, 0.1).data);
-  }();
-  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, bundle}};
+    const sqt::AlignedSource source(Glossy(dirac), options);
+    return std::shared_ptr<const sqt::Bundle>(sqt::make_bundle(sqt::encode_aligned(source, 0.1).data));
+  };
+  static const std::shared_ptr<const sqt::Bundle> plain = fitted(0), with_dirac = fitted(0.08);
+  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, plain}, {"sqt", {}, {}, {{"file", "lacquer.sqt"}}, with_dirac}};
 }
 
 }  // namespace
