@@ -56,7 +56,8 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   d.totals.theta = angles_of(t.at("theta"));
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();
-  d.totals.delta_kind = static_cast<sqt::Dirac>(t.at("delta").as_choice({"none", "mirror", "retro", "through"}));
+  if (t.boolean("delta", false))
+    d.totals.delta_kind = static_cast<sqt::Dirac>(1 + t.at("delta_toward").as_choice({"mirror", "retro", "through"}));
   if (t.find("delta_core")) d.totals.delta_core = t.number_in("delta_core", 0, 1, "rad");
   // Every number of the tables costs the file something; these bounds keep memory in proportion.
   if (layout.theta.size() * layout.phi_count > kMaxSide || layout.channels > kMaxSide)
