@@ -177,18 +177,7 @@ void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const 
   set->objects.shrink_to_fit();
   sort_in_space(set->objects, boxes, tile.bounds);
   set->origin = tile.origin;
-  set->inverse.resize(set->objects.size());
-  parallel_for(0, set->objects.size(), 4096, [&](size_t b, size_t e) {
-    for (size_t k = b; k < e; ++k) {
-      const TracedObject& o = flat.objects[set->objects[k]];
-      PlacedSet::Inverse& inverse = set->inverse[k];
-      inverse.mesh = o.mesh;
-      if (o.mesh == kNone) continue;
-      inverse.base = o.place->point(scene->meshes[o.mesh].origin);
-      const Affine3 back = o.place->inverse();
-      for (size_t j = 0; j < 9; ++j) inverse.linear[j] = static_cast<float>(back.a[j]);
-    }
-  });
+  set->fill_inverse();
   tile.sets.push_back(std::move(set));
 }
 

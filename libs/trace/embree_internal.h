@@ -80,7 +80,7 @@ struct MovingPart;
 
 // Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
 struct PlacedSet {
-  // From ENU into the floats of an instance at rest; one cache line.
+  // From ENU into the floats of an instance that rests in the window; one cache line.
   struct Inverse {
     Vec3 base;             // ENU place of the floats' (0, 0, 0)
     float linear[9];
@@ -91,9 +91,10 @@ struct PlacedSet {
   Vec3 origin;                          // of the tile
   unsigned times = 1;                   // boxes of an object, equally spaced over the window
   std::vector<uint32_t> objects;        // indices into Tracer::objects()
-  std::vector<Inverse> inverse;         // at rest only
+  std::vector<Inverse> inverse;         // of each object; empty when they move within the window
   std::vector<Box3> boxes;              // [object][time], ENU; until the tile is built
 
+  void fill_inverse();   // from the poses of the window
   void attach(RTCScene scene, unsigned id);
 };
 

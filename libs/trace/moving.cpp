@@ -142,11 +142,13 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   tiles.close(world);
 }
 
-// One set for each number of times.
+// One set for what rests in this window, and one for each number of times.
 void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<const std::vector<Box3>> boxes) {
   std::map<size_t, std::unique_ptr<PlacedSet>> sets;
   for (const uint32_t i : members) {
-    std::unique_ptr<PlacedSet>& set = sets[boxes[i].size()];
+    const uint32_t object = static_cast<uint32_t>(world.flat.fixed) + i;
+    const bool rests = nodes[world.flat.objects[object].node].at_rest();
+    std::unique_ptr<PlacedSet>& set = sets[rests ? 0 : boxes[i].size()];
     if (!set) {
       set = std::make_unique<PlacedSet>();
       set->world = &world;
@@ -154,10 +156,13 @@ void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<c
       set->origin = tile.origin;
       set->times = static_cast<unsigned>(boxes[i].size());
     }
-    set->objects.push_back(static_cast<uint32_t>(world.flat.fixed) + i);
+    set->objects.push_back(object);
     set->boxes.insert(set->boxes.end(), boxes[i].begin(), boxes[i].end());
   }
-  for (auto& [times, set] : sets) tile.sets.push_back(std::move(set));
+  for (auto& [times, set] : sets) {
+    if (times == 0) set->fill_inverse();
+    tile.sets.push_back(std::move(set));
+  }
 }
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "trace/embree_internal.h"
 #include "trace/primitive_hit.h"
 
@@ -54,7 +55,7 @@ bool go_in(const Inward<T>& inward, const Box3& box, const Ray& ray, double near
 
 // An object as the ray sees it at its time.
 bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray& ray, double near, double far, LocalRay& out) {
-  if (!set.moving) {
+  if (!set.inverse.empty()) {
     const PlacedSet::Inverse& inverse = set.inverse[prim];
     return go_in(Inward<float>{inverse.base, inverse.linear}, mesh.room, ray, near, far, out);
   }
@@ -146,7 +147,7 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
 
 void intersect_placed(const RTCIntersectFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  const uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
   if (mesh != kNone) return intersect_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
   if (o.mesh != kNone) intersect_mesh(args, set, o.mesh);
@@ -172,7 +173,7 @@ void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& se
 
 void occlude_placed(const RTCOccludedFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  const uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
   if (mesh != kNone) return occlude_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
   if (o.mesh != kNone) return occlude_mesh(args, set, o.mesh);
@@ -198,6 +199,20 @@ void placed_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 }  // namespace
+
+void PlacedSet::fill_inverse() {
+  inverse.resize(objects.size());
+  parallel_for(0, objects.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t k = b; k < e; ++k) {
+      const TracedObject& o = world->flat.objects[objects[k]];
+      inverse[k].mesh = o.mesh;
+      if (o.mesh == kNone) continue;
+      const Affine3 place = moving ? moving->to_world(o, moving->window.begin) : *o.place, back = place.inverse();
+      inverse[k].base = place.point(world->scene->meshes[o.mesh].origin);
+      for (size_t j = 0; j < 9; ++j) inverse[k].linear[j] = static_cast<float>(back.a[j]);
+    }
+  });
+}
 
 void PlacedSet::attach(RTCScene scene, unsigned id) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);

@@ -178,6 +178,69 @@ TEST(Motion, FastAndFarThingsKeepTheirShape) {
   }
 }
 
+TEST(Motion, TheSameBitsForAnyNumberOfThreads) {
+  const Rotor r = rotor(2 * kPi * 5, turning_hub());
+  Pcg32 rng(4);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 8192; ++i) {
+    const double t = 0.1 + 0.5 * rng.uniform();
+    const Vec3 hub = r.hub->at(t).translation;
+    rays.push_back({hub + Vec3{10 * (rng.uniform() - 0.5), 10 * (rng.uniform() - 0.5), 20}, normalized(Vec3{0.1 * rng.uniform(), 0, -1}), t});
+  }
+  std::vector<std::vector<Hit>> results;
+  for (const int count : {1, 3}) {
+    set_threads(count);
+    const Tracer tracer(r.scene, std::nullopt, {0.1, 0.6});
+    std::vector<Hit> hits(rays.size());
+    parallel_for(0, rays.size(), 64, [&](size_t b, size_t e) {
+      const FlushDenormals flush;
+      TraceStatistics statistics;
+      tracer.nearest(std::span(rays).subspan(b, e - b), std::span(hits).subspan(b, e - b), true, statistics);
+    });
+    results.push_back(std::move(hits));
+  }
+  set_threads(0);
+  size_t found = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Hit &a = results[0][i], &b = results[1][i];
+    ASSERT_EQ(a.object, b.object);
+    if (!a.hit()) continue;
+    ++found;
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.u, b.u);
+  }
+  EXPECT_GT(found, 100u);
+}
+
+TEST(Motion, AnInstantIsExact) {
+  // With one time there is one pose: hits agree with a scene at rest placed there, and leave as closely as there.
+  const Rotor r = rotor(2 * kPi * 5, turning_hub());
+  const Tracer moving(r.scene, std::nullopt, {0.37, 0.37});
+  auto frozen = std::make_shared<Scene>(*r.scene);
+  frozen->tracks.clear();
+  for (Group& g : frozen->groups)
+    for (Placement& p : g.placements)
+      if (p.track != kNone) p.to_parent = (p.track == 0 ? r.hub : r.spin)->at(0.37).affine() * p.to_parent, p.track = kNone;
+  const Tracer still(frozen);
+  TraceStatistics statistics;
+  Pcg32 rng(6);
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 hub = r.hub->at(0.37).translation;
+    const Ray ray{hub + Vec3{10 * (rng.uniform() - 0.5), 10 * (rng.uniform() - 0.5), 20}, normalized(Vec3{0.1, 0, -1}), 0.37};
+    Hit a, b;
+    moving.nearest({&ray, 1}, {&a, 1}, true, statistics);
+    still.nearest({&ray, 1}, {&b, 1}, true, statistics);
+    ASSERT_EQ(a.hit(), b.hit());
+    if (!a.hit()) continue;
+    ++found;
+    EXPECT_LT(length(a.position - b.position), 5e-6);
+    EXPECT_FLOAT_EQ(a.step, b.step);
+  }
+  EXPECT_GT(found, 100);
+}
+
 TEST(Motion, AWindowThatIsNotCoveredIsAnError) {
   const Rotor r = rotor(1, turning_hub());
   EXPECT_THROW(Tracer(r.scene, std::nullopt, {0, 3}), Error);
