@@ -296,6 +296,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
     read_materials(r, s.materials);
     read_maps(r, s);
     read_property_maps(r, s);
+    read_temperatures(r, s);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;

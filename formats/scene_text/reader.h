@@ -27,6 +27,9 @@ class Reader {
   Curve read_curve_map(const Params& p);
   void read_model(const Params& p, ModelSpec& spec);
   std::string embed(const Params& p);
+  // temperatures.cpp
+  void read_thermal(const Params& p, DraftMaterial& m);
+  void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_obj_geometry(const Params& p, DraftGeometry& g);

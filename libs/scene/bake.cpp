@@ -108,6 +108,7 @@ void Baker::materials() {
   for (const DraftMaterial& m : draft_.materials) {
     material_ids_[m.material.id] = static_cast<uint32_t>(scene_.materials.size());
     scene_.materials.push_back(m.material);
+    if (m.temperature) scene_.temperatures.push_back({material_ids_[m.material.id], *m.temperature});
     if (m.has_model) check_coverage(m);
     // The sum over both sides' shares must stay below 1 wherever either curve has a knot.
     const auto& curves = m.material.surface.curves;

@@ -82,6 +82,7 @@ struct DraftMaterial {
   Material material;
   Reference map;  // a class map that decides instead
   bool has_model = false;
+  std::optional<TemperatureSpec> temperature;
   std::vector<Reference> property_maps;
 };
 

@@ -93,6 +93,8 @@ void check_property_map(const PropertyMap& m, size_t materials, const std::strin
 
 void check_scene(const Scene& s, const std::string& file) {
   for (const PropertyMap& m : s.property_maps) check_property_map(m, s.materials.size(), file);
+  for (const TemperatureBinding& t : s.temperatures)
+    if (t.material >= s.materials.size()) bad(file, "a temperature is of a material that is not there");
   for (const PropertyBinding& b : s.property_bindings)
     if (b.material >= s.materials.size() || b.property_map >= s.property_maps.size())
       bad(file, "a map binding names something that is not there");

@@ -10,6 +10,7 @@
 
 #include "math/vec.h"
 #include "optics/model_spec.h"
+#include "thermal/temperature.h"
 
 namespace suite {
 
@@ -114,11 +115,20 @@ struct PropertyMap {
   std::string parameter;                // curve_index, cube: a curve parameter of the material's model
   std::vector<Curve> family;            // curve_index
   std::vector<double> wavelength_um;    // cube: ascending
+  // Between the pixels: the value of the pixel one is in, or linear between the four nearest pixel centres. Curve
+  // numbers are never mixed; bumps are always linear.
+  enum class Filter : uint8_t { nearest, linear } filter = Filter::nearest;
   Projection projection = Projection::drape;
   Drape drape;
 };
 struct PropertyBinding {
   uint32_t material = kNone, property_map = kNone;
+};
+
+// A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
+struct TemperatureBinding {
+  uint32_t material = kNone;
+  TemperatureSpec spec;
 };
 
 // A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
@@ -146,6 +156,7 @@ struct Scene {
   std::vector<MapBinding> map_bindings;
   std::vector<PropertyMap> property_maps;
   std::vector<PropertyBinding> property_bindings;  // a material may have several, one of each kind
+  std::vector<TemperatureBinding> temperatures;    // at most one a material
   std::vector<std::string> tags;
   std::vector<SceneTrack> tracks;
   std::string epoch;                    // UTC (ISO 8601) of second 0 of the tracks; empty when none was given

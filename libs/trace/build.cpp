@@ -14,11 +14,17 @@ namespace suite {
 namespace {
 
 // Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
-void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id) {
+// holes: hits are put to the filter. object: whose geometry it is, for one that no instances share.
+void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint32_t object = kNone) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
   rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
+  rtcSetGeometryUserData(g, reinterpret_cast<void*>(uintptr_t{object}));
+  if (holes) {
+    rtcSetGeometryIntersectFilterFunction(g, filter_triangles);
+    rtcSetGeometryOccludedFilterFunction(g, filter_triangles);
+  }
   rtcCommitGeometry(g);
   rtcAttachGeometryByID(scene, g, id);
   rtcReleaseGeometry(g);
@@ -75,7 +81,7 @@ void Tile::build(const World& world) {
     for (size_t i = b; i < e; ++i) world.mesh_scene(meshes[i]);
   });
   handle.scene = new_scene();
-  for (uint32_t id = 0; id < direct.size(); ++id) attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id);
+  for (uint32_t id = 0; id < direct.size(); ++id) attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id, world.filter && world.may_pass[direct[id]], direct[id]);
   for (uint32_t k = 0; k < sets.size(); ++k) sets[k]->attach(handle.scene, static_cast<unsigned>(direct.size()) + k);
   rtcCommitScene(handle.scene);
   for (const auto& set : sets) std::vector<Box3>().swap(set->boxes);
@@ -95,7 +101,7 @@ RTCScene World::mesh_scene(uint32_t mesh) const {
   MeshEntry& entry = meshes[mesh];
   entry.once.run([&] {
     entry.handle.scene = new_scene();
-    attach_mesh(entry.handle.scene, scene->meshes[mesh], 0);
+    attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, filter && holed_meshes[mesh]);
     rtcCommitScene(entry.handle.scene);
   });
   return entry.handle.scene;
@@ -112,8 +118,8 @@ Box3 World::local_box(const TracedObject& o) const {
   return meshes[o.mesh].box;
 }
 
-World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell)
-    : scene(std::move(given)), periodic(cell), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]) {
+World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
+    : scene(std::move(given)), periodic(cell), filter(std::move(holes)), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]) {
   const FlushDenormals flush;
   std::vector<bool> used(scene->meshes.size(), false);
   for (const TracedObject& o : flat.objects)
@@ -130,6 +136,13 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell)
     }
   });
   if (periodic) repeat_at_sides();
+  if (filter) {
+    holed_meshes.assign(scene->meshes.size(), 0);
+    for (const TracedObject& o : flat.objects) {
+      may_pass.push_back(filter->concerns(o));
+      if (may_pass.back() && o.mesh != kNone) holed_meshes[o.mesh] = 1;
+    }
+  }
   for (const TracedObject& o : flat.objects)
     if (o.mesh != kNone) ++meshes[o.mesh].uses, triangles += scene->meshes[o.mesh].triangle_count();
   std::vector<Box3> boxes(flat.fixed);

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "trace/flatten.h"
+#include "trace/hit_filter.h"
+#include "trace/primitive_hit.h"
 #include "trace/tile_bvh.h"
 #include "trace/tracer.h"
 
@@ -70,13 +72,18 @@ struct Packet {
   uint32_t size = 0;
 };
 
+struct MovingPart;
+struct World;
+
 // Handed to Embree and by it to the callbacks: the unrounded rays.
 struct TraceContext : RTCIntersectContext {
   const Ray* rays = nullptr;
   const Packet* packet = nullptr;   // lanes are the ids of the float rays
+  const World* world = nullptr;
+  const MovingPart* moving = nullptr;
+  uint32_t object = kNone;          // the instance that rays are inside of; kNone = in the tile itself
+  const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
 };
-
-struct MovingPart;
 
 // Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
 struct PlacedSet {
@@ -124,18 +131,29 @@ struct TileSet {
   void pass(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
 };
 
+// Embree's filter for triangles of meshes that may have holes.
+void filter_triangles(const RTCFilterFunctionNArguments* args);
+
 // What does not change with the window.
 struct World {
-  World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic);
+  World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter);
   std::shared_ptr<const Scene> scene;
   std::optional<Periodic> periodic;
+  std::shared_ptr<const HitFilter> filter;   // null: no surface has holes
   Flattened flat;
   std::unique_ptr<MeshEntry[]> meshes;
   TileSet tiles;                     // of what is at rest
   std::vector<uint32_t> unbounded;   // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                       // of what is at rest
   size_t triangles = 0;
+  std::vector<char> may_pass;        // objects with holes; empty without a filter
+  std::vector<char> holed_meshes;    // meshes that some such object shows; empty without a filter
 
+  // Asks the filter about a point of an object; true when the object has no holes.
+  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal = {}) const;
+  // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
+  // through; its t counts from there.
+  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min, double t_max) const;
   RTCScene mesh_scene(uint32_t mesh) const;   // built on the first call
   Affine3 pose(uint32_t node, double time) const;   // exact
   Affine3 to_world(const TracedObject& o, double time) const {

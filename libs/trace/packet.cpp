@@ -16,6 +16,8 @@ TraceContext PacketTracer::context(const Packet& packet) const {
   c.flags = coherent_ ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   c.rays = rays_.data();
   c.packet = &packet;
+  c.world = &world_;
+  c.moving = moving_;
   return c;
 }
 
@@ -112,14 +114,11 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
 // `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the tile.
 void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const {
   const TracedObject& o = world_.flat.objects[object];
-  const Primitive& primitive = world_.scene->primitives[o.primitive];
   const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
-  const Affine3 to_local = to_world.inverse();
-  const Vec3 origin = to_local.point(ray.origin), direction = to_local.vector(ray.direction);
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
   const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, o);
-  auto found = intersect(primitive, origin, direction, near - window, near + window);
-  if (!found || found->t <= 0) found = intersect(primitive, origin, direction, 0, INFINITY);
+  auto found = world_.meet(ray, object, to_world, 0, near - window, near + window);
+  if (!found || found->t <= 0) found = world_.meet(ray, object, to_world, 0, 0, INFINITY);
   if (!found) {
     hit = Hit{};
     return;
@@ -140,8 +139,7 @@ void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, d
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
   const TracedObject& o = world_.flat.objects[object];
   const Ray& ray = rays_[r];
-  const Affine3 to_local = (o.node == kNone ? *o.place : moving_->to_world(o, ray.time)).inverse();
-  const auto found = intersect(world_.scene->primitives[o.primitive], to_local.point(ray.origin), to_local.vector(ray.direction), 0, reach_[r]);
+  const auto found = world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
   if (!found) return;
   reach_[r] = found->t;
   if (hit) finish_exact(0, ray, object, found->t, *hit);

@@ -27,6 +27,7 @@ struct LocalRay {
   double enter;     // along the ray in ENU, m
   double stretch;   // local length of one metre
   double reach;     // local
+  unsigned id;      // of the float ray outside
 };
 
 // The stretch of the ray between near and far that lies in the instance's box; false when there is none.
@@ -65,10 +66,9 @@ bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray
 }
 
 // Where the unrounded ray meets an exact surface, from the packet's start on.
-std::optional<double> meet(const PlacedSet& set, const TracedObject& o, const Ray& ray, double advance, double near, double far) {
-  const Affine3 to_local = (set.moving ? set.moving->to_world(o, ray.time) : *o.place).inverse();
-  const auto found = intersect(set.world->scene->primitives[o.primitive], to_local.point(ray.origin + ray.direction * advance),
-                               to_local.vector(ray.direction), near, far);
+std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near, double far) {
+  const TracedObject& o = set.world->flat.objects[object];
+  const auto found = set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
   return found ? std::optional<double>(found->t) : std::nullopt;
 }
 
@@ -87,14 +87,14 @@ void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const
     const double advance = context.packet->advance[lane];
     if (go_in(set, prim, mesh, context.rays[context.packet->ray[lane]], advance + double{RTCRayN_tnear(rays, n, i)},
               advance + double{RTCRayN_tfar(rays, n, i)}, in.ray[in.count]))
-      in.lane[in.count++] = i;
+      in.ray[in.count].id = lane, in.lane[in.count++] = i;
   }
 }
 
 void load(const LocalRay& r, unsigned k, RTCRay8& q) {
   q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y), q.org_z[k] = static_cast<float>(r.origin.z);
   q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y), q.dir_z[k] = static_cast<float>(r.direction.z);
-  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = k, q.flags[k] = 0;
+  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id, q.flags[k] = 0;
 }
 
 void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -112,7 +112,9 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
     load(in.ray[k < in.count ? k : 0], k, rh.ray);
     rh.hit.geomID[k] = rh.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
+  context->object = set.objects[args->primID];
   rtcIntersect8(valid, entry.handle.scene, context, &rh);
+  context->object = kNone;
   for (unsigned k = 0; k < in.count; ++k) {
     if (rh.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
     const unsigned i = in.lane[k];
@@ -127,7 +129,7 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
   }
 }
 
-void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, const TracedObject& o) {
+void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t o) {
   const auto* context = static_cast<const TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
@@ -151,7 +153,7 @@ void intersect_placed(const RTCIntersectFunctionNArguments* args) {
   if (mesh != kNone) return intersect_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
   if (o.mesh != kNone) intersect_mesh(args, set, o.mesh);
-  else intersect_exact(args, set, o);
+  else intersect_exact(args, set, set.objects[args->primID]);
 }
 
 void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -166,7 +168,9 @@ void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& se
     valid[k] = k < in.count ? -1 : 0;
     load(in.ray[k < in.count ? k : 0], k, q);
   }
+  context->object = set.objects[args->primID];
   rtcOccluded8(valid, entry.handle.scene, context, &q);
+  context->object = kNone;
   for (unsigned k = 0; k < in.count; ++k)
     if (q.tfar[k] < 0) RTCRayN_tfar(args->ray, args->N, in.lane[k]) = -INFINITY;
 }
@@ -181,7 +185,7 @@ void occlude_placed(const RTCOccludedFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(args->ray, args->N, i);
-    if (meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(args->ray, args->N, i),
+    if (meet(set, set.objects[args->primID], context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(args->ray, args->N, i),
              RTCRayN_tfar(args->ray, args->N, i)))
       RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
   }

@@ -19,8 +19,8 @@ bool at_rest(const MovingPart& part) {
 }
 }  // namespace
 
-TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic)
-    : world_(std::make_shared<const World>(std::move(scene), periodic)) {}
+TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter)
+    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter))) {}
 TracerCache::~TracerCache() = default;
 
 std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
