@@ -231,6 +231,10 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   const std::span<const TracedObject> objects = tracer.objects();
   for (uint32_t o = 0; o < objects.size(); ++o) {
     const TracedObject& object = objects[o];
+    // What moves has no fixed place to be sampled at: the paths that meet it carry its light alone.
+    if (object.node != kNone) continue;
+    const Affine3& to_world = *object.place;
+    const bool mirrored = to_world.determinant() < 0;
     auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
     auto add_flat = [&](Shape shape, uint32_t spec) {
       Box3 box;
@@ -250,7 +254,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
       const Primitive& primitive = scene.primitives[object.primitive];
       const uint32_t spec = spec_of(object.material_override != kNone ? object.material_override : primitive.material);
       if (spec == kNone) continue;
-      shapes_of_primitive<Shape>(primitive, object.to_world, [&](Shape shape, uint32_t) {
+      shapes_of_primitive<Shape>(primitive, to_world, [&](Shape shape, uint32_t) {
         uint32_t index = kNone;
         if (shape.kind == Shape::Kind::sphere) {
           const Vec3 r{shape.a.x, shape.a.x, shape.a.x};
@@ -275,13 +279,13 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
         Vec3 v[3];
         for (int k = 0; k < 3; ++k) {
           const float* x = &mesh.positions[3 * size_t{mesh.indices[3 * size_t{t} + static_cast<size_t>(k)]}];
-          v[k] = object.to_world.point(
+          v[k] = to_world.point(
               mesh.origin + Vec3{static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])});
         }
         Shape shape;
         shape.kind = Shape::Kind::triangle;
         shape.origin = v[0], shape.a = v[1] - v[0], shape.b = v[2] - v[0];
-        const Vec3 n = cross(shape.a, shape.b) * (object.mirrored ? -1.0 : 1.0);
+        const Vec3 n = cross(shape.a, shape.b) * (mirrored ? -1.0 : 1.0);
         shape.area = 0.5 * length(n);
         if (!(shape.area > 0)) continue;
         shape.normal = n / (2 * shape.area);
