@@ -231,10 +231,8 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   const std::span<const TracedObject> objects = tracer.objects();
   for (uint32_t o = 0; o < objects.size(); ++o) {
     const TracedObject& object = objects[o];
-    // What moves has no fixed place to be sampled at: the paths that meet it carry its light alone.
-    if (object.node != kNone) continue;
-    const Affine3& to_world = *object.place;
-    const bool mirrored = to_world.determinant() < 0;
+    if (object.node != kNone) continue;  // what moves has no one place to aim at; paths meet its glow by chance
+    const Affine3 to_world = tracer.to_world(object, 0);
     auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
     auto add_flat = [&](Shape shape, uint32_t spec) {
       Box3 box;
@@ -285,7 +283,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
         Shape shape;
         shape.kind = Shape::Kind::triangle;
         shape.origin = v[0], shape.a = v[1] - v[0], shape.b = v[2] - v[0];
-        const Vec3 n = cross(shape.a, shape.b) * (mirrored ? -1.0 : 1.0);
+        const Vec3 n = cross(shape.a, shape.b) * (to_world.determinant() < 0 ? -1.0 : 1.0);
         shape.area = 0.5 * length(n);
         if (!(shape.area > 0)) continue;
         shape.normal = n / (2 * shape.area);
