@@ -168,4 +168,13 @@ class Combiner {
 
 Scene combine_scenes(std::vector<ScenePart> parts) { return Combiner(std::move(parts)).run(); }
 
+void set_epoch(Scene& scene, const std::string& epoch) {
+  if (!scene.epoch.empty()) {
+    const double later = instant_from_utc(parse_iso8601(scene.epoch)) - instant_from_utc(parse_iso8601(epoch));
+    for (SceneTrack& t : scene.tracks)
+      if (later != 0) t.track = delayed_track(t.track, later);
+  }
+  scene.epoch = epoch;
+}
+
 }  // namespace suite

@@ -23,4 +23,8 @@ struct ScenePart {
 // turn would shift by more than a tenth of a pixel.
 Scene combine_scenes(std::vector<ScenePart> parts);
 
+// Lets second 0 be at `epoch` (UTC, ISO 8601): the motions of a scene that has an epoch of its own keep their dates; those
+// of a scene without count from there.
+void set_epoch(Scene& scene, const std::string& epoch);
+
 }  // namespace suite
