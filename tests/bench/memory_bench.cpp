@@ -37,16 +37,18 @@ int main(int argc, char** argv) try {
   for (int i = 0; i < 200; ++i)
     for (int j = 0; j < 200; ++j) {
       const suite::FlushDenormals flush;
-      const suite::Ray ray{low + suite::Vec3{(i + 0.5) / 200 * size.x, (j + 0.5) / 200 * size.y, 2 * size.z + 10}, {0, 0, -1}, 0};
+      const suite::Ray ray{
+          low + suite::Vec3{(i + 0.5) / 200 * size.x, (j + 0.5) / 200 * size.y, 2 * size.z + 10}, {0, 0, -1}, 0};
       suite::Hit hit;
       suite::TraceStatistics statistics;
       tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
       hits += hit.hit() ? 1 : 0;
     }
   const double built = memory("VmRSS:"), peak = memory("VmHWM:");
-  std::printf("%.0f triangles stored, %zu unfolded, %zu of %zu tiles built, %zu of 40000 rays hit\n", triangles, tracer.triangles(), tracer.tiles_built(), tracer.tiles(), hits);
-  std::printf("bytes a triangle, the whole program: loaded %.1f (peak %.1f), built %.1f (peak %.1f)\n", loaded / triangles, loading / triangles, built / triangles,
-              peak / triangles);
+  std::printf("%.0f triangles stored, %zu unfolded, %zu of %zu tiles built, %zu of 40000 rays hit\n", triangles,
+              tracer.triangles(), tracer.tiles_built(), tracer.tiles(), hits);
+  std::printf("bytes a triangle, the whole program: loaded %.1f (peak %.1f), built %.1f (peak %.1f)\n",
+              loaded / triangles, loading / triangles, built / triangles, peak / triangles);
   return 0;
 } catch (const suite::Error& e) {
   std::fprintf(stderr, "%s\n", e.what());
