@@ -100,9 +100,9 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
   // The scenes are read when a sensor asks where on the Earth they are, else before rendering.
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<Scene> scene;
   const auto load = [&](const std::string& path, const std::vector<SimulationScene>& scenes) -> const Scene& {
-    if (!scene) scene = std::make_shared<const Scene>(load_scenes(path, scenes));
+    if (!scene) scene = std::make_shared<Scene>(load_scenes(path, scenes));
     return *scene;
   };
   std::unique_ptr<OutputWriter> writer;
@@ -128,6 +128,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
 
   // Everything that can be refused is refused before rendering starts.
   load(sim.path, sim.scenes);
+  if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});

@@ -116,7 +116,8 @@ int inspect(const ScenePrepOptions& o) {
   if (!o.export_obj.empty())
     if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));
   if (o.raycast.empty() && o.quick_look.empty()) return 0;
-  const Tracer tracer(scene);
+  const double time = time_of_all(*scene);
+  const Tracer tracer(scene, std::nullopt, {time, time});
   if (!o.raycast.empty()) std::fputs(describe_hit(tracer, parse_ray(o.raycast)).c_str(), stdout);
   if (!o.quick_look.empty()) {
     const View view = view_from_above(tracer, static_cast<int>(o.pixels));
