@@ -11,10 +11,16 @@ AppInfo render_info() {
           "  NAME_error.img   standard error of the radiance, same bands\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
           "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
+          "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
+          "and render.json    what was run: every capture with its paths, seconds and errors\n"
           "The same seed gives the same bytes for any number of threads.\n\n"
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
           "  dirsig-render sim.yaml -o quick/ --paths 8       a quick look\n"
+          "  dirsig-render sim.yaml --target-error 1%          as many paths as each pixel needs\n"
+          "  dirsig-render sim.yaml --time 10min               as many as there is time for\n"
+          "  dirsig-render sim.yaml --paths 64 --state         ... and later, the same bits as with 128 at once:\n"
+          "  dirsig-render sim.yaml --more 64\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 our bug."};
 }
@@ -22,9 +28,18 @@ AppInfo render_info() {
 void declare_render(Cli& cli, RenderOptions& o) {
   cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
   cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
-  cli.option("--paths", o.paths, "paths per pixel instead of what the sensors ask for", "N");
+  cli.option("--paths", o.paths, "paths per pixel instead of what the sensors ask for; MIN,MAX leaves room for a target", "N|MIN,MAX");
+  cli.option("--target-error", o.target_error, "relative standard error to reach, planned from a pilot without bias", "1%");
+  cli.option("--target-floor", o.target_floor, "radiance, W/(m2 sr um), below which the error is judged absolutely", "L");
+  cli.option("--target-bands", o.target_bands, "whose error decides: the band at the reference wavelength, or all", "reference|all");
+  cli.option("--time", o.time, "time for the whole run, s, min or h; turned into a number of paths after the first pilot, and printed", "10min");
+  cli.option("--stop", o.stop, "'plan' (unbiased) or 'change', the rule of the DIRSIG5 paper, for comparison", "plan|change");
+  cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
+  cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
+  cli.option("--more", o.more, "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }

@@ -8,7 +8,10 @@ namespace suite {
 
 struct RenderOptions {
   std::string simulation, output = "out";
-  long long paths = 0, seed = -1;
+  std::string explain, paths, target_error, target_bands = "reference", time, stop = "plan";
+  double target_floor = -1;
+  long long seed = -1, more = -1;
+  bool state = false, resume = false;
   bool dry_run = false, list_sensors = false, list_models = false;
 };
 

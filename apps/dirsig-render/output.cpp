@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/files.h"
 #include "formats/envi/envi.h"
 #include "preview.h"
 
@@ -80,6 +81,15 @@ std::vector<std::string> write_capture(const std::string& folder, const Sensor& 
   for (size_t i = 0; i < material_names.size(); ++i) truth.description += strf(" %zu=%s", i, material_names[i].c_str());
   write_envi(base + "_truth.img", truth, r.truth);
   files.push_back(base + "_truth.img");
+
+  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
+  for (const Band& b : bands) correlation += "," + b.name;
+  for (size_t a = 0; a < r.bands; ++a) {
+    correlation += "\n" + bands[a].name;
+    for (size_t b = 0; b < r.bands; ++b) correlation += strf(",%.4f", r.error_correlation[a * r.bands + b]);
+  }
+  write_file(base + "_error_correlation.csv", correlation + "\n");
+  files.push_back(base + "_error_correlation.csv");
 
   write_preview(base + ".png", r.radiance, r.columns, r.rows, r.bands, preview_bands(bands, output.preview));
   files.push_back(base + ".png");

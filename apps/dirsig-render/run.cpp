@@ -4,9 +4,12 @@
 
 #include "base/files.h"
 #include "base/progress.h"
+#include "budget_options.h"
+#include "continued.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
+#include "log.h"
 #include "motion/ephemeris.h"
 #include "optics/models.h"
 #include "output.h"
@@ -14,6 +17,14 @@
 namespace suite {
 
 namespace {
+
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim) {
+  SceneNeeds needs;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+  return needs;
+}
 
 int list_sensors() {
   for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
@@ -48,7 +59,11 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
       for (const Capture& c : t.captures)
         std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(), c.columns, c.rows, c.window.begin, c.window.end);
   }
-  std::printf("at least %s paths\n", human_count(forecast_paths(sim.sensors, options)).c_str());
+  const JobOrder order = order_of(sim.sensors);
+  std::printf("order of the captures:");
+  for (const size_t id : order.captures) std::printf(" %zu", id);
+  std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n", order.state_changes,
+              human_count(forecast_paths(sim.sensors, options)).c_str(), human_bytes(forecast_bytes(sim.sensors, options)).c_str());
   return 0;
 }
 
@@ -56,7 +71,8 @@ void tell(const JobReport& r) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer", human_count(paths).c_str(),
             human_count(static_cast<double>(r.statistics.trace.rays)).c_str(), paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
-  note(strf("median relative standard error %.2f %%; %s", 100 * r.median_relative_error, r.stopped_by.c_str()));
+  note(strf("median relative standard error %.2f %%; %.2f %% of the pixels are flagged for heavy tails", 100 * r.median_relative_error, 100 * r.share_flagged));
+  note(r.stopped_by);
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength", 100 * r.statistics.truncated / paths));
   if (r.statistics.failures) warn(strf("%llu samples were not finite or negative and were left out", static_cast<unsigned long long>(r.statistics.failures)));
@@ -67,8 +83,9 @@ void tell(const JobReport& r) {
 int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sensors) return list_sensors();
   if (o.list_models) return list_models();
+  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
-  if (cli.given("--paths") && (o.paths < 1 || o.paths > (1LL << 30))) throw UsageError("--paths wants a number from 1 to 2^30");
+  if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
   std::vector<std::string> material_names;
   std::string folder = o.output;
@@ -82,16 +99,24 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   JobOptions options;
   options.pipeline = sim.pipeline;
   options.periodic = sim.periodic;
-  options.paths = static_cast<uint32_t>(o.paths);
+  options.budget = budget_of(o);
+  options.pipeline.stop = stop_rule_of(o);
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  auto scene = std::make_shared<Scene>(read_scene(sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
+  LoadReport loaded;
+  auto scene = std::make_shared<Scene>(read_scene(
+      sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded));
+  note("of the scene:\n" + loaded.text() + "(--explain FEATURE says why)");
   resolve_sun(sim, *scene);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);
   if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
-  tell(run_job(scene, sim.sources, sim.sensors, options));
+  const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
+  options.store = store.get();
+  const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
+  tell(report);
+  write_log(folder + "/render.json", report, options);
   return 0;
 }
 

@@ -1,5 +1,5 @@
 #include "base/files.h"
-#include "formats/scene_hdf/h5.h"
+#include "formats/hdf5/h5.h"
 #include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 

@@ -3,6 +3,7 @@
 //
 // Based on: L. Kavan et al., "Dual quaternions for rigid transformation blending", 2006 (screw interpolation).
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -123,5 +124,12 @@ TrackPtr pointed_track(TrackPtr place, const PointingRule& rule);
 size_t time_steps_for(const Track& track, TimeSpan window, double radius, double bound);
 // The keys themselves.
 std::vector<Affine3> time_keys(const Track& track, TimeSpan window, size_t steps);
+
+// The same for anything that has a place at a time, such as a chain of tracks. kinks: times inside the window where the
+// motion has a kink.
+using MovingFrame = std::function<Affine3(double t)>;
+size_t time_steps_for(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, double radius,
+                      double bound);
+std::vector<Affine3> time_keys(const MovingFrame& frame, TimeSpan window, size_t steps);
 
 }  // namespace suite

@@ -27,6 +27,7 @@ struct Node {
   Interaction at;
   Dir out;                       // back along the segment, ENU
   double optical_length = 0;     // m from the sensor, sum of segment lengths
+  bool sunlit = false;           // the explicit sample of the sun arrived
   bool has_direct = false;       // explicit light that did not factor stands in the wave's store
   double spectral_factor = 1;    // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
   std::array<ExplicitLight, 2> light;   // sun, sky

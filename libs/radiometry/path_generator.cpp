@@ -70,7 +70,10 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
-      if (!wave.blocked[i]) add_explicit(wave, p, wave.node(p, wave.path(p).size - 1).light[wave.light[i]]);
+      if (wave.blocked[i]) continue;
+      Node& node = wave.node(p, wave.path(p).size - 1);
+      node.sunlit = node.sunlit || wave.light[i] == 0;
+      add_explicit(wave, p, node.light[wave.light[i]]);
     }
 
     // Draw the continuations.
@@ -106,8 +109,8 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   node.spectral_factor = 1 / live.shares;
   node.continues = false;
   node.light = {};
-  surface_.interact(hit, node.out, node.at, path.ray.time);
-  node.has_direct = false;
+  surface_.interact(hit, node.out, node.at);
+  node.has_direct = node.sunlit = false;
   if (node.at.baked && node.at.baked->model) return true;
   path.end = PathEnd::absorbed;
   return false;

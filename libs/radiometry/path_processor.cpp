@@ -30,10 +30,11 @@ void add_emission(const Node& node, std::span<float> scratch, std::span<float> r
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * std::max(0.0f, 1 - scratch[i]) * blackbody[i];
 }
 
-// L = S + w / p L for what factors: one pass over the wavelengths in the usual case of one source.
-void propagate(const Node& node, size_t n, float* __restrict L) {
+// L = S + w / p L for what factors: one pass over the wavelengths in the usual case of one source. Without `continues`
+// the continuation is left out.
+void propagate(const Node& node, bool continues, size_t n, float* __restrict L) {
   const ExplicitLight& sun = node.light[0];
-  if (node.continues) {
+  if (continues) {
     const float* __restrict w = node.bounce_spectrum;
     const float b = node.bounce_scale;
     if (sun.scatter == w) {
@@ -47,11 +48,21 @@ void propagate(const Node& node, size_t n, float* __restrict L) {
     std::fill_n(L, n, 0.0f);
   }
   for (const ExplicitLight& light : node.light) {
-    if (!light.scatter || (&light == &sun && node.continues && sun.scatter == node.bounce_spectrum)) continue;
+    if (!light.scatter || (&light == &sun && continues && sun.scatter == node.bounce_spectrum)) continue;
     const float *__restrict e = light.spectrum, *__restrict w = light.scatter;
     const float s = light.scale;
     for (size_t i = 0; i < n; ++i) L[i] += s * e[i] * w[i];
   }
+}
+
+void add_node(Wave& wave, size_t p, int n, bool continues, std::span<float> radiance) {
+  const Node& node = wave.node(p, n);
+  propagate(node, continues, radiance.size(), radiance.data());
+  if (node.has_direct) {
+    const float* direct = wave.direct(p, n).data();
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
+  }
+  if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
 }
 
 }  // namespace
@@ -60,16 +71,21 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
   const Path& path = wave.path(p);
   from_outside(path, environment, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
-    const Node& node = wave.node(p, n);
-    propagate(node, radiance.size(), radiance.data());
-    if (node.has_direct) {
-      const float* direct = wave.direct(p, n).data();
-      for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += direct[i];
-    }
-    if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
+    add_node(wave, p, n, wave.node(p, n).continues, radiance);
   }
   if (path.weight != 1)
     for (float& x : radiance) x *= static_cast<float>(path.weight);
+}
+
+void process_single(Wave& wave, size_t p, std::span<const float> radiance, std::span<float> single) {
+  const Path& path = wave.path(p);
+  if (path.size < 2) {
+    std::copy(radiance.begin(), radiance.end(), single.begin());
+    return;
+  }
+  add_node(wave, p, 0, false, single);
+  if (path.weight != 1)
+    for (float& x : single) x *= static_cast<float>(path.weight);
 }
 
 }  // namespace suite

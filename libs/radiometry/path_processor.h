@@ -14,4 +14,8 @@ namespace suite {
 // radiance: per bin, W/(m2 sr um). Overwrites the wave's scratch spectra.
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance);
 
+// The part of it that was scattered or emitted once (Channel::single): the first node without its continuation, or
+// everything where the path met no second node. After process_path, whose result is `radiance`.
+void process_single(Wave& wave, size_t p, std::span<const float> radiance, std::span<float> single);
+
 }  // namespace suite

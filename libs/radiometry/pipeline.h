@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radiometry/sources/source.h"
+#include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"
 
@@ -16,24 +17,41 @@ namespace suite {
 
 inline constexpr int kMaxNodes = 64;
 
+// When a problem stops taking samples.
+enum class StopRule : uint8_t {
+  plan,    // at the count that was planned for it beforehand: unbiased
+  change,  // the paper's: when one more sample changes the running mean at the reference band by less than a threshold.
+           // It looks at the samples that it keeps and is biased low where rare events carry the light.
+};
+
 struct PipelineOptions {
   uint64_t seed = 1;
   int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
   int roulette_after = 3;        // nodes before paths may end by chance
   bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
+  StopRule stop = StopRule::plan;
+  uint32_t change_after = 20;    // StopRule::change: samples before the first test
+  double change = 1e-3;          // StopRule::change: relative change that counts as convergence
 };
 
-// What one problem has gathered. Sums are kept per independent scramble, which is where standard errors come from.
-struct ProblemTruth {
-  uint32_t hits = 0;
-  double range = 0;              // sums over the hits
-  Vec3 position;
-  // Materials and instances of the first node: the most frequent of the first few seen.
-  struct Vote {
-    uint32_t id = kNone, count = 0;
-  };
-  std::array<Vote, 4> material, instance;
+// Samples are dealt to independent scrambles of the sequence, from whose spread the standard error comes. The rule depends
+// on the sample's number alone, so that a run that is continued deals like one that never stopped: four scrambles share
+// the first 256 samples, four more the next 256, all eight take turns from there on.
+struct Deal {
+  uint32_t scramble, index;
 };
+constexpr Deal deal(uint32_t sample) {
+  if (sample < 256) return {sample % 4, sample / 4};
+  if (sample < 512) return {4 + sample % 4, (sample - 256) / 4};
+  return {sample % 8, 64 + (sample - 512) / 8};
+}
+// How many of the first n samples went to a scramble.
+constexpr uint32_t dealt(uint32_t n, uint32_t scramble) {
+  const uint32_t begin = scramble < 4 ? 0 : 256, lane = scramble % 4;
+  const uint32_t early = n <= begin ? 0 : n - begin < 256 ? n - begin : 256;
+  const uint32_t late = n > 512 ? n - 512 : 0;
+  return (early + 3 - lane) / 4 + (late + 7 - scramble) / 8;
+}
 
 struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
@@ -43,11 +61,12 @@ struct RunStatistics {
   void merge(const RunStatistics& o);
 };
 
-// Accumulators of the problems of one capture.
+// Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
+// come from. bands: values a problem ([channel][time bin][band]); truth_slots: doubles of truth a problem.
 class Accumulators {
  public:
-  Accumulators(size_t problems, size_t bands, int scrambles);
-  // Number of scrambles for a count of paths: 4 up to 256, 8 above (both cover 95-97 % at the nominal 95 %).
+  Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);
+  // Number of scrambles that `paths` samples are dealt to.
   static int scrambles_for(uint32_t paths) { return paths > 256 ? 8 : 4; }
 
   int scrambles() const { return scrambles_; }
@@ -64,11 +83,19 @@ class Accumulators {
   // Largest single sample at the reference band, for the tail indicator.
   float& largest(size_t problem) { return largest_[problem]; }
   float largest(size_t problem) const { return largest_[problem]; }
-  ProblemTruth& truth(size_t problem) { return truth_[problem]; }
-  const ProblemTruth& truth(size_t problem) const { return truth_[problem]; }
+  size_t truth_slots() const { return truth_slots_; }
+  double* truth(size_t problem) { return truth_.data() + problem * truth_slots_; }
+  const double* truth(size_t problem) const { return truth_.data() + problem * truth_slots_; }
 
-  // Mean and standard error of one band of one problem.
+  // Mean and standard error of one band of one problem. The variance of the mean, sum of (share^2 variance) over the
+  // scrambles, is estimated without bias for any shares and variances of the scrambles below one half each:
+  //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
+  // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples.
   void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
+  // The same for all values of a problem at once; spans of bands() values.
+  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
+  // Forgets everything.
+  void clear();
 
  private:
   size_t bands_;
@@ -76,27 +103,33 @@ class Accumulators {
   std::vector<double> sums_;     // [problem][scramble][band]
   std::vector<uint32_t> paths_, failures_;
   std::vector<float> truncated_, largest_;
-  std::vector<ProblemTruth> truth_;
+  size_t truth_slots_;
+  std::vector<double> truth_;    // [problem][slot]
 };
 
 // A rectangle of problems that run together.
 struct Block {
   uint32_t column = 0, row = 0, columns = 0, rows = 0;
 };
-// Square blocks (8 x 8) that cover a capture, row by row.
+// Square blocks that cover a capture, row by row.
+inline constexpr uint32_t kBlockEdge = 8;
 std::vector<Block> blocks_of(const Capture& capture);
+
+// Where the accumulators of a block's problems stand: at their own numbers, for accumulators of a whole capture, or at
+// their places in the block, for accumulators of one block.
+enum class Slots : uint8_t { by_problem, by_place };
 
 class Pipeline {
  public:
   // Keeps references; all must outlive it.
   Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-           const BandProjection& projection, size_t reference_band, const PipelineOptions& options);
+           const BandProjection& projection, size_t reference_band, const TruthPlan& truth, const PipelineOptions& options);
   ~Pipeline();
 
-  // Runs the samples [from, to[problem]) of each problem of a block and adds them to the accumulators; sample s goes to
-  // scramble s % scrambles. Problems whose `to` is not above `from` are left alone. Thread-safe for distinct blocks.
-  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, uint32_t from,
-           std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const;
+  // Continues each problem of a block from the paths that its accumulators hold up to to[problem]. Thread-safe for
+  // distinct blocks.
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, std::span<const uint32_t> to,
+           Accumulators& sums, Slots slots, RunStatistics& statistics) const;
 
  private:
   const Surface& surface_;
@@ -105,6 +138,7 @@ class Pipeline {
   const SpectralState& state_;
   const BandProjection& projection_;
   size_t reference_band_;
+  const TruthPlan& truth_;
   PipelineOptions options_;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;

@@ -117,6 +117,8 @@ void check_scene(const Scene& s, const std::string& file) {
       if (p.material_override != kNone && p.material_override >= s.materials.size())
         bad(file, "a material override is not there");
       if (p.tag != kNone && p.tag >= s.tags.size()) bad(file, "a tag is not there");
+      if (p.track != kNone && (p.track >= s.tracks.size() || !s.tracks[p.track].track))
+        bad(file, "a motion is not there");
       for (const double a : p.to_parent.a)
         if (!std::isfinite(a)) bad(file, "a transform is not finite");
       if (!finite(p.to_parent.b) || p.to_parent.determinant() == 0)

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <mutex>
+#include <map>
 
-#include "base/parallel.h"
+#include "base/error.h"
 #include "base/progress.h"
+#include "scheduler/capture_run.h"
+#include "scheduler/order.h"
 #include "scheduler/plan.h"
+#include "scheduler/result.h"
 #include "surface/cut_out.h"
 
 namespace suite {
@@ -29,78 +31,281 @@ Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
 struct StateKit {
   Optics optics;
   Environment environment;
-  Surface surface;
   BandProjection projection;
   size_t reference_band = 0;
 
-  StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state, std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer.objects())), environment(bake_sources(sources, state)), surface(tracer, optics), projection(state, bands) {
+  StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
+           std::span<const Band> bands)
+      : optics(scene, state, used_materials(scene, tracer.objects())),
+        environment(bake_sources(sources, state)),
+        projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
-      if (std::fabs(bands[b].center_um - state.reference_um) < std::fabs(bands[reference_band].center_um - state.reference_um)) reference_band = b;
+      if (std::fabs(bands[b].center_um - state.reference_um) <
+          std::fabs(bands[reference_band].center_um - state.reference_um))
+        reference_band = b;
   }
 };
 
-// Runs samples [from, to) of all problems of a capture, block by block in parallel.
-void run_stage(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t id, uint32_t from, std::span<const uint32_t> to,
-               Accumulators& sums, RunStatistics& statistics, Progress* progress) {
-  const std::vector<Block> blocks = blocks_of(capture);
-  std::mutex mutex;
-  parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t b = begin; b < end; ++b) {
-      RunStatistics mine;
-      pipeline.run(sensor, capture, id, blocks[b], from, to, sums, mine);
-      const std::lock_guard lock(mutex);
-      statistics.merge(mine);
-      if (progress) progress->add(static_cast<double>(mine.paths));
+bool same_state(const SpectralState& a, const SpectralState& b) {
+  auto same_bin = [](const Bin& x, const Bin& y) { return x.low_um == y.low_um && x.high_um == y.high_um; };
+  return a.reference_um == b.reference_um && a.knots == b.knots &&
+         std::equal(a.bins.begin(), a.bins.end(), b.bins.begin(), b.bins.end(), same_bin);
+}
+
+// A capture of the job and what it needs.
+struct Item {
+  size_t sensor, task, capture, id;
+  StatePair state;
+};
+
+// moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
+  std::vector<Item> items;
+  std::map<std::pair<double, double>, size_t> windows;
+  std::vector<const SpectralState*> distinct;
+  for (size_t s = 0; s < sensors.size(); ++s) {
+    std::vector<size_t> number;  // of each of the sensor's states
+    for (const SpectralState& state : sensors[s]->states()) {
+      const auto known =
+          std::find_if(distinct.begin(), distinct.end(), [&](const SpectralState* d) { return same_state(*d, state); });
+      number.push_back(static_cast<size_t>(known - distinct.begin()));
+      if (known == distinct.end()) distinct.push_back(&state);
     }
-  });
-}
-
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t reference_band, const Scene& scene) {
-  CaptureResult r;
-  r.columns = capture.columns;
-  r.rows = capture.rows;
-  r.bands = bands;
-  r.truth_names = {"material", "instance", "range [m]", "east [m]", "north [m]", "up [m]", "paths", "nodes hit"};
-  const size_t n = capture.problems();
-  r.radiance.resize(n * bands);
-  r.standard_error.resize(n * bands);
-  r.paths.resize(n);
-  r.quality.resize(n);
-  r.truth.assign(n * r.truth_names.size(), std::numeric_limits<double>::quiet_NaN());
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t b = 0; b < bands; ++b) sums.estimate(i, b, r.radiance[i * bands + b], r.standard_error[i * bands + b]);
-    r.paths[i] = sums.paths(i);
-    const double mean = r.radiance[i * bands + reference_band];
-    // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
-    if (sums.paths(i) >= 16 && sums.largest(i) > 0.1 * mean * sums.paths(i)) r.quality[i] |= quality_heavy_tail;
-    if (sums.failures(i)) r.quality[i] |= quality_failures;
-    if (sums.truncated(i) > 0.01f * static_cast<float>(sums.paths(i))) r.quality[i] |= quality_truncated;
-    const ProblemTruth& t = sums.truth(i);
-    double* truth = &r.truth[i * r.truth_names.size()];
-    truth[6] = sums.paths(i);
-    truth[7] = t.hits;
-    if (!t.hits) continue;
-    auto most = [](const auto& votes) { return *std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) { return a.count < b.count; }); };
-    const auto material = most(t.material), instance = most(t.instance);
-    if (material.id < scene.materials.size()) truth[0] = material.id;
-    if (instance.id != kNone) truth[1] = instance.id;
-    truth[2] = t.range / t.hits;
-    truth[3] = t.position.x / t.hits, truth[4] = t.position.y / t.hits, truth[5] = t.position.z / t.hits;
+    for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
+      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
+        const Capture& capture = sensors[s]->tasks()[t].captures[c];
+        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
+      }
   }
-  return r;
+  return items;
 }
 
-Convergence goal_of(const Capture& capture, const JobOptions& options) {
-  if (!options.paths) return capture.convergence;
-  return {options.paths, options.paths, 0, 0};
+std::vector<Item> in_cheapest_order(const std::vector<Item>& items, size_t& changes) {
+  std::vector<StatePair> pairs;
+  for (const Item& i : items) pairs.push_back(i.state);
+  std::vector<Item> ordered;
+  std::vector<StatePair> sequence;
+  for (const size_t i : cheapest_order(pairs)) ordered.push_back(items[i]), sequence.push_back(items[i].state);
+  changes = state_changes(sequence);
+  return ordered;
 }
 
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
+// One run of all captures: what changes from capture to capture.
+class Job {
+ public:
+  Job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
+      std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options)
+      : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
+
+  JobReport run() {
+    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    for (const Item& item : items) check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
+    if (!items.empty()) tracer_of(capture_of(items.front()));
+    report_.build_seconds = seconds_since(start_);
+    if (options_.store) options_.store->begin(shapes(items));
+    for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
+    if (options_.progress)
+      progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
+    for (const Item& item : items) run_item(item);
+    if (progress_) progress_->finish();
+    finish();
+    return std::move(report_);
+  }
+
+ private:
+  const Capture& capture_of(const Item& item) const {
+    return sensors_[item.sensor]->tasks()[item.task].captures[item.capture];
+  }
+
+  // The budget, with a time budget turned into a maximum of paths as soon as that is known.
+  Budget budget() const {
+    Budget b = options_.budget;
+    if (b.seconds <= 0) return b;
+    b.max_paths = cap_ ? cap_ : b.max_paths.value_or(kDefaultMost);
+    return b;
+  }
+
+  // Makes the tracer of a capture's time window the current one; true when it had to be built.
+  bool tracer_of(const Capture& capture) {
+    const size_t before = tracers_->builds();
+    tracer_ = tracers_->get({capture.window.begin, capture.window.end});
+    report_.tracer_builds = tracers_->builds();
+    return tracers_->builds() > before;
+  }
+
+  // What the store has to hold of each capture, by number.
+  std::vector<CaptureShape> shapes(const std::vector<Item>& items) const {
+    std::vector<CaptureShape> all(items.size());
+    std::map<std::pair<size_t, size_t>, size_t> slots;  // of truth, by sensor and state
+    for (const Item& item : items) {
+      const Sensor& sensor = *sensors_[item.sensor];
+      const Capture& capture = capture_of(item);
+      const auto [known, fresh] = slots.try_emplace({item.sensor, capture.state}, 0);
+      if (fresh) {
+        const SpectralState& state = sensor.states()[capture.state];
+        const BandProjection projection(state, sensor.bands(capture.state));
+        const Environment none;
+        known->second =
+            TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none})
+                .slots();
+      }
+      all[item.id] = {capture.columns, capture.rows,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+                      Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
+    }
+    return all;
+  }
+
+  StateKit& kit_of(const Item& item, CaptureLog& log) {
+    const size_t state = capture_of(item).state;
+    std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
+    if (!kit) {
+      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
+                                       sensors_[item.sensor]->bands(state));
+      ++report_.optics_bakes;
+      log.new_optics = true;
+    }
+    return *kit;
+  }
+
+  void run_item(const Item& item) {
+    const Clock::time_point begun = Clock::now();
+    const Sensor& sensor = *sensors_[item.sensor];
+    const Capture& capture = capture_of(item);
+    CaptureLog log;
+    log.new_tracer = tracer_of(capture);
+    StateKit& kit = kit_of(item, log);
+    const Surface surface(*tracer_, kit.optics);
+    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
+                                           kit.projection, kit.environment});
+    const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
+                            kit.reference_band, truth, options_.pipeline);
+    if (options_.store && !cap_) cap_ = options_.store->cap();
+    CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
+                     judged_bands(kit), options_.store, progress_.get(), {}};
+    if (options_.budget.seconds > 0 && !cap_)
+      work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
+        fix_cap(w, needs, paths, seconds);
+      };
+    if (work.after_pilot && work.goal.relative_error == 0)
+      work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
+    const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
+    sensors_[item.sensor]->begin(capture);
+    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    CaptureResult result = builder.finish();
+    result.task = item.task;
+    result.capture = item.capture;
+    judge(item, work, kit, result, log);
+    log.sensor = sensor.name();
+    log.task = sensor.tasks()[item.task].name;
+    log.capture = capture.name;
+    log.state = kit.optics.state().text();
+    log.id = item.id;
+    log.window = capture.window;
+    log.problems = capture.problems();
+    log.seconds = seconds_since(begun);
+    report_.statistics.merge(log.statistics);
+    ++report_.captures;
+    report_.problems += capture.problems();
+    report_.log.push_back(std::move(log));
+    sensors_[item.sensor]->accept(std::move(result));
+  }
+
+  std::vector<size_t> judged_bands(const StateKit& kit) const {
+    if (!options_.budget.all_bands) return {kit.reference_band};
+    std::vector<size_t> all(kit.projection.bands());
+    for (size_t b = 0; b < all.size(); ++b) all[b] = b;
+    return all;
+  }
+
+  // Turns the time that is left into a maximum of paths, the same for all captures, so that the run can be repeated.
+  void fix_cap(CaptureWork& work, std::span<const double> needs, double paths, double seconds) {
+    const double left = options_.budget.seconds - seconds_since(start_), rate = seconds > 0 ? paths / seconds : 0;
+    const double here = static_cast<double>(work.capture.problems());
+    // Each capture gets its share of what can be traced in the time that is left, counting the pilot that this one has.
+    const double total = here / total_problems_ * (std::max(0.0, left) * rate + paths);
+    cap_ =
+        cap_for_total(needs, work.goal, work.goal.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
+    work.goal.max_paths = report_.time_cap = cap_;
+    if (options_.store) options_.store->save_cap(cap_);
+  }
+
+  void judge(const Item& item, const CaptureWork& work, const StateKit& kit, const CaptureResult& r, CaptureLog& log) {
+    const Convergence& goal = work.goal;
+    const size_t values = r.values_per_problem();
+    ErrorHistogram errors;
+    for (size_t i = 0; i < work.capture.problems(); ++i) {
+      flagged_ += r.quality[i] & quality_heavy_tail ? 1 : 0;
+      if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
+        errors.add(r.standard_error[i * values + kit.reference_band] / mean);
+      double worst = 0;
+      for (const size_t b : work.judged) {
+        const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
+        if (scale > 0) worst = std::max(worst, r.standard_error[i * values + b] / scale);
+      }
+      if (worst > report_.worst.relative_error)
+        report_.worst = {sensors_[item.sensor]->name(), work.capture.name,
+                         static_cast<uint32_t>(i % work.capture.columns),
+                         static_cast<uint32_t>(i / work.capture.columns), worst};
+      if (!(goal.relative_error > 0)) continue;
+      with_target_ += 1;
+      at_target_ += worst <= goal.relative_error ? 1 : 0;
+      at_maximum_ += r.paths[i] >= goal.max_paths ? 1 : 0;
+      target_ = goal.relative_error;
+    }
+    log.median_relative_error = errors.median();
+    errors_.merge(errors);
+  }
+
+  void finish() {
+    report_.median_relative_error = errors_.median();
+    report_.share_in_embree = report_.statistics.cycles ? static_cast<double>(report_.statistics.trace.cycles) /
+                                                              static_cast<double>(report_.statistics.cycles)
+                                                        : 0;
+    report_.seconds = seconds_since(start_);
+    if (with_target_ > 0) report_.share_at_target = at_target_ / with_target_;
+    if (report_.problems) report_.share_flagged = flagged_ / static_cast<double>(report_.problems);
+    std::string& s = report_.stopped_by;
+    if (options_.pipeline.stop == StopRule::change)
+      s = strf(
+          "each problem stopped when one more path changed its mean by less than %g of it, which is biased low where "
+          "rare events carry the light",
+          options_.pipeline.change);
+    else if (with_target_ > 0)
+      s = strf(
+          "stopped by the plan for a target of %g %%, or by its maximum of paths (%.1f %% of the problems); %.1f %% of "
+          "the problems are at the target",
+          100 * target_, 100 * at_maximum_ / with_target_, 100 * report_.share_at_target);
+    else
+      s = "every problem ran the paths it was given";
+    if (report_.time_cap)
+      s += strf("; the time was worth %u paths a problem (--paths %u repeats this run)", report_.time_cap,
+                report_.time_cap);
+    else if (cap_)
+      s += strf("; at most %u paths a problem, as the time was found to be worth", cap_);
+    const WorstProblem& w = report_.worst;
+    if (w.relative_error > 0)
+      s += strf("; the worst is column %u, row %u of '%s' with %.2g %%", w.column, w.row, w.capture.c_str(),
+                100 * w.relative_error);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  const SourceSpecs& sources_;
+  std::span<const std::unique_ptr<Sensor>> sensors_;
+  const JobOptions& options_;
+  Clock::time_point start_ = Clock::now();
+  JobReport report_;
+  std::unique_ptr<TracerCache> tracers_;
+  std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
+  std::unique_ptr<Progress> progress_;
+  std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
+  ErrorHistogram errors_;
+  double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, flagged_ = 0, target_ = 0;
+  uint32_t cap_ = 0;
+};
 
 }  // namespace
 
@@ -109,63 +314,33 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   for (const auto& s : sensors)
     for (const Task& t : s->tasks())
       for (const Capture& c : t.captures) {
-        const Convergence goal = goal_of(c, options);
+        const Convergence goal = goal_of(c, options.budget);
         sum += static_cast<double>(c.problems()) * (goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
       }
   return sum;
 }
 
-JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
-  const Clock::time_point start = Clock::now();
-  JobReport report;
-  const Tracer tracer(scene, options.periodic, cut_out(*scene));
-  report.tracer_builds = 1;
-  report.build_seconds = seconds_since(start);
-  std::vector<double> relative_errors;
-  bool adaptive = false;
-  std::unique_ptr<Progress> progress;
-  if (options.progress) progress = std::make_unique<Progress>("rendering", forecast_paths(sensors, options), "path");
-  uint64_t capture_id = 0;
-  for (const auto& sensor : sensors) {
-    std::vector<std::unique_ptr<StateKit>> kits(sensor->states().size());
-    for (size_t t = 0; t < sensor->tasks().size(); ++t) {
-      const Task& task = sensor->tasks()[t];
-      for (size_t c = 0; c < task.captures.size(); ++c, ++capture_id) {
-        const Capture& capture = task.captures[c];
-        std::unique_ptr<StateKit>& kit = kits[capture.state];
-        if (!kit) {
-          kit = std::make_unique<StateKit>(*scene, tracer, sources, sensor->states()[capture.state], sensor->bands(capture.state));
-          ++report.optics_bakes;
-        }
-        const Pipeline pipeline(kit->surface, kit->optics, kit->environment, kit->optics.state(), kit->projection, kit->reference_band, options.pipeline);
-        const size_t bands = kit->projection.bands();
-        const Convergence goal = goal_of(capture, options);
-        Accumulators sums(capture.problems(), bands, Accumulators::scrambles_for(goal.max_paths));
-        std::vector<uint32_t> plan(capture.problems(), goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
-        run_stage(pipeline, *sensor, capture, capture_id, 0, plan, sums, report.statistics, progress.get());
-        if (goal.relative_error > 0) {
-          adaptive = true;
-          plan = plan_paths(capture, sums, kit->reference_band);
-          run_stage(pipeline, *sensor, capture, capture_id, goal.min_paths, plan, sums, report.statistics, progress.get());
-        }
-        CaptureResult result = to_result(capture, sums, bands, kit->reference_band, *scene);
-        result.task = t;
-        result.capture = c;
-        for (size_t i = 0; i < capture.problems(); ++i)
-          if (const double mean = result.radiance[i * bands + kit->reference_band]; mean > 0)
-            relative_errors.push_back(result.standard_error[i * bands + kit->reference_band] / mean);
-        report.problems += capture.problems();
-        ++report.captures;
-        sensor->accept(std::move(result));
+double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
+  double most = 0;
+  for (const auto& s : sensors)
+    for (const Task& t : s->tasks())
+      for (const Capture& c : t.captures) {
+        const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
+                     bands = static_cast<double>(s->bands(c.state).size());
+        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }
-    }
-  }
-  if (progress) progress->finish();
-  report.seconds = seconds_since(start);
-  report.median_relative_error = median_of(relative_errors);
-  report.share_in_embree = report.statistics.cycles ? static_cast<double>(report.statistics.trace.cycles) / static_cast<double>(report.statistics.cycles) : 0;
-  report.stopped_by = adaptive ? "two stages: a pilot of all problems, then a number of paths planned from the neighbours' variance" : "a fixed number of paths for every problem";
-  return report;
+  return most;
+}
+
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
+  JobOrder order;
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
+  return order;
+}
+
+JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
+                  std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
+  return Job(scene, sources, sensors, options).run();
 }
 
 }  // namespace suite

@@ -1,5 +1,5 @@
-// The glue between sensors and the radiometry core (paper, section III-C): gathers tasks, captures and states, runs them
-// in blocks, and routes results and truth back.
+// The glue between sensors and the radiometry core (paper, section III-C): gathers tasks, captures and states, orders
+// them so that states change seldom, runs them in blocks, and routes results and truth back.
 #pragma once
 #include <functional>
 #include <memory>
@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "radiometry/pipeline.h"
+#include "scheduler/budget.h"
+#include "scheduler/state_store.h"
 #include "sensor/sensor.h"
 
 namespace suite {
@@ -16,7 +18,8 @@ namespace suite {
 struct JobOptions {
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
-  uint32_t paths = 0;              // replaces every capture's own convergence by a fixed number of paths; 0 = does not
+  Budget budget;
+  StateStore* store = nullptr;  // keeps what is needed to continue; null = nothing is kept
   bool progress = true;
 };
 
@@ -26,21 +29,55 @@ struct SourceSpecs {
   std::optional<SkySpec> sky;
 };
 
+// What one capture took; a line of the log.
+struct CaptureLog {
+  std::string sensor, task, capture, state;
+  size_t id = 0;  // number of the capture in the job, counted over sensors, tasks and captures
+  TimeWindow window;
+  size_t problems = 0;
+  RunStatistics statistics;
+  double seconds = 0;
+  double median_relative_error = 0;  // at the reference band
+  bool new_tracer = false, new_optics = false;
+};
+
+// The problem furthest from its target.
+struct WorstProblem {
+  std::string sensor, capture;
+  uint32_t column = 0, row = 0;
+  double relative_error = 0;
+};
+
 struct JobReport {
   RunStatistics statistics;
   size_t captures = 0, problems = 0;
-  size_t tracer_builds = 0, optics_bakes = 0;
+  size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
   double seconds = 0, build_seconds = 0;
-  double share_in_embree = 0;      // of the CPU time of the pipeline
+  double share_in_embree = 0;        // of the CPU time of the pipeline
   double median_relative_error = 0;  // standard error over radiance, reference band, all problems with radiance > 0
-  std::string stopped_by;          // one sentence
+  double share_at_target = 0;        // of the problems of captures with a target
+  double share_flagged = 0;          // of all problems: heavy tails
+  WorstProblem worst;                // at the judged bands; relative_error 0 = none
+  uint32_t time_cap = 0;             // maximum of paths that a time budget was turned into; 0 = none
+  std::string stopped_by;            // one sentence: the rule that ended the run, share at target, worst pixel
+  std::vector<CaptureLog> log;       // in the order in which captures ran
 };
 
 // Paths that a job will run: exactly for fixed counts, at least for adaptive captures (their pilots).
 double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
+// The order in which a job runs its captures (their ids), and the state changes that it takes. moves: something in the
+// scene moves, so that each time window is a state of its own.
+struct JobOrder {
+  std::vector<size_t> captures;
+  size_t state_changes = 0;
+};
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves = false);
+// Bytes that the accumulators and the result of the largest capture take.
+double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 
-// Runs every capture of every sensor. Deterministic: the same bytes for any number of threads.
-JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::span<const std::unique_ptr<Sensor>> sensors,
-                  const JobOptions& options);
+// Runs every capture of every sensor. Deterministic: the same bytes for any number of threads, for any order, and for a
+// run that was interrupted and continued from its store.
+JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
+                  std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 
 }  // namespace suite

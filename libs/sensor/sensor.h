@@ -13,24 +13,26 @@
 namespace suite {
 
 struct TimeWindow {
-  double begin = 0, end = 0;                // s, simulation time; begin == end is an instant
+  double begin = 0, end = 0;  // s, simulation time; begin == end is an instant
   bool operator==(const TimeWindow&) const = default;
 };
 
 // How many paths a problem may take (paper, section III-C: minimum, maximum, convergence at the reference wavelength).
 struct Convergence {
   uint32_t min_paths = 64, max_paths = 64;
-  double relative_error = 0;                // target for the relative standard error; 0 = none, max_paths is used
-  double absolute_floor = 0;                // W/(m2 sr um): below it the error is judged absolutely
+  double relative_error = 0;  // target for the relative standard error; 0 = none, max_paths is used
+  double absolute_floor = 0;  // W/(m2 sr um): below it the error is judged absolutely
 };
 
-// One event of data collection: a frame, a line. Problems are laid out in rows and columns so that neighbours are known.
+// One event of data collection: a frame, some lines. Problems are laid out in rows and columns.
 struct Capture {
-  std::string name;
-  TimeWindow window;
-  uint32_t columns = 0, rows = 0;           // problems = columns * rows, row-major
-  size_t state = 0;                         // index into Sensor::states()
+  std::string name;                // unique within the sensor
+  TimeWindow window;               // all rays have their times inside it
+  uint32_t columns = 0, rows = 0;  // problems = columns * rows, row-major
+  size_t state = 0;                // index into Sensor::states()
   Convergence convergence;
+  bool neighbours = true;  // problems beside each other look at things beside each other
+  uint32_t time_bins = 1;  // the window is cut into so many equal bins, each with a radiance of its own
   size_t problems() const { return size_t{columns} * rows; }
 };
 
@@ -40,28 +42,52 @@ struct Task {
   std::vector<Capture> captures;
 };
 
-// One sample ray of a problem.
-struct SensorRay {
-  Ray ray;                                  // ENU, unit direction, time inside the capture's window
-  double weight = 1;                        // pupil weight; 0 = contributes nothing
+// What the core asks a ray for.
+struct RayRequest {
+  const Capture& capture;
+  size_t problem = 0;
+  // Sensor::numbers() uniform numbers in [0, 1), stratified over the samples of the problem: use the first for what
+  // matters most (pixel x, pixel y, time, ...).
+  std::span<const double> u;
+  // One place per bin of the state, for a sensor that weighs wavelengths differently; see SensorRay::spectral.
+  std::span<float> spectral;
 };
 
-// Results of one capture, all problems, row-major. Spectral quantities per bin of the state; means and standard errors.
+// One sample ray of a problem.
+struct SensorRay {
+  Ray ray;            // ENU, unit direction, time inside the capture's window
+  double weight = 1;  // pupil weight, same for all wavelengths; 0 = contributes nothing
+  // True when RayRequest::spectral was filled: the ray was drawn with a density that is not right for every wavelength,
+  // and each bin's radiance is multiplied by (wanted density at that wavelength) / (density that it was drawn with).
+  // These weights are independent of the path that follows, so they multiply its own balance-heuristic weights; a
+  // sensor keeps them bounded by drawing from the mixture over the wavelengths of the state.
+  bool spectral = false;
+};
+
+// What a path can be turned into. radiance: all of it. single: what was scattered or emitted once, at the
+// first thing the ray met (everything, when it met nothing).
+enum class Channel : uint8_t { radiance, single };
+
+// Results of one capture, all problems, row-major. Spectral quantities per band; means and standard errors.
 struct CaptureResult {
   size_t task = 0, capture = 0;
   uint32_t columns = 0, rows = 0;
   size_t bands = 0;
-  std::vector<double> radiance;             // [problem][band], W/(m2 sr um)
-  std::vector<double> standard_error;       // [problem][band]
-  std::vector<uint32_t> paths;              // [problem]
-  std::vector<uint8_t> quality;             // [problem], bits of QualityFlag
-  std::vector<std::string> truth_names;     // "material", "range_m", ...
-  std::vector<double> truth;                // [problem][truth_names]; NaN = no data
+  size_t channels = 1, time_bins = 1;
+  std::vector<double> radiance;          // [problem][channel][time bin][band], W/(m2 sr um)
+  std::vector<double> standard_error;    // [problem][channel][time bin][band]
+  std::vector<uint32_t> paths;           // [problem]
+  std::vector<uint8_t> quality;          // [problem], bits of QualityFlag
+  std::vector<std::string> truth_names;  // "material", "range [m]", ...
+  std::vector<double> truth;             // [problem][truth_names]; NaN = no data
+  std::vector<double> error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
+  size_t problems() const { return size_t{columns} * rows; }
+  size_t values_per_problem() const { return channels * time_bins * bands; }
 };
 enum QualityFlag : uint8_t {
-  quality_heavy_tail = 1,   // a few samples dominate: the interval may not cover
-  quality_failures = 2,     // NaN or negative samples were rejected
-  quality_truncated = 4,    // more than 1 % of the energy was cut at the maximum number of nodes
+  quality_heavy_tail = 1,  // a few samples dominate: the interval may not cover
+  quality_failures = 2,    // NaN or negative samples were rejected
+  quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
 };
 
 class Sensor {
@@ -71,11 +97,21 @@ class Sensor {
   virtual std::span<const SpectralState> states() const = 0;
   virtual std::span<const Band> bands(size_t state) const = 0;
   virtual std::span<const Task> tasks() const = 0;
-  // The ray of a sample: u are uniform numbers (pixel x, pixel y, time, pupil), stratified over the samples of the
-  // problem. Called from many threads.
-  virtual SensorRay ray(const Capture& capture, size_t problem, std::span<const double, 4> u) const = 0;
-  // Called once per capture, from one thread, in the order of tasks and captures.
+  // Uniform numbers that one ray takes, 1..8. The first four form one stratified block, the others a second.
+  virtual int numbers() const { return 4; }
+  // The channels of its results; the first is radiance.
+  virtual std::span<const Channel> channels() const;
+  // The truth to collect for each problem: names of rows of the table in radiometry/truth.
+  virtual std::span<const std::string> truth() const;
+  // Called once per capture before its rays are asked for, from one thread.
+  virtual void begin(const Capture&) {}
+  // The ray of a sample. Called from many threads; does not throw.
+  virtual SensorRay ray(const RayRequest& request) const = 0;
+  // Called once per capture, from one thread, in any order of captures. The job is over when all have been accepted.
   virtual void accept(CaptureResult&& result) = 0;
 };
+
+// What is collected unless a sensor or its user says otherwise.
+std::span<const std::string> default_truth();
 
 }  // namespace suite

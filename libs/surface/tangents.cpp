@@ -95,23 +95,24 @@ Vec2 uv_at(const Scene& scene, const TracedObject& object, uint32_t triangle, do
   return {at(0), at(1)};
 }
 
-SurfaceTangents tangents_at(const Scene& scene, const TracedObject& object, const Hit& hit) {
+SurfaceTangents tangents_at(const Tracer& tracer, const TracedObject& object, const Hit& hit) {
+  const Scene& scene = tracer.scene();
+  const Affine3 to_world = tracer.to_world(object, hit.time);
   SurfaceTangents t;
   if (object.primitive != kNone) {
-    const auto& a = object.to_world.a;  // normals go back with the transpose
+    const auto& a = to_world.a;  // normals go back with the transpose
     const Vec3 n = hit.normal;
     const Vec3 local{a[0] * n.x + a[3] * n.y + a[6] * n.z, a[1] * n.x + a[4] * n.y + a[7] * n.z,
                      a[2] * n.x + a[5] * n.y + a[8] * n.z};
-    t = of_primitive(scene.primitives[object.primitive], object.to_world.inverse().point(hit.position),
-                     normalized(local));
+    t = of_primitive(scene.primitives[object.primitive], to_world.inverse().point(hit.position), normalized(local));
   } else if (!scene.meshes[object.mesh].uvs.empty()) {
     t = of_triangle(scene.meshes[object.mesh], hit.triangle);
   }
-  t = {object.to_world.vector(t.dpdu), object.to_world.vector(t.dpdv)};
+  t = {to_world.vector(t.dpdu), to_world.vector(t.dpdv)};
   const double area = length(cross(t.dpdu, t.dpdv));
   if (area > 1e-12 * length(t.dpdu) * length(t.dpdv) && area > 0) return t;
   for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
-    const Vec3 world = object.to_world.vector(axis), along = world - hit.normal * dot(world, hit.normal);
+    const Vec3 world = to_world.vector(axis), along = world - hit.normal * dot(world, hit.normal);
     if (length(along) > 1e-3 * length(world)) return {normalized(along), cross(hit.normal, normalized(along))};
   }
   return {};  // cannot be: two axes are not both upright

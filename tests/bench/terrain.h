@@ -72,7 +72,8 @@ class TerrainCamera final : public Sensor {
   std::span<const SpectralState> states() const override { return {&state_, 1}; }
   std::span<const Band> bands(size_t) const override { return bands_; }
   std::span<const Task> tasks() const override { return tasks_; }
-  SensorRay ray(const Capture& c, size_t problem, std::span<const double, 4> u) const override {
+  SensorRay ray(const RayRequest& request) const override {
+    const auto& [c, problem, u, spectral] = request;
     const double half = 0.57735026918962576, edge = c.columns;  // tan 30 degrees
     const double x = (2 * (static_cast<double>(problem % c.columns) + u[0]) / edge - 1) * half;
     const double y = (2 * (static_cast<double>(problem / c.columns) + u[1]) / edge - 1) * half;

@@ -68,7 +68,7 @@ std::vector<Ray> rays_down(size_t n) {
 TEST(CutOut, NoOrderOfAskingShows) {
   for (const Projection projection : {Projection::drape, Projection::uv}) {
     const auto scene = sheets(opacity({0.2f, 0.9f, 0.5f, 0, 1, 0.3f}, 3, projection));
-    const Tracer tracer(scene, std::nullopt, cut_out(*scene));
+    const Tracer tracer(scene, std::nullopt, {}, cut_out(*scene));
     const FlushDenormals flush;
     TraceStatistics statistics;
     const std::vector<Ray> rays = rays_down(4000);
@@ -110,7 +110,7 @@ TEST(CutOut, NoOrderOfAskingShows) {
 
 TEST(CutOut, TheShareOfRaysStoppedIsTheOpacity) {
   const auto scene = sheets(opacity({0.3f}, 1, Projection::drape));
-  const Tracer tracer(scene, std::nullopt, cut_out(*scene));
+  const Tracer tracer(scene, std::nullopt, {}, cut_out(*scene));
   const FlushDenormals flush;
   TraceStatistics statistics;
   // One ray, many draws; and many rays, one draw. (Rays through the common edge of two triangles meet both.)

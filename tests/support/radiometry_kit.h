@@ -17,6 +17,7 @@ class RaySensor final : public Sensor {
     Capture c;
     c.columns = static_cast<uint32_t>(rays_.size());
     c.rows = 1;
+    c.neighbours = false;
     c.convergence.min_paths = c.convergence.max_paths = paths;
     tasks_.push_back({"rays", {}, {c}});
   }
@@ -24,7 +25,7 @@ class RaySensor final : public Sensor {
   std::span<const SpectralState> states() const override { return {&state_, 1}; }
   std::span<const Band> bands(size_t) const override { return bands_; }
   std::span<const Task> tasks() const override { return tasks_; }
-  SensorRay ray(const Capture&, size_t problem, std::span<const double, 4>) const override { return {rays_[problem], 1}; }
+  SensorRay ray(const RayRequest& request) const override { return {rays_[request.problem], 1}; }
   void accept(CaptureResult&& r) override { result = std::move(r); }
   CaptureResult result;
 

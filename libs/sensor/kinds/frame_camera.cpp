@@ -51,7 +51,8 @@ class FrameCamera final : public Sensor {
   std::span<const Band> bands(size_t) const override { return bands_; }
   std::span<const Task> tasks() const override { return tasks_; }
 
-  SensorRay ray(const Capture& capture, size_t problem, std::span<const double, 4> u) const override {
+  SensorRay ray(const RayRequest& request) const override {
+    const auto& [capture, problem, u, spectral] = request;
     const double column = static_cast<double>(problem % capture.columns) + u[0], row = static_cast<double>(problem / capture.columns) + u[1];
     const double x = (column - 0.5 * capture.columns) * pitch_, y = (row - 0.5 * capture.rows) * pitch_;
     SensorRay r;

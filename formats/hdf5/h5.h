@@ -1,7 +1,9 @@
-// A thin, checked skin over the HDF5 C API: typed columns with units, handles that close themselves. Internal.
+// A thin, checked skin over the HDF5 C API for the formats that are HDF5 files: typed columns with units, handles that close
+// themselves.
 #pragma once
-#include <hdf5.h>
-
+#include <cstddef>
+#include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,11 +12,13 @@
 
 namespace suite::h5 {
 
+using Id = int64_t;  // HDF5's hid_t
+
 // Any HDF5 identifier; closed by its own function.
 class Handle {
  public:
   Handle() = default;
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Id id, int (*close)(Id)) : id_(id), close_(close) {}
   Handle(Handle&& o) noexcept : id_(o.id_), close_(o.close_) { o.id_ = -1; }
   Handle& operator=(Handle&& o) noexcept {
     std::swap(id_, o.id_);
@@ -24,43 +28,16 @@ class Handle {
   ~Handle() {
     if (id_ >= 0) close_(id_);
   }
-  operator hid_t() const { return id_; }
+  operator Id() const { return id_; }
 
  private:
-  hid_t id_ = -1;
-  herr_t (*close_)(hid_t) = nullptr;
+  Id id_ = -1;
+  int (*close_)(Id) = nullptr;
 };
 
+// The type that values of T have in files: little-endian; uint8_t, std::byte, uint16_t, uint32_t, uint64_t, float, double.
 template <class T>
-hid_t native();
-template <>
-inline hid_t native<uint8_t>() {
-  return H5T_STD_U8LE;
-}
-template <>
-inline hid_t native<std::byte>() {
-  return H5T_STD_U8LE;
-}
-template <>
-inline hid_t native<uint16_t>() {
-  return H5T_STD_U16LE;
-}
-template <>
-inline hid_t native<uint32_t>() {
-  return H5T_STD_U32LE;
-}
-template <>
-inline hid_t native<uint64_t>() {
-  return H5T_STD_U64LE;
-}
-template <>
-inline hid_t native<float>() {
-  return H5T_IEEE_F32LE;
-}
-template <>
-inline hid_t native<double>() {
-  return H5T_IEEE_F64LE;
-}
+Id native();
 
 // Writes to a new file. Groups are made on the way. Every dataset gets `units` ("1" for pure numbers, "" for names).
 class Writer {
@@ -86,20 +63,20 @@ class Writer {
 
    private:
     friend class Writer;
-    void write(hid_t type, const void* data, size_t count);
+    void write(Id type, const void* data, size_t count);
     Writer* writer_ = nullptr;
     Handle dataset_, space_;
-    hsize_t at_ = 0;
+    unsigned long long at_ = 0;
   };
-  Column column(const std::string& name, hid_t type, size_t total, const char* units);
+  Column column(const std::string& name, Id type, size_t total, const char* units);
   void attribute(const std::string& name, const std::string& text);
   void attribute(const std::string& name, std::span<const double> values);
   void close();
 
  private:
-  void write(const std::string& name, hid_t type, const void* data, size_t count, size_t width, const char* units);
+  void write(const std::string& name, Id type, const void* data, size_t count, size_t width, const char* units);
   void make_groups(const std::string& name);
-  Handle make(const std::string& name, hid_t type, size_t count, size_t width, const char* units);
+  Handle make(const std::string& name, Id type, size_t count, size_t width, const char* units);
   [[noreturn]] void fail(const std::string& what) const;
   std::string path_;
   Handle file_;
@@ -108,7 +85,8 @@ class Writer {
 // Reads from a file that is not trusted.
 class Reader {
  public:
-  explicit Reader(const std::string& path);
+  // hint: the last words of every message about a fault, what would be right.
+  explicit Reader(const std::string& path, std::string hint = "prepare the scene again");
   // All values; Error unless type, width, units and the stored size agree. rows: expected count of rows, or -1 for any.
   template <class T>
   std::vector<T> get(const std::string& name, const char* units, size_t width = 1, long long rows = -1) {
@@ -122,8 +100,13 @@ class Reader {
     Handle dataset;
     size_t count = 0;  // values
   };
-  Opened open(const std::string& name, hid_t type, const char* units, size_t width, long long rows);
-  void read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count);
+  Opened open(const std::string& name, Id type, const char* units, size_t width, long long rows);
+  void read(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t count);
+  // `blocks` runs of `run` values, the first at `first`, each `stride` values behind the one before.
+  void read_strided(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t blocks, size_t stride, size_t run);
+  // Datasets of which some value was read, here or by who says so.
+  const std::set<std::string>& names_read() const { return names_read_; }
+  void note_read(const std::string& name) { names_read_.insert(name); }
   // Where the values of a dataset start in the file, for reading past the library (which knows one thread only).
   uint64_t file_offset(const std::string& name, const Opened& d) const;
   bool has(const std::string& name) const;
@@ -132,8 +115,9 @@ class Reader {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  std::string path_;
+  std::string path_, hint_;
   Handle file_;
+  std::set<std::string> names_read_;
 };
 
 }  // namespace suite::h5

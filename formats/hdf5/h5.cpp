@@ -1,4 +1,6 @@
-#include "formats/scene_hdf/h5.h"
+#include "formats/hdf5/h5.h"
+
+#include <hdf5.h>
 
 #include <algorithm>
 #include <cstring>
@@ -7,6 +9,37 @@
 #include "base/files.h"
 
 namespace suite::h5 {
+
+static_assert(std::is_same_v<Id, hid_t> && std::is_same_v<int, herr_t>);
+
+template <>
+Id native<uint8_t>() {
+  return H5T_STD_U8LE;
+}
+template <>
+Id native<std::byte>() {
+  return H5T_STD_U8LE;
+}
+template <>
+Id native<uint16_t>() {
+  return H5T_STD_U16LE;
+}
+template <>
+Id native<uint32_t>() {
+  return H5T_STD_U32LE;
+}
+template <>
+Id native<uint64_t>() {
+  return H5T_STD_U64LE;
+}
+template <>
+Id native<float>() {
+  return H5T_IEEE_F32LE;
+}
+template <>
+Id native<double>() {
+  return H5T_IEEE_F64LE;
+}
 
 namespace {
 
@@ -120,9 +153,9 @@ Writer::Column Writer::column(const std::string& name, hid_t type, size_t total,
 
 void Writer::Column::write(hid_t type, const void* data, size_t count) {
   if (!count) return;
-  const hsize_t n = count;
+  const hsize_t n = count, start = at_;
   const Handle memory(H5Screate_simple(1, &n, nullptr), H5Sclose);
-  if (H5Sselect_hyperslab(space_, H5S_SELECT_SET, &at_, nullptr, &n, nullptr) < 0 ||
+  if (H5Sselect_hyperslab(space_, H5S_SELECT_SET, &start, nullptr, &n, nullptr) < 0 ||
       H5Dwrite(dataset_, type, memory, space_, H5P_DEFAULT, data) < 0)
     writer_->fail("a dataset");
   at_ += n;
@@ -145,10 +178,10 @@ void Writer::close() {
 // --- Reader ---------------------------------------------------------------------------------------------------------
 
 void Reader::fail(const std::string& what) const {
-  throw Error(Where{path_, 0, 0, {}, -1}, what, "prepare the scene again");
+  throw Error(Where{path_, 0, 0, {}, -1}, what, hint_);
 }
 
-Reader::Reader(const std::string& path) : path_(path) {
+Reader::Reader(const std::string& path, std::string hint) : path_(path), hint_(std::move(hint)) {
   silence();
   file_size(path);
   // The signature and a checksummed superblock (version 3) are looked at here; older layouts are followed unchecked by
@@ -198,6 +231,7 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
 
 void Reader::read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count) {
   if (!count) return;
+  note_read(name);
   herr_t status;
   if (first == 0 && count == d.count) {
     status = H5Dread(d.dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
@@ -208,6 +242,17 @@ void Reader::read(const std::string& name, const Opened& d, hid_t type, void* ou
     if (status >= 0) status = H5Dread(d.dataset, type, memory, space, H5P_DEFAULT, out);
   }
   if (status < 0) fail("dataset '" + name + "' cannot be read");
+}
+
+void Reader::read_strided(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t blocks, size_t stride, size_t run) {
+  if (!blocks || !run) return;
+  SUITE_CHECK(run <= stride && first + (blocks - 1) * stride + run <= d.count);
+  note_read(name);
+  const hsize_t start = first, step = stride, count = blocks, block = run, all = blocks * run;
+  const Handle space(H5Dget_space(d.dataset), H5Sclose), memory(H5Screate_simple(1, &all, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, &step, &count, &block) < 0 ||
+      H5Dread(d.dataset, type, memory, space, H5P_DEFAULT, out) < 0)
+    fail("dataset '" + name + "' cannot be read");
 }
 
 uint64_t Reader::file_offset(const std::string& name, const Opened& d) const {

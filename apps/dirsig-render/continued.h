@@ -1,0 +1,17 @@
+// Runs that can be continued: the state file beside the results, and what it must belong to.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "formats/render_state/render_state.h"
+#include "formats/sim_text/sim_text.h"
+#include "options.h"
+
+namespace suite {
+
+// Makes, opens or extends FOLDER/result.state.h5 as --state, --resume and --more say; null without any of them. Sets
+// the budget of `options` to the one that the run has. UsageError for options that contradict each other.
+std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string& folder, const Simulation& simulation,
+                                       JobOptions& options);
+
+}  // namespace suite

@@ -1,0 +1,72 @@
+#include "log.h"
+
+#include <sys/resource.h>
+
+#include "base/files.h"
+#include "base/json.h"
+#include "base/parallel.h"
+#include "trace/tracer.h"
+
+namespace suite {
+
+namespace {
+
+double peak_bytes() {
+  struct rusage use {};
+  ::getrusage(RUSAGE_SELF, &use);
+  return static_cast<double>(use.ru_maxrss) * 1024;
+}
+
+Json json_of(const RunStatistics& s) {
+  Json j = Json::object();
+  j.set("paths", s.paths);
+  j.set("nodes", s.nodes);
+  j.set("rays", s.trace.rays);
+  j.set("share_in_ray_tracer", s.cycles ? static_cast<double>(s.trace.cycles) / static_cast<double>(s.cycles) : 0.0);
+  j.set("rejected_samples", s.failures);
+  j.set("truncated", s.paths ? s.truncated / static_cast<double>(s.paths) : 0.0);
+  return j;
+}
+
+}  // namespace
+
+void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
+  Json j = Json::object();
+  j.set("command", command_line());
+  j.set("version", kVersion);
+  j.set("ray_tracer", Tracer::engine());
+  j.set("threads", threads());
+  j.set("seed", options.pipeline.seed);
+  j.set("seconds", r.seconds);
+  j.set("build_seconds", r.build_seconds);
+  j.set("peak_bytes", peak_bytes());
+  j.set("tracer_builds", r.tracer_builds);
+  j.set("optics_bakes", r.optics_bakes);
+  j.set("state_changes", r.state_changes);
+  j.set("total", json_of(r.statistics));
+  j.set("median_relative_error", r.median_relative_error);
+  j.set("share_at_target", r.share_at_target);
+  j.set("share_flagged", r.share_flagged);
+  j.set("ended", r.stopped_by);
+  Json captures = Json::array();
+  for (const CaptureLog& c : r.log) {
+    Json one = json_of(c.statistics);
+    one.set("sensor", c.sensor);
+    one.set("task", c.task);
+    one.set("capture", c.capture);
+    one.set("number", c.id);
+    one.set("begin_s", c.window.begin);
+    one.set("end_s", c.window.end);
+    one.set("state", c.state);
+    one.set("problems", c.problems);
+    one.set("seconds", c.seconds);
+    one.set("median_relative_error", c.median_relative_error);
+    one.set("new_tracer", c.new_tracer);
+    one.set("new_optics", c.new_optics);
+    captures.push(std::move(one));
+  }
+  j.set("captures", std::move(captures));
+  write_file(path, j.text());
+}
+
+}  // namespace suite

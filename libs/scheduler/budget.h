@@ -1,0 +1,25 @@
+// How much a run may spend, on top of what the sensors ask for themselves.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "radiometry/pipeline.h"
+
+namespace suite {
+
+struct Budget {
+  std::optional<uint32_t> min_paths, max_paths;  // replace those of every capture; equal = a fixed count
+  std::optional<double> relative_error;          // target; 0 = none, the maximum is used
+  std::optional<double> absolute_floor;          // W/(m2 sr um): below it the error is judged absolutely
+  bool all_bands = false;                        // the target holds for every band, not only at the reference
+  double seconds = 0;  // of the whole run, sets a maximum of paths after the first pilot; 0 = none
+  uint32_t more = 0;   // added to every capture's maximum: what a continued run adds
+};
+
+inline constexpr uint32_t kDefaultPilot = 32, kDefaultMost = 4096;
+
+// What a capture is to reach under a budget. A target for a capture of fixed count starts from kDefaultPilot paths and
+// may use up to kDefaultMost unless the budget says otherwise.
+Convergence goal_of(const Capture& capture, const Budget& budget);
+
+}  // namespace suite

@@ -1,0 +1,94 @@
+#include "scheduler/result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace suite {
+
+ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth)
+    : reference_band_(reference_band), truth_(truth) {
+  CaptureResult& r = result_;
+  r.columns = capture.columns;
+  r.rows = capture.rows;
+  r.bands = bands;
+  r.channels = channels;
+  r.time_bins = capture.time_bins;
+  r.truth_names = truth.columns();
+  const size_t n = capture.problems(), values = r.values_per_problem();
+  r.radiance.resize(n * values);
+  r.standard_error.resize(n * values);
+  r.paths.resize(n);
+  r.quality.resize(n);
+  r.truth.resize(n * r.truth_names.size());
+  // Few enough that bands^2 products of each take neither time nor memory.
+  const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
+  correlated_every_ = std::max<size_t>(1, (n + most - 1) / most);
+  products_.resize((n + correlated_every_ - 1) / correlated_every_);
+}
+
+void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) {
+  CaptureResult& r = result_;
+  const size_t values = r.values_per_problem();
+  sums.estimate(slot, {&r.radiance[problem * values], values}, {&r.standard_error[problem * values], values});
+  const uint32_t paths = r.paths[problem] = sums.paths(slot);
+  const double mean = r.radiance[problem * values + reference_band_];
+  // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
+  uint8_t& quality = r.quality[problem];
+  if (paths >= 16 && sums.largest(slot) > 0.1 * mean * paths) quality |= quality_heavy_tail;
+  if (sums.failures(slot)) quality |= quality_failures;
+  if (sums.truncated(slot) > 0.01f * static_cast<float>(paths)) quality |= quality_truncated;
+  truth_.finish(sums.truth(slot), paths, r.truth.data() + problem * r.truth_names.size());
+  if (problem % correlated_every_ == 0) {
+    products_[problem / correlated_every_].assign(r.bands * r.bands, 0.0);
+    correlate(sums, slot, &r.radiance[problem * values], products_[problem / correlated_every_]);
+  }
+}
+
+void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const {
+  const size_t bands = result_.bands;
+  std::vector<double> deviation(bands);
+  for (int s = 0; s < sums.scrambles(); ++s) {
+    const uint32_t count = dealt(sums.paths(slot), static_cast<uint32_t>(s));
+    if (!count) continue;
+    for (size_t b = 0; b < bands; ++b) deviation[b] = means[b] > 0 ? sums.sums(slot, s)[b] / count / means[b] - 1 : 0;
+    for (size_t a = 0; a < bands; ++a)
+      for (size_t b = a; b < bands; ++b) products[a * bands + b] += deviation[a] * deviation[b];
+  }
+}
+
+CaptureResult ResultBuilder::finish() {
+  const size_t bands = result_.bands;
+  std::vector<double> sum(bands * bands, 0.0);
+  for (const std::vector<double>& p : products_)
+    for (size_t i = 0; i < p.size(); ++i) sum[i] += p[i];
+  std::vector<double>& correlation = result_.error_correlation;
+  correlation.assign(bands * bands, 0.0);
+  for (size_t a = 0; a < bands; ++a)
+    for (size_t b = a; b < bands; ++b) {
+      const double scale = std::sqrt(sum[a * bands + a] * sum[b * bands + b]);
+      correlation[a * bands + b] = correlation[b * bands + a] = a == b ? 1 : scale > 0 ? sum[a * bands + b] / scale : 0;
+    }
+  return std::move(result_);
+}
+
+void ErrorHistogram::add(double relative_error) {
+  const double octave = std::log2(std::max(relative_error, 1e-9) / 1e-9);
+  ++counts_[std::min(kBins - 1, static_cast<size_t>(octave * 64))];
+  ++total_;
+}
+
+void ErrorHistogram::merge(const ErrorHistogram& o) {
+  for (size_t i = 0; i < kBins; ++i) counts_[i] += o.counts_[i];
+  total_ += o.total_;
+}
+
+double ErrorHistogram::median() const {
+  uint64_t seen = 0;
+  for (size_t i = 0; i < kBins; ++i)
+    if ((seen += counts_[i]) * 2 >= total_ && total_)
+      return i == 0 ? 0 : 1e-9 * std::exp2((static_cast<double>(i) + 0.5) / 64);
+  return 0;
+}
+
+}  // namespace suite

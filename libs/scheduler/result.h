@@ -1,0 +1,43 @@
+// From accumulators to what a sensor receives, and the figures of merit that the report gathers on the way.
+#pragma once
+#include <array>
+#include <string>
+
+#include "radiometry/truth/truth.h"
+#include "scheduler/scheduler.h"
+
+namespace suite {
+
+// The result of a capture, taken from accumulators problem by problem, so that these need not all be there at once.
+class ResultBuilder {
+ public:
+  // bands: of the sensor; reference_band: whose samples decide about the heavy-tail flag.
+  ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth);
+  // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
+  void take(size_t problem, const Accumulators& sums, size_t slot);
+  CaptureResult finish();
+
+ private:
+  void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
+  CaptureResult result_;
+  size_t reference_band_, correlated_every_;
+  const TruthPlan& truth_;
+  // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands ride
+  // on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
+  std::vector<std::vector<double>> products_;
+};
+
+// Medians of relative errors without keeping them: a histogram over 1e-9 .. 1e3, 64 bins an octave, so within 1.1 %.
+class ErrorHistogram {
+ public:
+  void add(double relative_error);
+  void merge(const ErrorHistogram& o);
+  double median() const;  // 0 when empty
+
+ private:
+  static constexpr size_t kBins = 64 * 40;
+  std::array<uint64_t, kBins> counts_{};
+  uint64_t total_ = 0;
+};
+
+}  // namespace suite

@@ -1,0 +1,40 @@
+// Where a run keeps what is needed to continue it: implemented by a format, injected by the app.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "radiometry/pipeline.h"
+
+namespace suite {
+
+// Size of what a capture gathers: the arguments of its Accumulators.
+struct CaptureShape {
+  uint32_t columns = 0, rows = 0;
+  size_t values = 0;       // [channel][time bin][band]
+  int scrambles = 4;
+  size_t truth_slots = 0;
+  size_t problems() const { return size_t{columns} * rows; }
+};
+
+class StateStore {
+ public:
+  virtual ~StateStore() = default;
+  // Called once, before anything else, with the shapes of all captures, counted over all sensors.
+  virtual void begin(const std::vector<CaptureShape>& shapes) = 0;
+  // What is stored of a capture. sums comes in empty and of the capture's size. needs stays
+  // empty unless the capture's pilot was finished.
+  virtual void load(size_t capture, Accumulators& sums, std::vector<double>& needs) = 0;
+  // The pilot of a capture is finished.
+  virtual void save_needs(size_t capture, std::span<const double> needs) = 0;
+  // The problems [first, first + count) of a capture stand still: all of them have their samples up to paths(problem).
+  // Called from one thread at a time. After a crash at any moment the store holds each range as it was saved last, or
+  // as never begun.
+  virtual void save(size_t capture, size_t first, size_t count, const Accumulators& sums) = 0;
+  // The maximum of paths that a time budget was turned into; 0 = not yet.
+  virtual uint32_t cap() const = 0;
+  virtual void save_cap(uint32_t paths) = 0;
+};
+
+}  // namespace suite
