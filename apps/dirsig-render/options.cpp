@@ -41,6 +41,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }
 

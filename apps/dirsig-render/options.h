@@ -12,7 +12,7 @@ struct RenderOptions {
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false;
-  bool dry_run = false, list_sensors = false, list_models = false;
+  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false;
 };
 
 AppInfo render_info();

@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/files.h"
 #include "base/progress.h"
@@ -10,24 +11,22 @@
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
 #include "log.h"
-#include "motion/ephemeris.h"
 #include "optics/models.h"
+#include "scene/combine.h"
 #include "output.h"
+#include "radiometry/sources/source_table.h"
 
 namespace suite {
 
 namespace {
 
-// What the sensors can see decides what is loaded.
-SceneNeeds needs_of(const Simulation& sim) {
-  SceneNeeds needs;
-  for (const auto& sensor : sim.sensors)
-    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
-  return needs;
-}
-
 int list_sensors() {
   for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
+  return 0;
+}
+
+int list_sources() {
+  for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
   return 0;
 }
 
@@ -39,16 +38,30 @@ int list_models() {
   return 0;
 }
 
-// The Sun's direction (and size) from date and place.
-void resolve_sun(Simulation& sim, const Scene& scene) {
-  if (!sim.sun_by_time) return;
-  if (!scene.origin.given)
-    throw Error(sim.sun_by_time->where, "a sun by date needs a scene with a geodetic origin", "give the scene an origin, or the sun {zenith_deg, azimuth_deg}");
-  const SceneFrame frame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
-  const SkyBody sun = sun_at(frame, {}, instant_from_utc(sim.sun_by_time->utc));
-  sim.sources.sun->direction = sun.direction;
-  if (sim.sun_by_time->disk_from_distance) sim.sources.sun->half_angle = sun.angular_radius;
-  note(strf("sun at %s: %.3f degrees above the horizon, %.5f AU", to_iso8601(sim.sun_by_time->utc, 0).c_str(), sun.elevation / kDegree, sun.distance / kAstronomicalUnit));
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim) {
+  SceneNeeds needs;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+  return needs;
+}
+
+// All scenes of the simulation as one.
+Scene load_scenes(const Simulation& sim) {
+  std::vector<ScenePart> parts;
+  for (const SimulationScene& s : sim.scenes) {
+    LoadReport loaded;
+    Scene scene = read_scene(
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
+    note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
+    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
+  }
+  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
+  try {
+    return combine_scenes(std::move(parts));
+  } catch (const Error& e) {
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
+  }
 }
 
 int dry_run(const Simulation& sim, const JobOptions& options) {
@@ -82,6 +95,7 @@ void tell(const JobReport& r) {
 
 int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sensors) return list_sensors();
+  if (o.list_sources) return list_sources();
   if (o.list_models) return list_models();
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
@@ -104,14 +118,14 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  LoadReport loaded;
-  auto scene = std::make_shared<Scene>(read_scene(
-      sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded));
-  note("of the scene:\n" + loaded.text() + "(--explain FEATURE says why)");
-  resolve_sun(sim, *scene);
+  const auto scene = std::make_shared<const Scene>(load_scenes(sim));
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+  for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
   for (const Material& m : scene->materials) material_names.push_back(m.id);
   make_folder(folder);
-  if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
+  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);

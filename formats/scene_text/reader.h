@@ -38,7 +38,8 @@ class Reader {
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
-  DraftPlacement read_placement(const Params& p);
+  DraftPlacement read_placement(const Params& p, bool world);
+  std::shared_ptr<const Track> read_motion(const Params& p, bool world);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);

@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "motion/time.h"
 #include "scheduler/scheduler.h"
 #include "sensor/sensors.h"
 
 namespace suite {
-
-// A Sun whose direction follows from date and place.
-struct SunByTime {
-  Utc utc;
-  Where where;
-  bool disk_from_distance = true;    // half angle from the Earth-Sun distance of the date
-};
 
 struct OutputSpec {
   enum class Type { float32, float64 } type = Type::float32;
@@ -25,13 +17,20 @@ struct OutputSpec {
   std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
 };
 
+// One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
+struct SimulationScene {
+  std::string path;
+  std::optional<Affine3> placement;      // none: by its origin on the Earth
+  std::shared_ptr<const Track> motion;   // null: at rest
+};
+
 struct Simulation {
   std::string path;
-  std::string scene_path;
+  std::vector<SimulationScene> scenes;
+  std::string scene_path;                // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
-  SourceSpecs sources;
-  std::optional<SunByTime> sun_by_time;   // sources.sun is there, its direction still to be computed
+  SourceSpecs sources;               // as written: dates, phases and clear skies are still to be resolved
   std::vector<std::unique_ptr<Sensor>> sensors;
   OutputSpec output;
 };

@@ -212,7 +212,7 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       const size_t slot = slot_of(i);
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
-      if (single) process_single(wave, i, radiance, workspace->single);
+      if (single) process_single(wave, i, environment_, radiance, workspace->single);
       if (workspace->weighted[i] || capture.time_bins > 1) {
         const float* weights = workspace->weighted[i] ? &workspace->weights[i * state_.size()] : nullptr;
         for (size_t k = 0; k < radiance.size(); ++k) {

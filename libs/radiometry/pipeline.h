@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "radiometry/sources/source.h"
+#include "radiometry/sources/environment.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"

@@ -25,6 +25,7 @@ class Wave {
   std::span<float> direct(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)) + 1), bins_}; }
   std::span<float> scratch() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_)), bins_}; }
   std::span<float> scratch2() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 1), bins_}; }
+  std::span<float> scratch3() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 2), bins_}; }
 
   // Rays of the current stage and what they belong to.
   std::vector<Ray> rays;

@@ -51,6 +51,7 @@ std::vector<IssueKind> scene_issues() {
       {"SP404", error, "a transform flattens or is not finite", "scales must not be 0"},
       {"SP405", error, "a place is not on the terrain", "x and y must lie inside the terrain, outside of its gaps"},
       {"SP406", error, "nothing is placed", "'world' must place something"},
+      {"SP407", error, "a motion does not cover the time that is looked at", "give it more keys, or a shorter 'times_s'"},
       {"SP501", error, "a map is described wrongly", ""},
       {"SP502", error, "a map holds a class that has no material", "list a material for it"},
       {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},

@@ -69,6 +69,7 @@ std::string summary_text(const Scene& s) {
   if (!s.primitives.empty()) uses.insert("exact primitives");
   if (!s.files.empty()) uses.insert("embedded files");
   if (s.groups.size() > 1) uses.insert("nested groups");
+  if (!s.tracks.empty()) uses.insert("motion");
   out += "uses          ";
   for (const std::string& u : uses) out += (u == *uses.begin() ? "" : ", ") + u;
   return out + "\n";

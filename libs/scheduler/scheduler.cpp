@@ -20,11 +20,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
-  Environment e;
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  return e;
+// Materials that geometry or the Earth can show; the others are never baked.
+std::vector<bool> shown_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
+  std::vector<bool> used = used_materials(scene, tracer.objects());
+  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
+  return used;
 }
 
 // Everything that belongs to one spectral state; kept while captures ask for the same one.
@@ -33,11 +33,12 @@ struct StateKit {
   Environment environment;
   BandProjection projection;
   size_t reference_band = 0;
+  std::shared_ptr<const Tracer> lamps_of;  // whose geometry the environment was made for
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer.objects())),
-        environment(bake_sources(sources, state)),
+           bool periodic, std::span<const Band> bands)
+      : optics(scene, state, shown_materials(scene, tracer, sources)),
+        environment(bake_environment(sources, tracer, periodic, state)),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) <
@@ -162,11 +163,14 @@ class Job {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
-      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
+      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state], options_.periodic.has_value(),
                                        sensors_[item.sensor]->bands(state));
       ++report_.optics_bakes;
       log.new_optics = true;
     }
+    // Glowing geometry has its places in the tracer.
+    if (kit->environment.lamps && kit->lamps_of != tracer_) kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
+    kit->lamps_of = tracer_;
     return *kit;
   }
 

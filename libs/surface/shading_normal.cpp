@@ -4,14 +4,13 @@
 
 namespace suite {
 
-std::optional<Dir> vertex_normal(const Tracer& tracer, const TracedObject& object, const Hit& hit) {
-  const Scene& scene = tracer.scene();
+std::optional<Dir> vertex_normal(const Scene& scene, const Affine3& to_world, const TracedObject& object, const Hit& hit) {
   if (object.mesh == kNone || scene.meshes[object.mesh].normals.empty()) return std::nullopt;
   const Mesh& mesh = scene.meshes[object.mesh];
   const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
   const Vec3 local = oct_decode(mesh.normals[i[0]]) * (1.0 - hit.u - hit.v) +
                      oct_decode(mesh.normals[i[1]]) * double{hit.u} + oct_decode(mesh.normals[i[2]]) * double{hit.v};
-  const Vec3 world = tracer.to_world(object, hit.time).normal(local);
+  const Vec3 world = to_world.normal(local);
   const double len = length(world);
   const Dir n = len > 0 ? world / len : hit.normal;
   return dot(n, hit.normal) < 0 ? -n : n;  // against the winding: the winding decides the front

@@ -11,17 +11,18 @@ Vec2 Surface::uv(const Hit& hit) const {
   return uv_at(tracer_.scene(), tracer_.objects()[hit.object], hit.triangle, hit.u, hit.v);
 }
 
-void Surface::interact(const Hit& hit, Dir out, Interaction& at) const {
+void Surface::interact(const Hit& hit, Dir out, Interaction& at, double time) const {
   const TracedObject& object = tracer_.objects()[hit.object];
   at.position = hit.position;
   at.geometric_normal = hit.normal;
   at.material = lookup_.at(object, hit);
   const BakedMaterial* material = at.material == kNone ? nullptr : &optics_.material(at.material);
   const MaterialMaps* maps = material ? material->maps.get() : nullptr;
-  const std::optional<Dir> smooth = vertex_normal(tracer_, object, hit);
+  const std::optional<Dir> smooth = vertex_normal(tracer_.scene(), tracer_.to_world(hit), object, hit);
   Dir n = smooth.value_or(hit.normal);
   SurfaceTangents tangents;
-  if (material && (material->needs_tangent || (maps && maps->bends()))) tangents = tangents_at(tracer_, object, hit);
+  if (material && (material->needs_tangent || (maps && maps->bends())))
+    tangents = tangents_at(tracer_.scene(), tracer_.to_world(hit), object, hit);
   MapPlace place{hit.position, {}};
   if (maps && maps->needs_uv) place.uv = uv(hit);
   if (maps && maps->normal) n = mapped_normal(n, *maps->normal, place, tangents);
@@ -32,7 +33,7 @@ void Surface::interact(const Hit& hit, Dir out, Interaction& at) const {
   if (!maps || !maps->varies()) return;
   if (!at.own) at.own = std::make_unique<Interaction::Own>();
   at.baked =
-      material_here(*material, optics_.state(), place, hit.time, at.frame.to_local(out), at.own->memory, at.own->made);
+      material_here(*material, optics_.state(), place, time, at.frame.to_local(out), at.own->memory, at.own->made);
 }
 
 }  // namespace suite

@@ -29,9 +29,9 @@ class Surface {
   // Keeps references; both must outlive it.
   Surface(const Tracer& tracer, const Optics& optics);
 
-  // `out` points back along the ray. Normals of vertices and of maps are bent where needed so that
+  // `out` points back along the ray; time: s, of the ray. Normals of vertices and of maps are bent where needed so that
   // `out` stays on the geometric side it came from.
-  void interact(const Hit& hit, Dir out, Interaction& at) const;
+  void interact(const Hit& hit, Dir out, Interaction& at, double time = 0) const;
   // The material at a hit, after overrides and class maps; kNone when the geometry has none.
   uint32_t material(const Hit& hit) const { return lookup_.at(tracer_.objects()[hit.object], hit); }
   Vec2 uv(const Hit& hit) const;  // (u, v) barycentrics where the mesh has no UVs

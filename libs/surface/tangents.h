@@ -16,6 +16,6 @@ Vec2 uv_at(const Scene& scene, const TracedObject& object, uint32_t triangle, do
 // Exact for exact surfaces, constant over a triangle with texture coordinates. Where there are none, or where they do
 // not span the surface (a pole, a triangle without area in the texture), the directions in which the object's local x
 // axis (y where x stands upright on the surface) and its companion run along the surface, of unit length.
-SurfaceTangents tangents_at(const Tracer& tracer, const TracedObject& object, const Hit& hit);
+SurfaceTangents tangents_at(const Scene& scene, const Affine3& to_world, const TracedObject& object, const Hit& hit);
 
 }  // namespace suite

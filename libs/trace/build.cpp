@@ -14,12 +14,13 @@ namespace suite {
 namespace {
 
 // Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
-// holes: hits are put to the filter.
-void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes) {
+// holes: hits are put to the filter. object: whose geometry it is, for one that no instances share.
+void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint32_t object = kNone) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
   rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
+  rtcSetGeometryUserData(g, reinterpret_cast<void*>(uintptr_t{object}));
   if (holes) {
     rtcSetGeometryIntersectFilterFunction(g, filter_triangles);
     rtcSetGeometryOccludedFilterFunction(g, filter_triangles);
@@ -80,8 +81,7 @@ void Tile::build(const World& world) {
     for (size_t i = b; i < e; ++i) world.mesh_scene(meshes[i]);
   });
   handle.scene = new_scene();
-  for (uint32_t id = 0; id < direct.size(); ++id)
-    attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id, world.has_holes(direct[id]));
+  for (uint32_t id = 0; id < direct.size(); ++id) attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id, world.filter && world.may_pass[direct[id]], direct[id]);
   for (uint32_t k = 0; k < sets.size(); ++k) sets[k]->attach(handle.scene, static_cast<unsigned>(direct.size()) + k);
   rtcCommitScene(handle.scene);
   for (const auto& set : sets) std::vector<Box3>().swap(set->boxes);
@@ -101,7 +101,7 @@ RTCScene World::mesh_scene(uint32_t mesh) const {
   MeshEntry& entry = meshes[mesh];
   entry.once.run([&] {
     entry.handle.scene = new_scene();
-    attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, entry.holes);
+    attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, filter && holed_meshes[mesh]);
     rtcCommitScene(entry.handle.scene);
   });
   return entry.handle.scene;
@@ -119,7 +119,7 @@ Box3 World::local_box(const TracedObject& o) const {
 }
 
 World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
-    : scene(std::move(given)), periodic(cell), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]), filter(std::move(holes)) {
+    : scene(std::move(given)), periodic(cell), filter(std::move(holes)), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]) {
   const FlushDenormals flush;
   std::vector<bool> used(scene->meshes.size(), false);
   for (const TracedObject& o : flat.objects)
@@ -132,17 +132,19 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       m.box = mesh_box(mesh);
       m.room = {m.box.low - mesh.origin, m.box.high - mesh.origin};
       for (int a = 0; a < 3; ++a) m.scale = std::max({m.scale, std::fabs(m.room.low[a]), std::fabs(m.room.high[a])});
-      // Rays begin here; see Tile::lead.
-      m.room = enlarged(m.room, m.scale / 1024 + 1e-30);
+      m.room = enlarged(m.room, 16 * FLT_EPSILON * m.scale + 1e-30);
     }
   });
   if (periodic) repeat_at_sides();
-  for (const TracedObject& o : flat.objects) {
-    if (filter) may_pass.push_back(filter->concerns(o));
-    if (o.mesh == kNone) continue;
-    ++meshes[o.mesh].uses, triangles += scene->meshes[o.mesh].triangle_count();
-    if (filter && may_pass.back()) meshes[o.mesh].holes = true;
+  if (filter) {
+    holed_meshes.assign(scene->meshes.size(), 0);
+    for (const TracedObject& o : flat.objects) {
+      may_pass.push_back(filter->concerns(o));
+      if (may_pass.back() && o.mesh != kNone) holed_meshes[o.mesh] = 1;
+    }
   }
+  for (const TracedObject& o : flat.objects)
+    if (o.mesh != kNone) ++meshes[o.mesh].uses, triangles += scene->meshes[o.mesh].triangle_count();
   std::vector<Box3> boxes(flat.fixed);
   parallel_for(0, boxes.size(), 4096, [&](size_t b, size_t e) {
     for (size_t i = b; i < e; ++i) boxes[i] = transformed(local_box(flat.objects[i]), *flat.objects[i].place);

@@ -61,7 +61,6 @@ struct MeshEntry {
   Box3 room;             // around the floats (without the mesh's origin), enlarged by what float rounding moves
   double scale = 0;      // largest float coordinate
   uint32_t uses = 0;     // objects
-  bool holes = false;    // some object that uses it is put to the filter
   SceneHandle handle;
   BuildOnce once;
 };
@@ -74,20 +73,17 @@ struct Packet {
 };
 
 struct MovingPart;
-struct Tile;
+struct World;
 
 // Handed to Embree and by it to the callbacks: the unrounded rays.
 struct TraceContext : RTCIntersectContext {
   const Ray* rays = nullptr;
   const Packet* packet = nullptr;   // lanes are the ids of the float rays
-  // What the filter of holes needs to know besides.
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
-  const Tile* tile = nullptr;
-  uint32_t object = kNone;          // within an instance
-  unsigned lane[kWidth];            // within an instance: lanes of the packet by the ids of the float rays
+  uint32_t object = kNone;          // the instance that rays are inside of; kNone = in the tile itself
+  const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
 };
-void filter_triangles(const RTCFilterFunctionNArguments* args);
 
 // Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
 struct PlacedSet {
@@ -120,9 +116,6 @@ struct Tile {
 
   // What float rounding may move geometry out of its exact bounds by, m.
   double slack() const { return 16 * 1.1920929e-7 * scale + 1e-9; }
-  // Rays are advanced to this far before it. Embree's coherent packets miss surfaces that lie within some ulp of where
-  // their rays begin (seen with 3.13.5 and a sheet in the upper face of a tile), so they begin well before.
-  double lead() const { return slack() + scale / 1024; }
   void build(const World& world);
 };
 
@@ -137,24 +130,29 @@ struct TileSet {
   void pass(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
 };
 
+// Embree's filter for triangles of meshes that may have holes.
+void filter_triangles(const RTCFilterFunctionNArguments* args);
+
 // What does not change with the window.
 struct World {
   World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter);
   std::shared_ptr<const Scene> scene;
   std::optional<Periodic> periodic;
+  std::shared_ptr<const HitFilter> filter;   // null: no surface has holes
   Flattened flat;
   std::unique_ptr<MeshEntry[]> meshes;
   TileSet tiles;                     // of what is at rest
   std::vector<uint32_t> unbounded;   // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                       // of what is at rest
   size_t triangles = 0;
-  std::shared_ptr<const HitFilter> filter;
   std::vector<char> may_pass;        // objects with holes; empty without a filter
+  std::vector<char> holed_meshes;    // meshes that some such object shows; empty without a filter
 
-  bool has_holes(uint32_t object) const { return filter && may_pass[object]; }
-  // First hit of an exact surface in (near, far) that the filter does not let through. origin, direction: the ray in the
-  // surface's frame, whose t = 0 lies `ahead` m along the ray.
-  std::optional<LocalHit> meet(uint32_t object, const Ray& ray, Vec3 origin, Vec3 direction, double ahead, double near, double far) const;
+  // Asks the filter about a point of an object; true when the object has no holes.
+  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal = {}) const;
+  // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
+  // through; its t counts from there.
+  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min, double t_max) const;
   RTCScene mesh_scene(uint32_t mesh) const;   // built on the first call
   Affine3 pose(uint32_t node, double time) const;   // exact
   Affine3 to_world(const TracedObject& o, double time) const {
@@ -217,7 +215,7 @@ class PacketTracer {
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
-  TraceContext context(const Tile& tile, const Packet& packet) const;
+  TraceContext context(const Packet& packet) const;
   void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
 

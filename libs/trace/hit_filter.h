@@ -11,8 +11,8 @@ class HitFilter {
   virtual ~HitFilter() = default;
   // Whether the object may have holes; the others are never asked about and cost nothing.
   virtual bool concerns(const TracedObject& object) const = 0;
-  // hit: position, object, triangle, u and v are set; of exact surfaces the normal, which here is only along the ray
-  // where it comes out and against it where it goes in. False: the ray passes through.
+  // hit: position, object, triangle, u and v are set, and of exact surfaces the normal (any length, either sense),
+  // which tells where a ray goes in from where it comes out. False: the ray passes through.
   virtual bool keeps(const Ray& ray, const TracedObject& object, const Hit& hit) const = 0;
 };
 

@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "trace/embree_internal.h"
+#include "trace/primitive_hit.h"
 
 namespace suite {
 
-TraceContext PacketTracer::context(const Tile& tile, const Packet& packet) const {
+TraceContext PacketTracer::context(const Packet& packet) const {
   TraceContext c;
   rtcInitIntersectContext(&c);
   c.flags = coherent_ ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -17,7 +18,6 @@ TraceContext PacketTracer::context(const Tile& tile, const Packet& packet) const
   c.packet = &packet;
   c.world = &world_;
   c.moving = moving_;
-  c.tile = &tile;
   return c;
 }
 
@@ -38,7 +38,7 @@ void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int*
 }
 
 void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits) {
-  TraceContext c = context(tile, packet);
+  TraceContext c = context(packet);
   alignas(32) RTCRayHit8 rh;
   alignas(32) int valid[kWidth];
   load(tile, packet, rh.ray, valid);
@@ -58,7 +58,7 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit
 }
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
-  TraceContext c = context(tile, packet);
+  TraceContext c = context(packet);
   alignas(32) RTCRay8 q;
   alignas(32) int valid[kWidth];
   load(tile, packet, q, valid);
@@ -115,12 +115,10 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
 void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const {
   const TracedObject& o = world_.flat.objects[object];
   const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
-  const Affine3 to_local = to_world.inverse();
-  const Vec3 origin = to_local.point(ray.origin), direction = to_local.vector(ray.direction);
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
   const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, o);
-  auto found = world_.meet(object, ray, origin, direction, 0, near - window, near + window);
-  if (!found || found->t <= 0) found = world_.meet(object, ray, origin, direction, 0, 0, INFINITY);
+  auto found = world_.meet(ray, object, to_world, 0, near - window, near + window);
+  if (!found || found->t <= 0) found = world_.meet(ray, object, to_world, 0, 0, INFINITY);
   if (!found) {
     hit = Hit{};
     return;
@@ -141,8 +139,7 @@ void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, d
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
   const TracedObject& o = world_.flat.objects[object];
   const Ray& ray = rays_[r];
-  const Affine3 to_local = (o.node == kNone ? *o.place : moving_->to_world(o, ray.time)).inverse();
-  const auto found = world_.meet(object, ray, to_local.point(ray.origin), to_local.vector(ray.direction), 0, 0, reach_[r]);
+  const auto found = world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
   if (!found) return;
   reach_[r] = found->t;
   if (hit) finish_exact(0, ray, object, found->t, *hit);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "trace/embree_internal.h"
+#include "trace/primitive_hit.h"
 
 namespace suite {
 
@@ -25,6 +26,7 @@ struct LocalRay {
   double enter;     // along the ray in ENU, m
   double stretch;   // local length of one metre
   double reach;     // local
+  unsigned id;      // of the float ray outside
 };
 
 // The stretch of the ray between near and far that lies in the instance's box; false when there is none.
@@ -65,9 +67,7 @@ bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray
 // Where the unrounded ray meets an exact surface, from the packet's start on.
 std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near, double far) {
   const TracedObject& o = set.world->flat.objects[object];
-  const Affine3 to_local = (set.moving ? set.moving->to_world(o, ray.time) : *o.place).inverse();
-  const auto found =
-      set.world->meet(object, ray, to_local.point(ray.origin + ray.direction * advance), to_local.vector(ray.direction), advance, near, far);
+  const auto found = set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
   return found ? std::optional<double>(found->t) : std::nullopt;
 }
 
@@ -86,25 +86,14 @@ void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const
     const double advance = context.packet->advance[lane];
     if (go_in(set, prim, mesh, context.rays[context.packet->ray[lane]], advance + double{RTCRayN_tnear(rays, n, i)},
               advance + double{RTCRayN_tfar(rays, n, i)}, in.ray[in.count]))
-      in.lane[in.count++] = i;
+      in.ray[in.count].id = lane, in.lane[in.count++] = i;
   }
-}
-
-// The context within an instance: its own when hits there must be put to the filter, which then needs to know which
-// object and which rays of the packet they belong to.
-TraceContext* within(const PlacedSet& set, unsigned prim, const Entered& in, RTCRayN* rays, unsigned n, TraceContext* outer, TraceContext& own) {
-  const uint32_t object = set.objects[prim];
-  if (!set.world->has_holes(object)) return outer;
-  own = *outer;
-  own.object = object;
-  for (unsigned k = 0; k < in.count; ++k) own.lane[k] = RTCRayN_id(rays, n, in.lane[k]);
-  return &own;
 }
 
 void load(const LocalRay& r, unsigned k, RTCRay8& q) {
   q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y), q.org_z[k] = static_cast<float>(r.origin.z);
   q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y), q.dir_z[k] = static_cast<float>(r.direction.z);
-  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = k, q.flags[k] = 0;
+  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id, q.flags[k] = 0;
 }
 
 void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -122,8 +111,9 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
     load(in.ray[k < in.count ? k : 0], k, rh.ray);
     rh.hit.geomID[k] = rh.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
-  TraceContext own;
-  rtcIntersect8(valid, entry.handle.scene, within(set, args->primID, in, outer, args->N, context, own), &rh);
+  context->object = set.objects[args->primID];
+  rtcIntersect8(valid, entry.handle.scene, context, &rh);
+  context->object = kNone;
   for (unsigned k = 0; k < in.count; ++k) {
     if (rh.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
     const unsigned i = in.lane[k];
@@ -138,14 +128,14 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
   }
 }
 
-void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set) {
+void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t o) {
   const auto* context = static_cast<const TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(outer, args->N, i);
-    const auto t = meet(set, set.objects[args->primID], context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(outer, args->N, i),
+    const auto t = meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(outer, args->N, i),
                         RTCRayN_tfar(outer, args->N, i));
     if (!t) continue;
     RTCRayN_tfar(outer, args->N, i) = static_cast<float>(*t);
@@ -162,7 +152,7 @@ void intersect_placed(const RTCIntersectFunctionNArguments* args) {
   if (mesh != kNone) return intersect_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
   if (o.mesh != kNone) intersect_mesh(args, set, o.mesh);
-  else intersect_exact(args, set);
+  else intersect_exact(args, set, set.objects[args->primID]);
 }
 
 void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -177,8 +167,9 @@ void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& se
     valid[k] = k < in.count ? -1 : 0;
     load(in.ray[k < in.count ? k : 0], k, q);
   }
-  TraceContext own;
-  rtcOccluded8(valid, entry.handle.scene, within(set, args->primID, in, args->ray, args->N, context, own), &q);
+  context->object = set.objects[args->primID];
+  rtcOccluded8(valid, entry.handle.scene, context, &q);
+  context->object = kNone;
   for (unsigned k = 0; k < in.count; ++k)
     if (q.tfar[k] < 0) RTCRayN_tfar(args->ray, args->N, in.lane[k]) = -INFINITY;
 }

@@ -62,7 +62,7 @@ struct Periodic {
 // that are found are then put on the exact place.
 double motion_bound(double radius);
 
-class HitFilter;      // holes in surfaces (hit_filter.h)
+class HitFilter;
 struct World;         // what is at rest, shared by the tracers of all windows
 struct MovingPart;
 
@@ -71,7 +71,7 @@ class Tracer {
   // Builds acceleration structures in parallel; scenes of many tiles build each one when a ray first comes there. The
   // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
-  // filter: decides about holes in surfaces; null = there are none.
+  // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Error: a motion that does not cover the window; moving things in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
                   std::shared_ptr<const HitFilter> filter = nullptr);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "math/sampling.h"
 #include "motion/track.h"
 #include "tests/support/radiometry_kit.h"
@@ -203,6 +205,73 @@ TEST(Motion, WindowsShareWhatRests) {
   EXPECT_EQ(door.get({2, 3}), before);
   EXPECT_EQ(door.builds(), 3u);
   EXPECT_NE(door.get({10.2, 10.5}), door.get({10.2, 10.4}));
+}
+
+TEST(Instances, AnyScaleMirroredAndTurned) {
+  // From a micrometre to a thousand kilometres, mirrored or not, near and far: hits to 1e-6 of the instance's size.
+  Pcg32 rng(9);
+  TraceStatistics statistics;
+  for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6})
+    for (const double mirror : {1.0, -1.0})
+      for (const double away : {0.0, 1e4, 1e7}) {
+        if (away * 1e-15 > scale * 1e-7) continue;   // double cannot place it that finely
+        auto scene = scene_of({box({-1, -1, -1}, {1, 1, 1}, 0, true)}, {material("m", lambert(0.5))});
+        const Affine3 place = translation(Vec3{0.6, 0.8, 0.1} * away) * rotation(normalized(Vec3{1, 2, 3}), 0.7) * scaling({mirror * scale, scale, 2 * scale});
+        scene->groups[0].placements[0].to_parent = place;
+        const Tracer tracer(scene);
+        for (int i = 0; i < 50; ++i) {
+          const Vec3 point = place.point({1.9 * (rng.uniform() - 0.5), 1.9 * (rng.uniform() - 0.5), 1}), normal = normalized(place.normal({0, 0, 1})) * mirror;
+          const Dir towards = normalized(normal * -1.0 + Vec3{0.1, 0.05, 0} * rng.uniform());
+          const Ray ray{point - towards * (10 * scale), towards, 0};
+          Hit hit;
+          tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+          ASSERT_TRUE(hit.hit()) << scale << " " << away;
+          EXPECT_LT(length(hit.position - point), 2e-6 * scale + 4e-16 * away) << scale << " " << away;
+          EXPECT_GT(dot(hit.normal, normal), 1 - 1e-9);
+          // Leaving outwards meets nothing; going in meets the far side.
+          const Ray out{tracer.leave(hit, normal), normal, 0}, in{tracer.leave(hit, -normal), -normal, 0};
+          const double far = INFINITY;
+          uint8_t blocked = 1;
+          tracer.occluded({&out, 1}, {&far, 1}, {&blocked, 1}, false, statistics);
+          EXPECT_EQ(blocked, 0) << scale << " " << away;
+          tracer.nearest({&in, 1}, {&hit, 1}, false, statistics);
+          ASSERT_TRUE(hit.hit());
+          EXPECT_NEAR(hit.distance, 4 * scale, 1e-3 * scale);
+        }
+      }
+}
+
+TEST(Instances, TilesWaitForTheFirstRay) {
+  // A hundred boxes over 1000 km: a ray builds the tiles it comes to, from any thread, and no others.
+  auto scene = scene_of({box({-5, -5, 0}, {5, 5, 10}, 0, true)}, {material("m", lambert(0.5))});
+  scene->groups[0].placements.clear();
+  for (int i = 0; i < 100; ++i) {
+    Placement p;
+    p.to_parent = translation({i * 1e4, 0, 0});
+    scene->groups[0].placements.push_back(p);
+  }
+  const Tracer tracer(scene);
+  EXPECT_EQ(tracer.tiles(), 100u);
+  EXPECT_EQ(tracer.tiles_built(), 0u);
+  const Ray down{{5e4, 0, 7e5}, {0, 0, -1}, 0};
+  Hit hit;
+  TraceStatistics statistics;
+  tracer.nearest({&down, 1}, {&hit, 1}, false, statistics);
+  EXPECT_TRUE(hit.hit());
+  EXPECT_EQ(tracer.tiles_built(), 1u);
+  std::atomic<int> hits{0};
+  parallel_for(0, 4000, 1, [&](size_t begin, size_t end) {
+    const FlushDenormals flush;
+    TraceStatistics mine;
+    for (size_t k = begin; k < end; ++k) {
+      const Ray ray{{static_cast<double>(k % 50) * 1e4 + 1, 2, 7e5}, {0, 0, -1}, 0};
+      Hit h;
+      tracer.nearest({&ray, 1}, {&h, 1}, false, mine);
+      hits += h.hit() && std::fabs(h.position.z - 10) < 1e-5 ? 1 : 0;
+    }
+  });
+  EXPECT_EQ(hits, 4000);
+  EXPECT_EQ(tracer.tiles_built(), 50u);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST_P(PrimitiveUv, IsContinuousAndItsTangentsAreItsDerivatives) {
     const Vec3 target = p.to_parent.point({2 * rng.uniform() - 1, 2 * rng.uniform() - 1, 1.2 * rng.uniform()});
     const Hit here = shoot(target - d * 6.0, d);
     if (!here.hit() || here.distance > 12) continue;  // u and v of an infinite plane are metres, as floats
-    const SurfaceTangents t = tangents_at(tracer, object, here);
+    const SurfaceTangents t = tangents_at(tracer.scene(), tracer.to_world(here), object, here);
     EXPECT_NEAR(dot(normalized(t.dpdu), here.normal), 0, 1e-9);
     EXPECT_NEAR(dot(normalized(t.dpdv), here.normal), 0, 1e-9);
     // 1e-3 further along each tangent, seen along the normal; hits are in double, u and v in float.
