@@ -15,6 +15,8 @@
 #include "scene/combine.h"
 #include "output.h"
 #include "radiometry/sources/source_table.h"
+#include "radiometry/truth/truth.h"
+#include "sensor/plugin.h"
 
 namespace suite {
 
@@ -27,6 +29,11 @@ int list_sensors() {
 
 int list_sources() {
   for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
+  return 0;
+}
+
+int list_truth() {
+  for (const TruthRow& row : truth_rows()) std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [", row.unit.c_str(), row.unit.empty() ? "" : "]");
   return 0;
 }
 
@@ -46,7 +53,7 @@ SceneNeeds needs_of(const Simulation& sim) {
   return needs;
 }
 
-// All scenes of the simulation as one.
+// All scenes of a simulation as one.
 Scene load_scenes(const Simulation& sim) {
   std::vector<ScenePart> parts;
   for (const SimulationScene& s : sim.scenes) {
@@ -94,21 +101,21 @@ void tell(const JobReport& r) {
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
+  for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (o.list_sensors) return list_sensors();
   if (o.list_sources) return list_sources();
+  if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
-  std::vector<std::string> material_names;
-  std::string folder = o.output;
-  OutputSpec output;
-  const auto deliver = [&](const Sensor& sensor, const CaptureResult& result) {
-    for (const std::string& file : write_capture(folder, sensor, result, output, material_names)) note("wrote " + file);
-  };
-  Simulation sim = read_simulation(o.simulation, deliver);
-  output = sim.output;
+  std::unique_ptr<OutputWriter> writer;
+  SimulationCallbacks callbacks;
+  callbacks.deliver = [&](const Delivery& delivery) { writer->take(delivery); };
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) { return read_scene_origin(scenes.front().path).origin; };
+  Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -123,14 +130,22 @@ int run_render(const Cli& cli, const RenderOptions& o) {
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
-  for (const Material& m : scene->materials) material_names.push_back(m.id);
-  make_folder(folder);
+  for (const auto& sensor : sim.sensors) {
+    check_preview(*sensor, sim.output);
+    for (const std::string& truth : sensor->truth()) find_truth(truth);
+  }
+  SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
+  for (const Material& m : scene->materials) notes.materials.push_back(m.id);
+  make_folder(o.output);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
-  const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
+  const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
   tell(report);
-  write_log(folder + "/render.json", report, options);
+  write_log(o.output + "/render.json", report, options);
+  for (const auto& sensor : sim.sensors)
+    for (const TextFile& log : sensor->logs()) writer->write_text(log);
   return 0;
 }
 

@@ -1,5 +1,6 @@
 #include <set>
 
+#include "formats/sim_text/context.h"
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
@@ -9,7 +10,12 @@ namespace suite {
 namespace {
 
 void read_output(const Params& p, OutputSpec& out) {
-  if (const auto type = p.find("type")) out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64"}));
+  if (const auto type = p.find("type")) out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64", "uint16"}));
+  if (out.type == OutputSpec::Type::uint16) out.scale = p.number_in("scale", 1e-30, 1e30, "(units of one count)");
+  if (const auto files = p.find("files")) out.files = static_cast<OutputSpec::Files>(1 + files->as_choice({"capture", "task", "simulation"}));
+  if (const auto units = p.find("units")) out.units = static_cast<OutputSpec::Units>(units->as_choice({"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"}));
+  if (const auto also = p.find("also"))
+    for (const Params& format : also->items()) (format.as_choice({"geotiff", "exr"}) == 0 ? out.geotiff : out.exr) = true;
   if (const auto order = p.find("interleave")) out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
   if (const auto preview = p.find("preview")) {
     for (const Params& band : preview->items()) out.preview.push_back(band.as_text());
@@ -19,7 +25,7 @@ void read_output(const Params& p, OutputSpec& out) {
 
 }  // namespace
 
-Simulation read_simulation(const std::string& path, const std::function<void(const Sensor&, const CaptureResult&)>& deliver) {
+Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks) {
   const Params root = Params::parse_file(path);
   Simulation sim;
   sim.path = path;
@@ -35,7 +41,9 @@ Simulation read_simulation(const std::string& path, const std::function<void(con
     sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
   }
   if (const auto output = root.find("output")) read_output(*output, sim.output);
-  const SensorContext context{read_curve_value, deliver};
+  read_epoch(root, sim);
+  SensorContext context = sensor_context(sim, callbacks);
+  context.curve = read_curve_value;
   std::set<std::string> names;
   const Params sensors = root.at("sensors");
   for (const Params& p : sensors.items()) {

@@ -62,7 +62,7 @@ struct RunStatistics {
 };
 
 // Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
-// come from. bands: values a problem ([channel][time bin][band]); truth_slots: doubles of truth a problem.
+// come from. bands: values a problem ([channel][bin][band]); truth_slots: doubles of truth a problem.
 class Accumulators {
  public:
   Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);

@@ -153,7 +153,7 @@ class Job {
                 .slots();
       }
       all[item.id] = {capture.columns, capture.rows,
-                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
                       Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
     }
     return all;
@@ -198,7 +198,7 @@ class Job {
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
     ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
     CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;
