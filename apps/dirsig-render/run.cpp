@@ -46,18 +46,29 @@ int list_models() {
   return 0;
 }
 
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim) {
+  SceneNeeds needs;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+  return needs;
+}
+
 // All scenes of a simulation as one.
-Scene load_scenes(const std::string& path, const std::vector<SimulationScene>& scenes) {
+Scene load_scenes(const Simulation& sim) {
   std::vector<ScenePart> parts;
-  for (const SimulationScene& s : scenes) {
-    Scene scene = read_scene(s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; });
+  for (const SimulationScene& s : sim.scenes) {
+    LoadReport loaded;
+    Scene scene = read_scene(
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
+    note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
   }
   if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
   try {
     return combine_scenes(std::move(parts));
   } catch (const Error& e) {
-    throw Error(Where{path, 0, 0, {}, -1}, e.message(), e.hint());
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
   }
 }
 
@@ -96,15 +107,10 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sources) return list_sources();
   if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
+  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
-  // The scenes are read when a sensor asks where on the Earth they are, else before rendering.
-  std::shared_ptr<Scene> scene;
-  const auto load = [&](const std::string& path, const std::vector<SimulationScene>& scenes) -> const Scene& {
-    if (!scene) scene = std::make_shared<Scene>(load_scenes(path, scenes));
-    return *scene;
-  };
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
   StudyImage* study = nullptr;  // where captures go while a study runs
@@ -112,7 +118,8 @@ int run_render(const Cli& cli, const RenderOptions& o) {
     if (study) append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
     else writer->take(delivery);
   };
-  callbacks.origin = [&](const std::string& path, const std::vector<SimulationScene>& scenes) { return load(path, scenes).origin; };
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) { return read_scene_origin(scenes.front().path).origin; };
   Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
@@ -127,7 +134,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  load(sim.path, sim.scenes);
+  const auto scene = std::make_shared<Scene>(load_scenes(sim));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())

@@ -72,6 +72,7 @@ class Combiner {
     if (!part.motion) all_.bounds.grow(transformed(s.bounds, root.to_parent));
     move_behind(all_.class_maps, s.class_maps), move_behind(all_.map_bindings, s.map_bindings);
     move_behind(all_.property_maps, s.property_maps), move_behind(all_.property_bindings, s.property_bindings);
+    move_behind(all_.temperatures, s.temperatures);
     move_behind(all_.meshes, s.meshes), move_behind(all_.primitives, s.primitives);
     move_behind(all_.materials, s.materials), move_behind(all_.files, s.files);
   }
@@ -168,6 +169,7 @@ class Combiner {
       for (uint32_t& id : m.materials) id += materials;
     for (PropertyBinding& b : s.property_bindings)
       b.material += materials, b.property_map += static_cast<uint32_t>(all_.property_maps.size());
+    for (TemperatureBinding& t : s.temperatures) t.material += materials;
   }
 
   std::vector<ScenePart> parts_;
