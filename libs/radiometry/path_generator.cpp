@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "radiometry/volume_paths.h"
 
 namespace suite {
 
@@ -17,7 +20,14 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (!optics.media().empty()) {
+    volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
+    transmission_.resize(optics.state().size());
+  }
 }
+
+PathGenerator::~PathGenerator() = default;
+PathGenerator::PathGenerator(PathGenerator&&) noexcept = default;
 
 void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) {
   if (live_.size() < wave.width()) live_.resize(wave.width());
@@ -29,12 +39,14 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   live.length = 0;
   live.shares = live.shares_before = 1;
   live.last_density = 0;
+  live.flights = live.scatterings = 0;
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
   path = Path{};
   path.ray = ray.ray;
   path.weight = ray.weight;
+  if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
@@ -43,12 +55,15 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
 }
 
 void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
+  statistics.trace.rays += std::exchange(probing_.rays, 0);
+  statistics.trace.cycles += std::exchange(probing_.cycles, 0);
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
     for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
+    if (volume_) volume_->travel(wave, live_, statistics);
     size_t kept = 0;
     for (size_t i = 0; i < wave.active.size(); ++i) {
       const uint32_t p = wave.active[i];
@@ -66,13 +81,14 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     }
     wave.distance.assign(wave.rays.size(), std::numeric_limits<double>::infinity());
     wave.blocked.resize(wave.rays.size());
-    surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    if (volume_) volume_->look(wave, live_, statistics);
+    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i]) continue;
       Node& node = wave.node(p, wave.path(p).size - 1);
       node.sunlit = node.sunlit || wave.light[i] == 0;
-      add_explicit(wave, p, node.light[wave.light[i]]);
+      add_explicit(wave, p, node.light[wave.light[i]], i);
     }
 
     // Draw the continuations.
@@ -138,20 +154,23 @@ void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
   }
 }
 
-void PathGenerator::add_explicit(Wave& wave, uint32_t p, ExplicitLight& light) {
+void PathGenerator::add_explicit(Wave& wave, uint32_t p, ExplicitLight& light, size_t ray) {
   const int n = wave.path(p).size - 1;
   Node& node = wave.node(p, n);
   const Live& live = live_[p];
   const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
+  double reach[kMaxKnots];
+  std::fill_n(reach, knots_, 1.0);
+  const bool dim = volume_ && volume_->dims(ray, transmission_, {reach, knots_});
   double denominator = live.shares;
   if (light.density > 0) {
     float pdf[kMaxKnots];
     node.at.baked->model->pdf(out, in, {pdf, knots_});
     denominator = live.shares * light.density;
-    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k];
+    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
-  if (const auto factored = node.at.baked->model->factored(out, in)) {
+  if (const auto factored = node.at.baked->model->factored(out, in); factored && !dim) {
     light.scatter = factored->spectrum;
     light.scale = scale * factored->scale;
     return;
@@ -162,7 +181,7 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, ExplicitLight& light) {
   if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
   node.has_direct = true;
   const float* spectrum = light.spectrum;
-  for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * spectrum[i] * scale;
+  for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * spectrum[i] * (dim ? transmission_[i] : 1.0f) * scale;
 }
 
 // Draws where the path goes from its last node; false when it ends there.
@@ -226,6 +245,7 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   node.bounce_spectrum = factored ? factored->spectrum : w.data();
   node.bounce_scale = static_cast<float>((factored ? factored->scale : 1) / node.density);
   live.last_density = drawn->delta ? 0 : own;
+  if (volume_ && dot(node.in, node.hit.normal) * dot(node.out, node.hit.normal) < 0) volume_->cross(live, node);
   live.direction = node.in;
   live.origin = surface_.tracer().leave(node.hit, node.in);
   return true;

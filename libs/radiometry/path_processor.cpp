@@ -65,13 +65,23 @@ void add_node(Wave& wave, size_t p, int n, bool continues, std::span<float> radi
   if (node.at.baked && !node.at.baked->blackbody.empty()) add_emission(node, wave.scratch(), radiance);
 }
 
+// L = gathered + through L of a segment.
+void add_segment(Wave& wave, size_t p, int n, std::span<float> radiance) {
+  const std::span<float> through = wave.through(p, n), gathered = wave.gathered(p, n);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = gathered[i] + through[i] * radiance[i];
+}
+
 }  // namespace
 
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
   const Path& path = wave.path(p);
   from_outside(path, environment, radiance);
+  const bool media = wave.has_media();
+  // A path that did not go on from its last node has no segment behind it.
+  if (media && (path.size == 0 || wave.node(p, path.size - 1).continues)) add_segment(wave, p, path.size, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
     add_node(wave, p, n, wave.node(p, n).continues, radiance);
+    if (media) add_segment(wave, p, n, radiance);
   }
   if (path.weight != 1)
     for (float& x : radiance) x *= static_cast<float>(path.weight);
@@ -84,6 +94,7 @@ void process_single(Wave& wave, size_t p, std::span<const float> radiance, std::
     return;
   }
   add_node(wave, p, 0, false, single);
+  if (wave.has_media()) add_segment(wave, p, 0, single);
   if (path.weight != 1)
     for (float& x : single) x *= static_cast<float>(path.weight);
 }

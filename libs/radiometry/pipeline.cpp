@@ -85,7 +85,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
         return found;
       }
   }
-  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
+  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size(), !optics_.media().empty()),
                                                   PathGenerator(surface_, optics_, environment_, options_),
                                                   std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
                                                   std::vector<float>(state_.size())});
