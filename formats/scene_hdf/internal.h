@@ -52,6 +52,9 @@ class Stretch {
 void write_curves(h5::Writer& w, const std::string& table, const std::vector<Curve>& curves);
 std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
 
+void write_media(h5::Writer& w, const Scene& scene);
+void read_media(h5::Reader& r, Scene& scene);
+
 void write_property_maps(h5::Writer& w, const Scene& scene);
 void read_property_maps(h5::Reader& r, Scene& scene);
 

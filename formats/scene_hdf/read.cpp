@@ -242,6 +242,7 @@ void read_maps(Reader& r, Scene& s) {
 void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> bundles;
   const Where where{path, 0, 0, {}, -1};
+  for (Medium& m : s.media) check_medium(m, where);
   for (Material& m : s.materials) {
     if (m.surface.model.empty()) continue;
     if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
@@ -286,6 +287,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
     read_materials(r, s.materials);
     read_maps(r, s);
     read_property_maps(r, s);
+    read_media(r, s);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;

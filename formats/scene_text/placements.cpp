@@ -88,28 +88,34 @@ DraftPlacement Reader::read_placement(const Params& p) {
     if (!made.on.given()) throw v->error("'scatter' needs 'on', the terrain or mesh to scatter over");
     made.scatter = read_scatter(*v);
   }
+  made.to_parent = read_transform(p);
+  return made;
+}
+
+// `matrix`, or scale, then rotate, then translate.
+Affine3 Reader::read_transform(const Params& p) {
+  Affine3 to_parent;
   if (const auto m = p.find("matrix")) {
     for (const char* other : {"translate", "rotate", "scale"})
       if (p.has(other)) throw p.error(strf("'matrix' and '%s' cannot be combined", other));
-    made.to_parent = read_matrix(*m);
-    return made;
+    return read_matrix(*m);
   }
   if (const auto s = p.find("scale")) {
     if (s->kind() == Params::Kind::list) {
       const auto v = s->as_vec3();
-      made.to_parent = scaling({v[0], v[1], v[2]});
+      to_parent = scaling({v[0], v[1], v[2]});
     } else {
       const double v = s->as_number();
-      made.to_parent = scaling({v, v, v});
+      to_parent = scaling({v, v, v});
     }
   }
   if (const auto r = p.find("rotate"))
-    for (const Params& step : r->items()) made.to_parent = read_rotation(step) * made.to_parent;
+    for (const Params& step : r->items()) to_parent = read_rotation(step) * to_parent;
   if (const auto t = p.find("translate")) {
     const auto v = t->as_vec3();
-    made.to_parent = translation({v[0], v[1], v[2]}) * made.to_parent;
+    to_parent = translation({v[0], v[1], v[2]}) * to_parent;
   }
-  return made;
+  return to_parent;
 }
 
 void Reader::read_group(const std::string& name, const Params& p) {

@@ -99,6 +99,7 @@ Simulation read_simulation(const std::string& path, const std::function<void(con
   sim.scene_path = root.at("scene").as_path();
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
+  sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 1, 10000000, 10000));
   if (const auto sun = root.find("sun")) read_sun(*sun, sim);
   if (const auto sky = root.find("sky")) read_sky(*sky, sim);
   if (const auto p = root.find("periodic")) {

@@ -37,7 +37,12 @@ Box3 scene_bounds(const Scene& s) {
                                                       : primitives[p.target];
       groups[g].grow(moved(box, p.to_parent));
     }
-  return groups.empty() ? Box3{} : groups.front();
+  Box3 all = groups.empty() ? Box3{} : groups.front();
+  for (const Volume& v : s.volumes) {
+    const VoxelGrid& g = s.grids[v.grid];
+    all.grow(moved({{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}}, v.to_world * g.to_local));
+  }
+  return all;
 }
 
 }  // namespace suite
