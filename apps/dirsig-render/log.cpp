@@ -61,6 +61,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
     one.set("problems", c.problems);
     one.set("seconds", c.seconds);
     one.set("median_relative_error", c.median_relative_error);
+    one.set("new_tracer", c.new_tracer);
     one.set("new_optics", c.new_optics);
     captures.push(std::move(one));
   }

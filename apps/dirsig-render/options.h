@@ -1,6 +1,7 @@
 // Command line of dirsig-render.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "base/run_app.h"
 
@@ -8,11 +9,12 @@ namespace suite {
 
 struct RenderOptions {
   std::string simulation, output = "out";
+  std::vector<std::string> plugins;
   std::string paths, target_error, target_bands = "reference", time, stop = "plan";
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false;
-  bool dry_run = false, list_sensors = false, list_models = false;
+  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false;
 };
 
 AppInfo render_info();

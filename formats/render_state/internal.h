@@ -8,7 +8,7 @@ namespace suite::render_state {
 inline constexpr const char* kFormat = "dirsig-render state";
 inline constexpr const char* kVersion = "1";
 inline constexpr const char* kHint = "start the run anew without --resume and --more, or give it another folder";
-inline constexpr uint32_t kRangeRows = 8;  // rows of problems that are saved together: one row of blocks
+inline constexpr uint32_t kRangeRows = kBlockEdge;  // rows of problems that are saved together: one row of blocks
 
 inline size_t ranges_of(const CaptureShape& s) { return (s.rows + kRangeRows - 1) / kRangeRows; }
 std::string group_of(size_t capture);  // "/captures/000012"

@@ -82,10 +82,10 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
       const CaptureShape& s = shapes[c];
       const std::string g = group_of(c);
       const size_t n = s.problems();
-      w.put(
-          g + "/shape",
-          std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.values), static_cast<uint32_t>(s.scrambles), static_cast<uint32_t>(s.truth_slots)},
-          "1");
+      w.put(g + "/shape",
+            std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.values),
+                                  static_cast<uint32_t>(s.scrambles), static_cast<uint32_t>(s.truth_slots)},
+            "1");
       // Zeros by being a hole in the file: nothing is valid yet, and no value is looked at before it is.
       w.put(g + "/valid", std::vector<uint8_t>(ranges_of(s), 0), "1");
       w.put(g + "/piloted", std::vector<uint8_t>{0}, "1");

@@ -2,6 +2,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/files.h"
@@ -52,6 +53,8 @@ class StateFile final : public StateStore {
     if (piloted) {
       needs.resize(n);
       get(c.needs, needs.data(), n * sizeof(double));
+      if (std::any_of(needs.begin(), needs.end(), [](double x) { return !(x >= 0); }))
+        fail("holds needs that cannot be");
     }
     std::vector<uint8_t> valid(ranges_of(c.shape));
     get(c.valid, valid.data(), valid.size());
@@ -64,6 +67,8 @@ class StateFile final : public StateStore {
       std::vector<uint32_t> paths(count), failures(count);
       std::vector<float> truncated(count), largest(count);
       get(c.paths + first * 4, paths.data(), count * 4);
+      if (std::any_of(paths.begin(), paths.end(), [](uint32_t x) { return x > (1u << 31); }))
+        fail("holds more paths than can be");
       get(c.failures + first * 4, failures.data(), count * 4);
       get(c.truncated + first * 4, truncated.data(), count * 4);
       get(c.largest + first * 4, largest.data(), count * 4);
@@ -135,8 +140,8 @@ class StateFile final : public StateStore {
     Columns c;
     const std::vector<uint32_t> shape = r.get<uint32_t>(g + "/shape", "1", 1, 5);
     c.shape = {shape[0], shape[1], shape[2], static_cast<int>(shape[3]), shape[4]};
-    if (c.shape.columns != wanted.columns || c.shape.rows != wanted.rows || c.shape.values != wanted.values || c.shape.truth_slots != wanted.truth_slots ||
-        (shape[3] != 4 && shape[3] != 8))
+    if (c.shape.columns != wanted.columns || c.shape.rows != wanted.rows || c.shape.values != wanted.values ||
+        c.shape.truth_slots != wanted.truth_slots || (shape[3] != 4 && shape[3] != 8))
       r.fail(strf("capture %zu has another shape than in this run", capture));
     const auto n = static_cast<long long>(c.shape.problems());
     auto at = [&](const char* name, h5::Id type, const char* units, long long rows) {
@@ -208,7 +213,8 @@ void copy_state(StateFile& from, StateFile& to, const std::vector<CaptureShape>&
   if (from.cap()) to.save_cap(from.cap());
 }
 
-void extend_state(const std::string& path, const StateIdentity& identity, const Budget& budget, const std::vector<CaptureShape>& shapes) {
+void extend_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
+                  const std::vector<CaptureShape>& shapes) {
   if (roomy(path, shapes)) {
     StateFile file(path, identity);
     file.begin(shapes);
@@ -223,7 +229,8 @@ void extend_state(const std::string& path, const StateIdentity& identity, const 
     to.begin(shapes);
     copy_state(from, to, shapes);
   }
-  if (std::rename(wider.c_str(), path.c_str()) != 0) throw Error(Where{path, 0, 0, {}, -1}, "cannot be replaced", kHint);
+  if (std::rename(wider.c_str(), path.c_str()) != 0)
+    throw Error(Where{path, 0, 0, {}, -1}, "cannot be replaced", kHint);
 }
 
 // A state file that is made or widened when its run begins.
@@ -236,9 +243,13 @@ class PreparedState final : public StateStore {
     if (use_ == StateUse::extend) extend_state(path_, identity_, budget_, shapes);
     file_.begin(shapes);
   }
-  void load(size_t capture, Accumulators& sums, std::vector<double>& needs) override { file_.load(capture, sums, needs); }
+  void load(size_t capture, Accumulators& sums, std::vector<double>& needs) override {
+    file_.load(capture, sums, needs);
+  }
   void save_needs(size_t capture, std::span<const double> needs) override { file_.save_needs(capture, needs); }
-  void save(size_t capture, size_t first, size_t count, const Accumulators& sums) override { file_.save(capture, first, count, sums); }
+  void save(size_t capture, size_t first, size_t count, const Accumulators& sums) override {
+    file_.save(capture, first, count, sums);
+  }
   uint32_t cap() const override { return file_.cap(); }
   void save_cap(uint32_t paths) override { file_.save_cap(paths); }
 
@@ -252,7 +263,8 @@ class PreparedState final : public StateStore {
 
 }  // namespace
 
-std::unique_ptr<StateStore> make_state(const std::string& path, StateUse use, const StateIdentity& identity, const Budget& budget) {
+std::unique_ptr<StateStore> make_state(const std::string& path, StateUse use, const StateIdentity& identity,
+                                       const Budget& budget) {
   return std::make_unique<PreparedState>(path, use, identity, budget);
 }
 

@@ -131,7 +131,7 @@ void read_hierarchy(Reader& r, Scene& s) {
   const auto what = r.get<uint8_t>("/placements/kind", "1", 1, rows);
   const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows),
              override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
-  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows);
+  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows), track = r.get<uint32_t>("/placements/track", "1", 1, rows);
   size_t at = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
     if (placements[g] > target.size() - at) r.fail("group '" + groups[g] + "' declares more placements than there are");
@@ -144,7 +144,8 @@ void read_hierarchy(Reader& r, Scene& s) {
                                   static_cast<TargetKind>(what[at]),
                                   target[at],
                                   override_[at],
-                                  tag[at]});
+                                  tag[at],
+                                  track[at]});
     }
     s.groups.push_back(std::move(group));
   }
@@ -269,6 +270,13 @@ Provenance read_provenance(const std::string& path) {
   return p;
 }
 
+SceneOrigin read_scene_origin(const std::string& path) {
+  Reader r(path);
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  const auto o = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
+  return {{o[0], o[1], o[2], o[3] != 0}, r.text("epoch_utc")};
+}
+
 Scene read_scene(const std::string& path, const BundleReader& decode) {
   Reader r(path);
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
@@ -283,11 +291,14 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
   s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
   try {
     read_meshes(r, path, s.meshes);
+    s.epoch = r.text("epoch_utc");
     read_hierarchy(r, s);
+    read_tracks(r, s);
     read_materials(r, s.materials);
     read_maps(r, s);
     read_property_maps(r, s);
     read_media(r, s);
+    read_temperatures(r, s);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;

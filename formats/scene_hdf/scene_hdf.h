@@ -28,6 +28,12 @@ using BundleReader =
 // Reads and checks everything (sizes before allocating, every index). Materials whose `file` names an embedded file get
 // their `bundle` from decode; without decode it stays null. Error: no scene, another version, damaged.
 Scene read_scene(const std::string& path, const BundleReader& decode = {});
+// Where second 0 and the zero of the frame are; reads attributes only.
+struct SceneOrigin {
+  GeodeticOrigin origin;
+  std::string epoch;  // UTC, or empty
+};
+SceneOrigin read_scene_origin(const std::string& path);
 // The attributes only; cheap.
 Provenance read_provenance(const std::string& path);
 

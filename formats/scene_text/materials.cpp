@@ -102,9 +102,11 @@ void Reader::read_material(const std::string& id, const Params& p) {
     m.has_model = true;
   }
   m.material.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
-  if (const auto thermal = p.find("thermal"))
-    for (const char* name : {"conductivity_w_m_k", "density_kg_m3", "specific_heat_j_kg_k", "thickness_m"})
-      if (const auto value = thermal->find(name)) m.material.thermal[name] = value->as_number_in(1e-12, 1e12, "SI");
+  if (const auto thermal = p.find("thermal")) read_thermal(*thermal, m);
+  if (const auto temperature = p.find("temperature")) {
+    if (p.has("temperature_k")) throw temperature->error("a material has either 'temperature' or 'temperature_k'");
+    read_temperature(*temperature, m);
+  }
   draft_.materials[slot] = std::move(m);
 }
 

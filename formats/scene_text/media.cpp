@@ -4,6 +4,7 @@
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
+#include "formats/scene_text/transform.h"
 #include "scene/voxel_mesh.h"
 
 namespace suite::scene_text {
@@ -160,7 +161,7 @@ void Reader::read_grid(const std::string& name, const Params& p) {
 }
 
 void Reader::read_volume(const Params& p) {
-  draft_.volumes.push_back({p.where(), reference(p.at("place")), read_transform(p)});
+  draft_.volumes.push_back({p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{})});
 }
 
 void Reader::read_voxel_geometry(const Params& p, DraftGeometry& g) {

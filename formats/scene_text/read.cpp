@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
+#include "motion/time.h"
 
 namespace suite {
 namespace {
@@ -59,6 +60,20 @@ void Reader::run(const Params& root) {
       draft_.origin.longitude_deg = o->number_in("longitude_deg", -180, 360, "degrees");
       draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
       draft_.origin.given = true;
+    });
+  if (const auto e = root.find("epoch"))
+    item("SP001", *e, [&] {
+      try {
+        draft_.epoch = to_iso8601(parse_iso8601(e->as_text()), 9);
+      } catch (const Error& fault) {
+        throw e->error(fault.message(), fault.hint());
+      }
+    });
+  if (const auto t = root.find("times_s"))
+    item("SP001", *t, [&] {
+      const std::vector<double> edge = t->as_numbers();
+      if (edge.size() != 2 || !(edge[0] <= edge[1])) throw t->error("'times_s' is [begin, end] in seconds");
+      draft_.times = TimeWindowSpec{edge[0], edge[1], t->where()};
     });
   if (const auto windows = root.find("windows_um"))
     for (const Params& w : windows->items())

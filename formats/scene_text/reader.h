@@ -38,6 +38,9 @@ class Reader {
   void read_voxel_geometry(const Params& p, DraftGeometry& g);
   // The voxels that a value names, with their raw files among the inputs.
   VoxelData read_voxel_input(const Params& p);
+  // temperatures.cpp
+  void read_thermal(const Params& p, DraftMaterial& m);
+  void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_obj_geometry(const Params& p, DraftGeometry& g);
@@ -45,9 +48,9 @@ class Reader {
   void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // placements.cpp
-  static Affine3 read_transform(const Params& p);
   void read_group(const std::string& name, const Params& p);
-  DraftPlacement read_placement(const Params& p);
+  DraftPlacement read_placement(const Params& p, bool world);
+  std::shared_ptr<const Track> read_motion(const Params& p, bool world);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);

@@ -48,4 +48,8 @@ void parallel_for(size_t begin, size_t end, size_t grain, const std::function<vo
   });
 }
 
+void isolated(const std::function<void()>& work) {
+  tbb::this_task_arena::isolate([&] { work(); });
+}
+
 }  // namespace suite

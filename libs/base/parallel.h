@@ -13,4 +13,8 @@ int threads();
 // The first exception thrown by a body is rethrown here.
 void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body);
 
+// Runs work whose parallel parts, while they wait, take up nothing but their own pieces. For constructions that other
+// work of the same thread might be waiting for.
+void isolated(const std::function<void()>& work);
+
 }  // namespace suite

@@ -8,13 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace suite {
+#include "motion/time_span.h"
 
-// A span of simulation time, s; begin <= end.
-struct TimeSpan {
-  double begin = 0, end = 0;
-  bool contains(double t) const { return t >= begin && t <= end; }
-};
+namespace suite {
 
 // A calendar date and time in UTC. second is below 60, or below 61 in the minute of a leap second.
 struct Utc {

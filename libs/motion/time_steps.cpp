@@ -38,8 +38,9 @@ double deviation(const Affine3& truth, const Affine3& a, const Affine3& b, doubl
 }
 
 // The largest error found with that many keys (1: the pose at the start throughout); stops early above `bound`.
-double blend_error(const Track& track, TimeSpan window, size_t steps, double radius, double bound) {
-  std::vector<Affine3> keys = time_keys(track, window, steps);
+double blend_error(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, size_t steps, double radius,
+                   double bound) {
+  std::vector<Affine3> keys = time_keys(frame, window, steps);
   if (steps == 1) keys.push_back(keys[0]);
   const size_t segments = keys.size() - 1;
   const double segment = (window.end - window.begin) / static_cast<double>(segments);
@@ -47,7 +48,7 @@ double blend_error(const Track& track, TimeSpan window, size_t steps, double rad
   auto check = [&](double t) {
     const double x = std::clamp((t - window.begin) / segment, 0.0, static_cast<double>(segments));
     const size_t i = std::min(static_cast<size_t>(x), segments - 1);
-    const double e = deviation(track.at(t).affine(), keys[i], keys[i + 1], x - static_cast<double>(i), radius);
+    const double e = deviation(frame(t), keys[i], keys[i + 1], x - static_cast<double>(i), radius);
     worst = std::fmax(worst, e);
   };
   // The middle, where a smooth motion errs most, and places at golden-ratio fractions, which no whole number of turns
@@ -58,33 +59,29 @@ double blend_error(const Track& track, TimeSpan window, size_t steps, double rad
     check(begin + 0.5 * segment);
     for (int k = 1; k <= kProbes; ++k) check(begin + segment * std::fmod(k * 0.61803398874989485, 1.0));
   }
-  for (const double t : track.kinks(window)) check(t);
+  for (const double t : kinks) check(t);
   check(window.end);
   return worst;
 }
 
 }  // namespace
 
-std::vector<Affine3> time_keys(const Track& track, TimeSpan window, size_t steps) {
+std::vector<Affine3> time_keys(const MovingFrame& frame, TimeSpan window, size_t steps) {
   SUITE_CHECK(steps >= 1);
   std::vector<Affine3> keys(steps);
   for (size_t i = 0; i < steps; ++i) {
     const double s = steps == 1 ? 0 : static_cast<double>(i) / static_cast<double>(steps - 1);
-    keys[i] =
-        track.at(i + 1 == steps && steps > 1 ? window.end : window.begin + (window.end - window.begin) * s).affine();
+    keys[i] = frame(i + 1 == steps && steps > 1 ? window.end : window.begin + (window.end - window.begin) * s);
   }
   return keys;
 }
 
-size_t time_steps_for(const Track& track, TimeSpan window, double radius, double bound) {
+size_t time_steps_for(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, double radius,
+                      double bound) {
   if (!(bound > 0)) throw Error(strf("a bound of %g m on the error of moving geometry", bound), "give more than 0");
   if (!(radius >= 0 && std::isfinite(radius)))
     throw Error(strf("a moving body of radius %g m", radius), "give 0 or more");
-  const TimeSpan c = track.covered();
-  if (!(window.begin <= window.end) || !c.contains(window.begin) || !c.contains(window.end))
-    throw Error(strf("a motion is needed from %.9g to %.9g s", window.begin, window.end),
-                strf("it covers %.9g to %.9g s", c.begin, c.end));
-  auto holds = [&](size_t steps) { return blend_error(track, window, steps, radius, bound) <= bound; };
+  auto holds = [&](size_t steps) { return blend_error(frame, kinks, window, steps, radius, bound) <= bound; };
   if (window.begin == window.end) return 1;
 
   // Few keys one by one, since a kink may happen to lie on a key; then double until the bound holds and halve the gap.
@@ -105,6 +102,18 @@ size_t time_steps_for(const Track& track, TimeSpan window, double radius, double
     (holds(middle) ? high : low) = middle;
   }
   return high;
+}
+
+std::vector<Affine3> time_keys(const Track& track, TimeSpan window, size_t steps) {
+  return time_keys([&](double t) { return track.at(t).affine(); }, window, steps);
+}
+
+size_t time_steps_for(const Track& track, TimeSpan window, double radius, double bound) {
+  const TimeSpan c = track.covered();
+  if (!(window.begin <= window.end) || !c.contains(window.begin) || !c.contains(window.end))
+    throw Error(strf("a motion is needed from %.9g to %.9g s", window.begin, window.end),
+                strf("it covers %.9g to %.9g s", c.begin, c.end));
+  return time_steps_for([&](double t) { return track.at(t).affine(); }, track.kinks(window), window, radius, bound);
 }
 
 }  // namespace suite

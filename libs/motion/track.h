@@ -3,6 +3,7 @@
 //
 // Based on: L. Kavan et al., "Dual quaternions for rigid transformation blending", 2006 (screw interpolation).
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +15,8 @@
 #include "motion/time.h"
 
 namespace suite {
+
+struct TrackRecord;
 
 // Immutable; all members may be called from many threads.
 class Track {
@@ -27,6 +30,8 @@ class Track {
   virtual TimeSpan covered() const;  // all times by default
   // Times inside the span where the motion has a kink (keyframes), ascending; none by default.
   virtual std::vector<double> kinks(TimeSpan span) const;
+  // As plain data (track_record.h). Error for a kind that cannot be stored.
+  virtual TrackRecord record() const;
 
  protected:
   void check_time(double t) const;  // Error outside covered()
@@ -94,6 +99,9 @@ TrackPtr spin_track(const SpinMotion& motion);
 // inner, given in the moving frame of outer: a camera on a gimbal on an aircraft.
 TrackPtr composed_track(TrackPtr outer, TrackPtr inner);
 
+// The same motion, `seconds` later: at t where `track` is at t - seconds. Cannot be stored.
+TrackPtr delayed_track(TrackPtr track, double seconds);
+
 // A satellite: position from SGP4, in the scene's frame; clock and dut1 (s) tie simulation time to UTC. Orientation:
 // z away from the Earth's ellipsoid, y along the velocity over the rotating Earth as nearly as that allows.
 // Error at times where the theory refuses the elements.
@@ -123,5 +131,12 @@ TrackPtr pointed_track(TrackPtr place, const PointingRule& rule);
 size_t time_steps_for(const Track& track, TimeSpan window, double radius, double bound);
 // The keys themselves.
 std::vector<Affine3> time_keys(const Track& track, TimeSpan window, size_t steps);
+
+// The same for anything that has a place at a time, such as a chain of tracks. kinks: times inside the window where the
+// motion has a kink.
+using MovingFrame = std::function<Affine3(double t)>;
+size_t time_steps_for(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, double radius,
+                      double bound);
+std::vector<Affine3> time_keys(const MovingFrame& frame, TimeSpan window, size_t steps);
 
 }  // namespace suite

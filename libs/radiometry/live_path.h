@@ -21,8 +21,10 @@ struct LivePath {
   double shares = 1, shares_before = 1;  // A after and before the last event
   double last_density = 0;               // p_h of the last event, without roulette; 0 after a Dirac event or none
   MediumStack bodies;                    // that the next segment starts in
-  uint32_t flights = 0;                  // through media so far
-  uint32_t scatterings = 0;              // inside media so far
+  bool scattered = false;                // the last event was a scattering in a medium, at:
+  Vec3 place;
+  uint32_t flights = 0;      // through media so far
+  uint32_t scatterings = 0;  // inside media so far
 };
 
 }  // namespace suite

@@ -15,6 +15,11 @@
 
 namespace suite {
 
+// Dimensions of the sample streams: block 0 is the sensor's, 1 + n is node n's continuation and its sample of the sun,
+// kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp (three
+// numbers), kMoonBlock + n of the moon.
+inline constexpr uint32_t kLobeBlock = 128, kLampBlock = 512, kMoonBlock = 640;
+
 class VolumePaths;
 
 class PathGenerator {
@@ -31,11 +36,19 @@ class PathGenerator {
 
  private:
   using Live = LivePath;
-  void escape(Path& path, const Live& live) const;
   bool arrive(Wave& wave, uint32_t p, const Hit& hit);
+  bool arrive_on_earth(Wave& wave, uint32_t p);
+  Node& add_node(Wave& wave, uint32_t p, const Hit& hit);
+  bool scatters(Path& path, const Node& node) const;
+  Vec3 leave(const Node& node, Dir direction) const;
+  // Sources (path_sources.cpp).
+  void escape(Path& path, const Live& live) const;
   void ask_sources(Wave& wave, uint32_t p);
+  void ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance, const Vec3* end);
+  void ask_lamps(Wave& wave, uint32_t p);
+  void meet_glow(Wave& wave, uint32_t p);
   // ray: of wave.rays, which found the source in sight.
-  void add_explicit(Wave& wave, uint32_t p, ExplicitLight& light, size_t ray);
+  void add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray);
   bool go_on(Wave& wave, uint32_t p);
 
   const Surface& surface_;

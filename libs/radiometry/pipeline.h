@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "radiometry/sources/source.h"
+#include "radiometry/sources/environment.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"
@@ -63,7 +63,7 @@ struct RunStatistics {
 };
 
 // Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
-// come from. bands: values a problem ([channel][time bin][band]); truth_slots: doubles of truth a problem.
+// come from. bands: values a problem ([channel][bin][band]); truth_slots: doubles of truth a problem.
 class Accumulators {
  public:
   Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);
@@ -93,6 +93,10 @@ class Accumulators {
   //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
   // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples.
   void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
+  // The same for all values of a problem at once; spans of bands() values.
+  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
+  // Forgets everything.
+  void clear();
 
  private:
   size_t bands_;
@@ -108,8 +112,13 @@ class Accumulators {
 struct Block {
   uint32_t column = 0, row = 0, columns = 0, rows = 0;
 };
-// Square blocks (8 x 8) that cover a capture, row by row.
+// Square blocks that cover a capture, row by row.
+inline constexpr uint32_t kBlockEdge = 8;
 std::vector<Block> blocks_of(const Capture& capture);
+
+// Where the accumulators of a block's problems stand: at their own numbers, for accumulators of a whole capture, or at
+// their places in the block, for accumulators of one block.
+enum class Slots : uint8_t { by_problem, by_place };
 
 class Pipeline {
  public:
@@ -120,8 +129,8 @@ class Pipeline {
 
   // Continues each problem of a block from the paths that its accumulators hold up to to[problem]. Thread-safe for
   // distinct blocks.
-  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
-           std::span<const uint32_t> to, Accumulators& sums, RunStatistics& statistics) const;
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, std::span<const uint32_t> to,
+           Accumulators& sums, Slots slots, RunStatistics& statistics) const;
 
  private:
   const Surface& surface_;

@@ -56,7 +56,8 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
       if (!met) continue;
       body_rules_.cross(bodies_at_[r], hit, material, rays_[i].direction);
       travelled_[r] += way;
-      rays_[kept] = {surface_.tracer().leave(hit, rays_[i].direction), rays_[i].direction, rays_[i].time};
+      rays_[kept] = {surface_.tracer().leave(hit, rays_[i].direction), rays_[i].direction, rays_[i].time,
+                     rays_[i].draw};
       owner_[kept++] = r;
     }
     rays_.resize(kept);

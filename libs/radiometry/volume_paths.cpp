@@ -8,7 +8,8 @@ namespace suite {
 namespace {
 // Blocks of dimensions of the first flights of a path; later ones use hashed numbers.
 constexpr uint32_t kFlightBlocks = 1024, kStratifiedFlights = 16;
-constexpr uint32_t kFlightNumbers = 0, kScatterNumbers = 1, kSkyNumbers = 2, kBlocksPerFlight = 4;
+constexpr uint32_t kFlightNumbers = 0, kScatterNumbers = 1, kSkyNumbers = 2, kMoonNumbers = 3, kLampNumbers = 4,
+                   kBlocksPerFlight = 5;
 constexpr uint32_t kHashedPurpose = 1u << 20;
 constexpr uint32_t kMostFlights = 1u << 24;  // boundaries passed included
 }  // namespace
@@ -39,7 +40,7 @@ std::array<double, 4> VolumePaths::numbers(const LivePath& live, uint32_t block)
     return live.stream.draw(live.sample, kFlightBlocks + kBlocksPerFlight * live.flights + block);
   std::array<double, 4> u;
   for (uint32_t d = 0; d < 4; ++d)
-    u[d] = live.stream.hashed(live.sample, kHashedPurpose + 16 * live.flights + 4 * block + d);
+    u[d] = live.stream.hashed(live.sample, kHashedPurpose + 32 * live.flights + 4 * block + d);
   return u;
 }
 
@@ -83,7 +84,7 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
     for (const size_t s : moving_) {
       LivePath& l = live[wave.active[s]];
       ++l.flights;
-      rays_.push_back({l.origin, l.direction, wave.path(wave.active[s]).ray.time});
+      rays_.push_back({l.origin, l.direction, wave.path(wave.active[s]).ray.time, wave.path(wave.active[s]).ray.draw});
     }
     hits_.resize(rays_.size());
     surface_.tracer().nearest(rays_, hits_, false, statistics.trace);
@@ -107,7 +108,9 @@ bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
   Path& path = wave.path(p);
   const Hit& hit = wave.hits[slot];
   if (!hit.hit()) bodies_.leave_scene(live.bodies);
-  const double length = hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+  double length = hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+  if (!hit.hit() && environment_.earth)
+    if (const auto met = environment_.earth->meet(live.origin, live.direction, length)) length = met->distance;
   const std::array<double, 4> u = numbers(live, kFlightNumbers);
   const Flights::Arrival arrival = flights_.fly(live, path.knot, length, live.bodies.medium(ambient_), {u[0], u[1]},
                                                 wave.through(p, path.size), wave.gathered(p, path.size));
@@ -185,29 +188,50 @@ void VolumePaths::light_events(Wave& wave, std::vector<LivePath>& live, RunStati
   lights_.clear();
   light_.clear();
   rays_.clear();
-  const auto ask = [&](size_t e, const DirectionSample& drawn, double radiance, const float* spectrum) {
-    if (!(radiance > 0)) return;
-    lights_.push_back({e, drawn.density, radiance, spectrum});
-    rays_.push_back({events_[e].place, drawn.direction, wave.path(events_[e].path).ray.time});
-    light_.add(live[events_[e].path].bodies);
-  };
-  for (size_t e = 0; e < event_count_; ++e) {
-    const LivePath& l = live[events_[e].path];
-    if (environment_.sun) {
-      const std::array<double, 4> u = numbers(l, kScatterNumbers);
-      ask(e, environment_.sun->sample({u[2], u[3]}), 1, environment_.sun->spectrum());
-    }
-    if (environment_.sky && environment_.sky->tabulated()) {
-      const std::array<double, 4> u = numbers(l, kSkyNumbers);
-      const DirectionSample drawn = environment_.sky->sample({u[0], u[1]});
-      ask(e, drawn, environment_.sky->relative(drawn.direction), environment_.sky->spectrum());
-    }
-  }
-  wave.distance.assign(rays_.size(), std::numeric_limits<double>::infinity());
+  wave.distance.clear();
+  for (size_t e = 0; e < event_count_; ++e) ask_sources(wave, e, live[events_[e].path]);
   wave.blocked.resize(rays_.size());
   light_.look(rays_, wave.distance, wave.blocked, statistics.trace);
-  for (size_t i = 0; i < rays_.size(); ++i)
-    if (!wave.blocked[i]) add_light(wave, live[events_[lights_[i].event].path], lights_[i], rays_[i].direction, i);
+  for (size_t i = 0; i < rays_.size(); ++i) {
+    const bool buried =
+        environment_.earth && environment_.earth->meet(rays_[i].origin, rays_[i].direction, wave.distance[i]);
+    if (!wave.blocked[i] && !buried)
+      add_light(wave, live[events_[lights_[i].event].path], lights_[i], rays_[i].direction, i);
+  }
+}
+
+// One sample each of sun, moon, sky and lamps.
+void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
+  const Ray& own = wave.path(events_[e].path).ray;
+  const auto ask = [&](Dir direction, double density, double radiance, const float* spectrum, double distance) {
+    if (!(radiance > 0)) return;
+    lights_.push_back({e, density, radiance, spectrum});
+    rays_.push_back({events_[e].place, direction, own.time, own.draw});
+    wave.distance.push_back(distance);
+    light_.add(live.bodies);
+  };
+  const double far = std::numeric_limits<double>::infinity();
+  if (environment_.sun) {
+    const std::array<double, 4> u = numbers(live, kScatterNumbers);
+    const DirectionSample drawn = environment_.sun->sample({u[2], u[3]});
+    ask(drawn.direction, drawn.density, 1, environment_.sun->spectrum(), far);
+  }
+  if (environment_.moon) {
+    const std::array<double, 4> u = numbers(live, kMoonNumbers);
+    const DirectionSample drawn = environment_.moon->sample({u[0], u[1]});
+    ask(drawn.direction, drawn.density, 1, environment_.moon->spectrum(), far);
+  }
+  if (environment_.sky && environment_.sky->tabulated()) {
+    const std::array<double, 4> u = numbers(live, kSkyNumbers);
+    const DirectionSample drawn = environment_.sky->sample({u[0], u[1]});
+    const float* spectrum = environment_.sky->spectrum();
+    ask(drawn.direction, drawn.density, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum, far);
+  }
+  if (environment_.lamps) {
+    const std::array<double, 4> u = numbers(live, kLampNumbers);
+    const auto lamp = environment_.lamps->sample({events_[e].place, {}, true}, u[0], {u[1], u[2]});
+    if (lamp) ask(lamp->direction, lamp->density, lamp->scale, lamp->spectrum, lamp->distance);
+  }
 }
 
 void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray) {
@@ -228,8 +252,15 @@ void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light
   const int n = wave.path(e.path).size;
   const std::span<float> beta = wave.through(e.path, n), gathered = wave.gathered(e.path, n);
   const float scale = static_cast<float>(light.radiance / denominator);
-  for (size_t i = 0; i < beta.size(); ++i)
-    gathered[i] += scale * beta[i] * spectrum_[i] * light.spectrum[i] * (dim ? transmission_[i] : 1.0f);
+  if (dim)
+    for (size_t i = 0; i < beta.size(); ++i) spectrum_[i] *= transmission_[i];
+  const float* source = light.spectrum;
+  if (!source) {  // the sky's, whose shape changes with wavelength
+    std::fill(phase_.begin(), phase_.end(), 0.0f);
+    environment_.sky->add(direction, 1, phase_);
+    source = phase_.data();
+  }
+  for (size_t i = 0; i < beta.size(); ++i) gathered[i] += scale * beta[i] * spectrum_[i] * source[i];
 }
 
 // Draws the direction in which a scattered path goes on; false when it ends.
@@ -274,7 +305,8 @@ bool VolumePaths::scatter(Wave& wave, const Scattering& e, LivePath& live) {
   }
   live.last_density = own;
   live.direction = scattered_direction(out, cosine, u[1]);
-  live.origin = e.place;
+  live.origin = live.place = e.place;
+  live.scattered = true;
   brightest /= live.shares;
   if (!(brightest > 0) && knots == 1 && optics_.state().size() == 1) return false;
 

@@ -59,6 +59,7 @@ class VolumePaths {
   bool step(Wave& wave, size_t slot, LivePath& live, bool& moves);
   void remember(Wave& wave, size_t slot, Vec3 place);
   void light_events(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics);
+  void ask_sources(Wave& wave, size_t event, const LivePath& live);
   void add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray);
   bool scatter(Wave& wave, const Scattering& event, LivePath& live);
   void densities(const Scattering& event, double cosine, std::span<double> q) const;

@@ -32,6 +32,7 @@ class Wave {
   std::span<float> gathered(size_t p, int n) { return {&segments_[(2 * segment(p, n) + 1) * stride_], bins_}; }
   std::span<float> scratch() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_)), bins_}; }
   std::span<float> scratch2() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 1), bins_}; }
+  std::span<float> scratch3() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 2), bins_}; }
 
   // Rays of the current stage and what they belong to.
   std::vector<Ray> rays;

@@ -2,45 +2,69 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+#include "motion/track.h"
 #include "scene/primitives.h"
 
 namespace suite {
 
-namespace {
-
 Box3 mesh_box(const Mesh& m) {
-  Box3 box;
-  for (size_t i = 0; i < m.vertex_count(); ++i)
-    box.grow(m.origin + Vec3{m.positions[3 * i], m.positions[3 * i + 1], m.positions[3 * i + 2]});
-  return box;
+  // In float first: the extremes are found faster and are exact.
+  const size_t n = m.vertex_count();
+  if (n == 0) return {};
+  float low[3], high[3];
+  for (int a = 0; a < 3; ++a) low[a] = high[a] = m.positions[static_cast<size_t>(a)];
+  for (size_t i = 1; i < n; ++i)
+    for (size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], m.positions[3 * i + a]);
+      high[a] = std::max(high[a], m.positions[3 * i + a]);
+    }
+  return {m.origin + Vec3{low[0], low[1], low[2]}, m.origin + Vec3{high[0], high[1], high[2]}};
 }
 
-Box3 moved(const Box3& box, const Affine3& to_parent) {
-  Box3 out;
-  if (box.empty()) return out;
-  for (int c = 0; c < 8; ++c)
-    out.grow(to_parent.point(
-        {c & 1 ? box.high.x : box.low.x, c & 2 ? box.high.y : box.low.y, c & 4 ? box.high.z : box.low.z}));
-  return out;
+Box3 transformed(const Box3& box, const Affine3& map) {
+  if (box.empty()) return {};
+  const Vec3 center = map.point(box.center()), half = box.size() * 0.5;
+  Vec3 reach;
+  for (int r = 0; r < 3; ++r) {
+    const double* a = &map.a[static_cast<size_t>(3 * r)];
+    reach[r] = std::fabs(a[0]) * half.x + std::fabs(a[1]) * half.y + std::fabs(a[2]) * half.z;
+  }
+  return {center - reach, center + reach};
+}
+
+namespace {
+
+// Where a box comes along on its way, sampled so that no corner is more than 1 % of the box off.
+Box3 swept(const Box3& box, const Track& track, TimeSpan span) {
+  if (box.empty()) return {};
+  const double radius = length(box.size()) / 2 + length(box.center());
+  Box3 all;
+  for (const Affine3& key : time_keys(track, span, time_steps_for(track, span, radius, 0.01 * radius + 1e-9)))
+    all.grow(transformed(box, key));
+  return all;
 }
 
 }  // namespace
 
-Box3 scene_bounds(const Scene& s) {
-  std::vector<Box3> meshes, primitives, groups(s.groups.size());
-  for (const Mesh& m : s.meshes) meshes.push_back(mesh_box(m));
+Box3 scene_bounds(const Scene& s, double begin, double end) {
+  std::vector<Box3> meshes(s.meshes.size()), primitives, groups(s.groups.size());
+  parallel_for(0, meshes.size(), 1, [&](size_t b, size_t e) {
+    for (size_t i = b; i < e; ++i) meshes[i] = mesh_box(s.meshes[i]);
+  });
   for (const Primitive& p : s.primitives) primitives.push_back(primitive_box(p));
   for (size_t g = s.groups.size(); g-- > 0;)
     for (const Placement& p : s.groups[g].placements) {
       const Box3& box = p.kind == TargetKind::mesh    ? meshes[p.target]
                         : p.kind == TargetKind::group ? groups[p.target]
                                                       : primitives[p.target];
-      groups[g].grow(moved(box, p.to_parent));
+      const Box3 placed = transformed(box, p.to_parent);
+      groups[g].grow(p.track == kNone ? placed : swept(placed, *s.tracks[p.track].track, {begin, end}));
     }
   Box3 all = groups.empty() ? Box3{} : groups.front();
   for (const Volume& v : s.volumes) {
     const VoxelGrid& g = s.grids[v.grid];
-    all.grow(moved({{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}}, v.to_world * g.to_local));
+    all.grow(transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}}, v.to_world * g.to_local));
   }
   return all;
 }

@@ -67,6 +67,8 @@ struct DraftPlacement {
   std::vector<Affine3> rows;  // of an instance table or a scatter; each before to_parent
   bool table = false;
   std::optional<ScatterRule> scatter;  // over the surface `on`
+  std::shared_ptr<const Track> motion;  // null: at rest
+  Where motion_where;
 };
 
 struct DraftGroup {
@@ -81,6 +83,7 @@ struct DraftMaterial {
   Reference inside, outside;  // media
   Reference map;  // a class map that decides instead
   bool has_model = false;
+  std::optional<TemperatureSpec> temperature;
   std::vector<Reference> property_maps;
 };
 
@@ -123,8 +126,16 @@ struct InputFile {
   std::string name, sha256;
 };
 
+// The span of time (s) that every motion must cover.
+struct TimeWindowSpec {
+  double begin = 0, end = 0;
+  Where where;
+};
+
 struct Draft {
   std::string file, name, description, author;
+  std::string epoch;                    // UTC of second 0, or empty
+  std::optional<TimeWindowSpec> times;
   GeodeticOrigin origin;
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;

@@ -60,6 +60,7 @@ std::vector<IssueKind> scene_issues() {
       {"SP605", error, "extinction is not absorption + scattering", "give two of the three"},
       {"SP606", warning, "a surface that bounds a medium is open",
        "paths that enter it may never leave; close it, unless it is a surface without end such as a sea's"},
+      {"SP407", error, "a motion does not cover the time that is looked at", "give it more keys, or a shorter 'times_s'"},
       {"SP501", error, "a map is described wrongly", ""},
       {"SP502", error, "a map holds a class that has no material", "list a material for it"},
       {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},

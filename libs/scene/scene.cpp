@@ -133,6 +133,8 @@ bool uses_media(const Scene& s) {
 void check_scene(const Scene& s, const std::string& file) {
   check_media(s, file);
   for (const PropertyMap& m : s.property_maps) check_property_map(m, s.materials.size(), file);
+  for (const TemperatureBinding& t : s.temperatures)
+    if (t.material >= s.materials.size()) bad(file, "a temperature is of a material that is not there");
   for (const PropertyBinding& b : s.property_bindings)
     if (b.material >= s.materials.size() || b.property_map >= s.property_maps.size())
       bad(file, "a map binding names something that is not there");
@@ -155,6 +157,8 @@ void check_scene(const Scene& s, const std::string& file) {
       if (p.material_override != kNone && p.material_override >= s.materials.size())
         bad(file, "a material override is not there");
       if (p.tag != kNone && p.tag >= s.tags.size()) bad(file, "a tag is not there");
+      if (p.track != kNone && (p.track >= s.tracks.size() || !s.tracks[p.track].track))
+        bad(file, "a motion is not there");
       check_transform(p.to_parent, file, "a placement: ");
     }
   for (const ClassMap& m : s.class_maps) {

@@ -12,8 +12,11 @@
 #include "math/vec.h"
 #include "optics/medium.h"
 #include "optics/model_spec.h"
+#include "thermal/temperature.h"
 
 namespace suite {
+
+class Track;  // motion/track.h
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
@@ -50,13 +53,21 @@ struct Primitive {
   uint32_t material = kNone;
 };
 
-// An instance. `to_parent` may mirror and scale; dynamic placements (a track) come with motion.
+// An instance. `to_parent` may mirror and scale. With a track the target moves: target -> to_parent -> the body's axes
+// -> the track's pose at the time -> parent.
 struct Placement {
   Affine3 to_parent;
   TargetKind kind = TargetKind::mesh;
   uint32_t target = 0;                  // index into meshes, groups or primitives
   uint32_t material_override = kNone;
   uint32_t tag = kNone;                 // index into Scene::tags, for truth
+  uint32_t track = kNone;               // index into Scene::tracks; kNone = at rest
+};
+
+// How something moves, in the frame of the group that places it (the root: ENU). Time counts from the scene's epoch.
+struct SceneTrack {
+  std::string name;                     // for messages
+  std::shared_ptr<const Track> track;
 };
 
 // A named group of placements; group 0 is the root and is in the ENU frame.
@@ -106,6 +117,9 @@ struct PropertyMap {
   std::string parameter;                // curve_index, cube: a curve parameter of the material's model
   std::vector<Curve> family;            // curve_index
   std::vector<double> wavelength_um;    // cube: ascending
+  // Between the pixels: the value of the pixel one is in, or linear between the four nearest pixel centres. Curve
+  // numbers are never mixed; bumps are always linear.
+  enum class Filter : uint8_t { nearest, linear } filter = Filter::nearest;
   Projection projection = Projection::drape;
   Drape drape;
 };
@@ -129,6 +143,11 @@ struct Volume {
   uint32_t grid = kNone;
   Affine3 to_world;                     // the grid's own frame -> ENU
 };
+// A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
+struct TemperatureBinding {
+  uint32_t material = kNone;
+  TemperatureSpec spec;
+};
 
 // A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
 struct DataFile {
@@ -143,6 +162,7 @@ struct GeodeticOrigin {
   bool given = false;
 };
 
+// combine.cpp has to know every table and every index in it.
 struct Scene {
   std::string name, description, author;
   GeodeticOrigin origin;
@@ -158,7 +178,10 @@ struct Scene {
   uint32_t ambient = kNone;             // medium that fills everything no body fills
   std::vector<VoxelGrid> grids;
   std::vector<Volume> volumes;
+  std::vector<TemperatureBinding> temperatures;    // at most one a material
   std::vector<std::string> tags;
+  std::vector<SceneTrack> tracks;
+  std::string epoch;                    // UTC (ISO 8601) of second 0 of the tracks; empty when none was given
   std::vector<DataFile> files;
   Box3 bounds;                          // ENU
 };
@@ -170,8 +193,17 @@ bool uses_media(const Scene& scene);
 void check_scene(const Scene& scene, const std::string& file);
 
 // Extent of everything placed, ENU, from the corners of each target's own box (so rotated targets give a box that may be
-// somewhat large); infinite primitives count as nothing.
-Box3 scene_bounds(const Scene& scene);
+// somewhat large); infinite primitives count as nothing. What moves counts with all places it has in the span (s),
+// found by sampling: its box may be up to 1 % of its size short. Error: a track that does not cover the span.
+Box3 scene_bounds(const Scene& scene, double begin = 0, double end = 0);
+
+// Extent of one mesh in its local frame, origin included; empty without vertices.
+Box3 mesh_box(const Mesh& mesh);
+// The box around a transformed box; empty stays empty.
+Box3 transformed(const Box3& box, const Affine3& map);
+
+// Error naming the track and the span unless every track that a placement uses covers [begin, end], s.
+void check_motion(const Scene& scene, double begin, double end, const Where& where);
 
 // Octahedral encoding of unit vectors in 2 x 16 bits; error below 5e-5 rad.
 // Based on: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.

@@ -96,6 +96,7 @@ std::string summary_text(const Scene& s) {
   if (uses_media(s)) uses.insert("media");
   if (!s.volumes.empty()) uses.insert("voxel grids");
   if (s.groups.size() > 1) uses.insert("nested groups");
+  if (!s.tracks.empty()) uses.insert("motion");
   out += "uses          ";
   for (const std::string& u : uses) out += (u == *uses.begin() ? "" : ", ") + u;
   return out + "\n";

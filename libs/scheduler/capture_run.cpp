@@ -75,7 +75,7 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
   parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) {
       RunStatistics mine;
-      work.pipeline.run(work.sensor, work.capture, stream, blocks[b], to, sums, mine);
+      work.pipeline.run(work.sensor, work.capture, stream, blocks[b], to, sums, Slots::by_problem, mine);
       {
         const std::lock_guard lock(mutex);
         statistics.merge(mine);
@@ -89,32 +89,66 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
   return paths;
 }
 
+// Runs a capture whose counts are known from the start: each block gets its sums, runs, and is done with.
+void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
+  const std::vector<Block> blocks = blocks_of(work.capture);
+  const std::vector<uint32_t> to(work.capture.problems(), work.goal.max_paths);
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Accumulators>> idle;
+  parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
+    std::unique_ptr<Accumulators> sums;
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) sums = std::move(idle.back()), idle.pop_back();
+    }
+    if (!sums) sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values, Accumulators::scrambles_for(work.goal.max_paths), truth_slots);
+    for (size_t b = begin; b < end; ++b) {
+      const Block& block = blocks[b];
+      RunStatistics mine;
+      sums->clear();
+      work.pipeline.run(work.sensor, work.capture, work.id, block, to, *sums, Slots::by_place, mine);
+      for (uint32_t i = 0; i < block.columns * block.rows; ++i)
+        result.take((size_t{block.row} + i / block.columns) * work.capture.columns + block.column + i % block.columns, *sums, i);
+      const std::lock_guard lock(mutex);
+      statistics.merge(mine);
+      if (work.progress) work.progress->add(static_cast<double>(mine.paths));
+    }
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(sums));
+  });
+}
+
 }  // namespace
 
-void run_capture(CaptureWork& work, Accumulators& sums, RunStatistics& statistics) {
-  std::vector<double> needs;
-  if (work.store) work.store->load(work.id, sums, needs);
+void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
   const bool target = work.goal.relative_error > 0, alone = target && !has_neighbours(work.capture);
   const bool piloted = target || work.after_pilot;
+  if (!piloted && !work.store) return run_streamed(work, values, truth_slots, result, statistics);
+
+  const size_t problems = work.capture.problems();
+  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goal.max_paths), truth_slots);
+  std::vector<double> needs;
+  if (work.store) work.store->load(work.id, sums, needs);
   if (piloted && needs.empty()) {
     const Clock::time_point start = Clock::now();
-    const std::vector<uint32_t> pilot(work.capture.problems(), std::min(work.goal.min_paths, work.goal.max_paths));
+    const std::vector<uint32_t> pilot(problems, std::min(work.goal.min_paths, work.goal.max_paths));
     double paths = 0;
     if (alone) {
-      Accumulators thrown(sums.problems(), sums.bands(), sums.scrambles());
+      Accumulators thrown(problems, values, sums.scrambles(), truth_slots);
       paths = run_stage(work, work.id + kPilotStream, pilot, thrown, statistics, false);
       needs = own_needs_of(thrown, work.judged, work.goal.absolute_floor);
     } else {
       paths = run_stage(work, work.id, pilot, sums, statistics, true);
-      needs = target ? needs_of(work.capture, sums, work.judged, work.goal.absolute_floor)
-                     : std::vector<double>(sums.problems(), 0.0);
+      needs = target ? needs_of(work.capture, sums, work.judged, work.goal.absolute_floor) : std::vector<double>(problems, 0.0);
     }
     if (work.store) work.store->save_needs(work.id, needs);
     if (work.after_pilot) work.after_pilot(work, needs, paths, seconds_since(start));
   }
-  const std::vector<uint32_t> plan =
-      piloted ? paths_for(needs, work.goal) : std::vector<uint32_t>(work.capture.problems(), work.goal.max_paths);
+  const std::vector<uint32_t> plan = piloted ? paths_for(needs, work.goal) : std::vector<uint32_t>(problems, work.goal.max_paths);
   run_stage(work, work.id, plan, sums, statistics, true);
+  parallel_for(0, problems, 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) result.take(i, sums, i);
+  });
 }
 
 }  // namespace suite

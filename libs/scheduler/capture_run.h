@@ -7,6 +7,8 @@
 #include "base/progress.h"
 #include "radiometry/pipeline.h"
 #include "scheduler/budget.h"
+#include "scheduler/result.h"
+#include "scheduler/result.h"
 #include "scheduler/state_store.h"
 
 namespace suite {
@@ -25,8 +27,10 @@ struct CaptureWork {
   std::function<void(CaptureWork&, std::span<const double> needs, double paths, double seconds)> after_pilot;
 };
 
-// Fills the accumulators (of the capture's size, empty). A capture whose pilot decides without neighbours is sampled
+// Runs all problems and hands each to the builder. Without pilot and store the sums of a block live only as long as the
+// block runs; otherwise those of the whole capture are kept. A capture whose pilot decides without neighbours is sampled
 // anew after it, from other sample points: its pilot is thrown away.
-void run_capture(CaptureWork& work, Accumulators& sums, RunStatistics& statistics);
+// values, truth_slots: doubles of a problem in its accumulators.
+void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics);
 
 }  // namespace suite

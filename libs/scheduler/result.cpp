@@ -6,13 +6,14 @@
 
 namespace suite {
 
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth) {
-  CaptureResult r;
+ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth)
+    : reference_band_(reference_band), truth_(truth) {
+  CaptureResult& r = result_;
   r.columns = capture.columns;
   r.rows = capture.rows;
   r.bands = bands;
   r.channels = channels;
-  r.time_bins = capture.time_bins;
+  r.bins = capture.bins;
   r.truth_names = truth.columns();
   const size_t n = capture.problems(), values = r.values_per_problem();
   r.radiance.resize(n * values);
@@ -20,43 +21,55 @@ CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t
   r.paths.resize(n);
   r.quality.resize(n);
   r.truth.resize(n * r.truth_names.size());
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t b = 0; b < values; ++b) sums.estimate(i, b, r.radiance[i * values + b], r.standard_error[i * values + b]);
-    r.paths[i] = sums.paths(i);
-    const double mean = r.radiance[i * values + reference_band];
-    // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
-    if (sums.paths(i) >= 16 && sums.largest(i) > 0.1 * mean * sums.paths(i)) r.quality[i] |= quality_heavy_tail;
-    if (sums.failures(i)) r.quality[i] |= quality_failures;
-    if (sums.truncated(i) > 0.01f * static_cast<float>(sums.paths(i))) r.quality[i] |= quality_truncated;
-    truth.finish(sums.truth(i), sums.paths(i), r.truth.data() + i * r.truth_names.size());
-  }
-  r.error_correlation = error_correlation(sums, bands);
-  return r;
+  // Few enough that bands^2 products of each take neither time nor memory.
+  const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
+  correlated_every_ = std::max<size_t>(1, (n + most - 1) / most);
+  products_.resize((n + correlated_every_ - 1) / correlated_every_);
 }
 
-std::vector<double> error_correlation(const Accumulators& sums, size_t bands) {
-  const size_t n = sums.problems(), step = std::max<size_t>(1, n / 4096);
-  std::vector<double> products(bands * bands, 0.0), means(bands), deviation(bands);
-  for (size_t i = 0; i < n; i += step) {
-    double error = 0;
-    for (size_t b = 0; b < bands; ++b) sums.estimate(i, b, means[b], error);
-    for (int s = 0; s < sums.scrambles(); ++s) {
-      const uint32_t count = dealt(sums.paths(i), static_cast<uint32_t>(s));
-      if (!count) continue;
-      for (size_t b = 0; b < bands; ++b) deviation[b] = means[b] > 0 ? sums.sums(i, s)[b] / count / means[b] - 1 : 0;
-      for (size_t a = 0; a < bands; ++a)
-        for (size_t b = a; b < bands; ++b) products[a * bands + b] += deviation[a] * deviation[b];
-    }
+void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) {
+  CaptureResult& r = result_;
+  const size_t values = r.values_per_problem();
+  sums.estimate(slot, {&r.radiance[problem * values], values}, {&r.standard_error[problem * values], values});
+  const uint32_t paths = r.paths[problem] = sums.paths(slot);
+  const double mean = r.radiance[problem * values + reference_band_];
+  // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
+  uint8_t& quality = r.quality[problem];
+  if (paths >= 16 && sums.largest(slot) > 0.1 * mean * paths) quality |= quality_heavy_tail;
+  if (sums.failures(slot)) quality |= quality_failures;
+  if (sums.truncated(slot) > 0.01f * static_cast<float>(paths)) quality |= quality_truncated;
+  truth_.finish(sums.truth(slot), paths, r.truth.data() + problem * r.truth_names.size());
+  if (problem % correlated_every_ == 0) {
+    products_[problem / correlated_every_].assign(r.bands * r.bands, 0.0);
+    correlate(sums, slot, &r.radiance[problem * values], products_[problem / correlated_every_]);
   }
-  std::vector<double> correlation(bands * bands, 0.0);
+}
+
+void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const {
+  const size_t bands = result_.bands;
+  std::vector<double> deviation(bands);
+  for (int s = 0; s < sums.scrambles(); ++s) {
+    const uint32_t count = dealt(sums.paths(slot), static_cast<uint32_t>(s));
+    if (!count) continue;
+    for (size_t b = 0; b < bands; ++b) deviation[b] = means[b] > 0 ? sums.sums(slot, s)[b] / count / means[b] - 1 : 0;
+    for (size_t a = 0; a < bands; ++a)
+      for (size_t b = a; b < bands; ++b) products[a * bands + b] += deviation[a] * deviation[b];
+  }
+}
+
+CaptureResult ResultBuilder::finish() {
+  const size_t bands = result_.bands;
+  std::vector<double> sum(bands * bands, 0.0);
+  for (const std::vector<double>& p : products_)
+    for (size_t i = 0; i < p.size(); ++i) sum[i] += p[i];
+  std::vector<double>& correlation = result_.error_correlation;
+  correlation.assign(bands * bands, 0.0);
   for (size_t a = 0; a < bands; ++a)
     for (size_t b = a; b < bands; ++b) {
-      const double scale = std::sqrt(products[a * bands + a] * products[b * bands + b]);
-      correlation[a * bands + b] = correlation[b * bands + a] = a == b      ? 1
-                                                                : scale > 0 ? products[a * bands + b] / scale
-                                                                            : 0;
+      const double scale = std::sqrt(sum[a * bands + a] * sum[b * bands + b]);
+      correlation[a * bands + b] = correlation[b * bands + a] = a == b ? 1 : scale > 0 ? sum[a * bands + b] / scale : 0;
     }
-  return correlation;
+  return std::move(result_);
 }
 
 void ErrorHistogram::add(double relative_error) {

@@ -8,12 +8,24 @@
 
 namespace suite {
 
-// reference_band: whose samples decide about the heavy-tail flag. bands of the sensor, channels that were accumulated.
-CaptureResult to_result(const Capture& capture, const Accumulators& sums, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth);
+// The result of a capture, taken from accumulators problem by problem, so that these need not all be there at once.
+class ResultBuilder {
+ public:
+  // bands: of the sensor; reference_band: whose samples decide about the heavy-tail flag.
+  ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth);
+  // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
+  void take(size_t problem, const Accumulators& sums, size_t slot);
+  CaptureResult finish();
 
-// Correlation of the errors of the first `bands` values of each problem, [band][band], from the deviations of the scrambles of up to 4096 problems:
-// all bands ride on the same paths. 1 on the diagonal, 0 where a band has no error.
-std::vector<double> error_correlation(const Accumulators& sums, size_t bands);
+ private:
+  void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
+  CaptureResult result_;
+  size_t reference_band_, correlated_every_;
+  const TruthPlan& truth_;
+  // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands ride
+  // on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
+  std::vector<std::vector<double>> products_;
+};
 
 // Medians of relative errors without keeping them: a histogram over 1e-9 .. 1e3, 64 bins an octave, so within 1.1 %.
 class ErrorHistogram {

@@ -11,6 +11,7 @@
 #include "scheduler/order.h"
 #include "scheduler/plan.h"
 #include "scheduler/result.h"
+#include "surface/cut_out.h"
 
 namespace suite {
 
@@ -19,30 +20,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
-  Environment e;
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  return e;
-}
-
-// Materials that some geometry can show; the others are never baked.
-std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
-  std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
-  for (const TracedObject& o : tracer.objects()) {
-    if (o.material_override != kNone)
-      used[o.material_override] = true;
-    else if (o.mesh != kNone)
-      mesh_seen[o.mesh] = true;
-    else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone)
-      used[id] = true;
-  }
-  for (size_t m = 0; m < scene.meshes.size(); ++m)
-    for (const Part& p : scene.meshes[m].parts)
-      if (mesh_seen[m] && p.material != kNone) used[p.material] = true;
-  for (const MapBinding& b : scene.map_bindings)
-    if (used[b.material])
-      for (const uint32_t id : scene.class_maps[b.class_map].materials) used[id] = true;
+// Materials that geometry or the Earth can show; the others are never baked.
+std::vector<bool> shown_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
+  std::vector<bool> used = used_materials(scene, tracer.objects());
+  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
   return used;
 }
 
@@ -50,15 +31,14 @@ std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
 struct StateKit {
   Optics optics;
   Environment environment;
-  Surface surface;
   BandProjection projection;
   size_t reference_band = 0;
+  std::shared_ptr<const Tracer> lamps_of;  // whose geometry the environment was made for
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)),
-        environment(bake_sources(sources, state)),
-        surface(tracer, optics),
+           bool periodic, std::span<const Band> bands)
+      : optics(scene, state, shown_materials(scene, tracer, sources)),
+        environment(bake_environment(sources, tracer, periodic, state)),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) <
@@ -79,8 +59,10 @@ struct Item {
   StatePair state;
 };
 
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+// moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   std::vector<Item> items;
+  std::map<std::pair<double, double>, size_t> windows;
   std::vector<const SpectralState*> distinct;
   for (size_t s = 0; s < sensors.size(); ++s) {
     std::vector<size_t> number;  // of each of the sensor's states
@@ -91,8 +73,11 @@ std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors) {
       if (known == distinct.end()) distinct.push_back(&state);
     }
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c)
-        items.push_back({s, t, c, items.size(), {0, number[sensors[s]->tasks()[t].captures[c].state]}});
+      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
+        const Capture& capture = sensors[s]->tasks()[t].captures[c];
+        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
+      }
   }
   return items;
 }
@@ -115,9 +100,9 @@ class Job {
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
 
   JobReport run() {
-    const std::vector<Item> items = in_cheapest_order(items_of(sensors_), report_.state_changes);
-    tracer_ = std::make_unique<Tracer>(scene_, options_.periodic);
-    report_.tracer_builds = 1;
+    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
+    if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
@@ -142,6 +127,14 @@ class Job {
     return b;
   }
 
+  // Makes the tracer of a capture's time window the current one; true when it had to be built.
+  bool tracer_of(const Capture& capture) {
+    const size_t before = tracers_->builds();
+    tracer_ = tracers_->get({capture.window.begin, capture.window.end});
+    report_.tracer_builds = tracers_->builds();
+    return tracers_->builds() > before;
+  }
+
   // What the store has to hold of each capture, by number.
   std::vector<CaptureShape> shapes(const std::vector<Item>& items) const {
     std::vector<CaptureShape> all(items.size());
@@ -154,9 +147,12 @@ class Job {
         const SpectralState& state = sensor.states()[capture.state];
         const BandProjection projection(state, sensor.bands(capture.state));
         const Environment none;
-        known->second = TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none}).slots();
+        known->second =
+            TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none})
+                .slots();
       }
-      all[item.id] = {capture.columns, capture.rows, sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+      all[item.id] = {capture.columns, capture.rows,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
                       Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
     }
     return all;
@@ -166,11 +162,14 @@ class Job {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
-      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
+      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state], options_.periodic.has_value(),
                                        sensors_[item.sensor]->bands(state));
       ++report_.optics_bakes;
       log.new_optics = true;
     }
+    // Glowing geometry has its places in the tracer.
+    if (kit->environment.lamps && kit->lamps_of != tracer_) kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
+    kit->lamps_of = tracer_;
     return *kit;
   }
 
@@ -179,9 +178,13 @@ class Job {
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
     CaptureLog log;
+    log.new_tracer = tracer_of(capture);
     StateKit& kit = kit_of(item, log);
-    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state), kit.projection, kit.environment});
-    const Pipeline pipeline(kit.surface, kit.optics, kit.environment, kit.optics.state(), kit.projection, kit.reference_band, truth, options_.pipeline);
+    const Surface surface(*tracer_, kit.optics);
+    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
+                                           kit.projection, kit.environment});
+    const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
+                            kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
                      judged_bands(kit), options_.store, progress_.get(), {}};
@@ -192,11 +195,10 @@ class Job {
     if (work.after_pilot && work.goal.relative_error == 0)
       work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    Accumulators sums(capture.problems(), bands * channels * capture.time_bins, Accumulators::scrambles_for(work.goal.max_paths), truth.slots());
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, sums, log.statistics);
-
-    CaptureResult result = to_result(capture, sums, bands, channels, kit.reference_band, truth);
+    run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
+    CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
@@ -299,7 +301,8 @@ class Job {
   const JobOptions& options_;
   Clock::time_point start_ = Clock::now();
   JobReport report_;
-  std::unique_ptr<Tracer> tracer_;
+  std::unique_ptr<TracerCache> tracers_;
+  std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
   std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
   ErrorHistogram errors_;
@@ -327,15 +330,14 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
       for (const Capture& c : t.captures) {
         const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
-        most = std::max(most,
-                        static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
+        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }
   return most;
 }
 
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors) {
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors), order.state_changes)) order.captures.push_back(i.id);
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
   return order;
 }
 

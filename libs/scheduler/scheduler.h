@@ -23,12 +23,6 @@ struct JobOptions {
   bool progress = true;
 };
 
-// Sources before they are baked for a state.
-struct SourceSpecs {
-  std::optional<SunSpec> sun;
-  std::optional<SkySpec> sky;
-};
-
 // What one capture took; a line of the log.
 struct CaptureLog {
   std::string sensor, task, capture, state;
@@ -65,12 +59,13 @@ struct JobReport {
 
 // Paths that a job will run: exactly for fixed counts, at least for adaptive captures (their pilots).
 double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
-// The order in which a job runs its captures (their ids), and the state changes that it takes.
+// The order in which a job runs its captures (their ids), and the state changes that it takes. moves: something in the
+// scene moves, so that each time window is a state of its own.
 struct JobOrder {
   std::vector<size_t> captures;
   size_t state_changes = 0;
 };
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors);
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves = false);
 // Bytes that the accumulators and the result of the largest capture take.
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 

@@ -167,7 +167,10 @@ BandProjection::BandProjection(const SpectralState& state, std::span<const Band>
 
 void BandProjection::add(std::span<const float> in, std::span<double> sums) const {
   if (identity_) {
-    for (size_t b = 0; b < rows_.size(); ++b) sums[b] += static_cast<double>(in[b]);
+    const size_t n = rows_.size();
+    const float* __restrict const x = in.data();
+    double* __restrict const y = sums.data();
+    for (size_t b = 0; b < n; ++b) y[b] += static_cast<double>(x[b]);
     return;
   }
   for (size_t b = 0; b < rows_.size(); ++b) {

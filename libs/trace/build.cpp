@@ -1,20 +1,58 @@
-// From a scene to tiles with acceleration structures.
+// From a scene to tiles with acceleration structures: what is at rest.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "base/parallel.h"
+#include "motion/track.h"
 #include "scene/primitives.h"
+#include "trace/arrange.h"
 #include "trace/embree_internal.h"
-#include "trace/flatten.h"
 
 namespace suite {
 
 namespace {
 
-constexpr double kTileSize = 2048;  // m: float positions inside are good to 0.1 mm
+// Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
+// holes: hits are put to the filter. object: whose geometry it is, for one that no instances share.
+void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint32_t object = kNone) {
+  RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
+  rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
+  rtcSetGeometryUserData(g, reinterpret_cast<void*>(uintptr_t{object}));
+  if (holes) {
+    rtcSetGeometryIntersectFilterFunction(g, filter_triangles);
+    rtcSetGeometryOccludedFilterFunction(g, filter_triangles);
+  }
+  rtcCommitGeometry(g);
+  rtcAttachGeometryByID(scene, g, id);
+  rtcReleaseGeometry(g);
+}
+
+bool pure_translation(const Affine3& m) { return m.a == Affine3{}.a; }
+
+// Neighbours in space become neighbours in memory (Morton 1966): rays that visit many small instances wait less.
+void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, const Box3& all) {
+  const auto spread = [](uint64_t x) {  // 21 bits to every third bit
+    x = (x | x << 32) & 0x1f00000000ffff, x = (x | x << 16) & 0x1f0000ff0000ff, x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+  };
+  const Vec3 size = all.size();
+  const double widest = std::max({size.x, size.y, size.z, 1e-300});
+  std::vector<std::pair<uint64_t, uint32_t>> keys(objects.size());
+  parallel_for(0, keys.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t k = b; k < e; ++k) {
+      const Vec3 c = (boxes[objects[k]].center() - all.low) / widest * 2097151.0;
+      keys[k] = {spread(static_cast<uint64_t>(c.x)) | spread(static_cast<uint64_t>(c.y)) << 1 | spread(static_cast<uint64_t>(c.z)) << 2, objects[k]};
+    }
+  });
+  std::sort(keys.begin(), keys.end());
+  for (size_t k = 0; k < keys.size(); ++k) objects[k] = keys[k].second;
+}
+
+}  // namespace
 
 RTCScene new_scene() {
   RTCScene s = rtcNewScene(device());
@@ -23,164 +61,159 @@ RTCScene new_scene() {
   return s;
 }
 
-// Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
-void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id) {
-  RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
-  rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(scene, g, id);
-  rtcReleaseGeometry(g);
-}
-
-void attach_instance(RTCScene scene, RTCScene mesh_scene, const Affine3& map, unsigned id) {
-  RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(g, mesh_scene);
-  float m[12];
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) m[4 * r + c] = static_cast<float>(map.a[3 * r + c]);
-  m[3] = static_cast<float>(map.b.x), m[7] = static_cast<float>(map.b.y), m[11] = static_cast<float>(map.b.z);
-  rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(scene, g, id);
-  rtcReleaseGeometry(g);
-}
-
-bool pure_translation(const Affine3& m) { return m.a == Affine3{}.a; }
-
-bool unbounded(const Scene& scene, const TracedObject& o) { return o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty(); }
-
-// What the steps of the construction share.
-struct Build {
-  const Scene& scene;
-  const std::vector<TracedObject>& objects;
-  TracerCore& core;
-  std::vector<Box3> boxes;                   // of objects, ENU; empty for unbounded ones
-  std::vector<uint32_t> uses;                // of meshes
-  std::vector<char> needs_scene, direct;     // meshes that are instanced; objects attached without an instance
-
-  Box3 measure();
-  std::vector<std::vector<uint32_t>> group(const Box3& bounds) const;
-  void make_tile(const std::vector<uint32_t>& members);
-  void choose_origin(Tile& tile);
-  void commit();
-};
-
-// Bounds of all objects and how often each mesh is used.
-Box3 Build::measure() {
-  std::vector<Box3> mesh_boxes(scene.meshes.size());
-  parallel_for(0, mesh_boxes.size(), 1, [&](size_t b, size_t e) {
-    for (size_t i = b; i < e; ++i) mesh_boxes[i] = local_bounds(scene.meshes[i]);
+void BuildOnce::go(const void* work, void (*call)(const void*)) const {
+  std::call_once(flag_, [&] {
+    isolated([&] { call(work); });
+    done_.store(true, std::memory_order_release);
   });
-  uses.assign(scene.meshes.size(), 0);
-  for (const TracedObject& o : objects)
-    if (o.mesh != kNone) ++uses[o.mesh];
-  boxes.resize(objects.size());
-  parallel_for(0, objects.size(), 4096, [&](size_t b, size_t e) {
+}
+
+void Tile::build(const World& world) {
+  const FlushDenormals flush;
+  std::vector<uint32_t> meshes;
+  for (const auto& set : sets)
+    for (const uint32_t i : set->objects)
+      if (const uint32_t m = world.flat.objects[i].mesh; m != kNone) meshes.push_back(m);
+  std::sort(meshes.begin(), meshes.end());
+  meshes.erase(std::unique(meshes.begin(), meshes.end()), meshes.end());
+  parallel_for(0, meshes.size(), 1, [&](size_t b, size_t e) {
+    const FlushDenormals flush_too;
+    for (size_t i = b; i < e; ++i) world.mesh_scene(meshes[i]);
+  });
+  handle.scene = new_scene();
+  for (uint32_t id = 0; id < direct.size(); ++id) attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id, world.filter && world.may_pass[direct[id]], direct[id]);
+  for (uint32_t k = 0; k < sets.size(); ++k) sets[k]->attach(handle.scene, static_cast<unsigned>(direct.size()) + k);
+  rtcCommitScene(handle.scene);
+  for (const auto& set : sets) std::vector<Box3>().swap(set->boxes);
+}
+
+// Tiles of large scenes wait for the first ray; a few are built at once, which uses all threads better.
+void TileSet::close(const World& world) {
+  constexpr size_t kAtOnce = 8;
+  std::vector<Box3> boxes;
+  for (const auto& tile : tiles) boxes.push_back(tile->bounds);
+  bvh.build(boxes);
+  if (tiles.size() > kAtOnce) return;
+  for (const auto& tile : tiles) tile->once.run([&] { tile->build(world); });
+}
+
+RTCScene World::mesh_scene(uint32_t mesh) const {
+  MeshEntry& entry = meshes[mesh];
+  entry.once.run([&] {
+    entry.handle.scene = new_scene();
+    attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, filter && holed_meshes[mesh]);
+    rtcCommitScene(entry.handle.scene);
+  });
+  return entry.handle.scene;
+}
+
+Affine3 World::pose(uint32_t node, double time) const {
+  const MovingNode& n = flat.nodes[node];
+  const Affine3 here = n.before * scene->tracks[n.track].track->at(time).affine();
+  return n.parent == kNone ? here : pose(n.parent, time) * here;
+}
+
+Box3 World::local_box(const TracedObject& o) const {
+  if (o.mesh == kNone) return primitive_box(scene->primitives[o.primitive]);
+  return meshes[o.mesh].box;
+}
+
+World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
+    : scene(std::move(given)), periodic(cell), filter(std::move(holes)), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]) {
+  const FlushDenormals flush;
+  std::vector<bool> used(scene->meshes.size(), false);
+  for (const TracedObject& o : flat.objects)
+    if (o.mesh != kNone) used[o.mesh] = true;
+  parallel_for(0, scene->meshes.size(), 1, [&](size_t b, size_t e) {
     for (size_t i = b; i < e; ++i) {
-      const TracedObject& o = objects[i];
-      boxes[i] = transformed(o.mesh != kNone ? mesh_boxes[o.mesh] : primitive_box(scene.primitives[o.primitive]), o.to_world);
+      if (!used[i]) continue;
+      const Mesh& mesh = scene->meshes[i];
+      MeshEntry& m = meshes[i];
+      m.box = mesh_box(mesh);
+      m.room = {m.box.low - mesh.origin, m.box.high - mesh.origin};
+      for (int a = 0; a < 3; ++a) m.scale = std::max({m.scale, std::fabs(m.room.low[a]), std::fabs(m.room.high[a])});
+      m.room = enlarged(m.room, 16 * FLT_EPSILON * m.scale + 1e-30);
     }
   });
-  Box3 all;
-  for (const Box3& b : boxes) all.grow(b);
-  needs_scene.assign(scene.meshes.size(), 0);
-  direct.assign(objects.size(), 0);
-  core.tile_of_object.assign(objects.size(), kNone);
-  core.mesh_scenes.resize(scene.meshes.size());
-  return all;
-}
-
-// One tile for a scene of a few kilometres, a grid by centres otherwise; what is larger than a cell gets its own.
-std::vector<std::vector<uint32_t>> Build::group(const Box3& bounds) const {
-  std::map<std::tuple<long, long, long, long>, std::vector<uint32_t>> cells;
-  const auto widest = [](Vec3 size) { return std::max({size.x, size.y, size.z}); };
-  const bool single = bounds.empty() || widest(bounds.size()) <= 2 * kTileSize;
-  for (uint32_t i = 0; i < objects.size(); ++i) {
-    if (boxes[i].empty()) continue;
-    const Vec3 c = boxes[i].center();
-    if (single) cells[{0, 0, 0, 0}].push_back(i);
-    else if (widest(boxes[i].size()) > 2 * kTileSize) cells[{0, 0, 0, 1 + static_cast<long>(i)}].push_back(i);
-    else cells[{std::lround(c.x / kTileSize), std::lround(c.y / kTileSize), std::lround(c.z / kTileSize), 0}].push_back(i);
+  if (periodic) repeat_at_sides();
+  if (filter) {
+    holed_meshes.assign(scene->meshes.size(), 0);
+    for (const TracedObject& o : flat.objects) {
+      may_pass.push_back(filter->concerns(o));
+      if (may_pass.back() && o.mesh != kNone) holed_meshes[o.mesh] = 1;
+    }
   }
-  std::vector<std::vector<uint32_t>> groups;
-  for (auto& [key, members] : cells) groups.push_back(std::move(members));
-  return groups;
+  for (const TracedObject& o : flat.objects)
+    if (o.mesh != kNone) ++meshes[o.mesh].uses, triangles += scene->meshes[o.mesh].triangle_count();
+  std::vector<Box3> boxes(flat.fixed);
+  parallel_for(0, boxes.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t i = b; i < e; ++i) boxes[i] = transformed(local_box(flat.objects[i]), *flat.objects[i].place);
+  });
+  std::vector<uint32_t> members;
+  members.reserve(boxes.size());
+  for (uint32_t i = 0; i < boxes.size(); ++i) {
+    bounds.grow(boxes[i]);
+    if (boxes[i].empty()) unbounded.push_back(i);
+    else members.push_back(i);
+  }
+  arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });
+  // The boxes of a set are needed in its own order.
+  for (const auto& tile : tiles.tiles)
+    for (const auto& set : tile->sets) {
+      set->boxes.reserve(set->objects.size());
+      for (const uint32_t i : set->objects) set->boxes.push_back(enlarged(boxes[i], tile->slack()));
+    }
+  std::vector<Box3>().swap(boxes);
+  tiles.close(*this);
 }
 
-// The largest unrotated, once-used mesh of a tile gives it its origin and is attached without an instance.
-void Build::choose_origin(Tile& tile) {
+// The largest unrotated, once-used mesh of a tile gives it its origin and is attached without an instance, with all
+// others that stand at the same origin.
+void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes) {
   size_t most = 0;
-  tile.origin = tile.bounds.center();
-  const auto lone = [&](uint32_t i) { return pure_translation(objects[i].to_world) && uses[objects[i].mesh] == 1; };
-  const auto place = [&](uint32_t i) { return objects[i].to_world.b + scene.meshes[objects[i].mesh].origin; };
-  for (const uint32_t i : tile.objects) {
-    const size_t triangles = scene.meshes[objects[i].mesh].triangle_count();
-    if (!lone(i) || triangles <= most || length(place(i) - tile.bounds.center()) > length(tile.bounds.size()) + kTileSize) continue;
-    most = triangles;
-    tile.origin = place(i);
-  }
-  for (const uint32_t i : tile.objects) {
-    direct[i] = lone(i) && place(i) == tile.origin;
-    if (!direct[i]) needs_scene[objects[i].mesh] = 1;
-  }
-}
-
-void Build::make_tile(const std::vector<uint32_t>& members) {
-  Tile& tile = core.tiles.emplace_back();
-  auto set = std::make_unique<PrimitiveSet>();
+  const auto lone = [&](const TracedObject& o) { return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place); };
+  const auto place = [&](const TracedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
+  const double reach = length(tile.bounds.size()) + kTileSize;
   for (const uint32_t i : members) {
-    tile.bounds.grow(boxes[i]);
-    core.tile_of_object[i] = static_cast<uint32_t>(core.tiles.size() - 1);
-    if (objects[i].mesh != kNone) tile.objects.push_back(i);
-    else set->members.push_back({&scene.primitives[objects[i].primitive], objects[i].to_world.inverse(), i, boxes[i]});
+    const TracedObject& o = flat.objects[i];
+    if (!lone(o) || length(place(o) - tile.bounds.center()) > reach) continue;
+    if (const size_t n = scene->meshes[o.mesh].triangle_count(); n > most) most = n, tile.origin = place(o);
   }
-  choose_origin(tile);
-  const Vec3 low = tile.bounds.low - tile.origin, high = tile.bounds.high - tile.origin;
-  for (int a = 0; a < 3; ++a) tile.scale = std::max({tile.scale, std::fabs(low[a]), std::fabs(high[a])});
-  // Float rounding may move geometry out of the exact bounds by some ulp.
-  const double slack = 16 * FLT_EPSILON * tile.scale + 1e-9;
-  tile.bounds.low -= {slack, slack, slack};
-  tile.bounds.high += {slack, slack, slack};
-  if (set->members.empty()) return;
+  auto set = std::make_unique<PlacedSet>();
+  set->world = this;
+  for (const uint32_t i : members) {
+    const TracedObject& o = flat.objects[i];
+    if (most && lone(o) && place(o) == tile.origin) tile.direct.push_back(i);
+    else set->objects.push_back(i);
+  }
+  if (set->objects.empty()) return;
+  set->objects.shrink_to_fit();
+  sort_in_space(set->objects, boxes, tile.bounds);
   set->origin = tile.origin;
-  set->slack = slack;
-  tile.primitives = std::move(set);
-}
-
-void Build::commit() {
-  for (size_t m = 0; m < scene.meshes.size(); ++m)
-    if (needs_scene[m]) {
-      core.mesh_scenes[m].scene = new_scene();
-      attach_mesh(core.mesh_scenes[m].scene, scene.meshes[m], 0);
-      rtcCommitScene(core.mesh_scenes[m].scene);
+  set->inverse.resize(set->objects.size());
+  parallel_for(0, set->objects.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t k = b; k < e; ++k) {
+      const TracedObject& o = flat.objects[set->objects[k]];
+      PlacedSet::Inverse& inverse = set->inverse[k];
+      inverse.mesh = o.mesh;
+      if (o.mesh == kNone) continue;
+      inverse.base = o.place->point(scene->meshes[o.mesh].origin);
+      const Affine3 back = o.place->inverse();
+      for (size_t j = 0; j < 9; ++j) inverse.linear[j] = static_cast<float>(back.a[j]);
     }
-  std::vector<Box3> tile_boxes;
-  for (Tile& tile : core.tiles) {
-    tile.scene.scene = new_scene();
-    for (uint32_t id = 0; id < tile.objects.size(); ++id) {
-      const TracedObject& o = objects[tile.objects[id]];
-      const Mesh& mesh = scene.meshes[o.mesh];
-      if (direct[tile.objects[id]]) attach_mesh(tile.scene.scene, mesh, id);
-      else attach_instance(tile.scene.scene, core.mesh_scenes[o.mesh].scene, translation(-tile.origin) * o.to_world * translation(mesh.origin), id);
-    }
-    if (tile.primitives) attach_primitives(tile.scene.scene, *tile.primitives, static_cast<unsigned>(tile.objects.size()));
-    rtcCommitScene(tile.scene.scene);
-    tile_boxes.push_back(tile.bounds);
-  }
-  core.bvh.build(tile_boxes);
+  });
+  tile.sets.push_back(std::move(set));
 }
 
 // What sticks out of the cell comes in again on the other side: copies shifted by whole cells, where they reach it.
-void repeat_at_sides(const Scene& scene, const Periodic& cell, std::vector<TracedObject>& objects) {
+void World::repeat_at_sides() {
+  const Periodic& cell = *periodic;
   if (!(cell.size.x > 0 && cell.size.y > 0)) throw Error("the cell of a periodic scene needs a positive size");
-  const size_t count = objects.size();
-  std::vector<Box3> mesh_boxes;
-  for (const Mesh& m : scene.meshes) mesh_boxes.push_back(local_bounds(m));
+  if (flat.fixed != flat.objects.size()) throw Error("a periodic scene cannot hold anything that moves", "drop the motion, or the periodic cell");
+  const size_t count = flat.objects.size();
   for (size_t i = 0; i < count; ++i) {
-    const TracedObject o = objects[i];
-    const Box3 b = transformed(o.mesh != kNone ? mesh_boxes[o.mesh] : primitive_box(scene.primitives[o.primitive]), o.to_world);
+    const TracedObject o = flat.objects[i];
+    const Box3 b = transformed(local_box(o), *o.place);
     if (b.empty()) continue;
     const auto reach = [](double low, double high, double from, double size) {
       return std::pair{static_cast<long>(std::floor((low - from) / size)), static_cast<long>(std::ceil((high - from) / size)) - 1};
@@ -191,29 +224,13 @@ void repeat_at_sides(const Scene& scene, const Periodic& cell, std::vector<Trace
     for (long x = x0; x <= std::max(x0, x1); ++x)
       for (long y = y0; y <= std::max(y0, y1); ++y) {
         TracedObject copy = o;
-        copy.to_world = translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) * o.to_world;
-        if (x == x0 && y == y0) objects[i] = copy;
-        else objects.push_back(copy);
+        if (x != 0 || y != 0)
+          copy.place = &flat.composed.emplace_back(translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) * *o.place);
+        if (x == x0 && y == y0) flat.objects[i] = copy;
+        else flat.objects.push_back(copy);
       }
   }
-}
-
-}  // namespace
-
-Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic)
-    : scene_(std::move(scene)), periodic_(periodic), objects_(flatten(*scene_)), core_(new TracerCore) {
-  const FlushDenormals flush;
-  const Scene& s = *scene_;
-  std::erase_if(objects_, [&](const TracedObject& o) { return o.mesh != kNone && s.meshes[o.mesh].triangle_count() == 0; });
-  if (periodic_) repeat_at_sides(s, *periodic_, objects_);
-  for (const TracedObject& o : objects_)
-    if (o.mesh != kNone) triangles_ += s.meshes[o.mesh].triangle_count();
-  Build build{s, objects_, *core_, {}, {}, {}, {}};
-  bounds_ = build.measure();
-  for (uint32_t i = 0; i < objects_.size(); ++i)
-    if (unbounded(s, objects_[i])) core_->unbounded.push_back({objects_[i].to_world.inverse(), i});
-  for (const std::vector<uint32_t>& members : build.group(bounds_)) build.make_tile(members);
-  build.commit();
+  flat.fixed = flat.objects.size();
 }
 
 }  // namespace suite

@@ -56,7 +56,8 @@ void CellWalk::start(const Periodic& periodic, const Box3& bounds, std::span<con
 
 bool CellWalk::next(std::vector<double>& reach) const {
   reach.resize(rays_.size());
-  for (size_t i = 0; i < rays_.size(); ++i) reach[i] = std::min(state_[i].side, state_[i].left);
+  // A little beyond the side, so that a surface met exactly there is not lost to the rounding of distances.
+  for (size_t i = 0; i < rays_.size(); ++i) reach[i] = std::min(state_[i].side * (1 + 5e-7) + 1e-9, state_[i].left);
   return !rays_.empty();
 }
 

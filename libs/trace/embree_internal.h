@@ -1,23 +1,30 @@
-// What the parts of the tracer share: Embree handles, tiles, and the exact surfaces of a tile. Internal.
+// What the parts of the tracer share: Embree handles, tiles, sets of instances, and what Embree's callbacks are given.
+// Internal.
 #pragma once
 #include <embree3/rtcore.h>
 
+#include <array>
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "trace/flatten.h"
+#include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
 #include "trace/tile_bvh.h"
 #include "trace/tracer.h"
 
 namespace suite {
 
-inline constexpr int kWidth = 8;  // rays in a packet
+inline constexpr uint32_t kWidth = 8;  // rays in a packet
 
 // One device per process, its instruction set pinned: other sets give other last bits.
 RTCDevice device();
+RTCScene new_scene();
 
 struct SceneHandle {
   RTCScene scene = nullptr;
@@ -32,95 +39,192 @@ struct SceneHandle {
   }
 };
 
-// The exact surfaces of a tile, for Embree's callbacks. Ids of primitives are positions in `members`.
-struct PrimitiveSet {
-  struct Member {
-    const Primitive* primitive;
-    Affine3 to_local;          // ENU -> local
-    uint32_t object;           // index into Tracer::objects()
-    Box3 bounds;               // ENU
-  };
-  Vec3 origin;                 // of the tile
-  double slack = 0;            // float rounding of bounds, m
-  std::vector<Member> members;
-
-  std::optional<LocalHit> meet(unsigned id, Vec3 o, Vec3 d, double t_min, double t_max) const {
-    const Member& m = members[id];
-    return intersect(*m.primitive, m.to_local.point(origin + o), m.to_local.vector(d), t_min, t_max);
+// Runs a construction once, whichever thread comes first; the others wait. What it spawns is not mixed with other work
+// of the thread, which might wait for this very construction.
+class BuildOnce {
+ public:
+  bool done() const { return done_.load(std::memory_order_acquire); }
+  template <class Work>
+  void run(const Work& work) const {
+    if (!done()) go(&work, [](const void* w) { (*static_cast<const Work*>(w))(); });
   }
+
+ private:
+  void go(const void* work, void (*call)(const void*)) const;
+  mutable std::once_flag flag_;
+  mutable std::atomic<bool> done_{false};
 };
 
-void attach_primitives(RTCScene scene, const PrimitiveSet& set, unsigned id);
-
-// Geometry ids inside a tile are positions in `objects`.
-struct Tile {
-  Vec3 origin;                       // ENU
-  Box3 bounds;                       // ENU, a little enlarged
-  double scale = 0;                  // largest float coordinate of the tile, m
-  std::vector<uint32_t> objects;     // meshes: indices into Tracer::objects()
-  std::unique_ptr<PrimitiveSet> primitives;   // exact surfaces, one Embree geometry with the id after the meshes'
-  SceneHandle scene;
-
-  // The ray's origin relative to the tile, advanced in double to where it enters the tile's bounds.
-  void rebase(const Ray& ray, double enter, float origin_out[3]) const {
-    const Vec3 p = ray.origin + ray.direction * enter - origin;
-    origin_out[0] = static_cast<float>(p.x), origin_out[1] = static_cast<float>(p.y), origin_out[2] = static_cast<float>(p.z);
-  }
+// A mesh that instances share, with its own acceleration structure.
+struct MeshEntry {
+  Box3 box;              // local, mesh origin included
+  Box3 room;             // around the floats (without the mesh's origin), enlarged by what float rounding moves
+  double scale = 0;      // largest float coordinate
+  uint32_t uses = 0;     // objects
+  SceneHandle handle;
+  BuildOnce once;
 };
 
-// Exact surfaces without bounds, tested one by one in double.
-struct Unbounded {
-  Affine3 to_local;
-  uint32_t object;
-};
-
-// A ray's way through the tiles, nearest first. Rays that cross more tiles than fit here start again where they stopped.
-struct Itinerary {
-  static constexpr uint32_t kRoom = 12;
-  uint32_t tile[kRoom];
-  double enter[kRoom];
-  uint32_t count = 0, next = 0;
-  bool more = false;
-
-  void plan(const TileBvh& bvh, const Ray& ray, double t_max) {
-    count = next = 0;
-    more = false;
-    bvh.walk(ray, t_max, [&](uint32_t index, double at) {
-      if (count == kRoom) {
-        more = true;
-        t_max = -1;
-        return;
-      }
-      tile[count] = index;
-      enter[count++] = at;
-    });
-  }
-};
-
-// Eight rays of a list against one tile.
+// Eight rays of a list against one tile, advanced to where they enter it (m).
 struct Packet {
   uint32_t ray[kWidth];
   double advance[kWidth];
   uint32_t size = 0;
 };
 
-struct TracerCore {
-  std::vector<Tile> tiles;
-  std::vector<SceneHandle> mesh_scenes;   // one per mesh that is instanced; empty handles otherwise
-  std::vector<uint32_t> tile_of_object;   // kNone for unbounded ones
-  std::vector<Unbounded> unbounded;
+struct MovingPart;
+struct World;
+
+// Handed to Embree and by it to the callbacks: the unrounded rays.
+struct TraceContext : RTCIntersectContext {
+  const Ray* rays = nullptr;
+  const Packet* packet = nullptr;   // lanes are the ids of the float rays
+  const World* world = nullptr;
+  const MovingPart* moving = nullptr;
+  uint32_t object = kNone;          // the instance that rays are inside of; kNone = in the tile itself
+  const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
+};
+
+// Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
+struct PlacedSet {
+  // From ENU into the floats of an instance at rest; one cache line.
+  struct Inverse {
+    Vec3 base;             // ENU place of the floats' (0, 0, 0)
+    float linear[9];
+    uint32_t mesh;
+  };
+  const World* world = nullptr;
+  const MovingPart* moving = nullptr;   // null: all at rest
+  Vec3 origin;                          // of the tile
+  unsigned times = 1;                   // boxes of an object, equally spaced over the window
+  std::vector<uint32_t> objects;        // indices into Tracer::objects()
+  std::vector<Inverse> inverse;         // at rest only
+  std::vector<Box3> boxes;              // [object][time], ENU; until the tile is built
+
+  void attach(RTCScene scene, unsigned id);
+};
+
+// Geometry ids inside a tile: first the meshes that are attached as they are, then the sets.
+struct Tile {
+  Vec3 origin;                       // ENU
+  Box3 bounds;                       // ENU, a little enlarged
+  double scale = 0;                  // largest float coordinate of the tile, m
+  std::vector<uint32_t> direct;      // indices into Tracer::objects()
+  std::vector<std::unique_ptr<PlacedSet>> sets;
+  SceneHandle handle;
+  BuildOnce once;
+
+  // What float rounding may move geometry out of its exact bounds by, m.
+  double slack() const { return 16 * 1.1920929e-7 * scale + 1e-9; }
+  void build(const World& world);
+};
+
+struct TileSet {
+  std::vector<std::unique_ptr<Tile>> tiles;
   TileBvh bvh;
 
-  void finish(const Tracer& t, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
-  void finish_exact(const Tracer& t, const Ray& ray, uint32_t object, const Affine3& to_local, double near, Hit& hit) const;
-  void trace_packet(const Tracer& t, uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<Hit> hits, std::span<double> reach,
-                    bool coherent, TraceStatistics& s) const;
-  void occlude_packet(uint32_t tile, const Packet& packet, std::span<const Ray> rays, std::span<uint8_t> blocked, std::span<double> reach,
-                      bool coherent, TraceStatistics& s) const;
+  void close(const World& world);    // after the tiles are filled: the hierarchy, and small sets are built at once
+  // Sends every ray through its tiles, nearest first, eight rays that are at the same tile at a time.
+  // send(tile, packet) traces a packet and lowers reach[] of rays that need not go on.
   template <class Send>
-  void through_tiles(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
-  void meet_unbounded(const Tracer& t, const Ray& ray, double& reach, Hit* hit) const;
-  void continue_long_way(Itinerary& way, const Ray& ray, double reach) const;
+  void pass(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
+};
+
+// Embree's filter for triangles of meshes that may have holes.
+void filter_triangles(const RTCFilterFunctionNArguments* args);
+
+// What does not change with the window.
+struct World {
+  World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter);
+  std::shared_ptr<const Scene> scene;
+  std::optional<Periodic> periodic;
+  std::shared_ptr<const HitFilter> filter;   // null: no surface has holes
+  Flattened flat;
+  std::unique_ptr<MeshEntry[]> meshes;
+  TileSet tiles;                     // of what is at rest
+  std::vector<uint32_t> unbounded;   // exact surfaces without bounds at rest, met in double one by one
+  Box3 bounds;                       // of what is at rest
+  size_t triangles = 0;
+  std::vector<char> may_pass;        // objects with holes; empty without a filter
+  std::vector<char> holed_meshes;    // meshes that some such object shows; empty without a filter
+
+  // Asks the filter about a point of an object; true when the object has no holes.
+  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal = {}) const;
+  // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
+  // through; its t counts from there.
+  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min, double t_max) const;
+  RTCScene mesh_scene(uint32_t mesh) const;   // built on the first call
+  Affine3 pose(uint32_t node, double time) const;   // exact
+  Affine3 to_world(const TracedObject& o, double time) const {
+    return o.node == kNone ? *o.place : pose(o.node, time) * *o.place;
+  }
+  // Extent in the object's local frame; empty when unbounded.
+  Box3 local_box(const TracedObject& o) const;
+
+ private:
+  void repeat_at_sides();
+  void fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes);
+};
+
+// What moves in a window.
+struct MovingPart {
+  MovingPart(const World& world, TimeSpan window);
+  // Stretches of time between kinks, each with equidistant poses.
+  struct Stretch {
+    double begin, end;
+    size_t first, count;
+  };
+  struct Keys {
+    std::vector<Stretch> stretches;
+    std::vector<Affine3> poses;
+    double radius = 0;               // of what moves with the node, m
+    double bound = 0;                // m, between keys; 0 for an instant, which is exact
+    Affine3 at(double time) const;
+    bool at_rest() const { return poses.size() <= 1; }   // none: nothing hangs on the node itself
+  };
+  const World& world;
+  TimeSpan window;
+  std::vector<Keys> nodes;
+  TileSet tiles;
+  std::vector<uint32_t> unbounded;
+  Box3 bounds;
+
+  float fraction(double time) const;   // of the window, 0 to 1
+  // As rays see it: linear between keys.
+  Affine3 to_world(const TracedObject& o, double time) const { return nodes[o.node].at(time) * *o.place; }
+  static Keys keys_of(const World& world, TimeSpan window, uint32_t node, double radius);
+
+ private:
+  void fill(Tile& tile, std::span<const uint32_t> members, std::span<const std::vector<Box3>> boxes);
+};
+
+// The boxes of a moving object at 1, 2, 5, 17 or 65 equidistant times of the window, so that what is linear between
+// them holds the object at all times (at 1: the box of the whole way). As few times as keep the boxes tight.
+std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, const Box3& box_in_node);
+
+// One packet against one tile.
+class PacketTracer {
+ public:
+  PacketTracer(const World& world, const MovingPart* moving, std::span<const Ray> rays, std::span<double> reach, bool coherent,
+               TraceStatistics& statistics)
+      : world_(world), moving_(moving), rays_(rays), reach_(reach), coherent_(coherent), statistics_(statistics) {}
+  void nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits);
+  void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
+  // Surfaces without bounds; lowers reach. hit may be null.
+  void unbounded(uint32_t object, uint32_t ray, Hit* hit);
+
+ private:
+  void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
+  TraceContext context(const Packet& packet) const;
+  void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
+  void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
+
+  const World& world_;
+  const MovingPart* moving_;
+  std::span<const Ray> rays_;
+  std::span<double> reach_;
+  bool coherent_;
+  TraceStatistics& statistics_;
 };
 
 }  // namespace suite

@@ -1,50 +1,66 @@
 #include "trace/flatten.h"
 
+#include <algorithm>
+
 namespace suite {
 
 namespace {
 
+// What a group inherits on the way down. `to_node` leads to the frame of the node, or to ENU when there is none.
+struct Inherited {
+  Affine3 to_node;
+  uint32_t node = kNone, material = kNone, tag = kNone;
+  bool same = true;   // to_node is the identity
+};
+
 struct Walk {
   const Scene& scene;
   size_t limit;
-  std::vector<TracedObject>& out;
+  Flattened& out;
+  uint32_t instances = 0;
 
-  void group(uint32_t index, const Affine3& to_world, uint32_t material, uint32_t tag) {
+  void group(uint32_t index, const Inherited& above) {
     for (const Placement& p : scene.groups[index].placements) {
-      const Affine3 map = to_world * p.to_parent;
+      Inherited here = above;
+      if (p.track != kNone) {
+        here.node = static_cast<uint32_t>(out.nodes.size());
+        out.nodes.push_back({above.node, above.to_node, p.track});
+        here.to_node = {};
+        here.same = true;
+      }
       // The outermost override wins: whoever places a thing decides what it is made of.
-      const uint32_t override_id = material != kNone ? material : p.material_override;
-      const uint32_t tag_id = p.tag != kNone ? p.tag : tag;
-      if (p.kind == TargetKind::group) group(p.target, map, override_id, tag_id);
-      if (p.kind == TargetKind::group) continue;
-      if (out.size() >= limit) throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
-      const bool mesh = p.kind == TargetKind::mesh;
-      out.push_back({map, mesh ? p.target : kNone, mesh ? kNone : p.target, override_id, tag_id, map.determinant() < 0, static_cast<uint32_t>(out.size())});
+      if (here.material == kNone) here.material = p.material_override;
+      if (p.tag != kNone) here.tag = p.tag;
+      if (p.kind == TargetKind::group) {
+        here.to_node = here.to_node * p.to_parent;
+        here.same = false;
+        group(p.target, here);
+      } else {
+        object(p, here);
+      }
     }
+  }
+
+  void object(const Placement& p, const Inherited& here) {
+    if (out.objects.size() >= limit) throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
+    const bool mesh = p.kind == TargetKind::mesh;
+    const uint32_t instance = instances++;
+    if (mesh && scene.meshes[p.target].triangle_count() == 0) return;
+    // A transform that is in the scene already is not stored again.
+    const Affine3* place = here.same ? &p.to_parent : &out.composed.emplace_back(here.to_node * p.to_parent);
+    out.objects.push_back({place, mesh ? p.target : kNone, mesh ? kNone : p.target, here.material, here.tag, instance, here.node});
   }
 };
 
 }  // namespace
 
-std::vector<TracedObject> flatten(const Scene& scene, size_t limit) {
-  std::vector<TracedObject> objects;
-  Walk{scene, limit, objects}.group(0, Affine3{}, kNone, kNone);
-  return objects;
-}
-
-Box3 local_bounds(const Mesh& mesh) {
-  Box3 box;
-  for (size_t i = 0; i < mesh.vertex_count(); ++i)
-    box.grow(mesh.origin + Vec3{mesh.positions[3 * i], mesh.positions[3 * i + 1], mesh.positions[3 * i + 2]});
-  return box;
-}
-
-Box3 transformed(const Box3& box, const Affine3& map) {
-  Box3 out;
-  if (box.empty()) return out;
-  for (int c = 0; c < 8; ++c)
-    out.grow(map.point({c & 1 ? box.high.x : box.low.x, c & 2 ? box.high.y : box.low.y, c & 4 ? box.high.z : box.low.z}));
-  return out;
+Flattened flatten(const Scene& scene, size_t limit) {
+  Flattened flat;
+  if (scene.groups.size() == 1) flat.objects.reserve(scene.groups[0].placements.size());
+  Walk{scene, limit, flat}.group(0, {});
+  const auto moving = std::stable_partition(flat.objects.begin(), flat.objects.end(), [](const TracedObject& o) { return o.node == kNone; });
+  flat.fixed = static_cast<size_t>(moving - flat.objects.begin());
+  return flat;
 }
 
 }  // namespace suite

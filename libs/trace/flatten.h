@@ -1,17 +1,28 @@
 // The hierarchy of placements as a flat list of objects, transforms composed in double.
 #pragma once
+#include <deque>
 #include <vector>
 
 #include "trace/tracer.h"
 
 namespace suite {
 
-// Depth-first in the order of the groups. Error when the hierarchy unfolds into more than `limit` objects.
-std::vector<TracedObject> flatten(const Scene& scene, size_t limit = size_t{1} << 28);
+// A frame that moves: its axes -> the track's pose -> `before` -> the parent frame (kNone: ENU).
+struct MovingNode {
+  uint32_t parent = kNone;   // a node with a smaller number
+  Affine3 before;
+  uint32_t track = kNone;    // index into Scene::tracks
+};
 
-// Bounds in the mesh's local frame (origin included).
-Box3 local_bounds(const Mesh& mesh);
-// Bounds of a transformed box.
-Box3 transformed(const Box3& box, const Affine3& map);
+struct Flattened {
+  std::vector<TracedObject> objects;   // those at rest first, then the moving ones
+  std::vector<MovingNode> nodes;
+  size_t fixed = 0;                    // objects at rest
+  std::deque<Affine3> composed;        // transforms that stand nowhere in the scene itself; objects point into it
+};
+
+// Depth-first in the order of the groups. The scene must outlive the result. Error when the hierarchy unfolds into more
+// than `limit` objects.
+Flattened flatten(const Scene& scene, size_t limit = size_t{1} << 28);
 
 }  // namespace suite

@@ -1,8 +1,12 @@
 // A scene frozen in a time window, ready to be asked for nearest hits and visibility.
 //
 // Geometry lives in tiles: groups of objects within a few kilometres, each an Embree scene in float metres around its own
-// double origin. Rays are double; they are advanced to a tile's bounds and re-based before they become float, and hits
-// are rebuilt in double from barycentrics, so precision does not depend on where sensor or scene are.
+// double origin. Rays are double; they are advanced to a tile's bounds and re-based before they become float. Instances
+// take the unrounded ray into their own frame in double, so what is inside one is as precise as its own size, wherever it
+// stands and however it moves. Hits are rebuilt in double from barycentrics.
+//
+// What moves has exact poses at the keys of its window and linear ones between them, keys as close as motion_bound asks;
+// hits are rebuilt with the exact pose (screw motion) at the time of the ray.
 //
 // Based on: Goodenough & Brown, section III-A-1 (Embree, instancing of any depth); I. Wald et al., "Embree: a kernel
 // framework for efficient CPU ray tracing", 2014. Debian's Embree has one instance level, so nested placements are
@@ -16,28 +20,31 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "motion/time_span.h"
 #include "scene/scene.h"
 
 namespace suite {
 
 // One flattened instance of a mesh or of an exact surface.
 struct TracedObject {
-  Affine3 to_world;                 // mesh local (double, mesh origin included) -> ENU
+  const Affine3* place;             // local (double, mesh origin included) -> ENU, or the axes of the moving node
   uint32_t mesh = kNone;            // index into Scene::meshes, or kNone
   uint32_t primitive = kNone;       // index into Scene::primitives, or kNone
   uint32_t material_override = kNone;
   uint32_t tag = kNone;             // nearest tag on the way down from the root
-  bool mirrored = false;            // to_world turns the winding round; the front side stays the front side
   uint32_t instance = kNone;        // number of the flattened instance, in the order of the hierarchy
+  uint32_t node = kNone;            // the moving frame it belongs to; kNone = at rest
 };
 
 struct Hit {
   double distance = 0;              // m from the ray's origin
   Vec3 position;                    // ENU, rebuilt from barycentrics in double
   Dir normal;                       // geometric, unit, on the front side (counter-clockwise vertices), ENU
+  double time = 0;                  // s, of the ray
   uint32_t object = kNone;          // index into Tracer::objects(); kNone = nothing was hit
   uint32_t triangle = 0;            // in the mesh
   float u = 0, v = 0;               // barycentrics of vertices 1 and 2; of an exact surface its UV
+  float step = 0;                   // m, how far rays that leave the surface must start off it
   bool hit() const { return object != kNone; }
 };
 
@@ -51,13 +58,23 @@ struct Periodic {
   Vec2 low, size;                   // the cell, m ENU; size > 0
 };
 
-struct TracerCore;
+// How far (m) what moves may be from its true place while rays look for it: 1e-5 of its extent, at most 0.1 mm. Hits
+// that are found are then put on the exact place.
+double motion_bound(double radius);
+
+class HitFilter;
+struct World;         // what is at rest, shared by the tracers of all windows
+struct MovingPart;
 
 class Tracer {
  public:
-  // Builds acceleration structures in parallel. The scene must have passed check_scene and outlive nothing: it is kept.
+  // Builds acceleration structures in parallel; scenes of many tiles build each one when a ray first comes there. The
+  // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
-  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt);
+  // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
+  // Error: a motion that does not cover the window; moving things in a periodic scene.
+  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
+                  std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -69,26 +86,48 @@ class Tracer {
                 TraceStatistics& statistics) const;
 
   // Where a ray that leaves `hit` to the side of `direction` must start so as not to meet the same surface again: a few
-  // units of the last float place of the tile's size off the surface, along the geometric normal.
-  Vec3 leave(const Hit& hit, Dir direction) const;
+  // units of the last float place of the tile's or instance's size off the surface, along the geometric normal.
+  Vec3 leave(const Hit& hit, Dir direction) const {
+    return hit.position + hit.normal * double{dot(direction, hit.normal) >= 0 ? hit.step : -hit.step};
+  }
 
-  const Scene& scene() const { return *scene_; }
-  std::span<const TracedObject> objects() const { return objects_; }
-  const Box3& bounds() const { return bounds_; }
-  size_t triangles() const { return triangles_; }      // instanced ones counted each time
+  const Scene& scene() const;
+  std::span<const TracedObject> objects() const;
+  // From the object's local frame (mesh origin included) to ENU at the time, exact.
+  Affine3 to_world(const TracedObject& object, double time) const;
+  Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
+  const Box3& bounds() const { return bounds_; }       // ENU, all places that moving things have in the window
+  size_t triangles() const;                            // instanced ones counted each time
   size_t tiles() const;
+  size_t tiles_built() const;                          // so far
   // Name and instruction set of the ray tracer, for result headers: "Embree 3.13.5 avx2".
   static std::string engine();
 
  private:
-  std::shared_ptr<const Scene> scene_;
+  friend class TracerCache;
+  Tracer(std::shared_ptr<const World> world, TimeSpan window);
   void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& statistics) const;
   void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& statistics) const;
-  std::optional<Periodic> periodic_;
-  std::vector<TracedObject> objects_;
+  std::shared_ptr<const World> world_;
+  std::unique_ptr<MovingPart> moving_;                 // null when nothing moves
   Box3 bounds_;
-  size_t triangles_ = 0;
-  std::unique_ptr<TracerCore> core_;
+};
+
+// Hands out the tracer of a time window. What is at rest is built once; windows in which everything that could move
+// stays in the same place share one tracer; of the others the last few are kept. Not for several threads at once.
+class TracerCache {
+ public:
+  explicit TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
+                       std::shared_ptr<const HitFilter> filter = nullptr);
+  ~TracerCache();
+  std::shared_ptr<const Tracer> get(TimeSpan window);
+  size_t builds() const { return builds_; }            // tracers made so far
+
+ private:
+  struct Kept;
+  std::shared_ptr<const World> world_;
+  std::vector<std::unique_ptr<Kept>> kept_;            // the most recent last
+  size_t builds_ = 0;
 };
 
 // Makes denormals zero in this thread for as long as it lives; every thread that traces holds one (Embree requires it).

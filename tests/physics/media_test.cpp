@@ -259,7 +259,7 @@ TEST(Shadows, GroundUnderAnAbsorbingGrid) {
       scene->materials = {material("ground", lambert(rho)), boundary(0)};
       place(*scene, PrimitiveKind::plane, {0, 0}, 0);
       if (body) {
-        place(*scene, PrimitiveKind::box, {-500, -500, 10, 500, 500, 11}, 1);
+        place(*scene, PrimitiveKind::box, {-20, -20, 10, 20, 20, 11}, 1);
       } else {
         scene->grids.push_back(grid_of({10, 10, 3}, translation({-500, -500, 10}) * scaling({100, 100, 1.0 / 3}),
                                        [](auto...) { return 1; }));

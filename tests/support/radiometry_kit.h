@@ -17,6 +17,7 @@ class RaySensor : public Sensor {
     Capture c;
     c.columns = static_cast<uint32_t>(rays_.size());
     c.rows = 1;
+    c.neighbours = false;
     c.convergence.min_paths = c.convergence.max_paths = paths;
     tasks_.push_back({"rays", {}, {c}});
   }

@@ -83,6 +83,7 @@ class Sqt final : public ScatterModel {
       p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
   }
   bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
+  bool isotropic() const override { return bundle_->info().function.isotropic; }
   bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
 
  private:

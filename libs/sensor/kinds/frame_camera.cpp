@@ -14,8 +14,8 @@ class FrameCamera final : public Sensor {
  public:
   FrameCamera(const Params& p, const SensorContext& context) : deliver_(context.deliver), name_(p.text("name", "camera")) {
     bands_ = read_bands(p.at("bands"), context);
-    const double step = p.number_in("spectral_step_um", 1e-6, 1000, "um", 0.01);
-    state_ = make_state(bands_, step, p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
+    state_ = read_state(p, bands_);
+    truth_ = read_truth(p);
 
     Capture capture;
     capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
@@ -40,8 +40,7 @@ class FrameCamera final : public Sensor {
     right_ = normalized(right_);
     down_ = cross(forward_, right_);
     capture.name = name_;
-    const double time = p.number("time_s", 0);
-    capture.window = {time, time + p.number_in("integration_time_s", 0, 86400, "s", 0)};
+    capture.window = read_window(p);
     capture.convergence = read_convergence(p);
     tasks_.push_back({name_, capture.window, {capture}});
   }
@@ -62,12 +61,17 @@ class FrameCamera final : public Sensor {
     return r;
   }
 
-  void accept(CaptureResult&& result) override { deliver_(*this, result); }
+  void accept(CaptureResult&& result) override {
+    Delivery d{*this, lay_out(tasks_, name_)[result.task][result.capture], std::move(result), bands_, {}, {}, {}, {}};
+    deliver_(d);
+  }
+  std::span<const std::string> truth() const override { return truth_; }
 
  private:
-  std::function<void(const Sensor&, const CaptureResult&)> deliver_;
+  std::function<void(const Delivery&)> deliver_;
   std::string name_;
   std::vector<Band> bands_;
+  std::vector<std::string> truth_;
   SpectralState state_;
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;

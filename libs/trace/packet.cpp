@@ -1,0 +1,148 @@
+// One packet of rays against one tile, and what becomes of the hits.
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "trace/embree_internal.h"
+#include "trace/primitive_hit.h"
+
+namespace suite {
+
+TraceContext PacketTracer::context(const Packet& packet) const {
+  TraceContext c;
+  rtcInitIntersectContext(&c);
+  c.flags = coherent_ ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  c.rays = rays_.data();
+  c.packet = &packet;
+  c.world = &world_;
+  c.moving = moving_;
+  return c;
+}
+
+// Rays relative to the tile, advanced in double to where they enter its bounds. Lanes beyond the packet repeat its last.
+void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const {
+  for (uint32_t i = 0; i < kWidth; ++i) {
+    const uint32_t j = std::min(i, packet.size - 1), r = packet.ray[j];
+    const Ray& ray = rays_[r];
+    valid[i] = i < packet.size ? -1 : 0;
+    const Vec3 p = ray.origin + ray.direction * packet.advance[j] - tile.origin;
+    q.org_x[i] = static_cast<float>(p.x), q.org_y[i] = static_cast<float>(p.y), q.org_z[i] = static_cast<float>(p.z);
+    q.dir_x[i] = static_cast<float>(ray.direction.x), q.dir_y[i] = static_cast<float>(ray.direction.y);
+    q.dir_z[i] = static_cast<float>(ray.direction.z);
+    q.tnear[i] = 0, q.tfar[i] = static_cast<float>(reach_[r] - packet.advance[j]);
+    q.time[i] = moving_ ? moving_->fraction(ray.time) : 0;
+    q.mask[i] = 0xffffffffu, q.id[i] = i, q.flags[i] = 0;
+  }
+}
+
+void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits) {
+  TraceContext c = context(packet);
+  alignas(32) RTCRayHit8 rh;
+  alignas(32) int valid[kWidth];
+  load(tile, packet, rh.ray, valid);
+  for (uint32_t i = 0; i < kWidth; ++i) rh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  const uint64_t start = __rdtsc();
+  rtcIntersect8(valid, tile.handle.scene, &c, &rh);
+  statistics_.cycles += __rdtsc() - start;
+  for (uint32_t i = 0; i < packet.size; ++i) {
+    const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
+    if (id == RTC_INVALID_GEOMETRY_ID) continue;
+    reach_[r] = packet.advance[i] + double{rh.ray.tfar[i]};
+    const bool direct = id < tile.direct.size();
+    const uint32_t object = direct ? tile.direct[id] : tile.sets[id - tile.direct.size()]->objects[rh.hit.instID[0][i]];
+    if (world_.flat.objects[object].mesh != kNone) finish(tile, direct, rays_[r], object, rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
+    else finish_exact(tile.scale, rays_[r], object, reach_[r], hits[r]);
+  }
+}
+
+void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
+  TraceContext c = context(packet);
+  alignas(32) RTCRay8 q;
+  alignas(32) int valid[kWidth];
+  load(tile, packet, q, valid);
+  const uint64_t start = __rdtsc();
+  rtcOccluded8(valid, tile.handle.scene, &c, &q);
+  statistics_.cycles += __rdtsc() - start;
+  for (uint32_t i = 0; i < packet.size; ++i)
+    if (q.tfar[i] < 0) {
+      blocked[packet.ray[i]] = 1;
+      reach_[packet.ray[i]] = -1;  // no further tile matters
+    }
+}
+
+// How far off a surface rays must start for what moving geometry is seen aside from its place by, m.
+static double aside(const MovingPart* moving, const TracedObject& o) { return o.node == kNone ? 0 : 2 * moving->nodes[o.node].bound; }
+
+void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const {
+  const TracedObject& o = world_.flat.objects[object];
+  const Mesh& m = world_.scene->meshes[o.mesh];
+  const uint32_t* corner = &m.indices[3 * size_t{triangle}];
+  const auto vertex = [&](uint32_t c) {
+    const float* f = &m.positions[3 * size_t{corner[c]}];
+    return Vec3{f[0], f[1], f[2]};
+  };
+  const Vec3 p0 = vertex(0), e1 = vertex(1) - p0, e2 = vertex(2) - p0, p = p0 + e1 * double{u} + e2 * double{v};
+  const Vec3 across = cross(e1, e2);
+  double reach = 0;   // largest coordinate that was rounded to float on the way to this hit, m
+  if (direct) {
+    // A translation only.
+    hit.position = p + tile.origin;
+    hit.normal = normalized(across);
+    reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile.scale, 1e-6});
+  } else {
+    const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+    hit.position = to_world.point(m.origin + p);
+    hit.normal = normalized(to_world.normal(across));
+    // The winding turns round under a mirror; the front side stays the front side.
+    if (to_world.determinant() < 0) hit.normal = -hit.normal;
+    const double floor = 1e-3 * world_.meshes[o.mesh].scale;
+    const Vec3 q{std::fmax(std::fabs(p.x), floor), std::fmax(std::fabs(p.y), floor), std::fmax(std::fabs(p.z), floor)};
+    for (size_t k = 0; k < 9; k += 3)
+      reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y + std::fabs(to_world.a[k + 2]) * q.z);
+  }
+  hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * length(hit.position) + aside(moving_, o));
+  hit.distance = dot(hit.position - ray.origin, ray.direction);
+  hit.time = ray.time;
+  hit.object = object;
+  hit.triangle = triangle;
+  hit.u = u;
+  hit.v = v;
+}
+
+// `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the tile.
+void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const {
+  const TracedObject& o = world_.flat.objects[object];
+  const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+  // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
+  const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, o);
+  auto found = world_.meet(ray, object, to_world, 0, near - window, near + window);
+  if (!found || found->t <= 0) found = world_.meet(ray, object, to_world, 0, 0, INFINITY);
+  if (!found) {
+    hit = Hit{};
+    return;
+  }
+  hit.distance = found->t;
+  hit.position = ray.origin + ray.direction * found->t;
+  hit.normal = normalized(to_world.normal(found->normal));
+  if (to_world.determinant() < 0) hit.normal = -hit.normal;
+  // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
+  const double step = scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
+  hit.step = static_cast<float>(step + aside(moving_, o));
+  hit.time = ray.time;
+  hit.object = object;
+  hit.triangle = 0;
+  hit.u = static_cast<float>(found->u), hit.v = static_cast<float>(found->v);
+}
+
+void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
+  const TracedObject& o = world_.flat.objects[object];
+  const Ray& ray = rays_[r];
+  const auto found = world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
+  if (!found) return;
+  reach_[r] = found->t;
+  if (hit) finish_exact(0, ray, object, found->t, *hit);
+}
+
+}  // namespace suite

@@ -1,0 +1,219 @@
+// Embree's callbacks for instances and exact surfaces. They take the unrounded rays into the instance's own frame in
+// double, to where they enter its box, and only there become float: nothing is lost with distance, size or speed.
+#include <cfloat>
+#include <cmath>
+
+#include "trace/embree_internal.h"
+#include "trace/primitive_hit.h"
+
+namespace suite {
+
+namespace {
+
+// From ENU vectors to a local frame whose zero is at `base`.
+template <class T>
+struct Inward {
+  Vec3 base;
+  const T* a;   // row-major
+  Vec3 vector(Vec3 v) const {
+    return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z, a[6] * v.x + a[7] * v.y + a[8] * v.z};
+  }
+};
+
+// A ray inside an instance: unit direction, its start where it enters the box.
+struct LocalRay {
+  Vec3 origin, direction;
+  double enter;     // along the ray in ENU, m
+  double stretch;   // local length of one metre
+  double reach;     // local
+  unsigned id;      // of the float ray outside
+};
+
+// The stretch of the ray between near and far that lies in the instance's box; false when there is none.
+template <class T>
+bool go_in(const Inward<T>& inward, const Box3& box, const Ray& ray, double near, double far, LocalRay& out) {
+  // The point of the ray next to the instance, so that what float did to the matrix counts only over its size.
+  const Vec3 away = ray.origin - inward.base;
+  const double closest = -dot(away, ray.direction);
+  const Vec3 o = inward.vector(away + ray.direction * closest), d = inward.vector(ray.direction);
+  near -= closest, far -= closest;
+  for (int i = 0; i < 3; ++i) {
+    const double inverse = 1 / d[i], a = (box.low[i] - o[i]) * inverse, b = (box.high[i] - o[i]) * inverse;
+    const double first = a > b ? b : a, last = a > b ? a : b;
+    // 0 * infinity is NaN and does not clip; the box is wide enough for rounding.
+    if (first > near) near = first;
+    if (last < far) far = last;
+  }
+  if (!(near <= far)) return false;
+  out.enter = near + closest;
+  out.stretch = length(d);
+  out.origin = o + d * near;
+  out.direction = d / out.stretch;
+  out.reach = (far - near) * out.stretch;
+  return true;
+}
+
+// An object as the ray sees it at its time.
+bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray& ray, double near, double far, LocalRay& out) {
+  if (!set.moving) {
+    const PlacedSet::Inverse& inverse = set.inverse[prim];
+    return go_in(Inward<float>{inverse.base, inverse.linear}, mesh.room, ray, near, far, out);
+  }
+  const TracedObject& o = set.world->flat.objects[set.objects[prim]];
+  const Affine3 to_world = set.moving->to_world(o, ray.time), inverse = to_world.inverse();
+  return go_in(Inward<double>{to_world.point(set.world->scene->meshes[o.mesh].origin), inverse.a.data()}, mesh.room, ray, near, far, out);
+}
+
+// Where the unrounded ray meets an exact surface, from the packet's start on.
+std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near, double far) {
+  const TracedObject& o = set.world->flat.objects[object];
+  const auto found = set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
+  return found ? std::optional<double>(found->t) : std::nullopt;
+}
+
+// The rays of a packet that enter one instance.
+struct Entered {
+  unsigned lane[kWidth];
+  LocalRay ray[kWidth];
+  unsigned count = 0;
+};
+
+void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const TraceContext& context, const int* valid, RTCRayN* rays, unsigned n,
+               Entered& in) {
+  for (unsigned i = 0; i < n; ++i) {
+    if (!valid[i]) continue;
+    const unsigned lane = RTCRayN_id(rays, n, i);
+    const double advance = context.packet->advance[lane];
+    if (go_in(set, prim, mesh, context.rays[context.packet->ray[lane]], advance + double{RTCRayN_tnear(rays, n, i)},
+              advance + double{RTCRayN_tfar(rays, n, i)}, in.ray[in.count]))
+      in.ray[in.count].id = lane, in.lane[in.count++] = i;
+  }
+}
+
+void load(const LocalRay& r, unsigned k, RTCRay8& q) {
+  q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y), q.org_z[k] = static_cast<float>(r.origin.z);
+  q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y), q.dir_z[k] = static_cast<float>(r.direction.z);
+  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id, q.flags[k] = 0;
+}
+
+void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
+  auto* context = static_cast<TraceContext*>(args->context);
+  RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* found = RTCRayHitN_HitN(args->rayhit, args->N);
+  const MeshEntry& entry = set.world->meshes[mesh];
+  Entered in;
+  enter_all(set, args->primID, entry, *context, args->valid, outer, args->N, in);
+  if (!in.count) return;
+  alignas(32) RTCRayHit8 rh;
+  alignas(32) int valid[kWidth];
+  for (unsigned k = 0; k < kWidth; ++k) {
+    valid[k] = k < in.count ? -1 : 0;
+    load(in.ray[k < in.count ? k : 0], k, rh.ray);
+    rh.hit.geomID[k] = rh.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+  context->object = set.objects[args->primID];
+  rtcIntersect8(valid, entry.handle.scene, context, &rh);
+  context->object = kNone;
+  for (unsigned k = 0; k < in.count; ++k) {
+    if (rh.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+    const unsigned i = in.lane[k];
+    const LocalRay& r = in.ray[k];
+    const double t = r.enter + double{rh.ray.tfar[k]} / r.stretch;
+    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[RTCRayN_id(outer, args->N, i)]);
+    RTCHitN_u(found, args->N, i) = rh.hit.u[k];
+    RTCHitN_v(found, args->N, i) = rh.hit.v[k];
+    RTCHitN_primID(found, args->N, i) = rh.hit.primID[k];
+    RTCHitN_geomID(found, args->N, i) = args->geomID;
+    RTCHitN_instID(found, args->N, i, 0) = args->primID;
+  }
+}
+
+void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t o) {
+  const auto* context = static_cast<const TraceContext*>(args->context);
+  RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const unsigned lane = RTCRayN_id(outer, args->N, i);
+    const auto t = meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(outer, args->N, i),
+                        RTCRayN_tfar(outer, args->N, i));
+    if (!t) continue;
+    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(*t);
+    RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
+    RTCHitN_primID(hit, args->N, i) = 0;
+    RTCHitN_geomID(hit, args->N, i) = args->geomID;
+    RTCHitN_instID(hit, args->N, i, 0) = args->primID;
+  }
+}
+
+void intersect_placed(const RTCIntersectFunctionNArguments* args) {
+  const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
+  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  if (mesh != kNone) return intersect_mesh(args, set, mesh);
+  const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
+  if (o.mesh != kNone) intersect_mesh(args, set, o.mesh);
+  else intersect_exact(args, set, set.objects[args->primID]);
+}
+
+void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
+  auto* context = static_cast<TraceContext*>(args->context);
+  const MeshEntry& entry = set.world->meshes[mesh];
+  Entered in;
+  enter_all(set, args->primID, entry, *context, args->valid, args->ray, args->N, in);
+  if (!in.count) return;
+  alignas(32) RTCRay8 q;
+  alignas(32) int valid[kWidth];
+  for (unsigned k = 0; k < kWidth; ++k) {
+    valid[k] = k < in.count ? -1 : 0;
+    load(in.ray[k < in.count ? k : 0], k, q);
+  }
+  context->object = set.objects[args->primID];
+  rtcOccluded8(valid, entry.handle.scene, context, &q);
+  context->object = kNone;
+  for (unsigned k = 0; k < in.count; ++k)
+    if (q.tfar[k] < 0) RTCRayN_tfar(args->ray, args->N, in.lane[k]) = -INFINITY;
+}
+
+void occlude_placed(const RTCOccludedFunctionNArguments* args) {
+  const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
+  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  if (mesh != kNone) return occlude_mesh(args, set, mesh);
+  const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
+  if (o.mesh != kNone) return occlude_mesh(args, set, o.mesh);
+  const auto* context = static_cast<const TraceContext*>(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const unsigned lane = RTCRayN_id(args->ray, args->N, i);
+    if (meet(set, set.objects[args->primID], context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(args->ray, args->N, i),
+             RTCRayN_tfar(args->ray, args->N, i)))
+      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  }
+}
+
+void placed_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
+  const Box3& b = set.boxes[size_t{args->primID} * set.times + args->timeStep];
+  const Vec3 l = b.low - set.origin, h = b.high - set.origin;
+  RTCBounds& out = *args->bounds_o;
+  const auto low = [](double x) { return std::nextafter(static_cast<float>(x), -INFINITY); };
+  const auto high = [](double x) { return std::nextafter(static_cast<float>(x), INFINITY); };
+  out.lower_x = low(l.x), out.lower_y = low(l.y), out.lower_z = low(l.z);
+  out.upper_x = high(h.x), out.upper_y = high(h.y), out.upper_z = high(h.z);
+}
+
+}  // namespace
+
+void PlacedSet::attach(RTCScene scene, unsigned id) {
+  RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(objects.size()));
+  rtcSetGeometryTimeStepCount(g, times);
+  rtcSetGeometryUserData(g, this);
+  rtcSetGeometryBoundsFunction(g, placed_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, intersect_placed);
+  rtcSetGeometryOccludedFunction(g, occlude_placed);
+  rtcCommitGeometry(g);
+  rtcAttachGeometryByID(scene, g, id);
+  rtcReleaseGeometry(g);
+}
+
+}  // namespace suite

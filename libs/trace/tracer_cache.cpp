@@ -1,0 +1,54 @@
+// Tracers by time window; see tracer.h.
+#include <algorithm>
+
+#include "trace/embree_internal.h"
+
+namespace suite {
+
+struct TracerCache::Kept {
+  TimeSpan window;
+  std::shared_ptr<const Tracer> tracer;
+};
+
+namespace {
+constexpr size_t kKept = 4;
+
+// Nothing moves within the window: one pose each.
+bool at_rest(const MovingPart& part) {
+  return std::all_of(part.nodes.begin(), part.nodes.end(), [](const MovingPart::Keys& k) { return k.at_rest(); });
+}
+}  // namespace
+
+TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter)
+    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter))) {}
+TracerCache::~TracerCache() = default;
+
+std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
+  const auto recent = [&](size_t k) {
+    std::rotate(kept_.begin() + static_cast<long>(k), kept_.begin() + static_cast<long>(k) + 1, kept_.end());
+    return kept_.back()->tracer;
+  };
+  const bool moves = world_->flat.fixed != world_->flat.objects.size();
+  if (moves) check_motion(*world_->scene, window.begin, window.end, {});
+  for (size_t k = 0; k < kept_.size(); ++k) {
+    const Kept& kept = *kept_[k];
+    if (!moves || (kept.window.begin == window.begin && kept.window.end == window.end)) return recent(k);
+    // Two windows are alike when everything rests in both, in the same places.
+    const MovingPart& part = *kept.tracer->moving_;
+    if (!at_rest(part)) continue;
+    bool same = true;
+    for (uint32_t n = 0; n < part.nodes.size() && same; ++n) {
+      const MovingPart::Keys& there = part.nodes[n];
+      if (there.poses.empty()) continue;
+      if (!(world_->pose(n, window.begin) == there.poses.front())) same = false;
+      else same = MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
+    }
+    if (same) return recent(k);
+  }
+  if (kept_.size() >= kKept) kept_.erase(kept_.begin());
+  ++builds_;
+  kept_.push_back(std::make_unique<Kept>(Kept{window, std::shared_ptr<const Tracer>(new Tracer(world_, window))}));
+  return kept_.back()->tracer;
+}
+
+}  // namespace suite

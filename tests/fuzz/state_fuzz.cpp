@@ -1,0 +1,38 @@
+// Damaged states of runs: continued, or one Error.
+#include "base/files.h"
+#include "formats/render_state/render_state.h"
+#include "support/fuzz.h"
+#include "support/temp_folder.h"
+
+namespace suite {
+
+TEST(FuzzState, File) {
+  const TempFolder folder;
+  const std::string path = folder / "result.state.h5";
+  const StateIdentity identity{{"scene", "abc"}, {"seed", "1"}};
+  const std::vector<CaptureShape> shapes{{10, 20, 3, 4, 2}, {5, 1, 3, 8, 2}};
+  {
+    const auto store = make_state(path, StateUse::start, identity, {});
+    store->begin(shapes);
+    Accumulators sums(200, 3, 4, 2);
+    for (size_t i = 0; i < 200; ++i) sums.set_paths(i, 8);
+    store->save(0, 0, 80, sums);
+    store->save(0, 160, 40, sums);
+    store->save_needs(0, std::vector<double>(200, 5.0));
+  }
+  const std::vector<std::byte> bytes = read_bytes(path);
+  test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
+    write_file(path, mutated);
+    read_state_budget(path, identity);
+    const auto store = make_state(path, StateUse::resume, identity, {});
+    store->begin(shapes);
+    for (size_t c = 0; c < shapes.size(); ++c) {
+      Accumulators sums(shapes[c].problems(), 3, shapes[c].scrambles, 2);
+      std::vector<double> needs;
+      store->load(c, sums, needs);
+      store->save(c, 0, std::min<size_t>(shapes[c].problems(), size_t{8} * shapes[c].columns), sums);
+    }
+  });
+}
+
+}  // namespace suite

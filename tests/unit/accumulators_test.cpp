@@ -1,0 +1,127 @@
+// Samples dealt to scrambles, the standard error that follows, and plans from pilots.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/sampling.h"
+#include "scheduler/budget.h"
+#include "scheduler/plan.h"
+
+namespace suite {
+namespace {
+
+TEST(Deal, counts_what_it_deals_and_never_repeats_a_point) {
+  uint32_t count[8] = {};
+  for (uint32_t n = 0; n < 2000; ++n) {
+    for (uint32_t s = 0; s < 8; ++s) ASSERT_EQ(dealt(n, s), count[s]) << n << " samples, scramble " << s;
+    const Deal d = deal(n);
+    ASSERT_EQ(d.index, count[d.scramble]) << "indices of a scramble run without gaps";
+    ++count[d.scramble];
+  }
+  EXPECT_EQ(Accumulators::scrambles_for(256), 4);
+  EXPECT_EQ(Accumulators::scrambles_for(257), 8);
+  for (uint32_t s = 0; s < 8; ++s) EXPECT_EQ(dealt(512, s), 64u);
+}
+
+// The mean of many squared standard errors is the variance of the mean, for even and uneven shares of the scrambles.
+TEST(Accumulators, squared_standard_error_is_the_variance_of_the_mean) {
+  for (const uint32_t n : {4u, 7u, 64u, 256u, 300u, 400u, 600u}) {
+    Pcg32 random(n);
+    constexpr int trials = 4000;
+    double sum = 0, square = 0, claimed = 0;
+    for (int t = 0; t < trials; ++t) {
+      Accumulators a(1, 1, Accumulators::scrambles_for(n));
+      for (uint32_t s = 0; s < n; ++s) a.sums(0, static_cast<int>(deal(s).scramble))[0] += random.uniform();
+      a.set_paths(0, n);
+      double mean = 0, error = 0;
+      a.estimate(0, 0, mean, error);
+      sum += mean, square += mean * mean, claimed += error * error;
+    }
+    const double variance = square / trials - (sum / trials) * (sum / trials), expected = 1.0 / 12 / n;
+    // Both figures scatter by sqrt(2 / (trials dof)) at most; 4 such deviations, dof >= 1 per trial for the claim.
+    EXPECT_NEAR(variance / expected, 1, 4 * std::sqrt(2.0 / trials)) << n;
+    EXPECT_NEAR(claimed / trials / expected, 1, 4 * std::sqrt(2.0 / trials)) << n;
+  }
+}
+
+TEST(Accumulators, one_sample_tells_nothing_about_its_error) {
+  Accumulators a(1, 1, 4);
+  a.sums(0, 0)[0] = 3;
+  a.set_paths(0, 1);
+  double mean = 0, error = 0;
+  a.estimate(0, 0, mean, error);
+  EXPECT_EQ(mean, 3);
+  EXPECT_EQ(error, INFINITY);
+}
+
+Capture capture_of(uint32_t columns, uint32_t rows) {
+  Capture c;
+  c.columns = columns, c.rows = rows;
+  return c;
+}
+
+// A pilot in which every problem's scrambles have the means m (1 -+ d).
+Accumulators pilot_of(size_t problems, double mean, double d, uint32_t paths) {
+  Accumulators a(problems, 1, 4);
+  for (size_t i = 0; i < problems; ++i) {
+    for (int s = 0; s < 4; ++s) a.sums(i, s)[0] = mean * (1 + (s % 2 ? d : -d)) * paths / 4;
+    a.set_paths(i, paths);
+  }
+  return a;
+}
+
+TEST(Plan, a_problem_does_not_look_at_itself) {
+  const Capture c = capture_of(5, 5);
+  Accumulators pilot = pilot_of(25, 1, 0.1, 32);
+  const std::vector<size_t> band{0};
+  const std::vector<double> before = needs_of(c, pilot, band, 0);
+  for (int s = 0; s < 4; ++s) pilot.sums(12, s)[0] *= s == 0 ? 50 : 1;  // a firefly in the middle
+  const std::vector<double> after = needs_of(c, pilot, band, 0);
+  EXPECT_EQ(after[12], before[12]);
+  EXPECT_GT(after[11], 2 * before[11]);
+}
+
+TEST(Plan, counts_follow_from_variance_target_and_limits) {
+  // Four scramble means 1 -+ 0.1: variance of the mean = 4 * 0.01 / 3 / 4, of one path 32 times that.
+  const double variance = 32 * 0.04 / 12;
+  const std::vector<size_t> band{0};
+  const std::vector<double> needs = needs_of(capture_of(3, 3), pilot_of(9, 1, 0.1, 32), band, 0);
+  for (const double n : needs) EXPECT_NEAR(n, variance, 1e-12);
+  Convergence goal{32, 4096, 0.01, 0};
+  EXPECT_EQ(paths_for(needs, goal)[4], static_cast<uint32_t>(std::ceil(variance / 1e-4 / 4) * 4));
+  goal.max_paths = 100;
+  EXPECT_EQ(paths_for(needs, goal)[4], 100u);
+  goal.relative_error = 0.5;
+  EXPECT_EQ(paths_for(needs, goal)[4], 32u);
+  goal = {32, 4096, 0.01, 0};
+  EXPECT_EQ(cap_for_total(needs, goal, 9 * 200), 200u);  // all nine want more than that, and 201 each does not fit
+  EXPECT_EQ(cap_for_total(needs, goal, 1), goal.min_paths);
+}
+
+TEST(Plan, dark_problems_take_the_maximum_unless_a_floor_says_how_dark_is_dark) {
+  Accumulators pilot = pilot_of(9, 1e-9, 0.5, 32);
+  const std::vector<size_t> band{0};
+  const Convergence goal{32, 4096, 0.01, 0};
+  EXPECT_GT(paths_for(needs_of(capture_of(3, 3), pilot, band, 0), goal)[4], 1000u);
+  EXPECT_EQ(paths_for(needs_of(capture_of(3, 3), pilot, band, 1e-3), goal)[4], 32u);
+}
+
+TEST(Goal, budget_over_capture) {
+  Capture c = capture_of(2, 2);
+  c.convergence = {64, 64, 0, 0};
+  Budget b;
+  EXPECT_EQ(goal_of(c, b).max_paths, 64u);
+  b.more = 64;
+  EXPECT_EQ(goal_of(c, b).max_paths, 128u);
+  EXPECT_EQ(goal_of(c, b).min_paths, 128u);
+  b = {};
+  b.relative_error = 0.02;  // a target frees a fixed count
+  EXPECT_EQ(goal_of(c, b).min_paths, kDefaultPilot);
+  EXPECT_EQ(goal_of(c, b).max_paths, kDefaultMost);
+  b.min_paths = 16, b.max_paths = 500;
+  EXPECT_EQ(goal_of(c, b).min_paths, 16u);
+  EXPECT_EQ(goal_of(c, b).max_paths, 500u);
+}
+
+}  // namespace
+}  // namespace suite
