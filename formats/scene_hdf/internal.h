@@ -85,6 +85,8 @@ void drop_unseen(Scene& scene, Loading& loading);
 void write_curves(h5::Writer& w, const std::string& table, const std::vector<Curve>& curves);
 std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
 
+void write_media(h5::Writer& w, const Scene& scene);
+void read_media(h5::Reader& r, Scene& scene);
 void write_tracks(h5::Writer& w, const Scene& scene);
 void read_tracks(h5::Reader& r, Scene& scene);
 

@@ -256,6 +256,7 @@ void read_maps(Reader& r, Scene& s) {
 void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> bundles;
   const Where where{path, 0, 0, {}, -1};
+  for (Medium& m : s.media) check_medium(m, where);
   for (Material& m : s.materials) {
     if (m.surface.model.empty()) continue;
     if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
@@ -311,6 +312,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
     s.epoch = r.text("epoch_utc");
     read_hierarchy(r, s);
     read_tracks(r, s);
+    read_media(r, s);
     resolve(s, path, decode);
     drop_unseen(s, loading);
     read_meshes(r, path, s, loading);

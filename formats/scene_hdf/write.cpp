@@ -175,6 +175,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     write_materials(w, s.materials);
     write_maps(w, s);
     write_property_maps(w, s);
+    write_media(w, s);
     write_temperatures(w, s);
     w.put_names("/inputs/name", pick(provenance.inputs, [](const InputFile& f) { return f.name; }));
     w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));

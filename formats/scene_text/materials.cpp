@@ -77,6 +77,9 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
         break;
     }
   }
+  if (const bool wants = std::any_of(row.parameters.begin(), row.parameters.end(), [](const ModelParameter& q) { return q.name == "index"; });
+      wants && !spec.curves.count("index"))
+    if (const auto index = relative_index(p)) spec.curves["index"] = *index;
   check_model(spec, model.where());
 }
 
@@ -91,7 +94,10 @@ void Reader::read_material(const std::string& id, const Params& p) {
   if (const auto map = p.find("map")) m.map = reference(*map);
   if (const auto maps = p.find("maps"))
     for (const Params& map : maps->items()) m.property_maps.push_back(reference(map));
-  if (p.has("model") || !m.map.given()) {
+  if (const auto inside = p.find("inside")) m.inside = reference(*inside);
+  if (const auto outside = p.find("outside")) m.outside = reference(*outside);
+  const bool boundary = m.inside.given() || m.outside.given();
+  if (p.has("model") || (!m.map.given() && !boundary)) {
     read_model(p, m.material.surface);
     m.has_model = true;
   }

@@ -94,8 +94,13 @@ void Reader::run(const Params& root) {
     });
   };
   each("curves", "SP101", [&](const std::string& name, const Params& p) { curves_[name] = read_curve_value(p); });
+  each("media", "SP601", [&](const std::string& name, const Params& p) { read_medium(name, p); });
+  if (const auto ambient = root.find("ambient")) draft_.ambient = reference(*ambient);
   each("materials", "SP101", [&](const std::string& name, const Params& p) { read_material(name, p); });
   each("maps", "SP501", [&](const std::string& name, const Params& p) { read_map(name, p); });
+  each("grids", "SP601", [&](const std::string& name, const Params& p) { read_grid(name, p); });
+  if (const auto volumes = root.find("volumes"))
+    for (const Params& p : volumes->items()) item("SP601", p, [&] { read_volume(p); });
   each("objects", "SP001", [&](const std::string& name, const Params& p) { read_geometry(name, p); });
   item("SP001", root.has("world") ? root.at("world") : root, [&] { read_group("world", root.at("world")); });
   each("groups", "SP001", [&](const std::string& name, const Params& p) {

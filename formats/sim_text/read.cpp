@@ -32,6 +32,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   read_scenes(root, sim);
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
+  sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 1, 10000000, 10000));
   sim.sources = read_sources(root);
   if (const auto p = root.find("periodic")) {
     const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();

@@ -64,6 +64,7 @@ struct Path {
   double sky_factor = 0;
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
   int size = 0;                  // nodes
+  bool scattered_first = false;  // a medium scattered it before the first node
 };
 
 }  // namespace suite

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "radiometry/volume_paths.h"
 
 namespace suite {
 
@@ -16,7 +19,14 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (!optics.media().empty()) {
+    volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
+    transmission_.resize(optics.state().size());
+  }
 }
+
+PathGenerator::~PathGenerator() = default;
+PathGenerator::PathGenerator(PathGenerator&&) noexcept = default;
 
 void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) {
   if (live_.size() < wave.width()) live_.resize(wave.width());
@@ -28,6 +38,8 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   live.length = 0;
   live.shares = live.shares_before = 1;
   live.last_density = 0;
+  live.flights = live.scatterings = 0;
+  live.scattered = false;
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
@@ -35,6 +47,7 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   path.ray = ray.ray;
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   path.weight = ray.weight;
+  if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
@@ -43,12 +56,15 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
 }
 
 void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
+  statistics.trace.rays += std::exchange(probing_.rays, 0);
+  statistics.trace.cycles += std::exchange(probing_.cycles, 0);
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
     for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
+    if (volume_) volume_->travel(wave, live_, statistics);
     size_t kept = 0;
     for (size_t i = 0; i < wave.active.size(); ++i) {
       const uint32_t p = wave.active[i];
@@ -64,13 +80,14 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
       if (options_.explicit_sources) ask_sources(wave, p);
     }
     wave.blocked.resize(wave.rays.size());
-    surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    if (volume_) volume_->look(wave, live_, statistics);
+    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
       Node& node = wave.node(p, wave.path(p).size - 1);
       node.sunlit = node.sunlit || wave.light[i] == light_sun;
-      add_explicit(wave, p, wave.light[i]);
+      add_explicit(wave, p, wave.light[i], i);
     }
 
     // Draw the continuations.
@@ -196,6 +213,8 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   node.bounce_spectrum = factored ? factored->spectrum : w.data();
   node.bounce_scale = static_cast<float>((factored ? factored->scale : 1) / node.density);
   live.last_density = drawn->delta ? 0 : own;
+  live.scattered = false;
+  if (volume_ && dot(node.in, node.hit.normal) * dot(node.out, node.hit.normal) < 0) volume_->cross(live, node);
   live.direction = node.in;
   live.origin = surface_.tracer().leave(node.hit, node.in);
   return true;

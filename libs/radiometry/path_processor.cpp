@@ -77,6 +77,12 @@ void add_node(Wave& wave, size_t p, int n, bool continues, std::span<float> radi
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += factor * node.glow[i];
 }
 
+// L = gathered + through L of a segment through media.
+void add_segment(Wave& wave, size_t p, int n, std::span<float> radiance) {
+  const std::span<float> through = wave.through(p, n), gathered = wave.gathered(p, n);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = gathered[i] + through[i] * radiance[i];
+}
+
 }  // namespace
 
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
@@ -85,8 +91,12 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
   const Atmosphere* air = environment.atmosphere.get();
   auto start_of = [&](int n) { return n == 0 ? path.ray.origin : wave.node(p, n - 1).at.position; };
   if (air && path.end == PathEnd::escaped) through_air(*air, start_of(path.size), path.escape, std::numeric_limits<double>::infinity(), path.escape_factor, wave, radiance);
+  const bool media = wave.has_media();
+  // A path that did not go on from its last node has no segment behind it.
+  if (media && (path.size == 0 || wave.node(p, path.size - 1).continues)) add_segment(wave, p, path.size, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
     add_node(wave, p, n, wave.node(p, n).continues, radiance);
+    if (media) add_segment(wave, p, n, radiance);
     if (air) through_air(*air, start_of(n), -wave.node(p, n).out, wave.node(p, n).hit.distance, wave.node(p, n).spectral_factor, wave, radiance);
   }
   if (path.weight != 1)
@@ -100,6 +110,7 @@ void process_single(Wave& wave, size_t p, const Environment& environment, std::s
     return;
   }
   add_node(wave, p, 0, false, single);
+  if (wave.has_media()) add_segment(wave, p, 0, single);
   const Node& first = wave.node(p, 0);
   if (const Atmosphere* air = environment.atmosphere.get()) through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
   if (path.weight != 1)

@@ -1,7 +1,9 @@
 // Turns a complete path into the radiance that arrives at the sensor (paper, section IV-A, step 5, and equation 5),
 // for all wavelengths of the state, from the last node back to the first:
 //   L_n = c_n Le_n + S_n + w_n / p_n L_{n+1}
-// with S the explicit sources and c the spectral factor of the prefix. Other processors (polarisation, arrival times)
+// and across a segment that crosses media
+//   L = gathered + through L.
+// With S the explicit sources and c the spectral factor of the prefix. Other processors (polarisation, arrival times)
 // walk the same record.
 #pragma once
 #include <span>

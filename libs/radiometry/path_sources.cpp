@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "radiometry/path_generator.h"
+#include "radiometry/volume_paths.h"
 
 namespace suite {
 
@@ -104,30 +105,35 @@ void PathGenerator::meet_glow(Wave& wave, uint32_t p) {
   node.glow = environment_.lamps->glow(node.at.material, cosine > 0);
   if (!node.glow) return;
   node.glow_factor = node.spectral_factor;
-  if (n == 0 || !options_.explicit_sources || !(live.last_density > 0)) return;
-  const double density =
-      environment_.lamps->density(receiver_of(wave.node(p, n - 1)), node.hit, node.hit.distance, cosine);
+  if ((n == 0 && !live.scattered) || !options_.explicit_sources || !(live.last_density > 0)) return;
+  const LightReceiver from = live.scattered ? LightReceiver{live.place, {}, true} : receiver_of(wave.node(p, n - 1));
+  // Boundaries of media may have been passed on the way.
+  const double distance = volume_ ? length(node.hit.position - from.position) : node.hit.distance;
+  const double density = environment_.lamps->density(from, node.hit, distance, cosine);
   if (density > 0) node.glow_factor = 1 / (live.shares + live.shares_before * density / live.last_density);
 }
 
 // Adds a visible sample: as a factored light of the node, or to its direct radiance.
-void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot) {
+void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray) {
   const int n = wave.path(p).size - 1;
   Node& node = wave.node(p, n);
   ExplicitLight& light = node.light[slot];
   const Live& live = live_[p];
   const ScatterModel& model = *node.at.baked->model;
   const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
+  double reach[kMaxKnots];
+  std::fill_n(reach, knots_, 1.0);
+  const bool dim = volume_ && volume_->dims(ray, transmission_, {reach, knots_});
   double denominator = live.shares;
   if (light.density > 0) {
     float pdf[kMaxKnots];
     model.pdf(out, in, {pdf, knots_});
     denominator = live.shares * light.density;
-    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k];
+    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
   const Atmosphere* air = environment_.atmosphere.get();
-  if (light.spectrum && !air) {
+  if (light.spectrum && !air && !dim) {
     if (const auto factored = model.factored(out, in)) {
       light.scatter = factored->spectrum;
       light.scale = scale * factored->scale;
@@ -137,6 +143,8 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot) {
   }
   const std::span<float> w = wave.scratch();
   model.eval(out, in, w);
+  if (dim)
+    for (size_t i = 0; i < w.size(); ++i) w[i] *= transmission_[i];
   float* direct = wave.direct(p, n).data();
   if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
   node.has_direct = true;

@@ -113,6 +113,8 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
                    const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
                    const PipelineOptions& options)
     : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
+  if (!optics.media().empty() && environment.atmosphere)
+    throw Error("layers of air and media in the scene cannot be combined", "let a clear sky stand for the air, or leave the media out");
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
@@ -137,7 +139,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
         return found;
       }
   }
-  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
+  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size(), !optics_.media().empty()),
                                                   PathGenerator(surface_, optics_, environment_, options_),
                                                   std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
                                                   std::vector<float>(state_.size())});

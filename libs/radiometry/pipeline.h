@@ -27,6 +27,7 @@ enum class StopRule : uint8_t {
 struct PipelineOptions {
   uint64_t seed = 1;
   int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
+  uint32_t max_scatterings = 10000;  // consecutive scattering events of a path inside media, beside the nodes
   int roulette_after = 3;        // nodes before paths may end by chance
   bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
   StopRule stop = StopRule::plan;

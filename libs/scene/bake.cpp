@@ -29,6 +29,7 @@ class Baker {
     scene_.origin = draft_.origin;
     scene_.files = draft_.files;
     materials();
+    bake_media(draft_, report_, scene_);
     class_maps();
     property_maps();
     geometry();
@@ -271,6 +272,7 @@ Baker::Built Baker::build_primitive(const DraftGeometry& g) {
 void Baker::geometry() {
   for (const DraftGeometry& g : draft_.geometry) switch (g.kind) {
       case DraftGeometry::Kind::mesh:
+      case DraftGeometry::Kind::voxels:
         built_[g.name] = build_mesh(g);
         break;
       case DraftGeometry::Kind::terrain:
@@ -424,7 +426,8 @@ void Baker::groups() {
     for (const DraftPlacement& p : draft_.groups[g].placements) place(p, group, g == 0);
     scene_.groups.push_back(std::move(group));
   }
-  if (scene_.groups.empty() || draft_.groups.front().placements.empty())
+  const bool media = !draft_.volumes.empty() || draft_.ambient.given();
+  if (scene_.groups.empty() || (draft_.groups.front().placements.empty() && !media))
     add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
 }
 

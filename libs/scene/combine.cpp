@@ -63,6 +63,7 @@ class Combiner {
       all_.tracks.push_back(std::move(t));
     }
     indices(s, tracks);
+    media(part, root.to_parent);
     if (part.motion) {
       root.track = static_cast<uint32_t>(all_.tracks.size());
       all_.tracks.push_back({"'" + part.name + "'", part.motion});
@@ -75,6 +76,21 @@ class Combiner {
     move_behind(all_.temperatures, s.temperatures);
     move_behind(all_.meshes, s.meshes), move_behind(all_.primitives, s.primitives);
     move_behind(all_.materials, s.materials), move_behind(all_.files, s.files);
+  }
+
+  // Media, grids and volumes follow their scene's placement.
+  void media(ScenePart& part, const Affine3& place) {
+    Scene& s = part.scene;
+    if (part.motion && !s.volumes.empty()) throw Error("scene '" + part.name + "' has volumes and moves", "volumes stand still");
+    if (s.ambient != kNone && all_.ambient != kNone) throw Error("two scenes have an ambient medium", "one may fill what no body fills");
+    const uint32_t first = move_behind(all_.media, s.media);
+    shift(s.ambient, first);
+    if (s.ambient != kNone) all_.ambient = s.ambient;
+    for (Material& m : s.materials) shift(m.inside, first), shift(m.outside, first);
+    for (VoxelGrid& g : s.grids)
+      for (uint32_t& m : g.media) m += first;
+    const uint32_t grids = move_behind(all_.grids, s.grids);
+    for (const Volume& v : s.volumes) all_.volumes.push_back({v.grid + grids, place * v.to_world});
   }
 
   Affine3 place_of(const ScenePart& part, bool first) const {

@@ -49,7 +49,7 @@ enum class NormalRule { file, facet, smooth };
 struct DraftGeometry {
   std::string name;
   Where where;
-  enum class Kind { mesh, terrain, primitive } kind = Kind::mesh;
+  enum class Kind { mesh, terrain, primitive, voxels } kind = Kind::mesh;
   SourceMesh mesh;
   SourceTerrain terrain;
   Primitive primitive;
@@ -80,6 +80,7 @@ struct DraftGroup {
 struct DraftMaterial {
   Where where;
   Material material;
+  Reference inside, outside;  // media
   Reference map;  // a class map that decides instead
   bool has_model = false;
   std::optional<TemperatureSpec> temperature;
@@ -96,6 +97,23 @@ struct DraftPropertyMap {
   Where where;
   PropertyMap map;                   // `materials` still empty
   std::vector<Reference> materials;  // mixture: of each channel
+};
+
+struct DraftMedium {
+  Where where;
+  Medium medium;
+};
+
+struct DraftGrid {
+  Where where;
+  VoxelGrid grid;  // `media` still empty
+  std::vector<Reference> media;
+};
+
+struct DraftVolume {
+  Where where;
+  Reference grid;
+  Affine3 to_world;
 };
 
 struct SpectralWindow {
@@ -123,6 +141,10 @@ struct Draft {
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;
   std::vector<DraftPropertyMap> property_maps;
+  std::vector<DraftMedium> media;
+  Reference ambient;
+  std::vector<DraftGrid> grids;
+  std::vector<DraftVolume> volumes;
   std::vector<DraftGeometry> geometry;
   std::vector<DraftGroup> groups;  // [0] = world
   std::vector<DataFile> files;

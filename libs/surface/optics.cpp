@@ -59,10 +59,12 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 
 Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const LoadsAt& loads)
     : state_(std::move(state)) {
+  if (uses_media(scene)) bake_media(scene);
   bake_all(scene, used, loads);
-  if (state_.knots.size() > 1 && one_shape()) {
+  if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
     bake_all(scene, used, loads);
+    if (!media_.empty()) bake_media(scene);
   }
 }
 
@@ -75,6 +77,31 @@ bool Optics::one_shape() const {
     if (m.maps->mixture || !std::all_of(m.maps->variants.begin(), m.maps->variants.end(), uniform)) return false;
     return !m.maps->cube || m.maps->cube->one_shape();
   });
+}
+
+void Optics::bake_media(const Scene& scene) {
+  const auto bake_them = [&] {
+    media_.clear();
+    for (const Medium& m : scene.media) {
+      try {
+        media_.emplace_back(m, state_);
+      } catch (const Error& e) {
+        throw Error(e.where(), "medium '" + m.id + "': " + e.message(), e.hint(), e.code());
+      }
+    }
+  };
+  bake_them();
+  const size_t before = state_.knots.size();
+  for (const BakedMedium& m : media_) {
+    spectral_flights_ = spectral_flights_ || !m.uniform();
+    const auto [least, most] = std::minmax_element(m.scattering.begin(), m.scattering.end());
+    if (*least == *most || before == 1) continue;
+    for (const auto bin : {least, most}) {
+      const size_t b = static_cast<size_t>(bin - m.scattering.begin());
+      if (state_.knots.size() < kMaxKnots && std::find(state_.knots.begin(), state_.knots.end(), b) == state_.knots.end()) state_.knots.push_back(b);
+    }
+  }
+  if (state_.knots.size() != before) bake_them();
 }
 
 void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads) {

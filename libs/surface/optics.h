@@ -27,18 +27,25 @@ class Optics {
   Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {});
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
+  // The scene's media, all of them where a ray can meet one, else none.
+  std::span<const BakedMedium> media() const { return media_; }
+  // False when every medium scatters alike at all wavelengths, so that flights need not be weighed between knots.
+  bool spectral_flights() const { return spectral_flights_; }
   bool any_emission() const { return any_emission_; }
   // The state the materials are baked for: the given one, with its knots reduced to the reference when the shape of no
-  // material changes with wavelength, because the estimator then is the same at every knot.
+  // material or medium changes with wavelength, because the estimator then is the same at every knot; and with knots
+  // added at the bins where media scatter least and most, so that no wavelength's flights are far from all knots'.
   const SpectralState& state() const { return state_; }
 
  private:
   void bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads);
   void bake_one(const Scene& scene, size_t index, const LoadsAt& loads);
   bool one_shape() const;
+  void bake_media(const Scene& scene);
   SpectralState state_;
   std::vector<BakedMaterial> materials_;
-  bool any_emission_ = false;
+  std::vector<BakedMedium> media_;
+  bool any_emission_ = false, spectral_flights_ = false;
 };
 
 // Error naming the material when its temperature is a table that does not reach over the times from begin to end (s).
