@@ -100,7 +100,7 @@ void seconds_to_1_percent() {
   const double a = error(half), b = error(full), slope = std::log2(b / a);
   const double scale = std::pow(0.01 / b, 1 / slope);
   print("error_at_16_paths", 16, "relative RMSE", b, full);
-  print("seconds_to_1_percent", edge * edge, "s (CPU, rendering)", scale * 16 / 8 * (full.cpu - half.cpu), full);
+  print("seconds_to_1_percent", edge * edge, "s (CPU)", scale * 16 / 8 * (full.cpu - half.cpu), full);
 }
 
 }  // namespace
