@@ -12,7 +12,9 @@ std::string hash_of_file(const std::string& path) { return sha256(read_bytes(pat
 
 StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
   // The program itself is the build: another compiler or another line of code gives other last bits.
-  return {{"scene", hash_of_file(sim.scene_path)},
+  std::string scenes;
+  for (const SimulationScene& s : sim.scenes) scenes += hash_of_file(s.path);
+  return {{"scene", sim.scenes.size() == 1 ? scenes : sha256(scenes)},
           {"simulation", hash_of_file(sim.path)},
           {"seed", strf("%llu", static_cast<unsigned long long>(options.pipeline.seed))},
           {"build", hash_of_file("/proc/self/exe")},

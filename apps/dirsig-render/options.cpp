@@ -13,6 +13,7 @@ AppInfo render_info() {
           "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
           "and render.json    what was run: every capture with its paths, seconds and errors\n"
+          "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"
           "The same seed gives the same bytes for any number of threads.\n\n"
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
@@ -44,7 +45,11 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run", "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
+  cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
+  cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }
 

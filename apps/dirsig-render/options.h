@@ -1,6 +1,7 @@
 // Command line of dirsig-render.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "base/run_app.h"
 
@@ -8,13 +9,14 @@ namespace suite {
 
 struct RenderOptions {
   std::string simulation, output = "out";
-  std::string paths, target_error, target_bands = "reference", time, stop = "plan";
+  std::vector<std::string> plugins;
+  std::string explain, paths, target_error, target_bands = "reference", time, stop = "plan";
   std::string study, study_budgets = "4,8,16,32,64", reference;
   long long study_seeds = 4;
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false;
-  bool dry_run = false, list_sensors = false, list_models = false;
+  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false;
 };
 
 AppInfo render_info();

@@ -4,30 +4,23 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/run_app.h"
 #include "formats/envi/envi.h"
+#include "formats/raster/raster_write.h"
 #include "preview.h"
+#include "spectral/planck.h"
 
 namespace suite {
 
 namespace {
 
-EnviHeader header_of(const CaptureResult& r, const OutputSpec& output) {
-  EnviHeader h;
-  h.samples = r.columns;
-  h.lines = r.rows;
-  h.type = output.type == OutputSpec::Type::float64 ? EnviType::float64 : EnviType::float32;
-  h.interleave = static_cast<Interleave>(output.order);
-  return h;
-}
+const char* const kUnits[] = {"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"};
 
-void describe_bands(EnviHeader& h, std::span<const Band> bands) {
-  h.bands = bands.size();
-  h.data_units = "W/(m2 sr um)";
-  for (const Band& b : bands) {
-    h.band_names.push_back(b.name);
-    h.wavelength_um.push_back(b.center_um);
-    h.fwhm_um.push_back(b.fwhm_um);
-  }
+// What radiance in W/(m2 sr um) is multiplied by. Photons are counted at the energy of the band's centre.
+double unit_factor(OutputSpec::Units units, const Band& band) {
+  if (units == OutputSpec::Units::w_cm2) return 1e-4;
+  if (units == OutputSpec::Units::photons) return band.center_um * 1e-6 / (kPlanckConstant * kSpeedOfLight);
+  return 1;
 }
 
 // The bands of the preview: named ones, or those nearest to red, green and blue; one band when there are fewer than 3.
@@ -38,7 +31,8 @@ std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector
     for (const Band& b : bands) known.push_back(b.name);
     for (const std::string& name : names) {
       const auto found = std::find(known.begin(), known.end(), name);
-      if (found == known.end()) throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
+      if (found == known.end())
+        throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
       chosen.push_back(static_cast<size_t>(found - known.begin()));
     }
     return chosen;
@@ -53,47 +47,213 @@ std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector
   return chosen;
 }
 
+// The tangent plane at the scene's origin as a coordinate system that other programs know.
+std::string tangent_wkt(const GeodeticOrigin& o) {
+  return strf(
+      "PROJCS[\"scene ENU\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
+      "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
+      "UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Orthographic\"],PARAMETER[\"latitude_of_origin\",%.12g],"
+      "PARAMETER[\"central_meridian\",%.12g],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT["
+      "\"metre\",1]]",
+      o.latitude_deg, o.longitude_deg);
+}
+
+std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
+  if (files == OutputSpec::Files::natural) files = rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+  if (files == OutputSpec::Files::capture)
+    return rows.captures > 1 ? rows.image + strf("_%04zu", rows.capture_number) : rows.image;
+  if (files == OutputSpec::Files::task) return rows.tasks > 1 ? rows.image + "_" + rows.task : rows.image;
+  return rows.image;
+}
+
 }  // namespace
 
-std::vector<std::string> write_capture(const std::string& folder, const Sensor& sensor, const CaptureResult& r, const OutputSpec& output,
-                                       const std::vector<std::string>& material_names) {
-  const std::string base = folder + "/" + sensor.name();
-  const std::span<const Band> bands = sensor.bands(sensor.tasks()[r.task].captures[r.capture].state);
+// An image while its rows come in.
+struct OutputWriter::Image {
+  uint32_t columns = 0, rows = 0, next = 0;
+  size_t values = 0;                     // of radiance, per pixel
+  std::vector<double> factor;            // of each value
+  std::vector<size_t> chosen;            // of the preview
+  std::map<uint32_t, Delivery> waiting;  // by first row
+  std::unique_ptr<EnviWriter> radiance, error, truth;
+  std::vector<std::unique_ptr<EnviWriter>> products;
   std::vector<std::string> files;
+  std::vector<double> preview;  // [pixel][chosen]
+  std::vector<std::string> names;
+  std::vector<float> all;           // [pixel][value], for formats that take a whole picture
+  std::vector<double> correlation;  // [band][band], summed over rows
+  std::optional<MapGrid> map;
+  std::string description;
+};
 
-  EnviHeader radiance = header_of(r, output);
-  describe_bands(radiance, bands);
-  radiance.description = "spectral radiance of sensor '" + sensor.name() + "'";
-  write_envi(base + ".img", radiance, r.radiance);
-  files.push_back(base + ".img");
+OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes)
+    : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)) {}
+OutputWriter::~OutputWriter() = default;
 
-  EnviHeader error = radiance;
-  error.description = "standard error of the spectral radiance of sensor '" + sensor.name() + "'";
-  write_envi(base + "_error.img", error, r.standard_error);
-  files.push_back(base + "_error.img");
+OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string& stem) {
+  std::unique_ptr<Image>& slot = open_[stem];
+  if (slot) return *slot;
+  slot = std::make_unique<Image>();
+  Image& m = *slot;
+  OutputSpec::Files files = spec_.files;
+  if (files == OutputSpec::Files::natural) files = d.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+  m.columns = d.result.columns;
+  m.rows = files == OutputSpec::Files::capture ? d.result.rows
+           : files == OutputSpec::Files::task  ? d.rows.rows_of_task
+                                               : d.rows.rows_of_all;
+  m.values = d.result.values_per_problem();
+  m.chosen = preview_bands(d.bands, spec_.preview);
+  m.map = d.map;
+  m.description = d.description.empty() ? "" : "; " + d.description;
+  const std::string base = folder_ + "/" + stem, tail = m.description + "; " + notes_.engine;
 
-  EnviHeader truth = header_of(r, output);
-  truth.type = EnviType::float64;  // positions and indices keep every digit
-  truth.bands = r.truth_names.size();
-  truth.band_names = r.truth_names;
-  truth.ignore_value = std::nan("");
-  truth.description = "truth of sensor '" + sensor.name() + "'; materials:";
-  for (size_t i = 0; i < material_names.size(); ++i) truth.description += strf(" %zu=%s", i, material_names[i].c_str());
-  write_envi(base + "_truth.img", truth, r.truth);
-  files.push_back(base + "_truth.img");
-
-  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
-  for (const Band& b : bands) correlation += "," + b.name;
-  for (size_t a = 0; a < r.bands; ++a) {
-    correlation += "\n" + bands[a].name;
-    for (size_t b = 0; b < r.bands; ++b) correlation += strf(",%.4f", r.error_correlation[a * r.bands + b]);
+  EnviHeader h;
+  h.samples = m.columns, h.lines = m.rows, h.bands = m.values;
+  h.type = spec_.type == OutputSpec::Type::float64  ? EnviType::float64
+           : spec_.type == OutputSpec::Type::uint16 ? EnviType::uint16
+                                                    : EnviType::float32;
+  h.interleave = static_cast<Interleave>(spec_.order);
+  h.data_units = kUnits[static_cast<size_t>(spec_.units)];
+  for (size_t c = 0; c < d.result.channels; ++c)
+    for (size_t t = 0; t < d.result.bins; ++t)
+      for (const Band& b : d.bands) {
+        h.band_names.push_back(b.name + (c ? " single" : "") + (d.result.bins > 1 ? strf(" t%zu", t) : ""));
+        h.wavelength_um.push_back(b.center_um);
+        h.fwhm_um.push_back(b.fwhm_um);
+        m.factor.push_back(unit_factor(spec_.units, b));
+      }
+  m.names = h.band_names;
+  if (d.map) {
+    h.map_info = {notes_.origin.given ? "Orthographic" : "Arbitrary",
+                  "1",
+                  "1",
+                  strf("%.10g", d.map->origin.x),
+                  strf("%.10g", d.map->origin.y),
+                  strf("%.10g", d.map->gsd_x),
+                  strf("%.10g", d.map->gsd_y),
+                  notes_.origin.given ? "WGS-84" : "0",
+                  "units=Meters"};
+    if (notes_.origin.given) h.coordinate_system = tangent_wkt(notes_.origin);
   }
-  write_file(base + "_error_correlation.csv", correlation + "\n");
-  files.push_back(base + "_error_correlation.csv");
+  const std::string who = " of sensor '" + d.sensor.name() + "'";
+  auto open = [&](const std::string& suffix, EnviHeader header) {
+    m.files.push_back(base + suffix + ".img");
+    return std::make_unique<EnviWriter>(m.files.back(), std::move(header));
+  };
+  h.description = "spectral radiance" + who + tail;
+  EnviHeader e = h;
+  e.description = "standard error of the spectral radiance" + who + tail;
+  if (spec_.type == OutputSpec::Type::uint16) {
+    std::string gains = "{";
+    for (size_t i = 0; i < m.values; ++i) gains += (i ? ", " : "") + strf("%.9g", spec_.scale);
+    h.extra.push_back({"data gain values", gains + "}"});
+    e.type = EnviType::float32;
+  }
+  m.radiance = open("", h);
+  m.error = open("_error", e);
+  EnviHeader t = h;
+  t.extra.clear(), t.wavelength_um.clear(), t.fwhm_um.clear(), t.data_units.clear();
+  t.type = EnviType::float64;  // positions and indices keep every digit
+  t.bands = d.result.truth_names.size();
+  t.band_names = d.result.truth_names;
+  t.ignore_value = std::nan("");
+  t.description = "truth" + who + tail + "; materials:";
+  for (size_t i = 0; i < notes_.materials.size(); ++i) t.description += strf(" %zu=%s", i, notes_.materials[i].c_str());
+  if (!notes_.tags.empty()) t.description += "; tags:";
+  for (size_t i = 0; i < notes_.tags.size(); ++i) t.description += strf(" %zu=%s", i, notes_.tags[i].c_str());
+  if (t.bands) m.truth = open("_truth", t);
+  for (const Product& p : d.products) {
+    EnviHeader x = h;
+    x.extra.clear();
+    x.bands = p.bands.size(), x.band_names = p.bands, x.data_units = p.unit;
+    if (x.bands != x.wavelength_um.size()) x.wavelength_um.clear(), x.fwhm_um.clear();
+    x.type = p.whole_numbers                           ? EnviType::uint16
+             : spec_.type == OutputSpec::Type::float64 ? EnviType::float64
+                                                       : EnviType::float32;
+    x.description = p.name + who + tail;
+    m.products.push_back(open("_" + p.name, x));
+  }
+  return m;
+}
 
-  write_preview(base + ".png", r.radiance, r.columns, r.rows, r.bands, preview_bands(bands, output.preview));
-  files.push_back(base + ".png");
-  return files;
+void OutputWriter::take(const Delivery& delivery) {
+  for (const TextFile& text : delivery.texts) write_text(text);
+  if (!delivery.result.columns) return;
+  const std::string stem = stem_of(delivery.rows, spec_.files);
+  Image& m = image_of(delivery, stem);
+  OutputSpec::Files files = spec_.files;
+  if (files == OutputSpec::Files::natural)
+    files = delivery.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+  const uint32_t at = files == OutputSpec::Files::capture ? 0
+                      : files == OutputSpec::Files::task  ? delivery.rows.row_in_task
+                                                          : delivery.rows.row_in_all;
+  m.waiting.emplace(at, delivery);
+  // Captures may finish in any order; rows are written in theirs.
+  for (auto next = m.waiting.find(m.next); next != m.waiting.end(); next = m.waiting.find(m.next)) {
+    const Delivery& d = next->second;
+    const size_t n = d.result.problems();
+    std::vector<double> radiance = d.result.radiance, error = d.result.standard_error;
+    for (size_t i = 0; i < n; ++i)
+      for (size_t v = 0; v < m.values; ++v) {
+        double& x = radiance[i * m.values + v];
+        x *= m.factor[v], error[i * m.values + v] *= m.factor[v];
+        if (spec_.geotiff || spec_.exr) m.all.push_back(static_cast<float>(x));
+        if (spec_.type == OutputSpec::Type::uint16) x = std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
+      }
+    for (size_t i = 0; i < n; ++i)
+      for (const size_t b : m.chosen) m.preview.push_back(d.result.radiance[i * m.values + b]);
+    m.radiance->append(radiance);
+    m.error->append(error);
+    if (m.truth) m.truth->append(d.result.truth);
+    for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
+    // Of an image in parts the correlation is the mean over its rows.
+    m.correlation.resize(d.result.bands * d.result.bands);
+    for (size_t i = 0; i < m.correlation.size(); ++i) m.correlation[i] += d.result.error_correlation[i] * d.result.rows;
+    m.next += d.result.rows;
+    m.waiting.erase(next);
+  }
+  if (m.next < m.rows) return;
+  for (EnviWriter* w : {m.radiance.get(), m.error.get(), m.truth.get()})
+    if (w) w->commit();
+  for (auto& w : m.products) w->commit();
+  const std::string base = folder_ + "/" + stem;
+  if (spec_.geotiff) {
+    std::optional<RasterPlacement> place;
+    if (m.map) {
+      place = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
+      if (notes_.origin.given) place->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
+    }
+    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all,
+                     strf("suite %s: ", kVersion) + command_line() + m.description, place);
+    m.files.push_back(base + ".tif");
+  }
+  if (spec_.exr) {
+    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all,
+              strf("suite %s: ", kVersion) + command_line() + m.description);
+    m.files.push_back(base + ".exr");
+  }
+  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
+  const size_t bands = delivery.bands.size();
+  for (const Band& b : delivery.bands) correlation += "," + b.name;
+  for (size_t a = 0; a < bands; ++a) {
+    correlation += "\n" + delivery.bands[a].name;
+    for (size_t b = 0; b < bands; ++b) correlation += strf(",%.4f", m.correlation[a * bands + b] / m.rows);
+  }
+  m.files.push_back(base + "_error_correlation.csv");
+  write_file(m.files.back(), correlation + "\n");
+  write_preview(base + ".png", m.preview, m.columns, m.rows, m.chosen.size());
+  m.files.push_back(base + ".png");
+  for (const std::string& file : m.files) note("wrote " + file);
+  open_.erase(stem);
+}
+
+void OutputWriter::write_text(const TextFile& text) {
+  write_file(folder_ + "/" + text.name, std::string_view(text.text));
+  note("wrote " + folder_ + "/" + text.name);
+}
+
+void check_preview(const Sensor& sensor, const OutputSpec& spec) {
+  for (size_t s = 0; s < sensor.states().size(); ++s) preview_bands(sensor.bands(s), spec.preview);
 }
 
 }  // namespace suite

@@ -1,5 +1,8 @@
-// Files that a finished capture becomes.
+// The files of a run: radiance, its standard error, truth, the sensors' own products, previews; cut into files as
+// asked.
 #pragma once
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,8 +10,31 @@
 
 namespace suite {
 
-// Writes NAME.img, NAME_error.img, NAME_truth.img and NAME.png into the folder; returns their paths.
-std::vector<std::string> write_capture(const std::string& folder, const Sensor& sensor, const CaptureResult& result, const OutputSpec& output,
-                                       const std::vector<std::string>& material_names);
+// What headers say about the scene.
+struct SceneNotes {
+  std::vector<std::string> materials, tags;
+  GeodeticOrigin origin;
+  std::string engine;  // the ray tracer
+};
+
+class OutputWriter {
+ public:
+  OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes);
+  ~OutputWriter();
+  // Takes a finished capture; images whose rows are complete are written. Error: not writable, an unknown preview band.
+  void take(const Delivery& delivery);
+  void write_text(const TextFile& text);
+
+ private:
+  struct Image;
+  Image& image_of(const Delivery& delivery, const std::string& stem);
+  std::string folder_;
+  OutputSpec spec_;
+  SceneNotes notes_;
+  std::map<std::string, std::unique_ptr<Image>> open_;  // images of which rows are still to come
+};
+
+// Refuses, before rendering, a preview that names bands a sensor does not have.
+void check_preview(const Sensor& sensor, const OutputSpec& spec);
 
 }  // namespace suite

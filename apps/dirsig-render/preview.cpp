@@ -4,30 +4,34 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/error.h"
 #include "base/run_app.h"
 #include "formats/picture/picture.h"
 
 namespace suite {
 
-void write_preview(const std::string& path, std::span<const double> radiance, uint32_t columns, uint32_t rows, size_t bands, std::span<const size_t> chosen) {
-  std::vector<double> values;
-  for (size_t i = 0; i < size_t{columns} * rows; ++i)
-    for (const size_t b : chosen)
-      if (const double v = radiance[i * bands + b]; std::isfinite(v)) values.push_back(v);
+void write_preview(const std::string& path, std::span<const double> values, uint32_t columns, uint32_t rows,
+                   size_t bands) {
+  std::vector<double> finite;
+  for (const double v : values)
+    if (std::isfinite(v)) finite.push_back(v);
   double white = 1;
-  if (!values.empty()) {
-    const auto at = values.begin() + static_cast<long>(0.99 * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
+  if (!finite.empty()) {
+    const auto at = finite.begin() + static_cast<long>(0.99 * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), at, finite.end());
     if (*at > 0) white = *at;
   }
-  Canvas canvas(static_cast<int>(columns), static_cast<int>(rows), kBlack);
-  for (uint32_t r = 0; r < rows; ++r)
-    for (uint32_t c = 0; c < columns; ++c) {
-      const double* v = &radiance[(size_t{r} * columns + c) * bands];
-      auto shade = [&](size_t k) { return srgb(v[chosen[std::min(k, chosen.size() - 1)]] / white); };
-      canvas.set(static_cast<int>(c), static_cast<int>(r), {shade(0), shade(1), shade(2)});
+  constexpr uint32_t most = 16384;
+  const uint32_t stride = std::max((columns + most - 1) / most, (rows + most - 1) / most);
+  Canvas canvas(static_cast<int>((columns + stride - 1) / stride), static_cast<int>((rows + stride - 1) / stride),
+                kBlack);
+  for (uint32_t r = 0; r < rows; r += stride)
+    for (uint32_t c = 0; c < columns; c += stride) {
+      const double* v = &values[(size_t{r} * columns + c) * bands];
+      auto shade = [&](size_t k) { return srgb(v[std::min(k, bands - 1)] / white); };
+      canvas.set(static_cast<int>(c / stride), static_cast<int>(r / stride), {shade(0), shade(1), shade(2)});
     }
-  write_png(path, canvas, command_line());
+  write_png(path, canvas, command_line() + strf("; linear from 0 to %g W/(m2 sr um) (99th percentile), sRGB", white));
 }
 
 }  // namespace suite

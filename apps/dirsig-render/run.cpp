@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/files.h"
 #include "base/progress.h"
@@ -10,9 +11,12 @@
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
 #include "log.h"
-#include "motion/ephemeris.h"
 #include "optics/models.h"
+#include "scene/combine.h"
 #include "output.h"
+#include "radiometry/sources/source_table.h"
+#include "radiometry/truth/truth.h"
+#include "sensor/plugin.h"
 #include "study.h"
 
 namespace suite {
@@ -24,6 +28,16 @@ int list_sensors() {
   return 0;
 }
 
+int list_sources() {
+  for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
+  return 0;
+}
+
+int list_truth() {
+  for (const TruthRow& row : truth_rows()) std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [", row.unit.c_str(), row.unit.empty() ? "" : "]");
+  return 0;
+}
+
 int list_models() {
   for (const ModelRow& row : models()) {
     std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
@@ -32,16 +46,30 @@ int list_models() {
   return 0;
 }
 
-// The Sun's direction (and size) from date and place.
-void resolve_sun(Simulation& sim, const Scene& scene) {
-  if (!sim.sun_by_time) return;
-  if (!scene.origin.given)
-    throw Error(sim.sun_by_time->where, "a sun by date needs a scene with a geodetic origin", "give the scene an origin, or the sun {zenith_deg, azimuth_deg}");
-  const SceneFrame frame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
-  const SkyBody sun = sun_at(frame, {}, instant_from_utc(sim.sun_by_time->utc));
-  sim.sources.sun->direction = sun.direction;
-  if (sim.sun_by_time->disk_from_distance) sim.sources.sun->half_angle = sun.angular_radius;
-  note(strf("sun at %s: %.3f degrees above the horizon, %.5f AU", to_iso8601(sim.sun_by_time->utc, 0).c_str(), sun.elevation / kDegree, sun.distance / kAstronomicalUnit));
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim) {
+  SceneNeeds needs;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+  return needs;
+}
+
+// All scenes of a simulation as one.
+Scene load_scenes(const Simulation& sim) {
+  std::vector<ScenePart> parts;
+  for (const SimulationScene& s : sim.scenes) {
+    LoadReport loaded;
+    Scene scene = read_scene(
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
+    note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
+    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
+  }
+  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
+  try {
+    return combine_scenes(std::move(parts));
+  } catch (const Error& e) {
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
+  }
 }
 
 int dry_run(const Simulation& sim, const JobOptions& options) {
@@ -74,21 +102,25 @@ void tell(const JobReport& r) {
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
+  for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (o.list_sensors) return list_sensors();
+  if (o.list_sources) return list_sources();
+  if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
+  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
-  std::vector<std::string> material_names;
-  std::string folder = o.output;
-  OutputSpec output;
+  std::unique_ptr<OutputWriter> writer;
+  SimulationCallbacks callbacks;
   StudyImage* study = nullptr;  // where captures go while a study runs
-  const auto deliver = [&](const Sensor& sensor, const CaptureResult& result) {
-    if (study) return append(*study, sensor.name(), sensor.bands(sensor.tasks()[result.task].captures[result.capture].state), result);
-    for (const std::string& file : write_capture(folder, sensor, result, output, material_names)) note("wrote " + file);
+  callbacks.deliver = [&](const Delivery& delivery) {
+    if (study) append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    else writer->take(delivery);
   };
-  Simulation sim = read_simulation(o.simulation, deliver);
-  output = sim.output;
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) { return read_scene_origin(scenes.front().path).origin; };
+  Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -102,21 +134,29 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  auto scene = std::make_shared<Scene>(read_scene(sim.scene_path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }));
-  // A map that is stored but not evaluated would be a picture of another scene.
-  if (!scene->property_bindings.empty())
-    throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene has property maps (mixture, texture, cube, temperature, bump, opacity), which this renderer does not evaluate yet",
-                "prepare it with class maps only");
-  resolve_sun(sim, *scene);
-  for (const Material& m : scene->materials) material_names.push_back(m.id);
+  const auto scene = std::make_shared<Scene>(load_scenes(sim));
+  if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+  for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
+  for (const auto& sensor : sim.sensors) {
+    check_preview(*sensor, sim.output);
+    for (const std::string& truth : sensor->truth()) find_truth(truth);
+  }
+  SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
+  for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
-  make_folder(folder);
-  if (!sim.sources.sun && !sim.sources.sky) warn("there is no sun and no sky: only materials with a temperature will be seen");
-  const std::unique_ptr<StateStore> store = open_store(o, folder, sim, options);
+  make_folder(o.output);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
+  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
+  const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
   tell(report);
-  write_log(folder + "/render.json", report, options);
+  write_log(o.output + "/render.json", report, options);
+  for (const auto& sensor : sim.sensors)
+    for (const TextFile& log : sensor->logs()) writer->write_text(log);
   return 0;
 }
 

@@ -64,7 +64,7 @@ Size size_of(const Simulation& sim) {
   for (const auto& sensor : sim.sensors)
     for (const Task& t : sensor->tasks())
       for (const Capture& c : t.captures) {
-        const size_t bands = sensor->bands(c.state).size() * c.time_bins;
+        const size_t bands = sensor->bands(c.state).size() * c.bins;
         if (size.bands && bands != size.bands)
           throw Error("a study wants captures of the same number of bands", "study the sensors one by one");
         size = {size.pixels + c.problems(), bands};

@@ -22,6 +22,8 @@ struct MotionContext {
   // Mean elements of a satellite (catalogue number or title) from a file; the application passes the reader of
   // formats/tle.
   std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
+  // The path of a file that a node names; null: relative to the text.
+  std::function<std::string(const Params&)> resolve = nullptr;
 };
 
 // The track a node describes. Marks what it reads; the caller rejects unread keys. Error, located: see FORMAT.md.

@@ -57,9 +57,13 @@ PoseFields fields_of(const Params& node) {
 
 TrackPtr make_track(const Params& node, const MotionContext& context, int depth);
 
+std::string path_of(const Params& file, const MotionContext& context) {
+  return context.resolve ? context.resolve(file) : file.as_path();
+}
+
 TrackPtr make_keyframes(const Params& node, const MotionContext& context) {
   if (const auto file = node.find("file"))
-    return located(*file, [&] { return keyframe_track(read_pose_keys(file->as_path(), context)); });
+    return located(*file, [&] { return keyframe_track(read_pose_keys(path_of(*file, context), context)); });
   std::vector<PoseKey> keys;
   for (const Params& item : node.at("keys").items()) {
     const double time = time_from(item, context);
@@ -116,7 +120,7 @@ TrackPtr make_orbit(const Params& node, const MotionContext& context) {
   SUITE_CHECK(context.satellites != nullptr);
   const Params tle = node.at("tle");
   return located(node, [&] {
-    const OrbitElements elements = context.satellites(tle.as_path(), node.text("satellite"));
+    const OrbitElements elements = context.satellites(path_of(tle, context), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
     return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
@@ -164,7 +168,7 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
       break;
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
-      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites};
+      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites, context.resolve};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }

@@ -57,7 +57,7 @@ void write_hierarchy(Writer& w, const Scene& s) {
   w.put("/groups/placements", pick(s.groups, [](const Group& g) { return uint64_t{g.placements.size()}; }), "1");
   std::vector<double> transform;
   std::vector<uint8_t> kind;
-  std::vector<uint32_t> target, material, tag;
+  std::vector<uint32_t> target, material, tag, track;
   for (const Group& g : s.groups)
     for (const Placement& p : g.placements) {
       for (int r = 0; r < 3; ++r)
@@ -67,12 +67,14 @@ void write_hierarchy(Writer& w, const Scene& s) {
       target.push_back(p.target);
       material.push_back(p.material_override);
       tag.push_back(p.tag);
+      track.push_back(p.track);
     }
   w.put("/placements/to_parent", transform, "m", 12);
   w.put("/placements/kind", kind, "1");
   w.put("/placements/target", target, "1");
   w.put("/placements/material", material, "1");
   w.put("/placements/tag", tag, "1");
+  w.put("/placements/track", track, "1");
   w.put_names("/tags", s.tags);
 }
 
@@ -167,10 +169,14 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
                               s.origin.given ? 1.0 : 0.0};
     w.attribute("origin_latitude_deg_longitude_deg_height_m_given", origin);
     write_meshes(w, s.meshes);
+    w.attribute("epoch_utc", s.epoch);
     write_hierarchy(w, s);
+    write_tracks(w, s);
     write_materials(w, s.materials);
     write_maps(w, s);
     write_property_maps(w, s);
+    write_media(w, s);
+    write_temperatures(w, s);
     w.put_names("/inputs/name", pick(provenance.inputs, [](const InputFile& f) { return f.name; }));
     w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));
     w.close();

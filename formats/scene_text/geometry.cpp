@@ -14,7 +14,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   g.name = name;
   g.where = p.where();
   if (const auto material = p.find("material")) g.material = reference(*material);
-  std::vector<std::string> kinds{"obj", "terrain"};
+  std::vector<std::string> kinds{"obj", "terrain", "voxels"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
   for (const std::string& k : kinds)
@@ -27,6 +27,8 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
     read_obj_geometry(p, g);
   else if (kind == "terrain")
     read_terrain(p, g);
+  else if (kind == "voxels")
+    read_voxel_geometry(p, g);
   else
     read_primitive(p, g, kind);
   draft_.geometry.push_back(std::move(g));

@@ -14,6 +14,11 @@ uint16_t class_of(const std::string& key, const Params& where) {
   return static_cast<uint16_t>(std::stol(key));
 }
 
+void read_extend(const Params& p, Drape& drape) {
+  constexpr Drape::Extend rules[] = {Drape::Extend::clamp, Drape::Extend::repeat, Drape::Extend::none};
+  if (const auto extend = p.find("extend")) drape.extend = rules[extend->as_choice({"clamp", "repeat", "none"})];
+}
+
 void read_drape(const Params& p, Drape& drape) {
   const std::vector<double> origin = p.at("origin").as_numbers();
   if (origin.size() != 2)
@@ -26,8 +31,7 @@ void read_drape(const Params& p, Drape& drape) {
     throw gsd.error("a ground sample distance is one or two numbers other than 0, m");
   drape.gsd_x = g[0];
   drape.gsd_y = g[1];
-  constexpr Drape::Extend rules[] = {Drape::Extend::clamp, Drape::Extend::repeat, Drape::Extend::none};
-  if (const auto extend = p.find("extend")) drape.extend = rules[extend->as_choice({"clamp", "repeat", "none"})];
+  read_extend(p, drape);
 }
 
 }  // namespace
@@ -36,6 +40,7 @@ void read_projection(const Params& p, Projection& projection, Drape& drape) {
   if (const auto named = p.find("projection"); named && named->as_choice({"drape", "uv"}) == 1)
     projection = Projection::uv;
   if (projection == Projection::drape) read_drape(p.at("drape"), drape);
+  else read_extend(p, drape);
 }
 
 void Reader::read_map(const std::string& name, const Params& p) {

@@ -77,6 +77,9 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
         break;
     }
   }
+  if (const bool wants = std::any_of(row.parameters.begin(), row.parameters.end(), [](const ModelParameter& q) { return q.name == "index"; });
+      wants && !spec.curves.count("index"))
+    if (const auto index = relative_index(p)) spec.curves["index"] = *index;
   check_model(spec, model.where());
 }
 
@@ -91,14 +94,19 @@ void Reader::read_material(const std::string& id, const Params& p) {
   if (const auto map = p.find("map")) m.map = reference(*map);
   if (const auto maps = p.find("maps"))
     for (const Params& map : maps->items()) m.property_maps.push_back(reference(map));
-  if (p.has("model") || !m.map.given()) {
+  if (const auto inside = p.find("inside")) m.inside = reference(*inside);
+  if (const auto outside = p.find("outside")) m.outside = reference(*outside);
+  const bool boundary = m.inside.given() || m.outside.given();
+  if (p.has("model") || (!m.map.given() && !boundary)) {
     read_model(p, m.material.surface);
     m.has_model = true;
   }
   m.material.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
-  if (const auto thermal = p.find("thermal"))
-    for (const char* name : {"conductivity_w_m_k", "density_kg_m3", "specific_heat_j_kg_k", "thickness_m"})
-      if (const auto value = thermal->find(name)) m.material.thermal[name] = value->as_number_in(1e-12, 1e12, "SI");
+  if (const auto thermal = p.find("thermal")) read_thermal(*thermal, m);
+  if (const auto temperature = p.find("temperature")) {
+    if (p.has("temperature_k")) throw temperature->error("a material has either 'temperature' or 'temperature_k'");
+    read_temperature(*temperature, m);
+  }
   draft_.materials[slot] = std::move(m);
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
+#include "motion/time.h"
 
 namespace suite {
 namespace {
@@ -60,6 +61,20 @@ void Reader::run(const Params& root) {
       draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
       draft_.origin.given = true;
     });
+  if (const auto e = root.find("epoch"))
+    item("SP001", *e, [&] {
+      try {
+        draft_.epoch = to_iso8601(parse_iso8601(e->as_text()), 9);
+      } catch (const Error& fault) {
+        throw e->error(fault.message(), fault.hint());
+      }
+    });
+  if (const auto t = root.find("times_s"))
+    item("SP001", *t, [&] {
+      const std::vector<double> edge = t->as_numbers();
+      if (edge.size() != 2 || !(edge[0] <= edge[1])) throw t->error("'times_s' is [begin, end] in seconds");
+      draft_.times = TimeWindowSpec{edge[0], edge[1], t->where()};
+    });
   if (const auto windows = root.find("windows_um"))
     for (const Params& w : windows->items())
       item("SP001", w, [&] {
@@ -79,8 +94,13 @@ void Reader::run(const Params& root) {
     });
   };
   each("curves", "SP101", [&](const std::string& name, const Params& p) { curves_[name] = read_curve_value(p); });
+  each("media", "SP601", [&](const std::string& name, const Params& p) { read_medium(name, p); });
+  if (const auto ambient = root.find("ambient")) draft_.ambient = reference(*ambient);
   each("materials", "SP101", [&](const std::string& name, const Params& p) { read_material(name, p); });
   each("maps", "SP501", [&](const std::string& name, const Params& p) { read_map(name, p); });
+  each("grids", "SP601", [&](const std::string& name, const Params& p) { read_grid(name, p); });
+  if (const auto volumes = root.find("volumes"))
+    for (const Params& p : volumes->items()) item("SP601", p, [&] { read_volume(p); });
   each("objects", "SP001", [&](const std::string& name, const Params& p) { read_geometry(name, p); });
   item("SP001", root.has("world") ? root.at("world") : root, [&] { read_group("world", root.at("world")); });
   each("groups", "SP001", [&](const std::string& name, const Params& p) {

@@ -2,10 +2,12 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "base/params.h"
 #include "formats/curve/curve.h"
 #include "formats/scene_text/scene_text.h"
+#include "formats/voxel/voxel.h"
 #include "motion/scene_frame.h"
 
 namespace suite::scene_text {
@@ -27,6 +29,18 @@ class Reader {
   Curve read_curve_map(const Params& p);
   void read_model(const Params& p, ModelSpec& spec);
   std::string embed(const Params& p);
+  void read_phase(const Params& p, ModelSpec& spec);
+  std::optional<Curve> relative_index(const Params& p);
+  // media.cpp
+  void read_medium(const std::string& id, const Params& p);
+  void read_grid(const std::string& name, const Params& p);
+  void read_volume(const Params& p);
+  void read_voxel_geometry(const Params& p, DraftGeometry& g);
+  // The voxels that a value names, with their raw files among the inputs.
+  VoxelData read_voxel_input(const Params& p);
+  // temperatures.cpp
+  void read_thermal(const Params& p, DraftMaterial& m);
+  void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_obj_geometry(const Params& p, DraftGeometry& g);
@@ -35,7 +49,8 @@ class Reader {
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
-  DraftPlacement read_placement(const Params& p);
+  DraftPlacement read_placement(const Params& p, bool world);
+  std::shared_ptr<const Track> read_motion(const Params& p, bool world);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);

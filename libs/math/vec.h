@@ -137,6 +137,7 @@ struct Ray {
   Vec3 origin;
   Dir direction;
   double time = 0;  // s, simulation time
+  uint32_t draw = 0;  // number of the random draw this ray belongs to; surfaces with holes decide by it (trace/hit_filter.h)
 };
 
 }  // namespace suite

@@ -6,6 +6,24 @@
 
 namespace suite {
 
+namespace {
+
+// Does a face of this geometry bound a medium?
+bool bounds_medium(const Draft& draft, const DraftGeometry& g) {
+  const auto has_medium = [&](const std::string& id) {
+    return std::any_of(draft.materials.begin(), draft.materials.end(), [&](const DraftMaterial& m) {
+      return m.material.id == id && (m.inside.given() || m.outside.given());
+    });
+  };
+  if (has_medium(g.material.name)) return true;
+  return std::any_of(g.mesh.runs.begin(), g.mesh.runs.end(), [&](const SourceMesh::Run& run) {
+    const auto named = g.materials.find(run.material);
+    return has_medium(named == g.materials.end() ? run.material : named->second.name);
+  });
+}
+
+}  // namespace
+
 void check_draft_meshes(Draft& draft, const MeshCheck& options, bool repair, Report& report) {
   struct Outcome {
     std::vector<MeshFinding> findings;
@@ -31,6 +49,9 @@ void check_draft_meshes(Draft& draft, const MeshCheck& options, bool repair, Rep
     for (const MeshFinding& f : outcomes[g].findings)
       for (size_t k = 0; k < f.examples.size(); ++k)
         report.add(f.code, asset, f.examples[k], k == 0 ? f.count - (f.examples.size() - 1) : 1);
+    for (const MeshFinding& f : outcomes[g].findings)
+      if (std::string_view(f.code) == "SP306" && !f.examples.empty() && bounds_medium(draft, draft.geometry[g]))
+        report.add("SP606", asset, f.examples.front());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "motion/track_record.h"
 
 namespace suite {
 
@@ -33,6 +34,11 @@ class Static final : public Track {
   explicit Static(const Pose& pose) : pose_(pose) { check_pose(pose, "pose"); }
   Pose at(double) const override { return pose_; }
   Vec3 velocity(double) const override { return {}; }
+  TrackRecord record() const override {
+    TrackRecord r;
+    record::put(r.numbers, pose_);
+    return r;
+  }
 
  private:
   Pose pose_;
@@ -67,6 +73,11 @@ class Keyframes final : public Track {
       if (k.time > span.begin && k.time < span.end) times.push_back(k.time);
     return times;
   }
+  TrackRecord record() const override {
+    TrackRecord r{TrackRecord::Kind::keyframes, {}, {}, {}};
+    for (const PoseKey& k : keys_) r.numbers.push_back(k.time), record::put(r.numbers, k.pose);
+    return r;
+  }
 
  private:
   std::vector<PoseKey> keys_;
@@ -84,6 +95,7 @@ class Straight final : public Track {
         Vec3{std::cos(m.climb) * std::cos(m.azimuth), std::cos(m.climb) * std::sin(m.azimuth), std::sin(m.climb)};
     rotation_ = platform_rotation(m.azimuth, m.climb, 0);
     if (m.curved) {
+      frame_.emplace(*m.curved);
       local_.emplace(m.curved->geodetic_from_enu(m.start));
       to_scene_ = m.curved->to_ecef().inverse() * local_->to_ecef();
       to_scene_.translation = m.start;  // what it is, without the round trip through the Earth's centre
@@ -96,12 +108,17 @@ class Straight final : public Track {
     return to_scene_ * Pose{local_->curved_rotation(way) * rotation_, local_->curved(way)};
   }
   Vec3 velocity(double t) const override { return local_ ? Track::velocity(t) : direction_ * m_.speed; }
+  TrackRecord record() const override {
+    TrackRecord r{TrackRecord::Kind::straight, {m_.start.x, m_.start.y, m_.start.z, m_.azimuth, m_.climb, m_.speed, m_.t0}, {}, {}};
+    if (frame_) record::put(r.numbers, *frame_);
+    return r;
+  }
 
  private:
   StraightMotion m_;
   Vec3 direction_;
   Quat rotation_;
-  std::optional<SceneFrame> local_;
+  std::optional<SceneFrame> frame_, local_;  // of the scene; of the start
   Pose to_scene_;
 };
 
@@ -123,6 +140,13 @@ class Circle final : public Track {
   Vec3 velocity(double t) const override {
     const double a = angle(t);
     return Vec3{-std::sin(a), std::cos(a), 0} * (turn_ * m_.speed);
+  }
+  TrackRecord record() const override {
+    const double clockwise = m_.clockwise ? 1 : 0;
+    return {TrackRecord::Kind::circle,
+            {m_.center.x, m_.center.y, m_.center.z, m_.radius, m_.speed, m_.azimuth, m_.bank, m_.t0, clockwise},
+            {},
+            {}};
   }
 
  private:
@@ -147,6 +171,13 @@ class Spin final : public Track {
   Vec3 velocity(double t) const override {
     return m_.base.vector(cross(m_.axis * m_.rate, rotate(turned(t), -m_.through)));
   }
+  TrackRecord record() const override {
+    TrackRecord r{TrackRecord::Kind::spin, {}, {}, {}};
+    record::put(r.numbers, m_.base);
+    for (const double x : {m_.axis.x, m_.axis.y, m_.axis.z, m_.through.x, m_.through.y, m_.through.z, m_.rate, m_.t0})
+      r.numbers.push_back(x);
+    return r;
+  }
 
  private:
   // Whole turns are taken off first, so that long times keep their digits.
@@ -170,8 +201,33 @@ class Composed final : public Track {
     return all;
   }
 
+  TrackRecord record() const override { return {TrackRecord::Kind::composed, {}, {}, {outer_->record(), inner_->record()}}; }
+
  private:
   TrackPtr outer_, inner_;
+};
+
+class Delayed final : public Track {
+ public:
+  Delayed(TrackPtr track, double seconds) : track_(std::move(track)), later_(seconds) {
+    SUITE_CHECK(track_ != nullptr);
+    need_finite(std::isfinite(seconds), "delay");
+  }
+  Pose at(double t) const override { return track_->at(t - later_); }
+  Vec3 velocity(double t) const override { return track_->velocity(t - later_); }
+  TimeSpan covered() const override {
+    const TimeSpan c = track_->covered();
+    return {c.begin + later_, c.end + later_};
+  }
+  std::vector<double> kinks(TimeSpan span) const override {
+    std::vector<double> times = track_->kinks({span.begin - later_, span.end - later_});
+    for (double& t : times) t += later_;
+    return times;
+  }
+
+ private:
+  TrackPtr track_;
+  double later_;
 };
 
 class Orbit final : public Track {
@@ -188,6 +244,19 @@ class Orbit final : public Track {
     return {rotation_of(-f.y, f.x, f.z), s.position};
   }
   Vec3 velocity(double t) const override { return state(t).velocity; }
+
+  TrackRecord record() const override {
+    const OrbitElements& e = orbit_->elements();
+    TrackRecord r{TrackRecord::Kind::orbit, {}, e.satellite, {}};
+    record::put(r.numbers, e.epoch);
+    for (const double x :
+         {e.inclination, e.ascending_node, e.eccentricity, e.perigee_argument, e.mean_anomaly, e.mean_motion, e.drag})
+      r.numbers.push_back(x);
+    record::put(r.numbers, frame_);
+    record::put(r.numbers, clock_.utc(0));
+    r.numbers.push_back(dut1_);
+    return r;
+  }
 
  private:
   OrbitState state(double t) const {
@@ -234,6 +303,13 @@ class Pointed final : public Track {
     const std::vector<double> more = target_ ? target_->kinks(span) : std::vector<double>{};
     std::merge(times.begin(), times.end(), more.begin(), more.end(), std::back_inserter(all));
     return all;
+  }
+
+  TrackRecord record() const override {
+    TrackRecord r{TrackRecord::Kind::pointed, {static_cast<double>(kind_)}, {}, {place_->record()}};
+    if (target_) r.parts.push_back(target_->record());
+    if (frame_) record::put(r.numbers, *frame_);
+    return r;
   }
 
  private:
@@ -289,6 +365,8 @@ TimeSpan Track::covered() const {
 
 std::vector<double> Track::kinks(TimeSpan) const { return {}; }
 
+TrackRecord Track::record() const { throw Error("this kind of motion cannot be stored"); }
+
 void Track::check_time(double t) const {
   const TimeSpan c = covered();
   if (!c.contains(t))
@@ -334,6 +412,7 @@ TrackPtr spin_track(const SpinMotion& motion) { return std::make_shared<Spin>(mo
 TrackPtr composed_track(TrackPtr outer, TrackPtr inner) {
   return std::make_shared<Composed>(std::move(outer), std::move(inner));
 }
+TrackPtr delayed_track(TrackPtr track, double seconds) { return std::make_shared<Delayed>(std::move(track), seconds); }
 TrackPtr orbit_track(std::shared_ptr<const Sgp4> orbit, const SceneFrame& frame, const Clock& clock, double dut1) {
   return std::make_shared<Orbit>(std::move(orbit), frame, clock, dut1);
 }

@@ -16,6 +16,8 @@
 
 namespace suite {
 
+struct TrackRecord;
+
 // Immutable; all members may be called from many threads.
 class Track {
  public:
@@ -28,6 +30,8 @@ class Track {
   virtual TimeSpan covered() const;  // all times by default
   // Times inside the span where the motion has a kink (keyframes), ascending; none by default.
   virtual std::vector<double> kinks(TimeSpan span) const;
+  // As plain data (track_record.h). Error for a kind that cannot be stored.
+  virtual TrackRecord record() const;
 
  protected:
   void check_time(double t) const;  // Error outside covered()
@@ -94,6 +98,9 @@ TrackPtr spin_track(const SpinMotion& motion);
 
 // inner, given in the moving frame of outer: a camera on a gimbal on an aircraft.
 TrackPtr composed_track(TrackPtr outer, TrackPtr inner);
+
+// The same motion, `seconds` later: at t where `track` is at t - seconds. Cannot be stored.
+TrackPtr delayed_track(TrackPtr track, double seconds);
 
 // A satellite: position from SGP4, in the scene's frame; clock and dut1 (s) tie simulation time to UTC. Orientation:
 // z away from the Earth's ellipsoid, y along the velocity over the rotating Earth as nearly as that allows.

@@ -1,6 +1,7 @@
 // A scattering model as a user describes it and a scene stores it: a name, numbers, curves, data. No spectral state
 // yet; baking it for a state gives a ScatterModel (models.h).
 #pragma once
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,12 @@ struct Material {
   ModelSpec surface;                      // reflection and transmission of both sides
   double temperature_k = 0;               // constant temperature; 0 = none given, the material does not emit
   std::map<std::string, double> thermal;  // conductivity_w_m_k, density_kg_m3, specific_heat_j_kg_k, thickness_m
+  // Media that begin behind and in front of the surface, indices into Scene::media. With a medium and without a model
+  // the surface is an index-matched boundary: rays pass.
+  static constexpr uint32_t kNoMedium = 0xffffffffu;
+  uint32_t inside = kNoMedium, outside = kNoMedium;
+  bool bounds_medium() const { return inside != kNoMedium || outside != kNoMedium; }
+  bool is_boundary() const { return surface.model.empty() && bounds_medium(); }
 };
 
 }  // namespace suite

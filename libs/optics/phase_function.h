@@ -28,6 +28,8 @@ class PhaseFunction {
   virtual void pdf(double cos_scatter, std::span<float> p) const = 0;
   // Mean cosine at each wavelength.
   virtual void asymmetry(std::span<float> g) const = 0;
+  // True when eval gives the same number at all wavelengths.
+  virtual bool spectrally_uniform() const { return false; }
 };
 
 // The direction `in` for an outgoing direction, a cosine from sample() and one more uniform number for the azimuth.

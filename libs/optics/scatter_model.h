@@ -61,6 +61,8 @@ class ScatterModel {
   virtual bool single_lobe() const { return false; }
   // True when nothing ever passes to the other side.
   virtual bool opaque() const { return true; }
+  // True when turning both directions about z changes nothing: the tangent of the surface does not matter.
+  virtual bool isotropic() const { return true; }
 };
 
 }  // namespace suite

@@ -5,32 +5,41 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "surface/surface.h"
 
 namespace suite {
+
+// The explicit sources that a node may ask, one sample each.
+enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_slots };
 
 // Light that a node receives straight from an explicit source.
 struct ExplicitLight {
   Dir direction;
   double density = 0;            // of having drawn this direction from the source, 1/sr; 0 = collimated
   float radiance_scale = 0;      // relative radiance of the source in this direction
-  const float* spectrum = nullptr;
+  const float* spectrum = nullptr;  // null = the sky's, whose shape changes with wavelength
   // What arrives, when the scattering factors into a number and a spectrum: scale * spectrum[k] * scatter[k].
-  // Null = blocked, or already added to the node's direct radiance.
   const float* scatter = nullptr;
   float scale = 0;
+  double distance = std::numeric_limits<double>::infinity();  // m to the source
 };
 
 struct Node {
-  Hit hit;
+  Hit hit;                       // object kNone: the Earth under the scene
   Interaction at;
   Dir out;                       // back along the segment, ENU
   double optical_length = 0;     // m from the sensor, sum of segment lengths
   bool sunlit = false;           // the explicit sample of the sun arrived
   bool has_direct = false;       // explicit light that did not factor stands in the wave's store
   double spectral_factor = 1;    // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
-  std::array<ExplicitLight, 2> light;   // sun, sky
+  // Bit s is set when light[s] arrived and its scattering factored; the other entries hold nothing.
+  uint8_t lights = 0;
+  std::array<ExplicitLight, light_slots> light;
+  // A glowing surface: its radiance towards the path, per bin, and the factor it counts with. Null = does not glow.
+  const float* glow = nullptr;
+  double glow_factor = 0;
   // The continuation. w / (density of having drawn it) is bounce_scale * bounce_spectrum[k].
   const float* bounce_spectrum = nullptr;
   float bounce_scale = 0;
@@ -51,9 +60,11 @@ struct Path {
   Dir escape;                    // direction in which it left the scene
   double escape_factor = 1;      // spectral factor of the whole path
   double sun_factor = 0;         // the same when the Sun was met by chance, shared with explicit sampling
+  double moon_factor = 0;
   double sky_factor = 0;
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
   int size = 0;                  // nodes
+  bool scattered_first = false;  // a medium scattered it before the first node
 };
 
 }  // namespace suite

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "radiometry/volume_paths.h"
 
 namespace suite {
 
 namespace {
-// Dimensions of the sample streams: block 0 is the sensor's, 1 + n is node n's continuation and sources, kLobes + n its
-// choice of lobe. Roulette and knots use hashed numbers, which take no stratification away from the others.
-constexpr uint32_t kLobes = 128;
+// Roulette and knots use hashed numbers, which take no stratification away from the others.
+constexpr uint32_t kLobes = kLobeBlock;
 constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 }  // namespace
 
@@ -17,7 +19,14 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (!optics.media().empty()) {
+    volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
+    transmission_.resize(optics.state().size());
+  }
 }
+
+PathGenerator::~PathGenerator() = default;
+PathGenerator::PathGenerator(PathGenerator&&) noexcept = default;
 
 void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) {
   if (live_.size() < wave.width()) live_.resize(wave.width());
@@ -29,12 +38,16 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   live.length = 0;
   live.shares = live.shares_before = 1;
   live.last_density = 0;
+  live.flights = live.scatterings = 0;
+  live.scattered = false;
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
   path = Path{};
   path.ray = ray.ray;
+  path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   path.weight = ray.weight;
+  if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
@@ -43,36 +56,38 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
 }
 
 void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
+  statistics.trace.rays += std::exchange(probing_.rays, 0);
+  statistics.trace.cycles += std::exchange(probing_.cycles, 0);
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     wave.rays.clear();
-    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time});
+    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
+    if (volume_) volume_->travel(wave, live_, statistics);
     size_t kept = 0;
     for (size_t i = 0; i < wave.active.size(); ++i) {
       const uint32_t p = wave.active[i];
-      if (!wave.hits[i].hit()) escape(wave.path(p), live_[p]);
-      else if (arrive(wave, p, wave.hits[i])) wave.active[kept++] = p;
+      if (wave.hits[i].hit() ? arrive(wave, p, wave.hits[i]) : arrive_on_earth(wave, p)) wave.active[kept++] = p;
     }
     wave.active.resize(kept);
     statistics.nodes += kept;
 
     // Ask the explicit sources at every node, then see which of them are visible.
-    wave.rays.clear(), wave.owner.clear(), wave.light.clear();
+    wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
       if (options_.explicit_sources) ask_sources(wave, p);
     }
-    wave.distance.assign(wave.rays.size(), std::numeric_limits<double>::infinity());
     wave.blocked.resize(wave.rays.size());
-    surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    if (volume_) volume_->look(wave, live_, statistics);
+    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
-      if (wave.blocked[i]) continue;
+      if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
       Node& node = wave.node(p, wave.path(p).size - 1);
-      node.sunlit = node.sunlit || wave.light[i] == 0;
-      add_explicit(wave, p, node.light[wave.light[i]]);
+      node.sunlit = node.sunlit || wave.light[i] == light_sun;
+      add_explicit(wave, p, wave.light[i], i);
     }
 
     // Draw the continuations.
@@ -83,21 +98,8 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   }
 }
 
-void PathGenerator::escape(Path& path, const Live& live) const {
-  path.end = PathEnd::escaped;
-  path.escape = live.direction;
-  path.escape_factor = 1 / live.shares;
-  const bool by_chance = live.last_density > 0 && options_.explicit_sources;
-  if (environment_.sky) {
-    const double density = by_chance && environment_.sky->tabulated() ? environment_.sky->density(live.direction) : 0;
-    path.sky_factor = density > 0 ? 1 / (live.shares + live.shares_before * density / live.last_density) : path.escape_factor;
-  }
-  if (environment_.sun && environment_.sun->contains(live.direction))
-    path.sun_factor = by_chance ? 1 / (live.shares + live.shares_before * environment_.sun->density() / live.last_density) : path.escape_factor;
-}
-
-// Makes the node; false when the path ends there because nothing scatters.
-bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
+// The next node of a path, without its surface.
+Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   Path& path = wave.path(p);
   Live& live = live_[p];
   Node& node = wave.node(p, path.size++);
@@ -106,63 +108,48 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
   live.length += hit.distance;
   node.optical_length = live.length;
   node.spectral_factor = 1 / live.shares;
-  node.continues = false;
-  node.light = {};
-  surface_.interact(hit, node.out, node.at);
-  node.has_direct = node.sunlit = false;
+  node.continues = node.has_direct = node.sunlit = false;
+  node.lights = 0;
+  node.glow = nullptr;
+  return node;
+}
+
+// False when the path ends at the node because nothing scatters.
+bool PathGenerator::scatters(Path& path, const Node& node) const {
   if (node.at.baked && node.at.baked->model) return true;
   path.end = PathEnd::absorbed;
   return false;
 }
 
-void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
-  const std::array<double, 4>& u = live_[p].u;
-  Node& node = wave.node(p, wave.path(p).size - 1);
-  const double out_side = dot(node.out, node.at.geometric_normal);
-  auto ask = [&](const DirectionSample& drawn, double relative_radiance, const float* spectrum, uint8_t which) {
-    if (!(relative_radiance > 0)) return;
-    const double in_side = dot(drawn.direction, node.at.geometric_normal);
-    if (node.at.baked->model->opaque() && in_side * out_side <= 0) return;
-    // Light may come in only from the side of the surface that the shading frame says it comes from.
-    if (in_side * dot(drawn.direction, node.at.frame.z) <= 0) return;
-    node.light[which] = {drawn.direction, drawn.density, static_cast<float>(relative_radiance), spectrum, nullptr, 0};
-    wave.rays.push_back({surface_.tracer().leave(node.hit, drawn.direction), drawn.direction, wave.path(p).ray.time});
-    wave.owner.push_back(p);
-    wave.light.push_back(which);
-  };
-  if (environment_.sun) ask(environment_.sun->sample({u[2], u[3]}), 1, environment_.sun->spectrum(), 0);
-  if (environment_.sky && environment_.sky->tabulated()) {
-    const std::array<double, 4> v = live_[p].stream.draw(live_[p].sample, kLobes + static_cast<uint32_t>(wave.path(p).size - 1));
-    const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
-    ask(drawn, environment_.sky->relative(drawn.direction), environment_.sky->spectrum(), 1);
-  }
+bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
+  Node& node = add_node(wave, p, hit);
+  surface_.interact(hit, node.out, node.at, wave.path(p).ray.time);
+  if (environment_.lamps) meet_glow(wave, p);
+  return scatters(wave.path(p), node);
 }
 
-void PathGenerator::add_explicit(Wave& wave, uint32_t p, ExplicitLight& light) {
-  const int n = wave.path(p).size - 1;
-  Node& node = wave.node(p, n);
+// A path that missed the scene meets the Earth under it, if there is one; false when the path ends.
+bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
-  const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
-  double denominator = live.shares;
-  if (light.density > 0) {
-    float pdf[kMaxKnots];
-    node.at.baked->model->pdf(out, in, {pdf, knots_});
-    denominator = live.shares * light.density;
-    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k];
+  const auto met = environment_.earth ? environment_.earth->meet(live.origin, live.direction, std::numeric_limits<double>::infinity()) : std::nullopt;
+  if (!met) {
+    escape(wave.path(p), live);
+    return false;
   }
-  const float scale = static_cast<float>(light.radiance_scale / denominator);
-  if (const auto factored = node.at.baked->model->factored(out, in)) {
-    light.scatter = factored->spectrum;
-    light.scale = scale * factored->scale;
-    return;
-  }
-  const std::span<float> w = wave.scratch();
-  node.at.baked->model->eval(out, in, w);
-  float* direct = wave.direct(p, n).data();
-  if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
-  node.has_direct = true;
-  const float* spectrum = light.spectrum;
-  for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * spectrum[i] * scale;
+  Hit hit;
+  hit.distance = met->distance;
+  hit.position = met->position;
+  hit.normal = met->normal;
+  hit.step = Earth::step;
+  hit.time = wave.path(p).ray.time;
+  Node& node = add_node(wave, p, hit);
+  node.at = Interaction{};
+  node.at.position = met->position;
+  node.at.geometric_normal = met->normal;
+  node.at.frame = Frame::around(met->normal);
+  node.at.material = environment_.earth->material();
+  node.at.baked = &optics_.material(node.at.material);
+  return scatters(wave.path(p), node);
 }
 
 // Draws where the path goes from its last node; false when it ends there.
@@ -226,6 +213,8 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   node.bounce_spectrum = factored ? factored->spectrum : w.data();
   node.bounce_scale = static_cast<float>((factored ? factored->scale : 1) / node.density);
   live.last_density = drawn->delta ? 0 : own;
+  live.scattered = false;
+  if (volume_ && dot(node.in, node.hit.normal) * dot(node.out, node.hit.normal) < 0) volume_->cross(live, node);
   live.direction = node.in;
   live.origin = surface_.tracer().leave(node.hit, node.in);
   return true;

@@ -7,15 +7,27 @@
 // density p_s and continuations that meet it by chance share the same heuristic:
 //   explicit:   1 / (A p_s + sum P_k r_k p_k)        by chance:   1 / (A' + A p_s / p_h),  A' after the last event.
 #pragma once
-#include "math/sampling.h"
+#include <memory>
+
+#include "radiometry/live_path.h"
 #include "radiometry/pipeline.h"
 #include "radiometry/wave.h"
 
 namespace suite {
 
+// Dimensions of the sample streams: block 0 is the sensor's, 1 + n is node n's continuation and its sample of the sun,
+// kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp (three
+// numbers), kMoonBlock + n of the moon.
+inline constexpr uint32_t kLobeBlock = 128, kLampBlock = 512, kMoonBlock = 640;
+
+class VolumePaths;
+
 class PathGenerator {
  public:
   PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options);
+
+  ~PathGenerator();
+  PathGenerator(PathGenerator&&) noexcept;
 
   // Starts path p of the wave with a sensor ray. sample: index within the stream of its problem and scramble.
   void start(Wave& wave, size_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample);
@@ -23,23 +35,19 @@ class PathGenerator {
   void complete(Wave& wave, RunStatistics& statistics);
 
  private:
-  // What generation must remember of a path and processing need not.
-  struct Live {
-    SampleStream stream{0, 0, 0};
-    uint32_t sample = 0;
-    std::array<double, 4> u;              // numbers of the current node
-    Vec3 origin;                          // of the next segment
-    Dir direction;
-    double length = 0;                    // optical length so far
-    double relative[kMaxKnots];           // r_k
-    double throughput[kMaxKnots];         // at the knots
-    double shares = 1, shares_before = 1; // A after and before the last event
-    double last_density = 0;              // p_h of the last event, without roulette; 0 after a Dirac event or none
-  };
-  void escape(Path& path, const Live& live) const;
+  using Live = LivePath;
   bool arrive(Wave& wave, uint32_t p, const Hit& hit);
+  bool arrive_on_earth(Wave& wave, uint32_t p);
+  Node& add_node(Wave& wave, uint32_t p, const Hit& hit);
+  bool scatters(Path& path, const Node& node) const;
+  // Sources (path_sources.cpp).
+  void escape(Path& path, const Live& live) const;
   void ask_sources(Wave& wave, uint32_t p);
-  void add_explicit(Wave& wave, uint32_t p, ExplicitLight& light);
+  void ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance, const Vec3* end);
+  void ask_lamps(Wave& wave, uint32_t p);
+  void meet_glow(Wave& wave, uint32_t p);
+  // ray: of wave.rays, which found the source in sight.
+  void add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray);
   bool go_on(Wave& wave, uint32_t p);
 
   const Surface& surface_;
@@ -50,6 +58,9 @@ class PathGenerator {
   double knot_probability_[kMaxKnots];
   std::vector<size_t> knot_bins_;
   std::vector<Live> live_;
+  std::unique_ptr<VolumePaths> volume_;   // null where the scene has no media
+  TraceStatistics probing_;               // of rays that look for bodies around sensors
+  std::vector<float> transmission_;
 };
 
 }  // namespace suite

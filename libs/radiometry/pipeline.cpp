@@ -113,6 +113,8 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
                    const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
                    const PipelineOptions& options)
     : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
+  if (!optics.media().empty() && environment.atmosphere)
+    throw Error("layers of air and media in the scene cannot be combined", "let a clear sky stand for the air, or leave the media out");
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
@@ -137,7 +139,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
         return found;
       }
   }
-  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size()),
+  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size(), !optics_.media().empty()),
                                                   PathGenerator(surface_, optics_, environment_, options_),
                                                   std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
                                                   std::vector<float>(state_.size())});
@@ -161,12 +163,19 @@ SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, 
   return sensor.ray({capture, problem, {u.data(), numbers}, weights});
 }
 
-// The time bin of a capture that a moment falls into.
-size_t time_bin(const Capture& capture, double time) {
-  const double span = capture.window.end - capture.window.begin;
-  if (capture.time_bins < 2 || !(span > 0)) return 0;
-  const double at = std::floor((time - capture.window.begin) / span * capture.time_bins);
-  return static_cast<size_t>(std::clamp(at, 0.0, capture.time_bins - 1.0));
+// The bin of a capture that a path's radiance goes into, or Capture::bins when none is right.
+size_t bin_of(const Capture& capture, const Path& path) {
+  if (capture.bin_by == Capture::BinBy::none) return 0;
+  if (capture.bin_by == Capture::BinBy::time) {
+    const double span = capture.window.end - capture.window.begin;
+    const double at = span > 0 ? std::floor((path.ray.time - capture.window.begin) / span * capture.bins) : 0;
+    return static_cast<size_t>(std::clamp(at, 0.0, capture.bins - 1.0));
+  }
+  if (path.end != PathEnd::escaped || path.escape.z < 0) return capture.bins;
+  const uint32_t columns = capture.bins / capture.escape_rings;
+  const double turn = std::atan2(path.escape.y, path.escape.x) / (2 * kPi);
+  const uint32_t ring = std::min(static_cast<uint32_t>(path.escape.z * capture.escape_rings), capture.escape_rings - 1);
+  return size_t{ring} * columns + std::min(static_cast<uint32_t>((turn - std::floor(turn)) * columns), columns - 1);
 }
 
 }  // namespace
@@ -212,11 +221,12 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       const size_t slot = slot_of(i);
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
-      if (single) process_single(wave, i, radiance, workspace->single);
-      if (workspace->weighted[i] || capture.time_bins > 1) {
+      if (single) process_single(wave, i, environment_, radiance, workspace->single);
+      const bool timed = capture.bin_by == Capture::BinBy::time;
+      if (workspace->weighted[i] || timed) {
         const float* weights = workspace->weighted[i] ? &workspace->weights[i * state_.size()] : nullptr;
         for (size_t k = 0; k < radiance.size(); ++k) {
-          const float factor = (weights ? weights[k] : 1.0f) * static_cast<float>(capture.time_bins);
+          const float factor = (weights ? weights[k] : 1.0f) * (timed ? static_cast<float>(capture.bins) : 1.0f);
           radiance[k] *= factor;
           if (single) workspace->single[k] *= factor;
         }
@@ -234,9 +244,10 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       }
       double* const target = sums.sums(slot, static_cast<int>(scramble));
       const double before = target[reference_band_], sum_before = stop_on_change ? sum_of(slot) : 0;
-      double* const cell = target + time_bin(capture, wave.path(i).ray.time) * bands;
-      projection_.add(radiance, {cell, bands});
-      if (single) projection_.add(workspace->single, {cell + capture.time_bins * bands, bands});
+      if (const size_t bin = bin_of(capture, wave.path(i)); bin < capture.bins) {
+        projection_.add(radiance, {target + bin * bands, bands});
+        if (single) projection_.add(workspace->single, {target + (capture.bins + bin) * bands, bands});
+      }
       if (stop_on_change && sample >= options_.change_after) {
         const double mean = sum_of(slot) / (sample + 1.0);
         if (std::fabs(mean - sum_before / sample) <= options_.change * mean) end[i] = 0;

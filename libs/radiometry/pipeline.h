@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "radiometry/sources/source.h"
+#include "radiometry/sources/environment.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"
@@ -27,6 +27,7 @@ enum class StopRule : uint8_t {
 struct PipelineOptions {
   uint64_t seed = 1;
   int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
+  uint32_t max_scatterings = 10000;  // consecutive scattering events of a path inside media, beside the nodes
   int roulette_after = 3;        // nodes before paths may end by chance
   bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
   StopRule stop = StopRule::plan;
@@ -62,7 +63,7 @@ struct RunStatistics {
 };
 
 // Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
-// come from. bands: values a problem ([channel][time bin][band]); truth_slots: doubles of truth a problem.
+// come from. bands: values a problem ([channel][bin][band]); truth_slots: doubles of truth a problem.
 class Accumulators {
  public:
   Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);

@@ -13,7 +13,8 @@ namespace suite {
 class Wave {
  public:
   // width: problems in a block; bins: of the spectral state.
-  Wave(size_t width, int max_nodes, size_t bins);
+  // media: paths travel through media; segments then carry spectra.
+  Wave(size_t width, int max_nodes, size_t bins, bool media = false);
 
   size_t width() const { return paths_.size(); }
   size_t bins() const { return bins_; }
@@ -23,8 +24,15 @@ class Wave {
   std::span<float> bounce(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n))), bins_}; }
   // Radiance that explicit sources send along the path from this node.
   std::span<float> direct(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)) + 1), bins_}; }
+  // With media, segment n is all that lies between node n - 1 (the sensor for 0) and node n (or the end of the path),
+  // however often the path was scattered there: what arrives from its far end is multiplied by `through`, then `gathered`
+  // is added, light that was emitted and scattered into the path on the way.
+  bool has_media() const { return !segments_.empty(); }
+  std::span<float> through(size_t p, int n) { return {&segments_[2 * segment(p, n) * stride_], bins_}; }
+  std::span<float> gathered(size_t p, int n) { return {&segments_[(2 * segment(p, n) + 1) * stride_], bins_}; }
   std::span<float> scratch() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_)), bins_}; }
   std::span<float> scratch2() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 1), bins_}; }
+  std::span<float> scratch3() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 2), bins_}; }
 
   // Rays of the current stage and what they belong to.
   std::vector<Ray> rays;
@@ -39,12 +47,14 @@ class Wave {
   struct Free {
     void operator()(float* p) const { std::free(p); }
   };
+  size_t segment(size_t p, int n) const { return p * static_cast<size_t>(max_nodes_ + 1) + static_cast<size_t>(n); }
   float* at(size_t i) { return spectra_.get() + i * stride_; }
   size_t bins_, stride_;
   int max_nodes_;
   std::vector<Path> paths_;
   std::vector<Node> nodes_;
   std::unique_ptr<float[], Free> spectra_;
+  std::vector<float> segments_;
 };
 
 }  // namespace suite

@@ -5,6 +5,8 @@
 #include <memory>
 #include <set>
 
+#include "motion/track.h"
+
 namespace suite {
 
 namespace {
@@ -27,12 +29,15 @@ class Baker {
     scene_.origin = draft_.origin;
     scene_.files = draft_.files;
     materials();
+    bake_media(draft_, report_, scene_);
     class_maps();
     property_maps();
     geometry();
     groups();
     unused();
-    if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_);
+    scene_.epoch = draft_.epoch;
+    const TimeSpan times = time_window();
+    if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_, times.begin, times.end);
     return std::move(scene_);
   }
 
@@ -62,6 +67,7 @@ class Baker {
   void check_coverage(const DraftMaterial& m);
   void class_maps();
   void property_maps();
+  void check_parts(const PropertyMap& map, const Where& where);
   void geometry();
   Built build_mesh(const DraftGeometry& g);
   Built build_terrain(const DraftGeometry& g);
@@ -72,6 +78,7 @@ class Baker {
   std::vector<Affine3> transforms(const DraftPlacement& p);
   bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
   void place(const DraftPlacement& p, Group& group, bool world);
+  TimeSpan time_window();
   void unused();
 
   const Draft& draft_;
@@ -80,6 +87,7 @@ class Baker {
   std::map<std::string, uint32_t> material_ids_, map_ids_, tag_ids_, group_ids_;
   std::map<std::string, Built> built_;
   std::vector<std::unique_ptr<TerrainGrid>> terrains_;
+  std::vector<Where> motion_where_;  // of scene_.tracks
   std::set<std::string> used_materials_, used_maps_, used_targets_;
 };
 
@@ -102,6 +110,7 @@ void Baker::materials() {
   for (const DraftMaterial& m : draft_.materials) {
     material_ids_[m.material.id] = static_cast<uint32_t>(scene_.materials.size());
     scene_.materials.push_back(m.material);
+    if (m.temperature) scene_.temperatures.push_back({material_ids_[m.material.id], *m.temperature});
     if (m.has_model) check_coverage(m);
     // The sum over both sides' shares must stay below 1 wherever either curve has a knot.
     const auto& curves = m.material.surface.curves;
@@ -163,6 +172,22 @@ void Baker::class_maps() {
   }
 }
 
+// A mixture puts whole materials side by side, which cannot be mixtures or bend the surface themselves.
+void Baker::check_parts(const PropertyMap& map, const Where& where) {
+  for (const uint32_t id : map.materials) {
+    if (id == kNone) continue;
+    const DraftMaterial& part = draft_.materials[id];
+    bool fits = part.has_model && !part.map.given();
+    for (const Reference& r : part.property_maps)
+      for (const DraftPropertyMap& m : draft_.property_maps)
+        if (m.map.name == r.name && (m.map.kind == MapKind::mixture || m.map.kind >= MapKind::bump)) fits = false;
+    if (!fits)
+      add("SP501", where,
+          "material '" + part.material.id + "' cannot be part of mixture '" + map.name +
+              "': a part has a model and at most curve index, texture, cube and temperature maps");
+  }
+}
+
 void Baker::property_maps() {
   std::map<std::string, uint32_t> ids;
   for (const DraftPropertyMap& d : draft_.property_maps) {
@@ -183,6 +208,7 @@ void Baker::property_maps() {
       }
       used_maps_.insert(r.name);
       const PropertyMap& map = scene_.property_maps[found->second];
+      check_parts(map, r.where);
       if (!kinds.insert(map.kind).second)
         add("SP501", r.where,
             "material '" + draft_.materials[m].material.id + "' has two maps of the kind of '" + r.name + "'");
@@ -246,6 +272,7 @@ Baker::Built Baker::build_primitive(const DraftGeometry& g) {
 void Baker::geometry() {
   for (const DraftGeometry& g : draft_.geometry) switch (g.kind) {
       case DraftGeometry::Kind::mesh:
+      case DraftGeometry::Kind::voxels:
         built_[g.name] = build_mesh(g);
         break;
       case DraftGeometry::Kind::terrain:
@@ -354,6 +381,12 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   std::vector<Affine3> all = transforms(p);
   if (p.on.given() && !p.scatter && !put_on(p, world, all)) return;
   if (!what) return;
+  if (p.motion) {
+    if (p.on.given()) return add("SP405", p.on.where, "what moves cannot stand 'on' something");
+    made.track = static_cast<uint32_t>(scene_.tracks.size());
+    scene_.tracks.push_back({strf("'%s' (line %d)", p.target.name.c_str(), p.motion_where.line), p.motion});
+    motion_where_.push_back(p.motion_where);
+  }
   made.kind = what->kind;
   for (const Affine3& t : all) {
     made.to_parent = t;
@@ -362,6 +395,26 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
       group.placements.push_back(made);
     }
   }
+}
+
+// The declared time, which every motion must cover; undeclared, the time that all have in common (for those that never
+// begin or end: second 0).
+TimeSpan Baker::time_window() {
+  TimeSpan common{-INFINITY, INFINITY};
+  for (size_t k = 0; k < scene_.tracks.size(); ++k) {
+    const TimeSpan c = scene_.tracks[k].track->covered();
+    common = {std::max(common.begin, c.begin), std::min(common.end, c.end)};
+    if (draft_.times && !(c.contains(draft_.times->begin) && c.contains(draft_.times->end)))
+      add("SP407", motion_where_[k],
+          strf("the motion of %s is known from %.9g to %.9g s, 'times_s' is %.9g to %.9g s",
+               scene_.tracks[k].name.c_str(), c.begin, c.end, draft_.times->begin, draft_.times->end));
+    else if (!(common.begin <= common.end))
+      return add("SP407", motion_where_[k], "the motion of " + scene_.tracks[k].name + " has no time in common with the others"), TimeSpan{};
+  }
+  if (draft_.times) return {draft_.times->begin, draft_.times->end};
+  if (!std::isfinite(common.begin)) common.begin = std::min(0.0, common.end);
+  if (!std::isfinite(common.end)) common.end = std::max(0.0, common.begin);
+  return common;
 }
 
 void Baker::groups() {
@@ -373,7 +426,8 @@ void Baker::groups() {
     for (const DraftPlacement& p : draft_.groups[g].placements) place(p, group, g == 0);
     scene_.groups.push_back(std::move(group));
   }
-  if (scene_.groups.empty() || draft_.groups.front().placements.empty())
+  const bool media = !draft_.volumes.empty() || draft_.ambient.given();
+  if (scene_.groups.empty() || (draft_.groups.front().placements.empty() && !media))
     add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
 }
 

@@ -10,6 +10,10 @@ namespace suite {
 // The scene of a draft. With errors in `report` the result is incomplete and must not be written.
 Scene bake_scene(const Draft& draft, Report& report);
 
+// Resolves media, what bounds them, grids and volumes of a draft into a scene that has its materials. Internal to
+// bake_scene.
+void bake_media(const Draft& draft, Report& report, Scene& scene);
+
 // Parts shared with tests. ---------------------------------------------------------------------------------------
 
 // Triangles with their origin: the centre of the extent rounded to whole metres (or to a 1024th of the extent when that

@@ -61,7 +61,12 @@ Box3 scene_bounds(const Scene& s, double begin, double end) {
       const Box3 placed = transformed(box, p.to_parent);
       groups[g].grow(p.track == kNone ? placed : swept(placed, *s.tracks[p.track].track, {begin, end}));
     }
-  return groups.empty() ? Box3{} : groups.front();
+  Box3 all = groups.empty() ? Box3{} : groups.front();
+  for (const Volume& v : s.volumes) {
+    const VoxelGrid& g = s.grids[v.grid];
+    all.grow(transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}}, v.to_world * g.to_local));
+  }
+  return all;
 }
 
 }  // namespace suite

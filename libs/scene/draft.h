@@ -49,7 +49,7 @@ enum class NormalRule { file, facet, smooth };
 struct DraftGeometry {
   std::string name;
   Where where;
-  enum class Kind { mesh, terrain, primitive } kind = Kind::mesh;
+  enum class Kind { mesh, terrain, primitive, voxels } kind = Kind::mesh;
   SourceMesh mesh;
   SourceTerrain terrain;
   Primitive primitive;
@@ -67,6 +67,8 @@ struct DraftPlacement {
   std::vector<Affine3> rows;  // of an instance table or a scatter; each before to_parent
   bool table = false;
   std::optional<ScatterRule> scatter;  // over the surface `on`
+  std::shared_ptr<const Track> motion;  // null: at rest
+  Where motion_where;
 };
 
 struct DraftGroup {
@@ -78,8 +80,10 @@ struct DraftGroup {
 struct DraftMaterial {
   Where where;
   Material material;
+  Reference inside, outside;  // media
   Reference map;  // a class map that decides instead
   bool has_model = false;
+  std::optional<TemperatureSpec> temperature;
   std::vector<Reference> property_maps;
 };
 
@@ -95,6 +99,23 @@ struct DraftPropertyMap {
   std::vector<Reference> materials;  // mixture: of each channel
 };
 
+struct DraftMedium {
+  Where where;
+  Medium medium;
+};
+
+struct DraftGrid {
+  Where where;
+  VoxelGrid grid;  // `media` still empty
+  std::vector<Reference> media;
+};
+
+struct DraftVolume {
+  Where where;
+  Reference grid;
+  Affine3 to_world;
+};
+
 struct SpectralWindow {
   double low_um = 0, high_um = 0;
   Where where;
@@ -105,13 +126,25 @@ struct InputFile {
   std::string name, sha256;
 };
 
+// The span of time (s) that every motion must cover.
+struct TimeWindowSpec {
+  double begin = 0, end = 0;
+  Where where;
+};
+
 struct Draft {
   std::string file, name, description, author;
+  std::string epoch;                    // UTC of second 0, or empty
+  std::optional<TimeWindowSpec> times;
   GeodeticOrigin origin;
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;
   std::vector<DraftPropertyMap> property_maps;
+  std::vector<DraftMedium> media;
+  Reference ambient;
+  std::vector<DraftGrid> grids;
+  std::vector<DraftVolume> volumes;
   std::vector<DraftGeometry> geometry;
   std::vector<DraftGroup> groups;  // [0] = world
   std::vector<DataFile> files;

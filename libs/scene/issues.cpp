@@ -1,5 +1,5 @@
 // One row a finding: code, severity, summary, hint. SP0 text, SP1 materials and curves, SP2 geometry files, SP3 mesh
-// quality, SP4 assembly, SP5 maps.
+// quality, SP4 assembly, SP5 maps, SP6 media.
 #include "scene/issues.h"
 
 namespace suite {
@@ -51,6 +51,16 @@ std::vector<IssueKind> scene_issues() {
       {"SP404", error, "a transform flattens or is not finite", "scales must not be 0"},
       {"SP405", error, "a place is not on the terrain", "x and y must lie inside the terrain, outside of its gaps"},
       {"SP406", error, "nothing is placed", "'world' must place something"},
+      {"SP601", error, "a medium or a voxel grid is described wrongly", ""},
+      {"SP602", error, "unknown medium or voxel grid", ""},
+      {"SP603", warning, "a medium or a voxel grid is not used",
+       "remove it, or check the names that should refer to it"},
+      {"SP604", error, "a voxel has an impossible density or temperature",
+       "densities are at least 0, temperatures 0 to 1e5 K"},
+      {"SP605", error, "extinction is not absorption + scattering", "give two of the three"},
+      {"SP606", warning, "a surface that bounds a medium is open",
+       "paths that enter it may never leave; close it, unless it is a surface without end such as a sea's"},
+      {"SP407", error, "a motion does not cover the time that is looked at", "give it more keys, or a shorter 'times_s'"},
       {"SP501", error, "a map is described wrongly", ""},
       {"SP502", error, "a map holds a class that has no material", "list a material for it"},
       {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},

@@ -36,6 +36,11 @@ namespace {
 [[noreturn]] void bad(const std::string& file, const std::string& what) {
   throw Error(Where{file, 0, 0, {}, -1}, what, "prepare the scene again");
 }
+void check_transform(const Affine3& t, const std::string& file, const std::string& what) {
+  for (const double a : t.a)
+    if (!std::isfinite(a)) bad(file, what + "the transform is not finite");
+  if (!finite(t.b) || t.determinant() == 0) bad(file, what + "the transform is not finite or flattens its target");
+}
 void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
   const std::string name = "mesh '" + m.name + "': ";
   if (m.positions.size() % 3 != 1 && !m.positions.empty())
@@ -91,8 +96,45 @@ void check_property_map(const PropertyMap& m, size_t materials, const std::strin
 }
 }  // namespace
 
+namespace {
+void check_grid(const VoxelGrid& g, size_t media, const std::string& file) {
+  const std::string name = "voxel grid '" + g.name + "': ";
+  const size_t n = g.size();
+  if (n == 0 || g.density.size() != n || (!g.kind.empty() && g.kind.size() != n) || (!g.temperature.empty() && g.temperature.size() != n))
+    bad(file, name + "size and data disagree");
+  if (g.media.empty()) bad(file, name + "has no medium");
+  for (const uint32_t m : g.media)
+    if (m >= media) bad(file, name + "names a medium that is not there");
+  for (const uint8_t k : g.kind)
+    if (k >= g.media.size()) bad(file, name + strf("kind %u of %zu", k, g.media.size()));
+  for (const float d : g.density)
+    if (!(d >= 0 && std::isfinite(d))) bad(file, name + strf("density %g", d));
+  for (const float t : g.temperature)
+    if (!(t >= 0 && t <= 1e5f)) bad(file, name + strf("temperature %g K", t));
+  check_transform(g.to_local, file, name);
+}
+void check_media(const Scene& s, const std::string& file) {
+  for (const Material& m : s.materials)
+    for (const uint32_t medium : {m.inside, m.outside})
+      if (medium != Material::kNoMedium && medium >= s.media.size()) bad(file, "material '" + m.id + "' names a medium that is not there");
+  if (s.ambient != kNone && s.ambient >= s.media.size()) bad(file, "the ambient medium is not there");
+  for (const VoxelGrid& g : s.grids) check_grid(g, s.media.size(), file);
+  for (const Volume& v : s.volumes) {
+    if (v.grid >= s.grids.size()) bad(file, "a volume names a grid that is not there");
+    check_transform(v.to_world, file, "a volume: ");
+  }
+}
+}  // namespace
+
+bool uses_media(const Scene& s) {
+  return s.ambient != kNone || !s.volumes.empty() || std::any_of(s.materials.begin(), s.materials.end(), [](const Material& m) { return m.bounds_medium(); });
+}
+
 void check_scene(const Scene& s, const std::string& file) {
+  check_media(s, file);
   for (const PropertyMap& m : s.property_maps) check_property_map(m, s.materials.size(), file);
+  for (const TemperatureBinding& t : s.temperatures)
+    if (t.material >= s.materials.size()) bad(file, "a temperature is of a material that is not there");
   for (const PropertyBinding& b : s.property_bindings)
     if (b.material >= s.materials.size() || b.property_map >= s.property_maps.size())
       bad(file, "a map binding names something that is not there");
@@ -117,10 +159,7 @@ void check_scene(const Scene& s, const std::string& file) {
       if (p.tag != kNone && p.tag >= s.tags.size()) bad(file, "a tag is not there");
       if (p.track != kNone && (p.track >= s.tracks.size() || !s.tracks[p.track].track))
         bad(file, "a motion is not there");
-      for (const double a : p.to_parent.a)
-        if (!std::isfinite(a)) bad(file, "a transform is not finite");
-      if (!finite(p.to_parent.b) || p.to_parent.determinant() == 0)
-        bad(file, "a transform is not finite or flattens its target");
+      check_transform(p.to_parent, file, "a placement: ");
     }
   for (const ClassMap& m : s.class_maps) {
     if (m.classes.size() != size_t{m.width} * m.height || m.classes.empty())

@@ -1,6 +1,7 @@
 // The scene: plain tables, no behaviour. Written by scene-prep, loaded by the renderer, immutable afterwards.
 // Everything is in the scene's ENU frame, metres; base geometry has its own local frame.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,7 +10,9 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "optics/medium.h"
 #include "optics/model_spec.h"
+#include "thermal/temperature.h"
 
 namespace suite {
 
@@ -114,11 +117,36 @@ struct PropertyMap {
   std::string parameter;                // curve_index, cube: a curve parameter of the material's model
   std::vector<Curve> family;            // curve_index
   std::vector<double> wavelength_um;    // cube: ascending
+  // Between the pixels: the value of the pixel one is in, or linear between the four nearest pixel centres. Curve
+  // numbers are never mixed; bumps are always linear.
+  enum class Filter : uint8_t { nearest, linear } filter = Filter::nearest;
   Projection projection = Projection::drape;
   Drape drape;
 };
 struct PropertyBinding {
   uint32_t material = kNone, property_map = kNone;
+};
+
+// Cells with constant contents; x runs fastest. Cell (i, j, k) is [i, i+1] x [j, j+1] x [k, k+1] in index space.
+struct VoxelGrid {
+  std::string name;
+  std::array<uint32_t, 3> cells{0, 0, 0};
+  Affine3 to_local;                     // index space -> the grid's own frame, m (cell size and origin)
+  std::vector<float> density;           // per cell: scales the medium's coefficients
+  std::vector<uint8_t> kind;            // per cell: index into `media`; empty = all are media[0]
+  std::vector<uint32_t> media;          // indices into Scene::media
+  std::vector<float> temperature;       // per cell, K, 0 = the medium's own; empty = all have the medium's own
+  size_t size() const { return size_t{cells[0]} * cells[1] * cells[2]; }
+};
+// A grid of media somewhere: it adds to whatever else is there, be it another grid, a body or the ambient medium.
+struct Volume {
+  uint32_t grid = kNone;
+  Affine3 to_world;                     // the grid's own frame -> ENU
+};
+// A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
+struct TemperatureBinding {
+  uint32_t material = kNone;
+  TemperatureSpec spec;
 };
 
 // A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
@@ -134,6 +162,7 @@ struct GeodeticOrigin {
   bool given = false;
 };
 
+// combine.cpp has to know every table and every index in it.
 struct Scene {
   std::string name, description, author;
   GeodeticOrigin origin;
@@ -145,12 +174,20 @@ struct Scene {
   std::vector<MapBinding> map_bindings;
   std::vector<PropertyMap> property_maps;
   std::vector<PropertyBinding> property_bindings;  // a material may have several, one of each kind
+  std::vector<Medium> media;
+  uint32_t ambient = kNone;             // medium that fills everything no body fills
+  std::vector<VoxelGrid> grids;
+  std::vector<Volume> volumes;
+  std::vector<TemperatureBinding> temperatures;    // at most one a material
   std::vector<std::string> tags;
   std::vector<SceneTrack> tracks;
   std::string epoch;                    // UTC (ISO 8601) of second 0 of the tracks; empty when none was given
   std::vector<DataFile> files;
   Box3 bounds;                          // ENU
 };
+
+// Does a ray anywhere in the scene have to ask what it travels through?
+bool uses_media(const Scene& scene);
 
 // Checks every index and size of a scene that was read from a file; Error naming the table otherwise.
 void check_scene(const Scene& scene, const std::string& file);
@@ -167,6 +204,8 @@ Box3 transformed(const Box3& box, const Affine3& map);
 
 // Error naming the track and the span unless every track that a placement uses covers [begin, end], s.
 void check_motion(const Scene& scene, double begin, double end, const Where& where);
+// A time (s) to look at a scene whose motions need not cover second 0: 0 if all do, else where the last one begins.
+double time_of_all(const Scene& scene);
 
 // Octahedral encoding of unit vectors in 2 x 16 bits; error below 5e-5 rad.
 // Based on: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.

@@ -19,6 +19,30 @@ std::vector<double> flattened_counts(const Scene& s) {
   return meshes;
 }
 
+namespace {
+std::string media_text(const Scene& s) {
+  if (s.media.empty()) return "";
+  std::string out = strf("media         %zu\n", s.media.size());
+  for (size_t i = 0; i < s.media.size(); ++i) {
+    const Medium& m = s.media[i];
+    out += strf("  %-20s absorption %g to %g, scattering %g to %g 1/m%s%s", m.id.c_str(), m.absorption.min(),
+                m.absorption.max(), m.scattering.min(), m.scattering.max(), m.phase.model.empty() ? "" : "; ",
+                m.phase.model.c_str());
+    if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
+    out += s.ambient == i ? "; ambient\n" : "\n";
+  }
+  out += strf("voxel grids   %zu in %zu volumes\n", s.grids.size(), s.volumes.size());
+  for (const VoxelGrid& g : s.grids) {
+    const size_t filled =
+        static_cast<size_t>(std::count_if(g.density.begin(), g.density.end(), [](float d) { return d > 0; }));
+    out += strf("  %-20s %u x %u x %u cells, %.1f %% filled%s\n", g.name.c_str(), g.cells[0], g.cells[1], g.cells[2],
+                100.0 * static_cast<double>(filled) / static_cast<double>(g.size()),
+                g.temperature.empty() ? "" : ", temperatures");
+  }
+  return out;
+}
+}  // namespace
+
 std::string summary_text(const Scene& s) {
   size_t vertices = 0, triangles = 0, placements = 0, bytes = 0, pixels = 0;
   double flat = 0;
@@ -56,6 +80,7 @@ std::string summary_text(const Scene& s) {
     if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
     out += "\n";
   }
+  out += media_text(s);
   std::set<std::string> uses;
   for (const Mesh& m : s.meshes) {
     if (!m.normals.empty()) uses.insert("vertex normals");
@@ -68,7 +93,10 @@ std::string summary_text(const Scene& s) {
   if (!s.class_maps.empty()) uses.insert("class maps");
   if (!s.primitives.empty()) uses.insert("exact primitives");
   if (!s.files.empty()) uses.insert("embedded files");
+  if (uses_media(s)) uses.insert("media");
+  if (!s.volumes.empty()) uses.insert("voxel grids");
   if (s.groups.size() > 1) uses.insert("nested groups");
+  if (!s.tracks.empty()) uses.insert("motion");
   out += "uses          ";
   for (const std::string& u : uses) out += (u == *uses.begin() ? "" : ", ") + u;
   return out + "\n";

@@ -13,7 +13,7 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   r.rows = capture.rows;
   r.bands = bands;
   r.channels = channels;
-  r.time_bins = capture.time_bins;
+  r.bins = capture.bins;
   r.truth_names = truth.columns();
   const size_t n = capture.problems(), values = r.values_per_problem();
   r.radiance.resize(n * values);

@@ -11,6 +11,7 @@
 #include "scheduler/order.h"
 #include "scheduler/plan.h"
 #include "scheduler/result.h"
+#include "surface/cut_out.h"
 
 namespace suite {
 
@@ -19,30 +20,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-Environment bake_sources(const SourceSpecs& specs, const SpectralState& state) {
-  Environment e;
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  return e;
-}
-
-// Materials that some geometry can show; the others are never baked.
-std::vector<bool> used_materials(const Scene& scene, const Tracer& tracer) {
-  std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
-  for (const TracedObject& o : tracer.objects()) {
-    if (o.material_override != kNone)
-      used[o.material_override] = true;
-    else if (o.mesh != kNone)
-      mesh_seen[o.mesh] = true;
-    else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone)
-      used[id] = true;
-  }
-  for (size_t m = 0; m < scene.meshes.size(); ++m)
-    for (const Part& p : scene.meshes[m].parts)
-      if (mesh_seen[m] && p.material != kNone) used[p.material] = true;
-  for (const MapBinding& b : scene.map_bindings)
-    if (used[b.material])
-      for (const uint32_t id : scene.class_maps[b.class_map].materials) used[id] = true;
+// Materials that geometry or the Earth can show; the others are never baked.
+std::vector<bool> shown_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
+  std::vector<bool> used = used_materials(scene, tracer.objects());
+  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
   return used;
 }
 
@@ -52,11 +33,12 @@ struct StateKit {
   Environment environment;
   BandProjection projection;
   size_t reference_band = 0;
+  std::shared_ptr<const Tracer> lamps_of;  // whose geometry the environment was made for
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           std::span<const Band> bands)
-      : optics(scene, state, used_materials(scene, tracer)),
-        environment(bake_sources(sources, state)),
+           bool periodic, std::span<const Band> bands)
+      : optics(scene, state, shown_materials(scene, tracer, sources)),
+        environment(bake_environment(sources, tracer, periodic, state)),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
       if (std::fabs(bands[b].center_um - state.reference_um) <
@@ -119,7 +101,8 @@ class Job {
 
   JobReport run() {
     const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
-    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic);
+    for (const Item& item : items) check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
@@ -170,7 +153,7 @@ class Job {
                 .slots();
       }
       all[item.id] = {capture.columns, capture.rows,
-                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.time_bins,
+                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
                       Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
     }
     return all;
@@ -180,11 +163,14 @@ class Job {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
-      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
+      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state], options_.periodic.has_value(),
                                        sensors_[item.sensor]->bands(state));
       ++report_.optics_bakes;
       log.new_optics = true;
     }
+    // Glowing geometry has its places in the tracer.
+    if (kit->environment.lamps && kit->lamps_of != tracer_) kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
+    kit->lamps_of = tracer_;
     return *kit;
   }
 
@@ -212,7 +198,7 @@ class Job {
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
     ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, bands * channels * capture.time_bins, truth.slots(), builder, log.statistics);
+    run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
     CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;

@@ -23,12 +23,6 @@ struct JobOptions {
   bool progress = true;
 };
 
-// Sources before they are baked for a state.
-struct SourceSpecs {
-  std::optional<SunSpec> sun;
-  std::optional<SkySpec> sky;
-};
-
 // What one capture took; a line of the log.
 struct CaptureLog {
   std::string sensor, task, capture, state;

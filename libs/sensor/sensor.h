@@ -32,7 +32,13 @@ struct Capture {
   size_t state = 0;                // index into Sensor::states()
   Convergence convergence;
   bool neighbours = true;  // problems beside each other look at things beside each other
-  uint32_t time_bins = 1;  // the window is cut into so many equal bins, each with a radiance of its own
+  // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
+  // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
+  // of equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths from east; each is the
+  // part of the radiance that came in from there along paths that left the scene (the bins add up to the radiance from
+  // above).
+  enum class BinBy : uint8_t { none, time, escape } bin_by = BinBy::none;
+  uint32_t bins = 1, escape_rings = 0;
   size_t problems() const { return size_t{columns} * rows; }
 };
 
@@ -73,21 +79,28 @@ struct CaptureResult {
   size_t task = 0, capture = 0;
   uint32_t columns = 0, rows = 0;
   size_t bands = 0;
-  size_t channels = 1, time_bins = 1;
-  std::vector<double> radiance;          // [problem][channel][time bin][band], W/(m2 sr um)
-  std::vector<double> standard_error;    // [problem][channel][time bin][band]
+  size_t channels = 1, bins = 1;
+  std::vector<double> radiance;          // [problem][channel][bin][band], W/(m2 sr um)
+  std::vector<double> standard_error;    // [problem][channel][bin][band]
   std::vector<uint32_t> paths;           // [problem]
   std::vector<uint8_t> quality;          // [problem], bits of QualityFlag
   std::vector<std::string> truth_names;  // "material", "range [m]", ...
   std::vector<double> truth;             // [problem][truth_names]; NaN = no data
-  std::vector<double> error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
+  std::vector<double>
+      error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
   size_t problems() const { return size_t{columns} * rows; }
-  size_t values_per_problem() const { return channels * time_bins * bands; }
+  size_t values_per_problem() const { return channels * bins * bands; }
 };
 enum QualityFlag : uint8_t {
   quality_heavy_tail = 1,  // a few samples dominate: the interval may not cover
   quality_failures = 2,    // NaN or negative samples were rejected
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
+};
+
+// A text that a sensor writes: a log, a table of results.
+struct TextFile {
+  std::string name;  // file name without folder
+  std::string text;
 };
 
 class Sensor {
@@ -109,6 +122,8 @@ class Sensor {
   virtual SensorRay ray(const RayRequest& request) const = 0;
   // Called once per capture, from one thread, in any order of captures. The job is over when all have been accepted.
   virtual void accept(CaptureResult&& result) = 0;
+  // Texts that do not depend on rendering (logs of pose and time), asked for when the job is over.
+  virtual std::vector<TextFile> logs() const { return {}; }
 };
 
 // What is collected unless a sensor or its user says otherwise.

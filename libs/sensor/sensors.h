@@ -2,33 +2,60 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/params.h"
+#include "motion/jitter.h"
+#include "motion/track.h"
+#include "sensor/delivery.h"
 #include "sensor/sensor.h"
 
 namespace suite {
 
-// What a sensor needs from the outside when it is made.
+// A picture of numbers: row-major, top row first, one channel.
+struct GreyImage {
+  uint32_t width = 0, height = 0;
+  std::vector<float> values;
+};
+
+// What a sensor needs from the outside when it is made. Functions that are not set are refused where they are needed.
 struct SensorContext {
-  std::function<Curve(const Params&)> curve;   // reads a curve from a number, a file name or {file: ..., ...}
-  std::function<void(const Sensor&, const CaptureResult&)> deliver;  // receives every finished capture
+  std::function<Curve(const Params&)> curve;              // from a number, a file name or {file: ..., ...}
+  std::function<void(const Delivery&)> deliver;           // receives every finished capture
+  std::function<TrackPtr(const Params&)> track;           // a motion (formats/motion)
+  std::function<Vec3(const Params&)> position;            // position keys of a motion, scene ENU
+  std::function<Jitter(const Params&, uint64_t)> jitter;  // with a seed to mix in
+  std::function<double(const Params&)> time;              // s, from a number or a UTC text
+  std::function<GreyImage(const std::string&)> image;     // a picture file
+  std::function<std::optional<SceneFrame>()> frame;       // where the scene is on the Earth, if it is
+  std::function<std::string(double)> utc;                 // UTC text of a simulation time; empty = no clock
 };
 
 struct SensorRow {
-  std::string name;        // "frame_camera"
-  std::string summary;     // one line for --list-sensors
-  std::unique_ptr<Sensor> (*make)(const Params& params, const SensorContext& context);
+  std::string name;     // "frame_camera"
+  std::string summary;  // one line for --list-sensors
+  std::function<std::unique_ptr<Sensor>(const Params& params, const SensorContext& context)> make;
 };
 
+// The kinds that come with the suite and those added since the program started.
 std::span<const SensorRow> sensor_kinds();
+// Adds a row (a plug-in's). Error when the name is taken. Not to be called while sensors are being made.
+void add_sensor_kind(SensorRow row);
 // Reads `kind` and makes the sensor; located Error for anything wrong.
 std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context);
 
 // Parts that several kinds share.
 std::vector<Band> read_bands(const Params& list, const SensorContext& context);
-Convergence read_convergence(const Params& params);   // key `paths`: N, or {min, max, relative_error, absolute_floor}
+Convergence read_convergence(const Params& params);  // key `paths`: N, or {min, max, relative_error, absolute_floor}
+// Keys spectral_step_um, reference_um, knots.
+SpectralState read_state(const Params& params, std::span<const Band> bands);
+// Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the
+// renderer.
+std::vector<std::string> read_truth(const Params& params);
+// Keys time_s and integration_time_s of sensors with one capture.
+TimeWindow read_window(const Params& params);
 
 }  // namespace suite

@@ -11,10 +11,10 @@ namespace suite {
 
 void append(StudyImage& image, const std::string& sensor, std::span<const Band> bands, const CaptureResult& result) {
   const size_t values = result.values_per_problem();
-  for (size_t t = 0; t < result.time_bins; ++t)
+  for (size_t t = 0; t < result.bins; ++t)
     for (size_t b = 0; b < result.bands; ++b) {
       std::string name = sensor + ": " + bands[b].name;
-      if (result.time_bins > 1) name += strf(" [%zu]", t);
+      if (result.bins > 1) name += strf(" [%zu]", t);
       auto found =
           std::find_if(image.series.begin(), image.series.end(), [&](const auto& s) { return s.name == name; });
       if (found == image.series.end()) found = image.series.insert(image.series.end(), {name, {}, {}});

@@ -1,36 +1,205 @@
 #include "surface/optics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "spectral/planck.h"
+#include "thermal/models.h"
 
 namespace suite {
 
-Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used) : state_(std::move(state)) {
-  bake_all(scene, used);
-  bool uniform = true;
-  for (const BakedMaterial& m : materials_) uniform = uniform && (!m.model || m.model->spectrally_uniform_shape());
-  if (uniform && state_.knots.size() > 1) {
+namespace {
+
+// The temperatures a map or a model can give, so that a table covers them.
+void widen(double& low, double& high, double kelvin) {
+  low = std::min(low, kelvin);
+  high = std::max(high, kelvin);
+}
+
+std::shared_ptr<const BlackbodyTable> table_for(const PropertyMap* map, const TemperatureSpec* spec, double constant_k,
+                                                const SpectralState& state) {
+  double low = INFINITY, high = 0;
+  if (map)
+    for (const float k : map->values) widen(low, high, double{k});
+  if (constant_k > 0) widen(low, high, constant_k);
+  if (spec && !spec->kelvins.empty())
+    for (const double k : spec->kelvins) widen(low, high, k);
+  else if (spec && spec->model == "constant")
+    widen(low, high, spec->numbers.at("kelvin"));
+  else if (spec)
+    widen(low, high, 2), widen(low, high, 2000);  // what a simulated slab may reach
+  return std::make_shared<BlackbodyTable>(state.bins, low, high);
+}
+
+std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, const LoadsAt& loads) {
+  std::shared_ptr<const TemperatureModel> model = make_temperature_model(spec);
+  if (model->needs_loads() && !loads)
+    throw Error("temperature model '" + spec.model + "' must be told what heats the surface, which nothing here does",
+                "give a constant, tabulated or mapped temperature");
+  return field_of(std::move(model), loads);
+}
+
+// Every curve of the family that the map uses, in place of one of the model's.
+std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& map, const ModelSpec& model,
+                                                             const SpectralState& state) {
+  std::vector<std::unique_ptr<const ScatterModel>> variants(map.family.size());
+  std::vector<bool> seen(map.family.size(), false);
+  for (const float v : map.values) seen[static_cast<size_t>(v)] = true;
+  ModelSpec spec = model;
+  for (size_t k = 0; k < variants.size(); ++k) {
+    if (!seen[k]) continue;
+    spec.curves[map.parameter] = map.family[k];
+    check_model(spec);
+    variants[k] = bake(spec, state);
+  }
+  return variants;
+}
+
+}  // namespace
+
+Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const LoadsAt& loads)
+    : state_(std::move(state)) {
+  if (uses_media(scene)) bake_media(scene);
+  bake_all(scene, used, loads);
+  if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
-    bake_all(scene, used);
+    bake_all(scene, used, loads);
+    if (!media_.empty()) bake_media(scene);
   }
 }
 
-void Optics::bake_all(const Scene& scene, const std::vector<bool>& used) {
+// Mixed materials change their shape with wavelength wherever the shares of their parts do.
+bool Optics::one_shape() const {
+  return std::all_of(materials_.begin(), materials_.end(), [](const BakedMaterial& m) {
+    if (m.model && !m.model->spectrally_uniform_shape()) return false;
+    if (!m.maps) return true;
+    const auto uniform = [](const auto& v) { return !v || v->spectrally_uniform_shape(); };
+    if (m.maps->mixture || !std::all_of(m.maps->variants.begin(), m.maps->variants.end(), uniform)) return false;
+    return !m.maps->cube || m.maps->cube->one_shape();
+  });
+}
+
+void Optics::bake_media(const Scene& scene) {
+  const auto bake_them = [&] {
+    media_.clear();
+    for (const Medium& m : scene.media) {
+      try {
+        media_.emplace_back(m, state_);
+      } catch (const Error& e) {
+        throw Error(e.where(), "medium '" + m.id + "': " + e.message(), e.hint(), e.code());
+      }
+    }
+  };
+  bake_them();
+  const size_t before = state_.knots.size();
+  for (const BakedMedium& m : media_) {
+    spectral_flights_ = spectral_flights_ || !m.uniform();
+    const auto [least, most] = std::minmax_element(m.scattering.begin(), m.scattering.end());
+    if (*least == *most || before == 1) continue;
+    for (const auto bin : {least, most}) {
+      const size_t b = static_cast<size_t>(bin - m.scattering.begin());
+      if (state_.knots.size() < kMaxKnots && std::find(state_.knots.begin(), state_.knots.end(), b) == state_.knots.end()) state_.knots.push_back(b);
+    }
+  }
+  if (state_.knots.size() != before) bake_them();
+}
+
+void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads) {
   materials_.clear();
   materials_.resize(scene.materials.size());
+  const auto wanted = [&](size_t i) { return used.empty() || used[i]; };
   for (size_t i = 0; i < materials_.size(); ++i) {
-    if (!used.empty() && !used[i]) continue;
-    const Material& m = scene.materials[i];
-    if (m.surface.model.empty()) continue;  // a name that a map decides
+    if (!wanted(i) || scene.materials[i].surface.model.empty()) continue;  // empty: a name that a map decides
     try {
-      materials_[i].model = bake(m.surface, state_);
+      bake_one(scene, i, loads);
     } catch (const Error& e) {
-      throw Error(e.where(), "material '" + m.id + "': " + e.message(), e.hint(), e.code());
+      throw Error(e.where(), "material '" + scene.materials[i].id + "': " + e.message(), e.hint(), e.code());
     }
-    if (m.temperature_k > 0) {
-      any_emission_ = true;
-      for (const Bin& b : state_.bins)
-        materials_[i].blackbody.push_back(static_cast<float>(planck_band_radiance(b.low_um, b.high_um, m.temperature_k) / (b.high_um - b.low_um)));
+  }
+  // Parts of mixtures exist now; what they need, the mixture needs.
+  for (const PropertyBinding& b : scene.property_bindings) {
+    const PropertyMap& map = scene.property_maps[b.property_map];
+    if (map.kind != MapKind::mixture || !materials_[b.material].maps) continue;
+    MaterialMaps& maps = *materials_[b.material].maps;
+    for (const uint32_t id : map.materials) {
+      const BakedMaterial& part = materials_[id];
+      if (!part.model)
+        throw Error("material '" + scene.materials[b.material].id + "': part '" + scene.materials[id].id +
+                    "' of its mixture has no model");
+      if (part.maps && (part.maps->mixture || part.maps->bends()))
+        throw Error("material '" + scene.materials[b.material].id + "': part '" + scene.materials[id].id +
+                        "' of its mixture has a mixture, bump or normal map",
+                    "parts may have curve index, texture, cube and temperature maps");
+      maps.parts.push_back(&part);
+      maps.needs_uv |= part.maps && part.maps->needs_uv;
+      materials_[b.material].needs_tangent |= part.needs_tangent;
     }
+  }
+}
+
+void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
+  const Material& m = scene.materials[index];
+  BakedMaterial& baked = materials_[index];
+  baked.owned = bake(m.surface, state_);
+  baked.model = baked.owned.get();
+  baked.needs_tangent = !baked.model->isotropic();
+  if (m.temperature_k > 0) {
+    any_emission_ = true;
+    for (const Bin& b : state_.bins)
+      baked.blackbody.push_back(
+          static_cast<float>(planck_band_radiance(b.low_um, b.high_um, m.temperature_k) / (b.high_um - b.low_um)));
+  }
+  auto maps = std::make_unique<MaterialMaps>();
+  bool any = false;
+  for (const PropertyBinding& b : scene.property_bindings) {
+    const PropertyMap& map = scene.property_maps[b.property_map];
+    if (b.material != index || map.kind == MapKind::opacity) continue;  // rays decide about holes
+    any = true;
+    maps->needs_uv |= map.projection == Projection::uv;
+    switch (map.kind) {
+      case MapKind::mixture:
+        maps->mixture = &map;
+        break;
+      case MapKind::curve_index:
+        maps->curve_index = &map;
+        maps->variants = bake_family(map, m.surface, state_);
+        break;
+      case MapKind::cube:
+        maps->cube = std::make_unique<BakedCube>(map, m.surface, state_);
+        break;
+      case MapKind::temperature:
+        maps->temperature = &map;
+        break;
+      case MapKind::bump:
+        maps->bump = &map;
+        break;
+      case MapKind::normal:
+        maps->normal = &map;
+        break;
+      case MapKind::opacity:
+        break;
+    }
+  }
+  const TemperatureSpec* spec = nullptr;
+  for (const TemperatureBinding& t : scene.temperatures)
+    if (t.material == index && !t.spec.model.empty()) spec = &t.spec, any = true;
+  if (!any) return;
+  if (spec) maps->field = field_for(*spec, loads);
+  maps->constant_k = m.temperature_k;
+  if (maps->temperature || spec) {
+    any_emission_ = true;
+    maps->blackbody = table_for(maps->temperature, spec, m.temperature_k, state_);
+  }
+  baked.maps = std::move(maps);
+}
+
+void check_temperatures(const Scene& scene, double begin, double end) {
+  for (const TemperatureBinding& t : scene.temperatures) {
+    if (t.spec.times.empty() || t.spec.repeat) continue;
+    if (begin < t.spec.times.front() || end > t.spec.times.back())
+      throw Error(strf("material '%s': its temperatures are given from %g to %g s, %g to %g s are simulated",
+                       scene.materials[t.material].id.c_str(), t.spec.times.front(), t.spec.times.back(), begin, end),
+                  "give a longer table, or 'repeat: true'");
   }
 }
 

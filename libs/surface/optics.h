@@ -1,35 +1,59 @@
 // The materials of a scene baked for one spectral state.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "optics/models.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
+#include "surface/material_maps.h"
 
 namespace suite {
 
 struct BakedMaterial {
-  std::unique_ptr<const ScatterModel> model;
-  std::vector<float> blackbody;       // Planck radiance at the material's temperature per bin; empty = does not emit
+  const ScatterModel* model = nullptr;
+  std::vector<float> blackbody;        // Planck radiance at the material's temperature per bin; empty = does not emit
+  bool needs_tangent = false;          // some direction along the surface is preferred
+  std::unique_ptr<MaterialMaps> maps;  // null = the same everywhere
+  std::unique_ptr<const ScatterModel> owned;  // what `model` points to, unless it is an Interaction's
 };
 
 class Optics {
  public:
-  // Bakes the materials for which used[i] is true (all when empty). Error naming the material when one cannot be baked.
-  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {});
+  // Bakes the materials for which used[i] is true (all when empty). loads: what heats the surface of a material, for
+  // temperature models that ask; a model that asks without it is an Error. Error naming the material when one cannot be
+  // baked. Keeps a reference to the scene.
+  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {});
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
+  // The scene's media, all of them where a ray can meet one, else none.
+  std::span<const BakedMedium> media() const { return media_; }
+  // False when every medium scatters alike at all wavelengths, so that flights need not be weighed between knots.
+  bool spectral_flights() const { return spectral_flights_; }
   bool any_emission() const { return any_emission_; }
   // The state the materials are baked for: the given one, with its knots reduced to the reference when the shape of no
-  // material changes with wavelength, because the estimator then is the same at every knot.
+  // material or medium changes with wavelength, because the estimator then is the same at every knot; and with knots
+  // added at the bins where media scatter least and most, so that no wavelength's flights are far from all knots'.
   const SpectralState& state() const { return state_; }
 
  private:
-  void bake_all(const Scene& scene, const std::vector<bool>& used);
+  void bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads);
+  void bake_one(const Scene& scene, size_t index, const LoadsAt& loads);
+  bool one_shape() const;
+  void bake_media(const Scene& scene);
   SpectralState state_;
   std::vector<BakedMaterial> materials_;
-  bool any_emission_ = false;
+  std::vector<BakedMedium> media_;
+  bool any_emission_ = false, spectral_flights_ = false;
 };
+
+// Error naming the material when its temperature is a table that does not reach over the times from begin to end (s).
+void check_temperatures(const Scene& scene, double begin, double end);
+
+// The material of a place as it is there: `base` itself where nothing varies, else `made`, filled with the help of
+// `memory`. time: s. out: towards the viewer in the shading frame (emission of mixtures).
+const BakedMaterial* material_here(const BakedMaterial& base, const SpectralState& state, const MapPlace& place,
+                                   double time, Dir out, LocalMaterial& memory, BakedMaterial& made);
 
 }  // namespace suite

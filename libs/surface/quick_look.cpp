@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "surface/surface.h"
+#include "surface/material_lookup.h"
 
 namespace suite {
 
@@ -34,17 +34,7 @@ void colour(uint32_t material, double shade, uint8_t* rgb) {
 }  // namespace
 
 uint32_t material_of(const Tracer& tracer, const Hit& hit) {
-  const Scene& scene = tracer.scene();
-  const TracedObject& object = tracer.objects()[hit.object];
-  uint32_t id = object.material_override;
-  if (id == kNone && object.primitive != kNone) id = scene.primitives[object.primitive].material;
-  if (const Part* part = part_of(tracer, hit); id == kNone && part) id = part->material;
-  for (const MapBinding& b : scene.map_bindings) {
-    const ClassMap& map = scene.class_maps[b.class_map];
-    if (b.material != id || map.projection != Projection::drape) continue;
-    if (const uint32_t c = class_at(map, hit.position.x, hit.position.y); c != kNone) return map.materials[c];
-  }
-  return id;
+  return MaterialLookup(tracer.scene()).at(tracer.objects()[hit.object], hit);
 }
 
 std::string describe_hit(const Tracer& tracer, const Ray& ray) {
@@ -77,6 +67,7 @@ View view_from_above(const Tracer& tracer, int pixels) {
   view.height = std::max(1, static_cast<int>(std::ceil(size.y / gsd)));
   view.rgb.assign(3 * static_cast<size_t>(view.width) * static_cast<size_t>(view.height), 255);
   const Dir sun = normalized(Vec3{-1, 1, std::sqrt(2.0)});
+  const MaterialLookup lookup(tracer.scene());
   parallel_for(0, static_cast<size_t>(view.height), 4, [&](size_t begin, size_t end) {
     const FlushDenormals flush;
     TraceStatistics statistics;
@@ -92,8 +83,8 @@ View view_from_above(const Tracer& tracer, int pixels) {
       tracer.nearest(rays, hits, true, statistics);
       for (size_t i = 0; i < rays.size(); ++i)
         if (hits[i].hit())
-          colour(material_of(tracer, hits[i]), 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)),
-                 &view.rgb[3 * (j * rays.size() + i)]);
+          colour(lookup.at(tracer.objects()[hits[i].object], hits[i]),
+                 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)), &view.rgb[3 * (j * rays.size() + i)]);
     }
   });
   return view;

@@ -26,8 +26,8 @@ RTCDevice device() {
 FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window)
-    : Tracer(std::make_shared<const World>(std::move(scene), periodic), window) {}
+Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window, std::shared_ptr<const HitFilter> filter)
+    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter)), window) {}
 
 Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window) : world_(std::move(world)), bounds_(world_->bounds) {
   if (world_->flat.fixed == world_->flat.objects.size()) return;

@@ -62,6 +62,7 @@ struct Periodic {
 // that are found are then put on the exact place.
 double motion_bound(double radius);
 
+class HitFilter;
 struct World;         // what is at rest, shared by the tracers of all windows
 struct MovingPart;
 
@@ -70,8 +71,10 @@ class Tracer {
   // Builds acceleration structures in parallel; scenes of many tiles build each one when a ray first comes there. The
   // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
+  // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Error: a motion that does not cover the window; moving things in a periodic scene.
-  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {});
+  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
+                  std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -114,7 +117,8 @@ class Tracer {
 // stays in the same place share one tracer; of the others the last few are kept. Not for several threads at once.
 class TracerCache {
  public:
-  explicit TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt);
+  explicit TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
+                       std::shared_ptr<const HitFilter> filter = nullptr);
   ~TracerCache();
   std::shared_ptr<const Tracer> get(TimeSpan window);
   size_t builds() const { return builds_; }            // tracers made so far

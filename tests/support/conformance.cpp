@@ -113,8 +113,9 @@ class Run {
         n);
     // The share that is captured is one question, how it is spread another.
     const double share = v.mass + deltas / n;
-    result_.lost_z =
-        excess((v.added + deltas) / n, share, o_.total_tolerance, std::sqrt(std::max(share * (1 - share), 1e-6) / n));
+    // How many draws are Dirac lobes is chance too.
+    const double variance = std::max({share * (1 - share), v.mass * (1 - v.mass), 1e-6});
+    result_.lost_z = excess((v.added + deltas) / n, share, o_.total_tolerance, std::sqrt(variance / n));
     result_.chi_square_p = v.p_value;
     result_.degrees = v.degrees;
   }

@@ -10,7 +10,7 @@
 namespace suite::test {
 
 // A sensor whose problem i looks along rays[i]; one row, no neighbours.
-class RaySensor final : public Sensor {
+class RaySensor : public Sensor {
  public:
   RaySensor(std::vector<Ray> rays, std::vector<Band> bands, uint32_t paths, double step_um = 0.01, size_t knots = 4)
       : rays_(std::move(rays)), bands_(std::move(bands)), state_(make_state(bands_, step_um, 0, knots)) {
@@ -29,8 +29,10 @@ class RaySensor final : public Sensor {
   void accept(CaptureResult&& r) override { result = std::move(r); }
   CaptureResult result;
 
- private:
+ protected:
   std::vector<Ray> rays_;
+
+ private:
   std::vector<Band> bands_;
   SpectralState state_;
   std::vector<Task> tasks_;

@@ -62,6 +62,7 @@ class GgxConductor final : public ScatterModel {
     std::fill(p.begin(), p.end(), finite_float(density));
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
+  bool isotropic() const override { return facets_.ax == facets_.ay; }
   bool single_lobe() const override { return true; }
 
  private:

@@ -69,6 +69,7 @@ class Ward final : public ScatterModel {
     }
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
+  bool isotropic() const override { return ax_ == ay_; }
 
  private:
   // The unnormalised half vector in + out on the upper side.

@@ -32,6 +32,12 @@ class DoubleHg final : public PhaseFunction {
   void asymmetry(std::span<float> g) const override {
     for (size_t i = 0; i < g.size(); ++i) g[i] = share_[i] * g1_[i] + (1 - share_[i]) * g2_[i];
   }
+  bool spectrally_uniform() const override {
+    const auto same = [](const std::vector<float>& v) {
+      return std::all_of(v.begin(), v.end(), [&](float x) { return x == v.front(); });
+    };
+    return same(g1_) && same(g2_) && same(share_);
+  }
 
  private:
   float value(double c, size_t i) const {

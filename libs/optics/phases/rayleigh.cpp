@@ -25,6 +25,7 @@ class Rayleigh final : public PhaseFunction {
     return std::clamp(root, -1.0, 1.0);
   }
   void asymmetry(std::span<float> g) const override { std::fill(g.begin(), g.end(), 0.0f); }
+  bool spectrally_uniform() const override { return true; }
 
  private:
   float value(double c) const {

@@ -42,6 +42,7 @@ class Tabulated final : public PhaseFunction {
     return std::clamp(cosine_[i - 1] + (root > 0 ? 2 * rest / root : 0), cosine_[i - 1], cosine_[i]);
   }
   void asymmetry(std::span<float> g) const override { std::fill(g.begin(), g.end(), static_cast<float>(asymmetry_)); }
+  bool spectrally_uniform() const override { return true; }
 
  private:
   // "angle_deg value, angle_deg value, ..." from 0 to 180 ascending; stored by ascending cosine.

@@ -5,9 +5,13 @@
 
 namespace suite {
 
-Sun::Sun(const SunSpec& spec, const SpectralState& state) : frame_(Frame::around(normalized(spec.direction))), spectrum_(state.sample(spec.irradiance)) {
-  if (!(spec.half_angle >= 0 && spec.half_angle <= kPi / 2)) throw Error(strf("the sun's half angle %g rad is not between 0 and pi/2", spec.half_angle));
-  if (spec.irradiance.min() < 0) throw Error("the sun's irradiance is negative");
+Sun::Sun(const SunSpec& spec, const SpectralState& state)
+    : frame_(Frame::around(normalized(spec.direction))),
+      spectrum_(state.sample(spec.irradiance)),
+      irradiance_(spectrum_) {
+  if (!(spec.half_angle >= 0 && spec.half_angle <= kPi / 2))
+    throw Error(strf("the half angle %g rad of a disk is not between 0 and pi/2", spec.half_angle));
+  if (spec.irradiance.min() < 0) throw Error("the irradiance of the sun or moon is negative");
   drop_ = one_minus_cos(spec.half_angle);
   density_ = drop_ > 0 ? 1 / (2 * kPi * drop_) : 0;
   // Radiance = irradiance / projected solid angle of the disk, pi sin^2.

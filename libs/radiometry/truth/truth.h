@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "motion/scene_frame.h"
-#include "radiometry/sources/source.h"
+#include "radiometry/sources/environment.h"
 #include "radiometry/wave.h"
 #include "spectral/state.h"
 

@@ -5,5 +5,11 @@
 namespace suite {
 
 SensorRow frame_camera_row();
+SensorRow platform_row();
+SensorRow orthographic_row();
+SensorRow fisheye_row();
+SensorRow point_row();
+SensorRow goniometer_row();
+SensorRow rami_row();
 
 }  // namespace suite

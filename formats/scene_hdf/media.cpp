@@ -1,0 +1,162 @@
+// Media, voxel grids and volumes of a prepared scene.
+#include "formats/scene_hdf/internal.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kCurves = 3;  // of every medium: absorption, scattering, index
+
+std::array<double, 12> numbers_of(const Affine3& t) {
+  return {t.a[0], t.a[1], t.a[2], t.b.x, t.a[3], t.a[4], t.a[5], t.b.y, t.a[6], t.a[7], t.a[8], t.b.z};
+}
+Affine3 transform_of(const double* t) {
+  return {{t[0], t[1], t[2], t[4], t[5], t[6], t[8], t[9], t[10]}, {t[3], t[7], t[11]}};
+}
+
+void write_phases(h5::Writer& w, const std::vector<Medium>& media) {
+  std::vector<uint32_t> number_of, curve_of, text_of;
+  std::vector<std::string> number_name, curve_name, text_name, texts;
+  std::vector<double> numbers;
+  std::vector<Curve> curves;
+  for (uint32_t m = 0; m < media.size(); ++m) {
+    for (const auto& [name, value] : media[m].phase.numbers)
+      number_of.push_back(m), number_name.push_back(name), numbers.push_back(value);
+    for (const auto& [name, value] : media[m].phase.curves)
+      curve_of.push_back(m), curve_name.push_back(name), curves.push_back(value);
+    for (const auto& [name, value] : media[m].phase.texts)
+      text_of.push_back(m), text_name.push_back(name), texts.push_back(value);
+  }
+  w.put("/media/numbers/medium", number_of, "1");
+  w.put_names("/media/numbers/name", number_name);
+  w.put("/media/numbers/value", numbers, "SI");
+  w.put("/media/texts/medium", text_of, "1");
+  w.put_names("/media/texts/name", text_name);
+  w.put_names("/media/texts/value", texts);
+  w.put("/media/phase_curves/medium", curve_of, "1");
+  w.put_names("/media/phase_curves/name", curve_name);
+  write_curves(w, "/media/phase_curves", curves);
+}
+
+void read_phases(h5::Reader& r, std::vector<Medium>& media) {
+  const auto rows = [&](const std::string& table) {
+    const auto owner = r.get<uint32_t>(table + "/medium", "1");
+    for (const uint32_t m : owner)
+      if (m >= media.size()) r.fail("'" + table + "' names a medium that is not there");
+    return owner;
+  };
+  const auto number_of = rows("/media/numbers"), text_of = rows("/media/texts"), curve_of = rows("/media/phase_curves");
+  const auto count = [](const auto& v) { return static_cast<long long>(v.size()); };
+  const std::vector<std::string> number_name = r.get_names("/media/numbers/name", count(number_of)),
+                                 text_name = r.get_names("/media/texts/name", count(text_of)),
+                                 curve_name = r.get_names("/media/phase_curves/name", count(curve_of)),
+                                 texts = r.get_names("/media/texts/value", count(text_of));
+  const auto numbers = r.get<double>("/media/numbers/value", "SI", 1, count(number_of));
+  const std::vector<Curve> curves = read_curves(r, "/media/phase_curves");
+  if (curves.size() != curve_of.size()) r.fail("curves of phase functions are missing");
+  for (size_t k = 0; k < number_of.size(); ++k) media[number_of[k]].phase.numbers[number_name[k]] = numbers[k];
+  for (size_t k = 0; k < text_of.size(); ++k) media[text_of[k]].phase.texts[text_name[k]] = texts[k];
+  for (size_t k = 0; k < curve_of.size(); ++k) media[curve_of[k]].phase.curves[curve_name[k]] = curves[k];
+}
+
+void read_grids(h5::Reader& r, Scene& s) {
+  const std::vector<std::string> names = r.get_names("/grids/name");
+  const auto n = static_cast<long long>(names.size());
+  const auto size = r.get<uint32_t>("/grids/size", "1", 6, n);
+  const auto frame = r.get<double>("/grids/to_local", "m", 12, n);
+  Stretch<uint32_t> media(r, "/grids/media", "1");
+  Stretch<float> density(r, "/grids/density", "1"), temperature(r, "/grids/temperature", "K");
+  Stretch<uint8_t> kind(r, "/grids/kind", "1");
+  for (size_t k = 0; k < names.size(); ++k) {
+    VoxelGrid g;
+    const uint32_t* z = &size[6 * k];
+    g.name = names[k];
+    g.cells = {z[0], z[1], z[2]};
+    if (uint64_t{z[0]} * z[1] > (uint64_t{1} << 40) || z[2] > (1u << 20)) r.fail("grid '" + g.name + "' is too large");
+    g.to_local = transform_of(&frame[12 * k]);
+    g.media = media.next(z[3]);
+    g.density = density.next(g.size());
+    if (z[4]) g.kind = kind.next(g.size());
+    if (z[5]) g.temperature = temperature.next(g.size());
+    s.grids.push_back(std::move(g));
+  }
+  media.finish(), density.finish(), kind.finish(), temperature.finish();
+}
+
+}  // namespace
+
+void write_media(h5::Writer& w, const Scene& s) {
+  w.put_names("/media/id", pick(s.media, [](const Medium& m) { return m.id; }));
+  w.put_names("/media/description", pick(s.media, [](const Medium& m) { return m.description; }));
+  w.put_names("/media/phase", pick(s.media, [](const Medium& m) { return m.phase.model; }));
+  w.put("/media/temperature", pick(s.media, [](const Medium& m) { return m.temperature_k; }), "K");
+  w.put("/media/priority", pick(s.media, [](const Medium& m) { return double(m.priority); }), "1");
+  std::vector<Curve> curves;
+  for (const Medium& m : s.media) curves.insert(curves.end(), {m.absorption, m.scattering, m.index});
+  write_curves(w, "/media/curves", curves);
+  write_phases(w, s.media);
+  w.put("/media/ambient", std::vector<uint32_t>{s.ambient}, "1");
+  w.put("/materials/inside", pick(s.materials, [](const Material& m) { return m.inside; }), "1");
+  w.put("/materials/outside", pick(s.materials, [](const Material& m) { return m.outside; }), "1");
+
+  std::vector<uint32_t> size, media;
+  std::vector<double> frame, place;
+  size_t cells = 0, kinds = 0, temperatures = 0;
+  for (const VoxelGrid& g : s.grids) {
+    size.insert(size.end(), {g.cells[0], g.cells[1], g.cells[2], static_cast<uint32_t>(g.media.size()), !g.kind.empty(),
+                             !g.temperature.empty()});
+    const auto t = numbers_of(g.to_local);
+    frame.insert(frame.end(), t.begin(), t.end());
+    media.insert(media.end(), g.media.begin(), g.media.end());
+    cells += g.density.size(), kinds += g.kind.size(), temperatures += g.temperature.size();
+  }
+  w.put_names("/grids/name", pick(s.grids, [](const VoxelGrid& g) { return g.name; }));
+  w.put("/grids/size", size, "1", 6);
+  w.put("/grids/to_local", frame, "m", 12);
+  w.put("/grids/media", media, "1");
+  auto density = w.column("/grids/density", h5::native<float>(), cells, "1");
+  auto kind = w.column("/grids/kind", h5::native<uint8_t>(), kinds, "1");
+  auto temperature = w.column("/grids/temperature", h5::native<float>(), temperatures, "K");
+  for (const VoxelGrid& g : s.grids) {
+    density.append(std::span<const float>(g.density));
+    kind.append(std::span<const uint8_t>(g.kind));
+    temperature.append(std::span<const float>(g.temperature));
+  }
+  for (const Volume& v : s.volumes) {
+    const auto t = numbers_of(v.to_world);
+    place.insert(place.end(), t.begin(), t.end());
+  }
+  w.put("/volumes/grid", pick(s.volumes, [](const Volume& v) { return v.grid; }), "1");
+  w.put("/volumes/to_world", place, "m", 12);
+}
+
+void read_media(h5::Reader& r, Scene& s) {
+  const std::vector<std::string> ids = r.get_names("/media/id");
+  const auto n = static_cast<long long>(ids.size());
+  const std::vector<std::string> description = r.get_names("/media/description", n),
+                                 phase = r.get_names("/media/phase", n);
+  const auto temperature = r.get<double>("/media/temperature", "K", 1, n),
+             priority = r.get<double>("/media/priority", "1", 1, n);
+  const std::vector<Curve> curves = read_curves(r, "/media/curves");
+  if (curves.size() != kCurves * ids.size()) r.fail("curves of media are missing");
+  for (size_t k = 0; k < ids.size(); ++k) {
+    if (!(std::abs(priority[k]) <= 1e6)) r.fail("medium '" + ids[k] + "' has an absurd priority");
+    Medium m{ids[k], description[k],          curves[kCurves * k], curves[kCurves * k + 1],
+             {},     curves[kCurves * k + 2], temperature[k],      static_cast<int>(priority[k])};
+    m.phase.model = phase[k];
+    s.media.push_back(std::move(m));
+  }
+  read_phases(r, s.media);
+  s.ambient = r.get<uint32_t>("/media/ambient", "1", 1, 1)[0];
+  const auto materials = static_cast<long long>(s.materials.size());
+  const auto inside = r.get<uint32_t>("/materials/inside", "1", 1, materials),
+             outside = r.get<uint32_t>("/materials/outside", "1", 1, materials);
+  for (size_t k = 0; k < s.materials.size(); ++k)
+    s.materials[k].inside = inside[k], s.materials[k].outside = outside[k];
+  read_grids(r, s);
+  const auto grid = r.get<uint32_t>("/volumes/grid", "1");
+  const auto place = r.get<double>("/volumes/to_world", "m", 12, static_cast<long long>(grid.size()));
+  for (size_t k = 0; k < grid.size(); ++k) s.volumes.push_back({grid[k], transform_of(&place[12 * k])});
+}
+
+}  // namespace suite

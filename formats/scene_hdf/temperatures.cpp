@@ -1,0 +1,87 @@
+#include <cmath>
+
+#include "formats/scene_hdf/internal.h"
+#include "thermal/models.h"
+
+namespace suite {
+
+namespace {
+
+const std::string kTable = "/temperatures";
+constexpr size_t kLayer = 14;  // numbers a layer
+
+void append(const SlabLayer& l, std::vector<double>& out) {
+  out.insert(out.end(), {l.thickness, l.density});
+  out.insert(out.end(), l.specific_heat.begin(), l.specific_heat.end());
+  out.insert(out.end(), l.conductivity.begin(), l.conductivity.end());
+  out.insert(out.end(), {l.heat_generation, l.contact_resistance, static_cast<double>(l.intervals)});
+}
+
+SlabLayer layer_of(const double* v) {
+  SlabLayer l;
+  l.thickness = v[0], l.density = v[1];
+  std::copy(v + 2, v + 7, l.specific_heat.begin());
+  std::copy(v + 7, v + 11, l.conductivity.begin());
+  l.heat_generation = v[11], l.contact_resistance = v[12];
+  l.intervals = static_cast<int>(std::clamp(v[13], 0.0, 1e6));
+  return l;
+}
+
+}  // namespace
+
+void write_temperatures(h5::Writer& w, const Scene& s) {
+  std::vector<uint32_t> size;
+  std::vector<uint8_t> repeat;
+  std::vector<double> time, kelvin, layers, value;
+  std::vector<std::string> name;
+  for (const TemperatureBinding& t : s.temperatures) {
+    size.insert(size.end(),
+                {t.material, static_cast<uint32_t>(t.spec.times.size()), static_cast<uint32_t>(t.spec.layers.size()),
+                 static_cast<uint32_t>(t.spec.numbers.size())});
+    repeat.push_back(t.spec.repeat);
+    time.insert(time.end(), t.spec.times.begin(), t.spec.times.end());
+    kelvin.insert(kelvin.end(), t.spec.kelvins.begin(), t.spec.kelvins.end());
+    for (const SlabLayer& l : t.spec.layers) append(l, layers);
+    for (const auto& [key, number] : t.spec.numbers) name.push_back(key), value.push_back(number);
+  }
+  w.put_names(kTable + "/model", pick(s.temperatures, [](const TemperatureBinding& t) { return t.spec.model; }));
+  w.put(kTable + "/size", size, "1", 4);
+  w.put(kTable + "/repeat", repeat, "1");
+  w.put(kTable + "/time", time, "s");
+  w.put(kTable + "/kelvin", kelvin, "K");
+  w.put(kTable + "/layers", layers, "SI", kLayer);
+  w.put_names(kTable + "/numbers/name", name);
+  w.put(kTable + "/numbers/value", value, "SI");
+}
+
+void read_temperatures(h5::Reader& r, Scene& s, Loading& loading) {
+  const std::vector<std::string> model = r.get_names(kTable + "/model");
+  const auto n = static_cast<long long>(model.size());
+  const auto size = r.get<uint32_t>(kTable + "/size", "1", 4, n);
+  const auto repeat = r.get<uint8_t>(kTable + "/repeat", "1", 1, n);
+  Stretch<double> time(r, kTable + "/time", "s"), kelvin(r, kTable + "/kelvin", "K");
+  const auto layers = r.get<double>(kTable + "/layers", "SI", kLayer);
+  const std::vector<std::string> name = r.get_names(kTable + "/numbers/name");
+  const auto value = r.get<double>(kTable + "/numbers/value", "SI", 1, static_cast<long long>(name.size()));
+  size_t layer = 0, number = 0;
+  for (size_t k = 0; k < model.size(); ++k) {
+    TemperatureBinding t;
+    t.material = size[4 * k];
+    t.spec.model = model[k];
+    t.spec.repeat = repeat[k] != 0;
+    t.spec.times = time.next(size[4 * k + 1]);
+    t.spec.kelvins = kelvin.next(size[4 * k + 1]);
+    if (size[4 * k + 2] > layers.size() / kLayer - layer || size[4 * k + 3] > name.size() - number)
+      r.fail("a temperature declares more layers or numbers than there are");
+    for (uint32_t i = 0; i < size[4 * k + 2]; ++i, ++layer) t.spec.layers.push_back(layer_of(&layers[kLayer * layer]));
+    for (uint32_t i = 0; i < size[4 * k + 3]; ++i, ++number) t.spec.numbers[name[number]] = value[number];
+    if (!t.spec.model.empty()) make_temperature_model(t.spec);
+    loading.row("layers").stored += 8 * kLayer * t.spec.layers.size();
+    loading.row("temperatures").stored += 16 * t.spec.times.size();
+    s.temperatures.push_back(std::move(t));
+  }
+  time.finish(), kelvin.finish();
+  if (layer * kLayer != layers.size() || number != name.size()) r.fail("there are layers or numbers of no temperature");
+}
+
+}  // namespace suite

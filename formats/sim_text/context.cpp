@@ -1,0 +1,77 @@
+#include "formats/sim_text/context.h"
+
+#include "formats/motion/motion.h"
+#include "formats/raster/raster.h"
+#include "formats/tle/tle.h"
+
+namespace suite {
+
+namespace {
+
+GreyImage read_grey(const std::string& path) {
+  const Raster raster = read_raster(path, size_t{1} << 24);
+  GreyImage image{raster.width, raster.height, {}};
+  for (size_t i = 0; i < raster.values.size(); i += raster.channels) image.values.push_back(raster.values[i]);
+  return image;
+}
+
+}  // namespace
+
+void read_epoch(const Params& root, Simulation& sim) {
+  if (const auto epoch = root.find("epoch")) {
+    try {
+      sim.epoch = parse_iso8601(epoch->as_text());
+    } catch (const Error& e) {
+      throw epoch->error(e.message(), e.hint());
+    }
+  } else if (sim.sources.sun && sim.sources.sun->time) {
+    sim.epoch = parse_iso8601(sim.sources.sun->time->utc);
+  }
+  sim.dut1 = root.number_in("dut1_s", -0.9, 0.9, "s", 0);
+}
+
+SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& callbacks) {
+  // The scene is asked for its origin once, and only by a sensor that moves.
+  struct Shared {
+    MotionContext motion;
+    bool asked = false;
+  };
+  auto shared = std::make_shared<Shared>();
+  shared->motion.dut1 = sim.dut1;
+  if (sim.epoch) shared->motion.clock = Clock(*sim.epoch);
+  shared->motion.satellites = [](const std::string& path, const std::string& name) {
+    return read_tle_of(path, name).elements;
+  };
+  auto motion = [shared, origin = callbacks.origin, path = sim.path, scenes = sim.scenes]() -> const MotionContext& {
+    if (!shared->asked && origin) {
+      const GeodeticOrigin at = origin(path, scenes);
+      if (at.given) shared->motion.frame = SceneFrame({at.latitude_deg, at.longitude_deg, at.ellipsoid_height_m});
+    }
+    shared->asked = true;
+    return shared->motion;
+  };
+  SensorContext context;
+  context.deliver = callbacks.deliver;
+  context.track = [motion](const Params& p) { return track_from(p, motion()); };
+  context.position = [motion](const Params& p) { return position_from(p, motion()); };
+  context.jitter = [](const Params& p, uint64_t seed) { return jitter_from(p, seed); };
+  context.image = read_grey;
+  context.frame = [motion] { return motion().frame; };
+  context.time = [shared](const Params& p) {
+    const std::string text = p.as_text();
+    if (text.find_first_of(":T") == std::string::npos) return p.as_number();
+    if (!shared->motion.clock)
+      throw p.error("a date needs the simulation's `epoch`", "give seconds, or epoch: 2026-06-21T10:30:00Z");
+    try {
+      return shared->motion.clock->seconds(parse_iso8601(text));
+    } catch (const Error& e) {
+      throw p.error(e.message(), e.hint());
+    }
+  };
+  context.utc = [shared](double t) {
+    return shared->motion.clock ? to_iso8601(shared->motion.clock->utc(t), 6) : std::string();
+  };
+  return context;
+}
+
+}  // namespace suite

@@ -1,0 +1,49 @@
+#include "formats/sim_text/scenes.h"
+
+#include "formats/motion/motion.h"
+#include "formats/scene_hdf/scene_hdf.h"
+#include "formats/scene_text/transform.h"
+#include "formats/tle/tle.h"
+
+namespace suite {
+
+namespace {
+
+// Motions are told in the frame of the first scene.
+TrackPtr read_motion(const Params& p, const std::string& first) {
+  MotionContext context;
+  const SceneOrigin at = read_scene_origin(first);
+  if (at.origin.given)
+    context.frame.emplace(Geodetic{at.origin.latitude_deg, at.origin.longitude_deg, at.origin.ellipsoid_height_m});
+  if (!at.epoch.empty()) context.clock.emplace(parse_iso8601(at.epoch));
+  context.satellites = [](const std::string& path, const std::string& satellite) {
+    return read_tle_of(path, satellite).elements;
+  };
+  return track_from(p, context);
+}
+
+}  // namespace
+
+void read_scenes(const Params& root, Simulation& sim) {
+  const auto list = root.find("scenes");
+  if (!list) {
+    sim.scenes.push_back({root.at("scene").as_path(), {}, {}});
+  } else {
+    if (root.has("scene")) throw list->error("'scene' and 'scenes' exclude each other");
+    for (const Params& p : list->items()) {
+      if (p.kind() == Params::Kind::scalar) {
+        sim.scenes.push_back({p.as_path(), {}, {}});
+        continue;
+      }
+      SimulationScene scene{p.at("file").as_path(), {}, {}};
+      scene.placement = find_transform(p);
+      if (const auto motion = p.find("motion"))
+        scene.motion = read_motion(*motion, sim.scenes.empty() ? scene.path : sim.scenes.front().path);
+      sim.scenes.push_back(std::move(scene));
+    }
+    if (sim.scenes.empty()) throw list->error("a simulation needs at least one scene");
+  }
+  sim.scene_path = sim.scenes.front().path;
+}
+
+}  // namespace suite

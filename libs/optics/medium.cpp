@@ -1,0 +1,44 @@
+#include "optics/medium.h"
+
+#include <algorithm>
+
+#include "spectral/planck.h"
+
+namespace suite {
+
+void check_medium(Medium& m, const Where& where) {
+  const std::string name = "medium '" + m.id + "': ";
+  if (m.absorption.min() < 0)
+    throw Error(where, name + strf("absorption %g", m.absorption.min()), "1/m, at least 0", "SP601");
+  if (m.scattering.min() < 0)
+    throw Error(where, name + strf("scattering %g", m.scattering.min()), "1/m, at least 0", "SP601");
+  if (!(m.index.min() >= 1 && m.index.max() <= 5))
+    throw Error(where, name + strf("index of refraction %g to %g", m.index.min(), m.index.max()), "1 to 5", "SP601");
+  if (!(m.temperature_k >= 0 && m.temperature_k <= 1e5))
+    throw Error(where, name + strf("temperature %g", m.temperature_k), "1 to 1e5 K", "SP601");
+  if (!(m.scattering.max() > 0)) return;
+  if (m.phase.model.empty()) m.phase = {"hg", {}, {{"g", Curve::constant(0)}}, {}, nullptr};
+  check_phase(m.phase, where);
+}
+
+BakedMedium::BakedMedium(const Medium& m, const SpectralState& state)
+    : absorption(state.sample(m.absorption)),
+      scattering(state.sample(m.scattering)),
+      index_squared(state.sample(m.index)) {
+  for (float& n : index_squared) n *= n;
+  if (std::any_of(scattering.begin(), scattering.end(), [](float s) { return s > 0; }))
+    phase = bake_phase(m.phase, state);
+  if (!(m.temperature_k > 0)) return;
+  for (size_t i = 0; i < state.size(); ++i) {
+    const Bin& b = state.bins[i];
+    const double mean = planck_band_radiance(b.low_um, b.high_um, m.temperature_k) / (b.high_um - b.low_um);
+    blackbody.push_back(static_cast<float>(mean * index_squared[i]));
+  }
+}
+
+bool BakedMedium::uniform() const {
+  return !phase || (phase->spectrally_uniform() && std::all_of(scattering.begin(), scattering.end(),
+                                                               [&](float s) { return s == scattering.front(); }));
+}
+
+}  // namespace suite

@@ -1,0 +1,41 @@
+// A participating medium: how it absorbs, scatters and emits per metre of way, and the same baked for a spectral state.
+//
+// Coefficients hold at density 1; a voxel grid scales them by its densities, so they may as well be per unit of mass
+// (m2/kg) with densities in kg/m3. Extinction is absorption + scattering, always.
+// Based on: S. Chandrasekhar, "Radiative transfer", 1960, chapter I; emission is absorption times n^2 B(T) (Kirchhoff).
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "optics/phase_function.h"
+
+namespace suite {
+
+struct Medium {
+  std::string id;  // unique alpha-numeric identifier
+  std::string description;
+  Curve absorption = Curve::constant(0);  // 1/m at density 1
+  Curve scattering = Curve::constant(0);  // 1/m at density 1
+  ModelSpec phase;                        // a row of phases(); none when nothing scatters
+  Curve index = Curve::constant(1);       // index of refraction
+  double temperature_k = 0;               // 0 = none given: does not emit
+  int priority = 0;                       // of overlapping bodies the one with the highest holds
+};
+
+// Coefficients finite and >= 0, index in [1, 5], a checked phase function where something scatters (filled in by
+// isotropic scattering when none is named), a sane temperature. Error located at `where` otherwise.
+void check_medium(Medium& medium, const Where& where = {});
+
+// Per bin of a state. Error when a curve does not cover the state.
+struct BakedMedium {
+  BakedMedium(const Medium& medium, const SpectralState& state);
+  std::vector<float> absorption, scattering;  // 1/m at density 1
+  std::vector<float> index_squared;
+  std::vector<float> blackbody;                // n^2 B(T), W/(m2 sr um); empty = does not emit at its own temperature
+  std::unique_ptr<const PhaseFunction> phase;  // null when nothing scatters
+  bool scatters() const { return phase != nullptr; }
+  bool uniform() const;  // scatters alike at all wavelengths: the same coefficient and the same phase function
+};
+
+}  // namespace suite

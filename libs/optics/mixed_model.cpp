@@ -1,0 +1,116 @@
+#include "optics/mixed_model.h"
+
+#include <algorithm>
+
+namespace suite {
+
+namespace {
+std::span<float> scratch(size_t n) {
+  thread_local std::vector<float> memory;
+  memory.resize(std::max(memory.size(), n));
+  return {memory.data(), n};
+}
+void add_scaled(const float* value, float scale, const float* spectrum, std::span<float> sum) {
+  if (spectrum)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += scale * spectrum[i] * value[i];
+  else
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += scale * value[i];
+}
+}  // namespace
+
+void MixedModel::reset(std::span<const size_t> knots) {
+  parts_.clear();
+  knots_ = knots;
+  std::fill_n(chance_sum_, kMaxKnots, 0.0);
+}
+
+void MixedModel::add(const ScatterModel& model, float share, std::span<const float> spectrum) {
+  Part part{&model, share, spectrum.empty() ? nullptr : spectrum.data(), {}};
+  float mean = 1;
+  if (part.spectrum) {
+    mean = 0;
+    for (const float s : spectrum) mean += s;
+    mean /= static_cast<float>(spectrum.size());
+  }
+  for (size_t k = 0; k < knots_.size(); ++k) {
+    part.chance[k] = share * (part.spectrum ? 0.9f * spectrum[knots_[k]] + 0.1f * mean : 1);
+    chance_sum_[k] += part.chance[k];
+  }
+  parts_.push_back(part);
+}
+
+void MixedModel::eval(Dir out, Dir in, std::span<float> w) const {
+  std::fill(w.begin(), w.end(), 0.0f);
+  const std::span<float> one = scratch(w.size());
+  for (const Part& p : parts_) {
+    if (const auto factored = p.model->factored(out, in)) {
+      add_scaled(factored->spectrum, p.share * factored->scale, p.spectrum, w);
+      continue;
+    }
+    p.model->eval(out, in, one);
+    add_scaled(one.data(), p.share, p.spectrum, w);
+  }
+}
+
+void MixedModel::total(Dir out, std::span<float> W) const {
+  std::fill(W.begin(), W.end(), 0.0f);
+  const std::span<float> one = scratch(W.size());
+  for (const Part& p : parts_) {
+    p.model->total(out, one);
+    add_scaled(one.data(), p.share, p.spectrum, W);
+  }
+}
+
+std::optional<ScatterModel::Sample> MixedModel::sample(Dir out, Vec2 u, double lobe_u, int knot) const {
+  const auto k = static_cast<size_t>(knot);
+  double rest = lobe_u;
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    const double mine = chance(parts_[i], k);
+    if (rest >= mine && i + 1 < parts_.size()) {
+      rest -= mine;
+      continue;
+    }
+    if (!(mine > 0)) return std::nullopt;
+    auto drawn = parts_[i].model->sample(out, u, std::clamp(rest / mine, 0.0, 0x1.fffffffffffffp-1), knot);
+    if (drawn) drawn->lobe = drawn->lobe * static_cast<int>(parts_.size()) + static_cast<int>(i);
+    return drawn;
+  }
+  return std::nullopt;
+}
+
+void MixedModel::pdf(Dir out, Dir in, std::span<float> p) const {
+  float one[kMaxKnots];
+  std::fill(p.begin(), p.end(), 0.0f);
+  for (const Part& part : parts_) {
+    part.model->pdf(out, in, {one, p.size()});
+    for (size_t k = 0; k < p.size(); ++k) p[k] += static_cast<float>(chance(part, k)) * one[k];
+  }
+}
+
+void MixedModel::delta_weight(Dir out, int lobe, int knot, std::span<float> weight) const {
+  const auto n = static_cast<int>(parts_.size());
+  const Part& part = parts_[static_cast<size_t>(lobe % n)];
+  const std::span<float> one = scratch(weight.size());
+  part.model->delta_weight(out, lobe / n, knot, one);
+  std::fill(weight.begin(), weight.end(), 0.0f);
+  add_scaled(one.data(), part.share, part.spectrum, weight);
+}
+
+void MixedModel::delta_probability(Dir out, int lobe, int knot, std::span<float> probability) const {
+  const auto n = static_cast<int>(parts_.size());
+  const Part& part = parts_[static_cast<size_t>(lobe % n)];
+  part.model->delta_probability(out, lobe / n, knot, probability);
+  for (size_t k = 0; k < probability.size(); ++k) probability[k] *= static_cast<float>(chance(part, k));
+}
+
+bool MixedModel::has_delta() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.model->has_delta(); });
+}
+bool MixedModel::opaque() const {
+  return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.model->opaque(); });
+}
+bool MixedModel::isotropic() const {
+  return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.model->isotropic(); });
+}
+
+}  // namespace suite

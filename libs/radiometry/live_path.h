@@ -1,0 +1,30 @@
+// What generation must remember of a path and processing need not.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "math/sampling.h"
+#include "optics/scatter_model.h"
+#include "radiometry/medium_stack.h"
+
+namespace suite {
+
+struct LivePath {
+  SampleStream stream{0, 0, 0};
+  uint32_t sample = 0;
+  std::array<double, 4> u;  // numbers of the current node
+  Vec3 origin;              // of the next segment
+  Dir direction;
+  double length = 0;                     // optical length so far
+  double relative[kMaxKnots];            // r_k
+  double throughput[kMaxKnots];          // at the knots
+  double shares = 1, shares_before = 1;  // A after and before the last event
+  double last_density = 0;               // p_h of the last event, without roulette; 0 after a Dirac event or none
+  MediumStack bodies;                    // that the next segment starts in
+  bool scattered = false;                // the last event was a scattering in a medium, at:
+  Vec3 place;
+  uint32_t flights = 0;      // through media so far
+  uint32_t scatterings = 0;  // inside media so far
+};
+
+}  // namespace suite

@@ -1,0 +1,170 @@
+// The part of the path generator that deals with sources of light: explicit samples at the nodes, and how much of a
+// source counts that a path met by chance (the formulas stand in path_generator.h).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "radiometry/path_generator.h"
+#include "radiometry/volume_paths.h"
+
+namespace suite {
+
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+// How lamps see a node: opaque surfaces take light on the side that the path sees.
+LightReceiver receiver_of(const Node& node) {
+  const bool opaque = node.at.baked->model->opaque();
+  const Dir n = node.at.frame.z;
+  return {node.at.position, opaque && dot(node.out, node.at.geometric_normal) < 0 ? -n : n, !opaque};
+}
+
+}  // namespace
+
+void PathGenerator::escape(Path& path, const Live& live) const {
+  path.end = PathEnd::escaped;
+  path.escape = live.direction;
+  path.escape_factor = 1 / live.shares;
+  const bool by_chance = live.last_density > 0 && options_.explicit_sources;
+  auto factor = [&](double density) {
+    return by_chance && density > 0 ? 1 / (live.shares + live.shares_before * density / live.last_density)
+                                    : path.escape_factor;
+  };
+  if (environment_.sky)
+    path.sky_factor = factor(environment_.sky->tabulated() ? environment_.sky->density(live.direction) : 0);
+  if (environment_.sun && environment_.sun->contains(live.direction))
+    path.sun_factor = factor(environment_.sun->density());
+  if (environment_.moon && environment_.moon->contains(live.direction))
+    path.moon_factor = factor(environment_.moon->density());
+}
+
+// Proposes a sample of a source: a visibility ray of the given length, or to `end` when that is given.
+void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance,
+                        const Vec3* end) {
+  Node& node = wave.node(p, wave.path(p).size - 1);
+  const double in_side = dot(light.direction, node.at.geometric_normal);
+  if (node.at.baked->model->opaque() && in_side * dot(node.out, node.at.geometric_normal) <= 0) return;
+  // Light may come in only from the side of the surface that the shading frame says it comes from.
+  if (in_side * dot(light.direction, node.at.frame.z) <= 0) return;
+  node.light[slot] = light;
+  const Vec3 origin = surface_.tracer().leave(node.hit, light.direction);
+  Dir direction = light.direction;
+  if (end) {
+    const Vec3 way = *end - origin;
+    distance = length(way);
+    if (!(distance > 0)) return;
+    direction = way / distance;
+  }
+  wave.rays.push_back({origin, direction, wave.path(p).ray.time, wave.path(p).ray.draw});
+  wave.distance.push_back(distance);
+  wave.owner.push_back(p);
+  wave.light.push_back(slot);
+}
+
+void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
+  auto ask_far = [&](uint8_t slot, const DirectionSample& drawn, double relative, const float* spectrum) {
+    if (relative > 0)
+      ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar,
+          nullptr);
+  };
+  if (environment_.sun)
+    ask_far(light_sun, environment_.sun->sample({live.u[2], live.u[3]}), 1, environment_.sun->spectrum());
+  const auto block = static_cast<uint32_t>(wave.path(p).size - 1);
+  if (environment_.moon) {
+    const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + block);
+    ask_far(light_moon, environment_.moon->sample({v[0], v[1]}), 1, environment_.moon->spectrum());
+  }
+  if (environment_.sky && environment_.sky->tabulated()) {
+    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + block);
+    const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
+    const float* spectrum = environment_.sky->spectrum();
+    ask_far(light_sky, drawn, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum);
+  }
+  if (environment_.lamps) ask_lamps(wave, p);
+}
+
+void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
+  const int n = wave.path(p).size - 1;
+  const std::array<double, 4> v = live.stream.draw(live.sample, kLampBlock + static_cast<uint32_t>(n));
+  const auto lamp = environment_.lamps->sample(receiver_of(wave.node(p, n)), v[0], {v[1], v[2]});
+  if (lamp)
+    ask(wave, p, light_lamp,
+        {lamp->direction, lamp->density, static_cast<float>(lamp->scale), lamp->spectrum, nullptr, 0, lamp->distance},
+        lamp->distance, &lamp->end);
+}
+
+// A surface met by chance may glow; what an explicit sample of it brings is shared with it.
+void PathGenerator::meet_glow(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
+  const int n = wave.path(p).size - 1;
+  Node& node = wave.node(p, n);
+  const double cosine = dot(node.out, node.at.geometric_normal);
+  node.glow = environment_.lamps->glow(node.at.material, cosine > 0);
+  if (!node.glow) return;
+  node.glow_factor = node.spectral_factor;
+  if ((n == 0 && !live.scattered) || !options_.explicit_sources || !(live.last_density > 0)) return;
+  const LightReceiver from = live.scattered ? LightReceiver{live.place, {}, true} : receiver_of(wave.node(p, n - 1));
+  // Boundaries of media may have been passed on the way.
+  const double distance = volume_ ? length(node.hit.position - from.position) : node.hit.distance;
+  const double density = environment_.lamps->density(from, node.hit, distance, cosine);
+  if (density > 0) node.glow_factor = 1 / (live.shares + live.shares_before * density / live.last_density);
+}
+
+// Adds a visible sample: as a factored light of the node, or to its direct radiance.
+void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray) {
+  const int n = wave.path(p).size - 1;
+  Node& node = wave.node(p, n);
+  ExplicitLight& light = node.light[slot];
+  const Live& live = live_[p];
+  const ScatterModel& model = *node.at.baked->model;
+  const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
+  double reach[kMaxKnots];
+  std::fill_n(reach, knots_, 1.0);
+  const bool dim = volume_ && volume_->dims(ray, transmission_, {reach, knots_});
+  double denominator = live.shares;
+  if (light.density > 0) {
+    float pdf[kMaxKnots];
+    model.pdf(out, in, {pdf, knots_});
+    denominator = live.shares * light.density;
+    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+  }
+  const float scale = static_cast<float>(light.radiance_scale / denominator);
+  const Atmosphere* air = environment_.atmosphere.get();
+  if (light.spectrum && !air && !dim) {
+    if (const auto factored = model.factored(out, in)) {
+      light.scatter = factored->spectrum;
+      light.scale = scale * factored->scale;
+      node.lights |= static_cast<uint8_t>(1u << slot);
+      return;
+    }
+  }
+  const std::span<float> w = wave.scratch();
+  model.eval(out, in, w);
+  if (dim)
+    for (size_t i = 0; i < w.size(); ++i) w[i] *= transmission_[i];
+  float* direct = wave.direct(p, n).data();
+  if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
+  node.has_direct = true;
+  if (!light.spectrum || air) {
+    // What arrives, as a spectrum of its own: the sky's in this direction, through the air.
+    const std::span<float> arriving = wave.scratch2();
+    if (air)
+      air->transmittance(node.at.position, light.direction, light.distance, arriving);
+    else
+      std::fill(arriving.begin(), arriving.end(), 1.0f);
+    for (size_t i = 0; i < w.size(); ++i) w[i] *= arriving[i];
+    std::fill(arriving.begin(), arriving.end(), 0.0f);
+    if (light.spectrum)
+      std::copy_n(light.spectrum, arriving.size(), arriving.begin());
+    else
+      environment_.sky->add(light.direction, 1, arriving);
+    for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * arriving[i] * scale;
+    return;
+  }
+  for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * light.spectrum[i] * scale;
+}
+
+}  // namespace suite

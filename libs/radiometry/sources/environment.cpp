@@ -1,0 +1,132 @@
+#include "radiometry/sources/environment.h"
+
+#include <cmath>
+
+#include "motion/ephemeris.h"
+#include "motion/time.h"
+#include "radiometry/sources/solar_spectrum.h"
+
+namespace suite {
+
+namespace {
+
+SceneFrame frame_of(const Scene& scene, const Where& where, const char* what) {
+  if (!scene.origin.given)
+    throw Error(where, std::string(what) + " needs a scene with a geodetic origin",
+                "give the scene an origin, or directions as {zenith_deg, azimuth_deg}");
+  return SceneFrame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
+}
+
+Instant instant_of(const SourceTime& time) {
+  try {
+    return instant_from_utc(parse_iso8601(time.utc));
+  } catch (const Error& e) {
+    throw Error(time.where, e.message(), e.hint());
+  }
+}
+
+std::string sentence(const char* name, const SourceTime& time, const SkyBody& body, const std::string& more) {
+  return strf("%s at %s: %.3f degrees above the horizon, %s", name, time.utc.c_str(), body.elevation / kDegree,
+              more.c_str());
+}
+
+void resolve_sun(SunSpec& sun, const Scene& scene, std::vector<std::string>& said) {
+  if (!sun.time) return;
+  const SkyBody body = sun_at(frame_of(scene, sun.time->where, "a sun by date"), {}, instant_of(*sun.time));
+  sun.direction = body.direction;
+  if (sun.disk_by_time) sun.half_angle = body.angular_radius;
+  const double au = body.distance / kAstronomicalUnit;
+  if (sun.at_1_au) sun.irradiance = sun.irradiance.scaled(1 / (au * au));
+  said.push_back(sentence("sun", *sun.time, body, strf("%.5f AU", au)));
+  sun.time.reset();
+}
+
+void resolve_moon(MoonSpec& moon, const Scene& scene, std::vector<std::string>& said) {
+  MoonGeometry& g = moon.geometry;
+  if (moon.disk.time) {
+    const SceneFrame frame = frame_of(scene, moon.disk.time->where, "a moon by date");
+    const Instant instant = instant_of(*moon.disk.time);
+    const SkyBody body = moon_at(frame, {}, instant), sun = sun_at(frame, {}, instant);
+    moon.disk.direction = body.direction;
+    if (moon.disk.disk_by_time) moon.disk.half_angle = body.angular_radius;
+    // Sun, Moon and observer in one triangle: phase and the Moon's distance from the Sun.
+    const Vec3 to_sun = sun.direction * sun.distance - body.direction * body.distance;
+    g.phase = angle_between(normalized(to_sun), -body.direction);
+    g.sun_distance_au = length(to_sun) / kAstronomicalUnit;
+    g.observer_distance = body.distance;
+    // Waxing: the Sun stands west of the Moon as the hour circle turns. The fit's longitude of the Sun is the signed
+    // phase.
+    const double later = moon_phase_angle(instant + 3600), now = moon_phase_angle(instant);
+    g.sun_longitude = later < now ? g.phase : -g.phase;
+    said.push_back(sentence("moon", *moon.disk.time, body,
+                            strf("phase angle %.2f degrees, %.0f km", g.phase / kDegree, body.distance * 1e-3)));
+    moon.disk.time.reset();
+  }
+  if (moon.by_phase) {
+    moon.disk.irradiance = moon_irradiance(g, solar_irradiance());
+    moon.by_phase = false;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene) {
+  std::vector<std::string> said;
+  if (specs.sun) resolve_sun(*specs.sun, scene, said);
+  if (specs.moon) resolve_moon(*specs.moon, scene, said);
+  if (!specs.clear) return said;
+  if (!specs.sun) throw Error("a clear sky needs a sun");
+  if (specs.sky || specs.atmosphere) throw Error("a clear sky stands for sky and atmosphere alike", "drop one of them");
+  ClearSky clear = clear_sky(*specs.clear, normalized(specs.sun->direction), specs.sun->irradiance);
+  said.push_back(strf("clear sky: direct %.1f W/m2 facing the sun, diffuse %.1f W/m2 on the horizontal (0.3 to 4 um)",
+                      clear.direct.integral(0.3, 4), clear.diffuse.integral(0.3, 4)));
+  specs.sun->irradiance = std::move(clear.direct);
+  specs.sky = std::move(clear.sky);
+  specs.clear.reset();
+  return said;
+}
+
+uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    if (scene.materials[i].id == spec.material && !scene.materials[i].surface.model.empty()) return i;
+    names.push_back(scene.materials[i].id);
+  }
+  throw Error(spec.where, "the Earth: the scene has no material '" + spec.material + "' with a model of its own",
+              name_hint(spec.material, names));
+}
+
+Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic,
+                             const SpectralState& state) {
+  if (periodic && !tracer.scene().volumes.empty())
+    throw Error("volumes do not repeat themselves with a periodic scene", "give the medium as a body or as the ambient one");
+  SUITE_CHECK(!specs.clear);
+  const Scene& scene = tracer.scene();
+  Environment e;
+  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
+  if (specs.moon) e.moon = std::make_unique<Sun>(specs.moon->disk, state);
+  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
+  if (!specs.lamps.empty()) {
+    if (periodic)
+      throw Error(specs.lamps.front().where, "lamps in a scene that repeats itself would stand in every cell",
+                  "give the scene no lamps, or no period");
+    e.lamps = std::make_unique<Lamps>(specs.lamps, tracer, state);
+  }
+  if (specs.atmosphere) {
+    std::vector<Beam> beams;
+    for (const Sun* body : {e.sun.get(), e.moon.get()})
+      if (body) beams.push_back({body->direction(), body->irradiance()});
+    AtmosphereSpec spec = *specs.atmosphere;
+    e.atmosphere = make_layered_atmosphere(spec, state, std::move(beams));
+  }
+  if (specs.earth) {
+    if (periodic) throw Error(specs.earth->where, "a scene that repeats itself has no Earth under it");
+    const SceneFrame frame = frame_of(scene, specs.earth->where, "the Earth");
+    const double lowest = tracer.bounds().empty() ? 0 : std::min(0.0, tracer.bounds().low.z);
+    e.earth = std::make_unique<Earth>(frame, specs.earth->height.value_or(scene.origin.ellipsoid_height_m + lowest - 1),
+                                      earth_material(*specs.earth, scene));
+  }
+  return e;
+}
+
+}  // namespace suite

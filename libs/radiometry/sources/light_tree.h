@@ -1,0 +1,79 @@
+// Chooses one of very many lamps for a place, with known probability: a binary tree over bounds of position, direction
+// and power, walked down at random by how much each side can at most send there. Cost grows with the logarithm of the
+// number of lamps; every lamp that can reach the place has a positive probability, so the choice is unbiased.
+//
+// Based on: A. Conty Estevez & C. Kulla, "Importance sampling of many lights with adaptive tree splitting", Proc. ACM
+// Comput. Graph. Interact. Tech. 1(2), 2018: orientation cones (section 4.1), importance (4.3), the surface-area
+// orientation heuristic (4.4). No adaptive splitting: one lamp per node of the path. Added to it: profiles of
+// intensity, so that a cluster of street lamps is worth what it sends in the direction asked for, not what it sends at
+// most.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace suite {
+
+// Relative intensity by cosine of the angle to the axis, 32 equal steps from -1 to 1: the mean over azimuth, and
+// positive wherever the lamp sends anything within a step.
+using LightProfile = std::array<float, 32>;
+
+// Where a lamp (or many) can be, and where they send light: into directions within `spread` of their axes, which
+// themselves lie within `cone` of `axis`. Angles in rad.
+struct LightBounds {
+  Box3 box;
+  Dir axis{0, 0, 1};
+  double cone = 0;          // theta_o, 0..pi
+  double spread = kPi / 2;  // theta_e, 0..pi
+  double power = 0;         // > 0, any unit common to all
+  bool both_sides = false;  // sends along -axis as along axis
+  int profile = -1;         // index into the tree's profiles; -1 = falls off with the cosine
+};
+
+// A place that asks for light. normal: on the side from which it looks; null vector = takes light from everywhere.
+// two_sided: takes light from behind as well.
+struct LightReceiver {
+  Vec3 position;
+  Vec3 normal;
+  bool two_sided = false;
+};
+
+class LightTree {
+ public:
+  // lights: at least one. Deterministic.
+  explicit LightTree(std::span<const LightBounds> lights, std::vector<LightProfile> profiles = {});
+
+  struct Choice {
+    uint32_t light;
+    double probability;
+  };
+  // Nothing when no lamp can reach the place. u in [0, 1).
+  std::optional<Choice> sample(const LightReceiver& at, double u) const;
+  // Of `light` being chosen by sample(); light is an index into the constructor's span.
+  double probability(const LightReceiver& at, uint32_t light) const;
+  size_t size() const { return trail_.size(); }
+
+ private:
+  struct Node {
+    Vec3 center;
+    double radius2 = 0;  // of the sphere around the box
+    Dir axis;
+    double cos_cone = 1, sin_cone = 0, cos_spread = 0, power = 0;
+    bool both_sides = false;
+    int profile = -1;
+    bool leaf = false;
+    uint32_t next = 0;  // second child (the first follows), or the light of a leaf
+  };
+  double importance(const Node& node, const LightReceiver& at) const;
+  uint32_t build(std::span<const LightBounds> lights, std::span<uint32_t> order, uint64_t trail, int depth);
+
+  std::vector<LightProfile> profiles_;
+  std::vector<Node> nodes_;
+  std::vector<uint64_t> trail_;  // per light: bit d = second child taken at depth d
+};
+
+}  // namespace suite

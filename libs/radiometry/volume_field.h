@@ -1,0 +1,90 @@
+// What fills space along a ray: the medium that holds there and the voxel grids on top of it, as stretches of constant
+// contents. Everything in double.
+//
+// Cells are constant, so optical depths along a ray are sums without an estimate in them, for all wavelengths at once:
+// one number a medium (its density integrated over the way). A coarse grid of blocks lets rays pass what is empty.
+// Based on: J. Amanatides & A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987, with plane
+// distances computed afresh at each step, so that nothing drifts over thousands of cells.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "scene/scene.h"
+#include "spectral/state.h"
+
+namespace suite {
+
+class VolumeField {
+ public:
+  // Keeps a reference to the scene. Error: voxel temperatures that nothing can be computed for.
+  VolumeField(const Scene& scene, const SpectralState& state);
+
+  size_t media() const { return scene_.media.size(); }
+  bool has_grids() const { return !placed_.empty(); }
+
+  struct Placed {
+    const VoxelGrid* grid;
+    Affine3 to_index;                 // ENU -> index space
+    std::vector<uint8_t> block_full;  // blocks of kBlock^3 cells that hold anything
+    std::array<uint32_t, 3> blocks;
+    bool emits = false;  // some cell has a temperature of its own
+  };
+  static constexpr uint32_t kBlock = 8;
+  std::span<const Placed> placed() const { return placed_; }
+
+  // Planck radiance (vacuum) of bin i at a voxel's temperature, kelvin in the range of the scene's voxels.
+  // Interpolated between log-spaced temperatures, ln B linearly in 1/T; relative error below 1e-4.
+  float blackbody(size_t bin, double kelvin) const;
+
+ private:
+  const Scene& scene_;
+  std::vector<Placed> placed_;
+  std::vector<double> table_kelvin_;
+  std::vector<float> table_log_;  // [kelvin][bin]
+  size_t bins_;
+};
+
+// One medium's share in a stretch.
+struct Constituent {
+  uint32_t medium;
+  double density;
+  double kelvin;  // 0 = the medium's own temperature
+  bool operator==(const Constituent& o) const { return medium == o.medium && kelvin == o.kelvin; }
+};
+
+// Walks a ray through the field, nearest stretch first.
+class FieldWalk {
+ public:
+  // From origin along a unit direction to `length` (infinity allowed). background: medium without cells, or kNone.
+  void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background);
+  // The next stretch that holds anything; false at the end.
+  bool next();
+  double begin() const { return begin_; }
+  double end() const { return end_; }
+  const std::vector<Constituent>& contents() const { return contents_; }
+
+ private:
+  struct Cursor {
+    const VolumeField::Placed* placed = nullptr;
+    Vec3 origin, direction;       // index space, parameter in metres of the ray
+    double enter = 0, leave = 0;  // of the grid's box
+    int cell[3] = {};
+    int low[3] = {}, high[3] = {};  // the current cell, or the empty block that it lies in
+    double until = 0;               // where the ray leaves them
+    int axis = 0;                   // through a plane of this axis
+    uint32_t index = kNone;         // current cell; kNone = empty
+    bool inside = false;
+  };
+  static bool clip(Cursor& c, double length);
+  static double plane(const Cursor& c, int axis, int at);
+  static void enter(Cursor& c);
+  static void settle(Cursor& c, double at);  // finds how far the current cell or empty block reaches
+  static void advance(Cursor& c);            // to the next cell
+  std::vector<Cursor> cursors_;
+  std::vector<Constituent> contents_;
+  uint32_t background_ = kNone;
+  double begin_ = 0, end_ = 0, length_ = 0;
+};
+
+}  // namespace suite

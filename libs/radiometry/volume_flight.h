@@ -1,0 +1,69 @@
+// One flight of a path through media: how far it gets before it is scattered, what the way does to every wavelength,
+// and what the media on the way emit.
+//
+// Only scattering ends a flight; absorption weakens it. With s_k(x) the scattering coefficient at knot k, t_k(t) its
+// integral over the way and a(t) that of absorption, a flight drawn at knot h has the density
+//   p_h(t) = s_h exp(-t_h(t)) of being scattered at t,     P_h = exp(-t_h(T)) of reaching the end T,
+// and weighs wavelength i by exp(-a_i - t_i) / p_h. The densities of all knots join the one-sample balance heuristic of
+// path_generator.h; after each flight the r_k and the spectrum are divided by A = sum P_k r_k, so that A = 1 and
+// neither overflows on walks of any length. Emission is an expectation over the flight: from a stretch of constant
+// contents
+//   (1 - exp(-da_i)) J_i / a_i exp(-a_i(begin)) R_i,   R_i = exp(-t_i) / sum P_k r_k exp(-t_k),
+// with R taken at a place drawn from the stretch's own emission; R = 1, and nothing is left to chance, where scattering
+// does not depend on wavelength. An isothermal medium so returns B(T) without noise.
+// Based on: B. Miller, I. Georgiev, W. Jarosz, "A null-scattering path integral formulation of light transport", ACM
+// TOG 38(4), 2019 (spectral weights; null collisions are not needed where optical depths are sums); Wilkie et al. 2014.
+#pragma once
+#include <span>
+
+#include "radiometry/live_path.h"
+#include "radiometry/volume_field.h"
+#include "surface/optics.h"
+
+namespace suite {
+
+class Flights {
+ public:
+  // Keeps references. knot_probability: P_k.
+  Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability);
+
+  struct Arrival {
+    bool scattered = false;
+    double distance = 0;  // m from the origin of the flight
+  };
+  // Flies path `live` from its origin along its direction to at most `length` in `background`. beta: the path's weight
+  // per bin since its last node, updated (without the scattering coefficient of the bin where it is scattered);
+  // gathered: receives emission. u: two numbers in [0, 1).
+  Arrival fly(LivePath& live, int knot, double length, uint32_t background, Vec2 u, std::span<float> beta,
+              std::span<float> gathered);
+  // Where the last flight was scattered.
+  const std::vector<Constituent>& contents() const { return walk_.contents(); }
+
+  // Adds each medium's density, integrated along a way, to depth[medium].
+  void add_depths(Vec3 origin, Dir direction, double length, uint32_t background, std::span<double> depth);
+  // exp(-extinction) for such depths; false, and nothing written, when they are all 0.
+  bool transmittance(std::span<const double> depth, std::span<float> transmission) const;
+  // Divides everything that is relative to the path's density by A.
+  void normalise(LivePath& live, std::span<float> beta) const;
+
+ private:
+  void emit(const LivePath& live, double u, std::span<const float> beta, std::span<float> gathered);
+  void pass_run();
+  double scattering_depth(size_t bin) const;
+  void weigh(LivePath& live, int knot, bool scattered, std::span<float> beta);
+  bool emits(const Constituent& c) const;
+
+  const VolumeField& field_;
+  const Optics& optics_;
+  std::span<const BakedMedium> media_;
+  std::vector<size_t> bins_of_knots_;
+  std::vector<double> probability_;
+  bool any_emission_ = false;
+  std::vector<uint8_t> absorbs_;  // per medium
+  FieldWalk walk_;
+  std::vector<double> depth_;          // per medium: density integrated so far
+  std::vector<Constituent> run_;       // stretches alike in a row; density holds the integral
+  std::vector<float> tau_, emission_;  // per bin, scratch
+};
+
+}  // namespace suite

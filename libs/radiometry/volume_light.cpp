@@ -1,0 +1,68 @@
+#include "radiometry/volume_light.h"
+
+#include <algorithm>
+
+namespace suite {
+
+namespace {
+constexpr int kMostBoundaries = 4096;  // on one way to a source; then it counts as blocked
+}  // namespace
+
+VolumeLight::VolumeLight(const Surface& surface, const Bodies& bodies, Flights& flights, size_t media)
+    : surface_(surface),
+      body_rules_(bodies),
+      flights_(flights),
+      media_(media),
+      ambient_(surface.tracer().scene().ambient) {}
+
+void VolumeLight::look(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
+                       TraceStatistics& statistics) {
+  depths_.assign(rays.size() * media_, 0.0);
+  if (body_rules_.any_boundary()) return look_past_boundaries(rays, distance, blocked, statistics);
+  surface_.tracer().occluded(rays, distance, blocked, false, statistics);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (blocked[i]) continue;
+    if (distance[i] == std::numeric_limits<double>::infinity()) body_rules_.leave_scene(bodies_at_[i]);
+    flights_.add_depths(rays[i].origin, rays[i].direction, distance[i], bodies_at_[i].medium(ambient_),
+                        {&depths_[i * media_], media_});
+  }
+}
+
+void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<const double> distance,
+                                       std::span<uint8_t> blocked, TraceStatistics& statistics) {
+  rays_.assign(rays.begin(), rays.end());
+  travelled_.assign(rays.size(), 0);
+  owner_.resize(rays.size());
+  for (size_t i = 0; i < owner_.size(); ++i) owner_[i] = static_cast<uint32_t>(i);
+  std::fill(blocked.begin(), blocked.end(), uint8_t{0});
+  for (int round = 0; !rays_.empty(); ++round) {
+    hits_.resize(rays_.size());
+    surface_.tracer().nearest(rays_, hits_, false, statistics);
+    size_t kept = 0;
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      const uint32_t r = owner_[i];
+      const Hit& hit = hits_[i];
+      const double left = distance[r] - travelled_[r];
+      const bool met = hit.hit() && hit.distance < left;
+      const uint32_t material = met ? surface_.material(hit) : kNone;
+      if (met && (!body_rules_.is_boundary(material) || round >= kMostBoundaries)) {
+        blocked[r] = 1;
+        continue;
+      }
+      if (!hit.hit()) body_rules_.leave_scene(bodies_at_[r]);
+      const double way = met ? hit.distance : left;
+      flights_.add_depths(rays_[i].origin, rays_[i].direction, way, bodies_at_[r].medium(ambient_),
+                          {&depths_[r * media_], media_});
+      if (!met) continue;
+      body_rules_.cross(bodies_at_[r], hit, material, rays_[i].direction);
+      travelled_[r] += way;
+      rays_[kept] = {surface_.tracer().leave(hit, rays_[i].direction), rays_[i].direction, rays_[i].time,
+                     rays_[i].draw};
+      owner_[kept++] = r;
+    }
+    rays_.resize(kept);
+    owner_.resize(kept);
+  }
+}
+
+}  // namespace suite

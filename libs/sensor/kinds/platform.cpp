@@ -1,0 +1,242 @@
+// The default sensor: a vehicle with instruments, each a lens over arrays of detectors with their timing.
+//
+// Rays are drawn over the detector's area, moved by the point-spread function, spread over the integration time, and
+// sent from where the instrument is at that time, so that blur, rolling-shutter skew and TDI come out by themselves.
+// Based on: Goodenough & Brown, section III-B.
+#include "sensor/kinds/platform.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensor/kinds/rows.h"
+
+namespace suite {
+
+namespace {
+
+class Platform final : public Sensor {
+ public:
+  Platform(const Params& p, const SensorContext& context) : context_(context), spec_(read_platform(p, context)) {
+    std::vector<std::vector<ImageKey>> keys;
+    for (const auto& parts : spec_.parts) {
+      keys.emplace_back();
+      for (const PlatformSpec::Part& part : parts) {
+        const FocalArray& a = spec_.arrays[part.array];
+        const bool lines = a.readout.kind == Readout::Kind::line || a.readout.kind == Readout::Kind::whisk;
+        // Only the first segment counts rows; the others stand beside it.
+        const bool first = part.segment == a.segments[0];
+        keys.back().push_back({first ? a.image : a.image + strf("/%zu", part.segment), lines});
+      }
+    }
+    rows_ = lay_out(spec_.tasks, keys);
+    for (const Segment& s : spec_.segments)
+      wide_ = wide_ || s.psf || spec_.instruments[spec_.arrays[s.array].instrument].lens.thin();
+  }
+
+  std::string name() const override { return spec_.name; }
+  std::span<const SpectralState> states() const override { return spec_.states; }
+  std::span<const Band> bands(size_t state) const override { return spec_.segments[state].bands; }
+  std::span<const Task> tasks() const override { return spec_.tasks; }
+  std::span<const std::string> truth() const override { return spec_.truth; }
+  int numbers() const override { return wide_ ? 8 : 4; }
+
+  void begin(const Capture& capture) override {
+    const Segment& s = spec_.segments[capture.state];
+    const Instrument& instrument = spec_.instruments[spec_.arrays[s.array].instrument];
+    prepared_ = {};
+    prepared_.state = capture.state;
+    prepared_.window = capture.window;
+    const TimeSpan span{capture.window.begin, capture.window.end};
+    if (spec_.jitter) prepared_.vehicle = std::make_unique<JitterWindow>(*spec_.jitter, span);
+    for (const Attachment& a : instrument.chain)
+      prepared_.chain.push_back(a.jitter ? std::make_unique<JitterWindow>(*a.jitter, span) : nullptr);
+    prepared_.ready = true;
+    if (capture.window.begin == capture.window.end) prepared_.still = pose(instrument, capture, capture.window.begin);
+  }
+
+  SensorRay ray(const RayRequest& request) const override {
+    const Capture& capture = request.capture;
+    const Segment& s = spec_.segments[capture.state];
+    const FocalArray& array = spec_.arrays[s.array];
+    const Instrument& instrument = spec_.instruments[array.instrument];
+    const Readout& r = array.readout;
+    const std::span<const double> u = request.u;
+    uint32_t column = static_cast<uint32_t>(request.problem % capture.columns),
+             row = static_cast<uint32_t>(request.problem / capture.columns);
+
+    // Find the detector and the moment.
+    double t = capture.window.begin;
+    switch (r.kind) {
+      case Readout::Kind::global:
+        break;
+      case Readout::Kind::rolling:
+        t += row * r.row_time;
+        break;
+      case Readout::Kind::line:
+        t += row * r.line_period, row = 0;
+        break;
+      case Readout::Kind::whisk:
+        t += (row / array.rows) * r.line_period + column * r.sample_period;
+        row %= array.rows, column = 0;
+        break;
+    }
+    if (r.kind != Readout::Kind::whisk) column += s.first_column;
+    const double stage = std::min(std::floor(u[2] * r.stages), r.stages - 1.0);
+    if (r.stages > 1) t += stage * r.line_period;
+    t += (u[2] * r.stages - stage) * r.integration;
+
+    // Find the place in the focal plane whose light it collects.
+    Vec2 place = place_of(array, column, row, u[0], u[1]).place;
+    if (r.stages > 1) place.y += r.direction * (stage - 0.5 * (r.stages - 1)) * array.pitch.y;
+    // (Radius and wavelength come from one block, so that weights are stratified together.)
+    SensorRay out;
+    if (s.psf) {
+      const Vec2 offset = s.psf->sample(u[4], u[5], u[6]);
+      place = {place.x - offset.x, place.y - offset.y};
+      if (s.psf->spectral()) {
+        s.psf->weights(offset, request.spectral);
+        out.spectral = true;
+      }
+    }
+
+    // Send the ray from the instrument's pose at that time.
+    const Pose at = prepared_.still && mine(capture) ? *prepared_.still : pose(instrument, capture, t);
+    Dir direction = instrument.lens.look(place);
+    Vec3 origin;
+    if (instrument.lens.thin()) {
+      const Vec2 pupil = instrument.lens.pupil(u[3], u[7]);
+      origin = {pupil.x, pupil.y, 0};
+      direction = direction * (instrument.lens.focus_distance / -direction.z) - origin;
+    }
+    out.ray = {at.point(origin), normalized(at.vector(direction)), t};
+    return out;
+  }
+
+  void accept(CaptureResult&& result) override {
+    const PlatformSpec::Part part = spec_.parts[result.task][result.capture];
+    const FocalArray& array = spec_.arrays[part.array];
+    const Segment& segment = spec_.segments[part.segment];
+    Piece piece;
+    piece.products = detect(spec_, segment, result, part.event);
+    piece.result = std::move(result);
+    auto& waiting = waiting_[{part.array, part.event}];
+    waiting[part.segment] = std::move(piece);
+    if (waiting.size() < array.segments.size()) return;
+    deliver(part, waiting);
+    waiting_.erase({part.array, part.event});
+  }
+
+  std::vector<TextFile> logs() const override {
+    std::vector<TextFile> out;
+    for (const Instrument& i : spec_.instruments)
+      if (i.log_rate > 0) out.push_back({spec_.name + "_" + i.name + ".csv", pose_log(spec_, i, context_)});
+    return out;
+  }
+
+ private:
+  struct Piece {
+    CaptureResult result;
+    std::vector<Product> products;
+  };
+  // What belongs to the capture that is being rendered.
+  struct Prepared {
+    bool ready = false;
+    size_t state = 0;
+    TimeWindow window;
+    std::unique_ptr<JitterWindow> vehicle;
+    std::vector<std::unique_ptr<JitterWindow>> chain;
+    std::optional<Pose> still;
+  };
+  bool mine(const Capture& c) const {
+    return prepared_.ready && prepared_.state == c.state && prepared_.window == c.window;
+  }
+
+  Pose pose(const Instrument& instrument, const Capture& capture, double t) const {
+    if (!mine(capture)) return pose_at(spec_, instrument, t);
+    Pose p = spec_.track->at(t);
+    if (prepared_.vehicle) p = p * prepared_.vehicle->pose(t);
+    for (size_t i = 0; i < instrument.chain.size(); ++i) p = instrument.chain[i].at(t, p, prepared_.chain[i].get());
+    return p;
+  }
+
+  // Puts the columns of an array's segments side by side.
+  void deliver(const PlatformSpec::Part& part, std::map<size_t, Piece>& pieces) {
+    const FocalArray& array = spec_.arrays[part.array];
+    Piece& first = pieces.at(array.segments[0]);
+    const size_t task = first.result.task, capture = first.result.capture;
+    std::vector<Band> bands(spec_.segments[array.segments[0]].bands.begin(),
+                            spec_.segments[array.segments[0]].bands.begin() + static_cast<long>(first.result.bands));
+    if (pieces.size() > 1) {
+      std::vector<CaptureResult*> results;
+      std::vector<std::vector<Product>*> products;
+      for (auto& [segment, piece] : pieces) results.push_back(&piece.result), products.push_back(&piece.products);
+      join(results, products, first);
+    }
+    const Instrument& instrument = spec_.instruments[array.instrument];
+    const Capture& c = spec_.tasks[task].captures[capture];
+    Delivery d{
+        *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
+    d.description = strf("instrument '%s', %.9g to %.9g s", instrument.name.c_str(), c.window.begin, c.window.end);
+    if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)
+      d.description += strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
+    context_.deliver(d);
+  }
+
+  template <class T>
+  static std::vector<T> beside(const std::vector<const std::vector<T>*>& parts, const std::vector<uint32_t>& columns,
+                               uint32_t rows) {
+    std::vector<T> all;
+    for (uint32_t r = 0; r < rows; ++r)
+      for (size_t i = 0; i < parts.size(); ++i) {
+        const size_t width = parts[i]->size() / rows / columns[i] * columns[i];
+        all.insert(all.end(), parts[i]->begin() + static_cast<long>(r * width),
+                   parts[i]->begin() + static_cast<long>((r + 1) * width));
+      }
+    return all;
+  }
+
+  static void join(const std::vector<CaptureResult*>& results, const std::vector<std::vector<Product>*>& products,
+                   Piece& into) {
+    std::vector<uint32_t> columns;
+    uint32_t all = 0;
+    for (const CaptureResult* r : results) columns.push_back(r->columns), all += r->columns;
+    const uint32_t rows = results[0]->rows;
+    auto of = [&](auto member) {
+      std::vector<const std::remove_reference_t<decltype(results[0]->*member)>*> parts;
+      for (const CaptureResult* r : results) parts.push_back(&(r->*member));
+      return beside(parts, columns, rows);
+    };
+    CaptureResult joined = *results[0];
+    joined.radiance = of(&CaptureResult::radiance);
+    joined.standard_error = of(&CaptureResult::standard_error);
+    joined.paths = of(&CaptureResult::paths);
+    joined.quality = of(&CaptureResult::quality);
+    joined.truth = of(&CaptureResult::truth);
+    joined.columns = all;
+    for (size_t p = 0; p < into.products.size(); ++p) {
+      std::vector<const std::vector<double>*> parts;
+      for (const auto* list : products) parts.push_back(&(*list)[p].values);
+      into.products[p].values = beside(parts, columns, rows);
+    }
+    into.result = std::move(joined);
+  }
+
+  SensorContext context_;
+  PlatformSpec spec_;
+  std::vector<std::vector<ImageRows>> rows_;
+  bool wide_ = false;
+  Prepared prepared_;
+  std::map<std::pair<size_t, uint64_t>, std::map<size_t, Piece>>
+      waiting_;  // events of which not all segments are there
+};
+
+}  // namespace
+
+SensorRow platform_row() {
+  return {"platform", "a vehicle with instruments: cameras, push-brooms, whiskbrooms, logs; motion, jitter, detectors",
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<Platform>(p, c);
+          }};
+}
+
+}  // namespace suite

@@ -1,0 +1,118 @@
+// The parts of the default sensor: a vehicle that carries instruments. Internal to libs/sensor/kinds.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sensor/detector.h"
+#include "sensor/lens.h"
+#include "sensor/mount.h"
+#include "sensor/psf.h"
+#include "sensor/sensors.h"
+
+namespace suite {
+
+// When the detectors of an array integrate.
+struct Readout {
+  enum class Kind {
+    global,   // all at once
+    rolling,  // row by row, `row_time` apart
+    line,     // one row of detectors; the rows of the image are moments, `line_period` apart (push-broom)
+    whisk     // one column of detectors swept across: columns of the image are moments `sample_period` apart, scans
+              // `line_period` apart
+  } kind = Kind::global;
+  double integration = 0;     // s, of one detector (of one stage with time delay and integration)
+  double row_time = 0;        // s
+  double line_period = 0;     // s
+  double sample_period = 0;   // s
+  uint32_t samples = 0;       // of a whisk scan
+  uint32_t per_capture = 64;  // lines or scans that make one capture
+  uint32_t stages = 1;        // time delay and integration: line only
+  int direction = 1;          // +1: the charge moves down the picture, as the image does in forward flight
+  double exposure() const { return integration * stages; }
+};
+
+struct Chip {
+  uint32_t columns = 0, rows = 0;
+  Vec2 offset;                // m in the focal plane, right and down, of its centre
+  double gain = 1;            // relative response
+  uint32_t first_column = 0;  // in the array's image
+};
+
+struct FocalArray {
+  std::string image;
+  Vec2 pitch;  // m
+  bool flip_columns = false, flip_rows = false;
+  std::vector<Chip> chips;
+  uint32_t columns = 0, rows = 0;  // of detectors, over all chips
+  Readout readout;
+  Convergence convergence;
+  uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
+  std::optional<DetectorSpec> detector;
+  size_t instrument = 0;
+  std::vector<size_t> segments;
+  uint32_t image_columns() const { return readout.kind == Readout::Kind::whisk ? readout.samples : columns; }
+};
+
+// Chips of an array that share their bands; the unit that is captured. Its number is the number of its spectral state.
+struct Segment {
+  size_t array = 0, first_chip = 0, chips = 0;
+  uint32_t first_column = 0, columns = 0;  // of the array's image
+  std::vector<Band> bands;                 // as listed, then those that count photons when there is a detector
+  size_t radiance_bands = 0;
+  std::vector<double> electrons;  // per W/(m2 um) s m2 of irradiance, of each band
+  std::unique_ptr<const PointSpread> psf;
+};
+
+struct Instrument {
+  std::string name;
+  Lens lens;
+  std::vector<Attachment> chain;            // from the vehicle outwards
+  Params text;                              // where it was written
+  std::vector<double> triggers;             // s, of frames, when they do not follow a clock
+  double clock_rate = 0, clock_offset = 0;  // Hz, s; rate 0 = one frame a task
+  double trigger_distance = 0;              // m along the track; 0 = none
+  double log_rate = 0;                      // Hz; > 0: a log of pose and time instead of images
+};
+
+// What the text of a platform says.
+struct PlatformSpec {
+  std::string name;
+  TrackPtr track;
+  std::shared_ptr<const Jitter> jitter;  // null = none
+  std::vector<Instrument> instruments;
+  std::vector<FocalArray> arrays;
+  std::vector<Segment> segments;
+  std::vector<SpectralState> states;  // of the segments
+  std::vector<Task> tasks;            // with captures
+  struct Part {                       // what a capture is
+    size_t array = 0, segment = 0;
+    uint64_t event = 0;  // number of the frame or block; the segments of one event share it
+  };
+  std::vector<std::vector<Part>> parts;  // [task][capture]
+  std::vector<std::string> truth;
+};
+
+// platform_read.cpp. Error, located, for anything wrong, motion that does not cover the tasks included.
+PlatformSpec read_platform(const Params& params, const SensorContext& context);
+// platform_tasks.cpp: fills tasks and parts.
+void plan_captures(PlatformSpec& spec, const Params& params, const SensorContext& context);
+
+// The place in the focal plane (m) of a point of a detector, at shares u, v of its width and height, and its chip.
+struct DetectorPlace {
+  Vec2 place;
+  const Chip* chip = nullptr;
+};
+DetectorPlace place_of(const FocalArray& array, uint32_t column, uint32_t row, double u, double v);
+
+// platform_products.cpp: electrons and counts of a result whose bands are a segment's; strips the photon bands.
+// read_out: tells this event from all others.
+std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result, uint64_t read_out);
+// platform_log.cpp: pose and time of an instrument over the tasks, as CSV.
+std::string pose_log(const PlatformSpec& spec, const Instrument& instrument, const SensorContext& context);
+// The pose of the instrument at a time, without tables.
+Pose pose_at(const PlatformSpec& spec, const Instrument& instrument, double t);
+
+}  // namespace suite

@@ -1,0 +1,138 @@
+// The RAMI instrument: closed forms over a bare ground, conservation, and the homogeneous canopy HOM03 against another
+// tracer's table (its noise is 0.3 %, its discs are other random ones).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "math/sampling.h"
+#include "support/platform_kit.h"
+
+namespace suite {
+namespace {
+
+using test::PlatformKit;
+
+std::string instrument(double half, double top, int sun, double soil, int paths) {
+  return strf(
+      "kind: rami\nname: r\nbands: [{name: b, center_um: 0.85, fwhm_um: 0.01, shape: rectangular}]\npatch: {origin_m: "
+      "[%g, %g], size_m: [%g, %g]}\ntop_m: %g\nsun_zenith_deg: %d\nsun_azimuth_deg: 90\nirradiance: "
+      "2\nground_reflectance: %g\ntruth: []\npaths: %d\n",
+      -half, -half, 2 * half, 2 * half, top, sun, soil, paths);
+}
+
+struct Views {
+  std::map<double, std::array<double, 3>> principal;  // by zenith: BRF, standard error, single
+  std::map<std::string, std::array<double, 2>> flux;
+};
+Views views_of(const test::Shot& shot) {
+  Views v;
+  for (const TextFile& text : shot.texts) {
+    std::istringstream in(text.text);
+    std::string line;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      std::vector<std::string> cells;
+      std::stringstream cell(line);
+      for (std::string c; std::getline(cell, c, ',');) cells.push_back(c);
+      if (text.name == "r_brf.csv" && cells[0] == "principal")
+        v.principal[std::stod(cells[1])] = {std::stod(cells[4]), std::stod(cells[5]), std::stod(cells[6])};
+      if (text.name == "r_fluxes.csv") v.flux[cells[1]] = {std::stod(cells[2]), std::stod(cells[3])};
+    }
+  }
+  return v;
+}
+
+Views render(const std::shared_ptr<Scene>& scene, double half, const std::string& text, int sun) {
+  PlatformKit kit;
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  sensors.push_back(kit.make(text));
+  SourceSpecs sources;
+  sources.sun = SunSpec{dir_from_angles(sun * kDegree, 0), 0, Curve::constant(2)};
+  JobOptions job;
+  job.progress = false;
+  job.pipeline.max_nodes = 64;
+  job.periodic = Periodic{{-half, -half}, {2 * half, 2 * half}};
+  run_job(scene, sources, sensors, job);
+  return views_of(kit.shots.at(0));
+}
+
+// Erectophile discs of radius r in a layer of 2 m, leaf area index 3.
+std::shared_ptr<Scene> canopy(double half, double r, double rho, double tau, double soil) {
+  auto scene = std::make_shared<Scene>();
+  scene->materials = {test::material("leaf", test::lambert(rho, tau)), test::material("soil", test::lambert(soil))};
+  scene->primitives = {{"disc", PrimitiveKind::disk, {r, 0}, 0},
+                       {"ground", PrimitiveKind::plane, {2 * half, 2 * half}, 1}};
+  Group root;
+  Pcg32 random(7);
+  const int count = static_cast<int>(3 * 4 * half * half / (kPi * r * r));
+  for (int i = 0; i < count; ++i) {
+    double zenith = 0;
+    do zenith = random.uniform() * kPi / 2;
+    while (random.uniform() * 2 >= 1 - std::cos(2 * zenith));
+    Placement p;
+    p.kind = TargetKind::primitive;
+    p.to_parent = rotation({0, 0, 1}, 2 * kPi * random.uniform()) * rotation({1, 0, 0}, zenith);
+    p.to_parent.b = {half * (2 * random.uniform() - 1), half * (2 * random.uniform() - 1),
+                     r + (2 - 2 * r) * random.uniform()};
+    root.placements.push_back(p);
+  }
+  Placement ground;
+  ground.kind = TargetKind::primitive;
+  ground.target = 1;
+  root.placements.push_back(ground);
+  scene->groups.push_back(std::move(root));
+  check_scene(*scene, "canopy");
+  return scene;
+}
+
+TEST(Rami, BareLambertGroundHasItsReflectanceEverywhere) {
+  auto scene = canopy(1, 1e-3, 0.5, 0.4, 0.3);
+  scene->groups[0].placements.erase(scene->groups[0].placements.begin(), scene->groups[0].placements.end() - 1);
+  const Views v = render(scene, 1, instrument(1, 0.5, 30, 0.3, 16), 30);
+  ASSERT_EQ(v.principal.size(), 76u);
+  for (const auto& [zenith, value] : v.principal) {
+    EXPECT_NEAR(value[0], 0.3, 1e-6) << zenith;
+    EXPECT_NEAR(value[2], 0.3, 1e-6) << zenith;
+  }
+  EXPECT_NEAR(v.flux.at("black_sky_albedo")[0], 0.3, 1e-6);
+  EXPECT_NEAR(v.flux.at("transmitted_to_ground")[0], 1, 1e-6);
+  EXPECT_NEAR(v.flux.at("absorbed_by_canopy")[0], 0, 1e-6);
+}
+
+TEST(Rami, NothingIsLostOverAWhiteGround) {
+  // Leaves 0.5 / 0.5 over a ground that reflects all: the albedo is 1, and nothing is absorbed anywhere.
+  const Views v = render(canopy(2, 0.1, 0.5, 0.5, 1), 2, instrument(2, 2, 20, 1, 512), 20);
+  const auto albedo = v.flux.at("black_sky_albedo");
+  EXPECT_NEAR(albedo[0], 1, 4 * albedo[1] + 1e-3);
+}
+
+TEST(Rami, Hom03AgreesWithAnotherTracer) {
+  std::ifstream in(SUITE_TEST_DATA "/canopy/hom03_ere_nir_20_r005.csv");
+  ASSERT_TRUE(in.is_open());
+  std::string line;
+  std::getline(in, line);
+  const Views v = render(canopy(6.25, 0.05, 0.4957, 0.4409, 0.159), 6.25, instrument(6.25, 2, 20, 0.159, 1024), 20);
+  double sum = 0, chi = 0;
+  int n = 0;
+  double vza = 0, brf = 0, std_dev = 0;
+  while (std::getline(in, line)) {
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &vza, &brf, &std_dev), 3);
+    const auto& mine = v.principal.at(vza);
+    // The two layouts of discs differ by 0.5 % or so besides.
+    const double z = (mine[0] - brf) / std::hypot(mine[1], std_dev, 0.005 * brf);
+    sum += mine[0] / brf - 1;
+    chi += z * z;
+    ++n;
+    EXPECT_LT(std::fabs(z), 5) << vza;
+  }
+  ASSERT_EQ(n, 76);
+  std::printf("HOM03 NIR sun 20: mean difference %.2f %%, chi-square per view %.2f\n", 100 * sum / n, chi / n);
+  EXPECT_LT(std::fabs(sum / n), 0.01);
+}
+
+}  // namespace
+}  // namespace suite

@@ -1,0 +1,108 @@
+// The light tree draws lamps as often as it says, says so for every lamp, and misses none that can reach the place.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/sampling.h"
+#include "math/stats.h"
+#include "math/warps.h"
+#include "radiometry/sources/light_tree.h"
+
+namespace suite {
+namespace {
+
+std::vector<LightBounds> random_lights(size_t n, uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<LightBounds> lights;
+  for (size_t i = 0; i < n; ++i) {
+    LightBounds b;
+    const Vec3 p{20 * random.uniform(), 20 * random.uniform(), 5 * random.uniform()},
+        s{random.uniform(), random.uniform(), random.uniform()};
+    b.box = {p, p + s * 0.3};
+    b.axis = uniform_sphere({random.uniform(), random.uniform()});
+    b.cone = random.uniform() < 0.2 ? kPi : 0.3 * random.uniform();
+    b.spread = 0.2 + random.uniform() * (kPi / 2 - 0.2);
+    b.power = std::exp(5 * random.uniform());
+    b.both_sides = random.uniform() < 0.2;
+    lights.push_back(b);
+  }
+  return lights;
+}
+
+std::vector<LightReceiver> receivers() {
+  return {{{10, 10, 1}, {0, 0, 1}, false},
+          {{-30, 5, 2}, {1, 0, 0}, false},
+          {{10, 3, 40}, {0, 0, -1}, true},
+          {{4, 4, 4}, {}, false}};
+}
+
+TEST(LightTree, FrequenciesFollowTheProbabilities) {
+  // Family-wise 1e-4 over the receivers; a claim that is 2 % off for every second lamp must be refused.
+  const std::vector<LightBounds> lights = random_lights(60, 1);
+  const LightTree tree(lights);
+  for (const LightReceiver& at : receivers()) {
+    std::vector<double> observed(lights.size() + 1, 0.0), expected, wrong;
+    const uint64_t n = 2'000'000;
+    Pcg32 random(7);
+    for (uint64_t i = 0; i < n; ++i) {
+      const auto c = tree.sample(at, random.uniform());
+      observed[c ? c->light : lights.size()] += 1;
+      if (c && i % 1000 == 0) {
+        EXPECT_NEAR(c->probability, tree.probability(at, c->light), 1e-12);
+      }
+    }
+    double sum = 0;
+    for (uint32_t i = 0; i < lights.size(); ++i) sum += tree.probability(at, i);
+    for (uint32_t i = 0; i < lights.size(); ++i) expected.push_back(static_cast<double>(n) * tree.probability(at, i));
+    expected.push_back(static_cast<double>(n) * std::max(0.0, 1 - sum));
+    EXPECT_LE(sum, 1 + 1e-9);
+    EXPECT_GT(chi_square_test(observed, expected, 10), 1e-4 / 4);
+    wrong = expected;
+    double total = 0;
+    for (size_t i = 0; i < wrong.size(); ++i) wrong[i] *= i % 2 ? 1.02 : 0.98, total += wrong[i];
+    for (double& w : wrong) w *= static_cast<double>(n) / total;
+    EXPECT_LT(chi_square_test(observed, wrong, 10), 1e-6);
+  }
+}
+
+TEST(LightTree, EveryLampThatReachesThePlaceHasAChance) {
+  // Points of the boxes, directions within cone and spread, before the receiver: whoever can send must be drawable.
+  const std::vector<LightBounds> lights = random_lights(300, 2);
+  const LightTree tree(lights);
+  Pcg32 random(3);
+  size_t reaching = 0, silent = 0;
+  for (int trial = 0; trial < 200000; ++trial) {
+    const auto i = static_cast<uint32_t>(random.uniform() * 300);
+    const LightBounds& b = lights[i];
+    const Vec3 s = b.box.size(),
+               p = b.box.low + Vec3{s.x * random.uniform(), s.y * random.uniform(), s.z * random.uniform()};
+    LightReceiver at{{40 * random.uniform() - 10, 40 * random.uniform() - 10, 10 * random.uniform() - 2},
+                     uniform_sphere({random.uniform(), random.uniform()}),
+                     trial % 3 == 0};
+    const Vec3 to = p - at.position;
+    const double d = length(to), off = angle_between(b.axis, -to / d);
+    const bool sends = off < b.cone + b.spread || (b.both_sides && kPi - off < b.cone + b.spread);
+    const double cosine = dot(to, at.normal) / d;
+    if (!sends || (at.two_sided ? cosine == 0 : cosine <= 0)) {
+      ++silent;
+      continue;
+    }
+    ++reaching;
+    EXPECT_GT(tree.probability(at, i), 0) << i << " off " << off;
+  }
+  EXPECT_GT(reaching, 10000u);
+  EXPECT_GT(silent, 10000u);
+}
+
+TEST(LightTree, OneLampAndLampsAtOnePlace) {
+  std::vector<LightBounds> same(500);
+  for (LightBounds& b : same) b.box = {{1, 1, 1}, {1, 1, 1}}, b.cone = kPi, b.power = 1;
+  const LightTree tree(same);
+  EXPECT_NEAR(tree.probability({{0, 0, 0}, {0, 0, 1}}, 123), 1.0 / 500, 1e-3 / 500);
+  const LightTree one(std::span<const LightBounds>(same).first(1));
+  EXPECT_EQ(one.probability({{0, 0, 0}, {0, 0, 1}}, 0), 1);
+  EXPECT_FALSE(one.sample({{0, 0, 0}, {0, 0, -1}}, 0.5));
+}
+
+}  // namespace
+}  // namespace suite

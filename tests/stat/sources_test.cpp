@@ -1,0 +1,245 @@
+// Every kind of source of the table: its example is read, its samples follow its density, and what it samples adds up
+// to the irradiance of its radiance. Significance 1e-5 for the family; a density 2 % off must be refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "formats/picture/picture.h"
+#include "formats/sim_text/sources.h"
+#include "math/sampling.h"
+#include "math/stats.h"
+#include "math/warps.h"
+#include "radiometry/sources/source_table.h"
+#include "tests/support/message_of.h"
+#include "tests/support/radiometry_kit.h"
+#include "tests/support/temp_folder.h"
+
+namespace suite::test {
+namespace {
+
+// A horizontal glowing triangle 1.5 m over the origin, facing down.
+std::shared_ptr<Scene> lamp_scene() {
+  return scene_of({mesh_of({{-1, -1, 1.5}, {0.5, 1, 1.5}, {1, -0.5, 1.5}}, {0, 1, 2}, 0)},
+                  {material("lamp", lambert(0))});
+}
+
+class SourceKinds : public testing::TestWithParam<size_t> {
+ protected:
+  const SourceRow& row() const { return source_kinds()[GetParam()]; }
+  // The example's sources, resolved.
+  SourceSpecs specs(const Scene& scene) {
+    Canvas picture(16, 8);
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 16; ++x)
+        picture.set(x, y,
+                    {static_cast<uint8_t>(10 + 13 * x), static_cast<uint8_t>(250 - 30 * y),
+                     static_cast<uint8_t>((x * y * 7) % 256)});
+    write_png(folder_ / "sky.png", picture, "test");
+    std::string text = row().example;
+    if (const size_t at = text.find("file: sky.png"); at != std::string::npos)
+      text.insert(at, "wavelength_um: [0.45, 0.55, 0.65], ");
+    const Params root = Params::parse_text(text, folder_ / "example.yaml");
+    SourceSpecs s = read_sources(root);
+    root.reject_unread();
+    resolve_sources(s, scene);
+    return s;
+  }
+  TempFolder folder_;
+};
+
+struct Draw {
+  Dir direction;
+  double density;
+  std::vector<float> radiance;
+};
+
+// Uniform view of whatever a row makes: draws with a density, densities and radiances of directions.
+struct Asked {
+  const Environment& e;
+  std::string key;
+  LightReceiver at{{0, 0, 0}, {}, true};
+  const Tracer& tracer;
+  size_t bins;
+
+  const Sun* disk() const { return key == "sun" ? e.sun.get() : key == "moon" ? e.moon.get() : nullptr; }
+  std::optional<Draw> draw(double choice, Vec2 u) const {
+    Draw d{{}, 0, std::vector<float>(bins, 0.0f)};
+    if (disk()) {
+      const DirectionSample s = disk()->sample(u);
+      d = {s.direction, s.density, {disk()->spectrum(), disk()->spectrum() + bins}};
+    } else if (key == "sky") {
+      const DirectionSample s = e.sky->sample(u);
+      d.direction = s.direction, d.density = s.density;
+      e.sky->add(s.direction, 1, d.radiance);
+    } else {
+      const auto s = e.lamps->sample(at, choice, u);
+      if (!s) return std::nullopt;
+      d.direction = s->direction, d.density = s->density;
+      for (size_t i = 0; i < bins; ++i) d.radiance[i] = static_cast<float>(s->scale) * s->spectrum[i];
+    }
+    return d;
+  }
+  double density(Dir d) const {
+    if (disk()) return disk()->contains(d) ? disk()->density() : 0;
+    if (key == "sky") return e.sky->density(d);
+    Hit hit;
+    TraceStatistics statistics;
+    const Ray ray{at.position, d, 0};
+    tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    return hit.hit() ? e.lamps->density(at, hit, hit.distance, -dot(hit.normal, d)) : 0;
+  }
+};
+
+TEST_P(SourceKinds, SamplesFollowTheDensity) {
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  std::vector<Band> bands;
+  for (const double c : {0.45, 0.55, 0.65}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
+  const SpectralState state = make_state(bands, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Asked source{e, row().key, {{0, 0, 0}, {}, true}, tracer, state.size()};
+  const auto first = source.draw(0.5, {0.5, 0.5});
+  ASSERT_TRUE(first);
+  if (first->density == 0) {  // a point or a collimated beam: one direction, nothing to distribute
+    EXPECT_EQ(source.draw(0.9, {0.1, 0.7})->direction, first->direction);
+    return;
+  }
+  // Cells of equal solid angle around the mean direction of a pilot, out to its farthest draw.
+  Pcg32 random(11);
+  Vec3 sum;
+  double farthest = 0;
+  std::vector<Dir> pilot;
+  for (int i = 0; i < 2000; ++i)
+    pilot.push_back(source.draw(random.uniform(), {random.uniform(), random.uniform()})->direction),
+        sum += pilot.back();
+  const Frame frame = Frame::around(normalized(sum));
+  for (const Dir& d : pilot) farthest = std::max(farthest, angle_between(d, frame.z));
+  const double drop = one_minus_cos(std::min(kPi, 1.1 * farthest));
+  constexpr int rings = 10, sectors = 12;
+  auto cell_of = [&](Dir d) {
+    const Vec3 l = frame.to_local(d);
+    const int r = std::min(rings - 1, static_cast<int>(rings * 0.5 * dot(d - frame.z, d - frame.z) / drop));
+    double phi = azimuth(l) / (2 * kPi);
+    phi -= std::floor(phi);
+    return static_cast<size_t>(r * sectors + std::min(sectors - 1, static_cast<int>(phi * sectors)));
+  };
+  // Cells stratified finely enough that the quadrature of the density errs by less than a tenth of the counts' own
+  // spread.
+  const uint64_t n = 150000;
+  std::vector<double> observed(rings * sectors, 0.0), expected(rings * sectors, 0.0);
+  for (uint64_t i = 0; i < n; ++i) {
+    const auto d = source.draw(random.uniform(), {random.uniform(), random.uniform()});
+    if (d) observed[cell_of(d->direction)] += 1;
+  }
+  const int fine = row().key == "lamps" ? 150 : 100;
+  for (int r = 0; r < rings * fine; ++r)
+    for (int k = 0; k < sectors * fine; ++k) {
+      const double h = drop * (r + 0.5) / (rings * fine), phi = 2 * kPi * (k + 0.5) / (sectors * fine), z = 1 - h,
+                   t = std::sqrt(h * (2 - h));
+      expected[static_cast<size_t>(r / fine * sectors + k / fine)] +=
+          source.density(frame.to_world({t * std::cos(phi), t * std::sin(phi), z})) * 2 * kPi * drop /
+          (rings * fine * sectors * fine) * static_cast<double>(n);
+    }
+  double total = 0;
+  for (const double x : expected) total += x;
+  EXPECT_NEAR(total / static_cast<double>(n), 1, 3e-3);
+  std::vector<double> wrong = expected;
+  for (size_t i = 0; i < wrong.size(); ++i) wrong[i] *= i % 2 ? 1.04 : 0.96;
+  EXPECT_GT(chi_square_test(observed, expected, 20), 1e-6);
+  EXPECT_LT(chi_square_test(observed, wrong, 20), 1e-6);
+}
+
+class DistantKinds : public SourceKinds {};  // lamps are held to form factors in lamps_test
+TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
+  // Irradiance of a horizontal plane: mean of radiance x cosine / density of the samples, against midpoint quadrature
+  // of the radiance over the hemisphere.
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.01), Band::rectangular("b", 0.65, 0.01)};
+  const SpectralState state = make_state(bands, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Asked source{e, row().key, {{0, 0, 0}, {}, true}, tracer, state.size()};
+  std::vector<double> by_samples(state.size(), 0.0), by_quadrature(state.size(), 0.0), square(state.size(), 0.0);
+  Pcg32 random(4);
+  const int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    const auto d = source.draw(random.uniform(), {random.uniform(), random.uniform()});
+    for (size_t b = 0; b < state.size(); ++b) {
+      const double x = d->radiance[b] * std::max(0.0, d->direction.z) / d->density;
+      by_samples[b] += x / n;
+      square[b] += x * x / n;
+    }
+  }
+  if (source.disk()) {
+    // A disk wholly above the horizon: radiance x pi sin^2 x cosine of its centre.
+    for (size_t b = 0; b < state.size(); ++b)
+      by_quadrature[b] = source.disk()->irradiance()[b] * source.disk()->direction().z;
+  } else {
+    std::vector<float> L(state.size());
+    const int rows = 900, columns = 1440;
+    for (int r = 0; r < rows; ++r)
+      for (int c = 0; c < columns; ++c) {
+        const double theta = (r + 0.5) / rows * kPi / 2;
+        std::fill(L.begin(), L.end(), 0.0f);
+        e.sky->add(dir_from_angles(theta, (c + 0.5) / columns * 2 * kPi), 1, L);
+        for (size_t b = 0; b < state.size(); ++b)
+          by_quadrature[b] += L[b] * std::cos(theta) * std::sin(theta) * (kPi / 2 / rows) * (2 * kPi / columns);
+      }
+  }
+  for (size_t b = 0; b < state.size(); ++b) {
+    const double se = std::sqrt((square[b] - by_samples[b] * by_samples[b]) / n);
+    EXPECT_NEAR(by_samples[b], by_quadrature[b], 5 * se + 2e-4 * by_quadrature[b]) << "bin " << b;
+    EXPECT_LT(5 * se, 0.02 * by_quadrature[b]);
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<size_t>& one) {
+  const SourceRow& row = source_kinds()[one.param];
+  return row.key + (row.kind.empty() ? "" : "_" + row.kind);
+}
+std::vector<size_t> distant() {
+  std::vector<size_t> rows;
+  for (size_t i = 0; i < source_kinds().size(); ++i)
+    if (source_kinds()[i].key != "lamps") rows.push_back(i);
+  return rows;
+}
+INSTANTIATE_TEST_SUITE_P(Table, SourceKinds, testing::Range(size_t{0}, source_kinds().size()), name_of);
+INSTANTIATE_TEST_SUITE_P(Table, DistantKinds, testing::ValuesIn(distant()), name_of);
+
+TEST(Sources, ReaderKnowsTheKindsOfTheTable) {
+  for (const SourceRow& row : source_kinds()) {
+    if (row.kind.empty()) continue;
+    const std::string text = row.key == "lamps" ? "lamps: [{kind: none}]\n" : row.key + ": {kind: none}\n";
+    EXPECT_THAT(message_of([&] { read_sources(Params::parse_text(text, "x.yaml")); }), testing::HasSubstr(row.kind))
+        << row.key;
+  }
+}
+
+TEST(Sky, ShapesThatDifferByWavelengthStayUnbiased) {
+  // At 0.45 um all light comes from the east, at 0.65 um from the west: one density serves both. Expected radiance from
+  // the sky's own quadrature; a sky that drew from one of its tables alone could not bring the other.
+  SkySpec sky;
+  sky.radiance = Curve::constant(2);
+  sky.zeniths = 10, sky.azimuths = 16, sky.cells = true;
+  sky.wavelength_um = {0.45, 0.65};
+  for (const int side : {0, 1})
+    for (size_t r = 0; r < sky.zeniths; ++r)
+      for (size_t c = 0; c < sky.azimuths; ++c) sky.table.push_back((c < 4 || c >= 12) == (side == 0) ? 1 : 0);
+  SourceSpecs sources;
+  sources.sky = sky;
+  const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.002), Band::rectangular("b", 0.65, 0.002)};
+  const auto run =
+      render(scene_of({quad(5, 0, 0)}, {material("m", lambert(0.5))}), sources,
+             std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 1}, {0, 0, -1}, 0}}, bands, 1 << 14, 0.002));
+  for (size_t b = 0; b < 2; ++b) {
+    EXPECT_NEAR(run.result.radiance[b], 0.5 * 2 / 2, 4.5 * run.result.standard_error[b]);
+    EXPECT_LT(run.result.standard_error[b], 0.01);
+    EXPECT_GT(run.result.standard_error[b], 0) << "a split sky cannot be free of noise";
+  }
+}
+
+}  // namespace
+}  // namespace suite::test
