@@ -223,7 +223,7 @@ class AlignedBundle final : public Bundle {
       const double along = hx * ox + hy * oy, across = hy * ox - hx * oy, flat = hx * hx + hy * hy;
       const double inverse2 = 1 / (flat + hz * hz), inverse = std::sqrt(inverse2);
       // Strictly inside the stored half: at azimuth pi the symmetry plane itself belongs to cells that are not stored.
-      const double reach = 1e-9 * (q.up.x + 1e-30);
+      const double reach = 1e-9 * (normal ? 1 : q.up.x);
       p = face_point_fast(along, layout_.half_stored ? std::max(std::fabs(across), reach) : across, hz * inverse,
                           flat * inverse2);
       stretch = 4 * std::fabs(side * (hx * out.x + hy * out.y) + hz * q.up.z) * inverse;
