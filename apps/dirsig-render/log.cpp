@@ -9,13 +9,13 @@
 
 namespace suite {
 
-namespace {
-
 double peak_bytes() {
   struct rusage use {};
   ::getrusage(RUSAGE_SELF, &use);
   return static_cast<double>(use.ru_maxrss) * 1024;
 }
+
+namespace {
 
 Json json_of(const RunStatistics& s) {
   Json j = Json::object();

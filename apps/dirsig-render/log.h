@@ -9,4 +9,7 @@ namespace suite {
 
 void write_log(const std::string& path, const JobReport& report, const JobOptions& options);
 
+// Largest memory that this process has had so far.
+double peak_bytes();
+
 }  // namespace suite

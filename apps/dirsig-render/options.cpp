@@ -22,6 +22,7 @@ AppInfo render_info() {
           "  dirsig-render sim.yaml --time 10min               as many as there is time for\n"
           "  dirsig-render sim.yaml --paths 64 --state         ... and later, the same bits as with 128 at once:\n"
           "  dirsig-render sim.yaml --more 64\n"
+          "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 our bug."};
 }
@@ -38,8 +39,13 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
   cli.option("--more", o.more, "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
+  cli.option("--study", o.study, "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes on from them", "FOLDER");
+  cli.option("--study-budgets", o.study_budgets, "paths per pixel, or seconds (1s,2s,4s), of the study's runs", "N,N,...");
+  cli.option("--study-seeds", o.study_seeds, "runs of the study at each budget", "N");
+  cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run", "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");

@@ -10,7 +10,9 @@ namespace suite {
 struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins;
-  std::string paths, target_error, target_bands = "reference", time, stop = "plan";
+  std::string explain, paths, target_error, target_bands = "reference", time, stop = "plan";
+  std::string study, study_budgets = "4,8,16,32,64", reference;
+  long long study_seeds = 4;
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false;

@@ -31,7 +31,8 @@ std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector
     for (const Band& b : bands) known.push_back(b.name);
     for (const std::string& name : names) {
       const auto found = std::find(known.begin(), known.end(), name);
-      if (found == known.end()) throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
+      if (found == known.end())
+        throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
       chosen.push_back(static_cast<size_t>(found - known.begin()));
     }
     return chosen;
@@ -48,15 +49,19 @@ std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector
 
 // The tangent plane at the scene's origin as a coordinate system that other programs know.
 std::string tangent_wkt(const GeodeticOrigin& o) {
-  return strf("PROJCS[\"scene ENU\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
-              "UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Orthographic\"],PARAMETER[\"latitude_of_origin\",%.12g],"
-              "PARAMETER[\"central_meridian\",%.12g],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]",
-              o.latitude_deg, o.longitude_deg);
+  return strf(
+      "PROJCS[\"scene ENU\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
+      "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
+      "UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Orthographic\"],PARAMETER[\"latitude_of_origin\",%.12g],"
+      "PARAMETER[\"central_meridian\",%.12g],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT["
+      "\"metre\",1]]",
+      o.latitude_deg, o.longitude_deg);
 }
 
 std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
   if (files == OutputSpec::Files::natural) files = rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
-  if (files == OutputSpec::Files::capture) return rows.captures > 1 ? rows.image + strf("_%04zu", rows.capture_number) : rows.image;
+  if (files == OutputSpec::Files::capture)
+    return rows.captures > 1 ? rows.image + strf("_%04zu", rows.capture_number) : rows.image;
   if (files == OutputSpec::Files::task) return rows.tasks > 1 ? rows.image + "_" + rows.task : rows.image;
   return rows.image;
 }
@@ -66,22 +71,23 @@ std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
 // An image while its rows come in.
 struct OutputWriter::Image {
   uint32_t columns = 0, rows = 0, next = 0;
-  size_t values = 0;             // of radiance, per pixel
-  std::vector<double> factor;    // of each value
-  std::vector<size_t> chosen;    // of the preview
+  size_t values = 0;                     // of radiance, per pixel
+  std::vector<double> factor;            // of each value
+  std::vector<size_t> chosen;            // of the preview
   std::map<uint32_t, Delivery> waiting;  // by first row
   std::unique_ptr<EnviWriter> radiance, error, truth;
   std::vector<std::unique_ptr<EnviWriter>> products;
   std::vector<std::string> files;
-  std::vector<double> preview;   // [pixel][chosen]
+  std::vector<double> preview;  // [pixel][chosen]
   std::vector<std::string> names;
-  std::vector<float> all;        // [pixel][value], for formats that take a whole picture
+  std::vector<float> all;           // [pixel][value], for formats that take a whole picture
   std::vector<double> correlation;  // [band][band], summed over rows
   std::optional<MapGrid> map;
   std::string description;
 };
 
-OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes) : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)) {}
+OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes)
+    : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)) {}
 OutputWriter::~OutputWriter() = default;
 
 OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string& stem) {
@@ -92,7 +98,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   OutputSpec::Files files = spec_.files;
   if (files == OutputSpec::Files::natural) files = d.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
   m.columns = d.result.columns;
-  m.rows = files == OutputSpec::Files::capture ? d.result.rows : files == OutputSpec::Files::task ? d.rows.rows_of_task : d.rows.rows_of_all;
+  m.rows = files == OutputSpec::Files::capture ? d.result.rows
+           : files == OutputSpec::Files::task  ? d.rows.rows_of_task
+                                               : d.rows.rows_of_all;
   m.values = d.result.values_per_problem();
   m.chosen = preview_bands(d.bands, spec_.preview);
   m.map = d.map;
@@ -101,7 +109,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
 
   EnviHeader h;
   h.samples = m.columns, h.lines = m.rows, h.bands = m.values;
-  h.type = spec_.type == OutputSpec::Type::float64 ? EnviType::float64 : spec_.type == OutputSpec::Type::uint16 ? EnviType::uint16 : EnviType::float32;
+  h.type = spec_.type == OutputSpec::Type::float64  ? EnviType::float64
+           : spec_.type == OutputSpec::Type::uint16 ? EnviType::uint16
+                                                    : EnviType::float32;
   h.interleave = static_cast<Interleave>(spec_.order);
   h.data_units = kUnits[static_cast<size_t>(spec_.units)];
   for (size_t c = 0; c < d.result.channels; ++c)
@@ -114,8 +124,15 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
       }
   m.names = h.band_names;
   if (d.map) {
-    h.map_info = {notes_.origin.given ? "Orthographic" : "Arbitrary", "1", "1", strf("%.10g", d.map->origin.x), strf("%.10g", d.map->origin.y),
-                  strf("%.10g", d.map->gsd_x), strf("%.10g", d.map->gsd_y), notes_.origin.given ? "WGS-84" : "0", "units=Meters"};
+    h.map_info = {notes_.origin.given ? "Orthographic" : "Arbitrary",
+                  "1",
+                  "1",
+                  strf("%.10g", d.map->origin.x),
+                  strf("%.10g", d.map->origin.y),
+                  strf("%.10g", d.map->gsd_x),
+                  strf("%.10g", d.map->gsd_y),
+                  notes_.origin.given ? "WGS-84" : "0",
+                  "units=Meters"};
     if (notes_.origin.given) h.coordinate_system = tangent_wkt(notes_.origin);
   }
   const std::string who = " of sensor '" + d.sensor.name() + "'";
@@ -150,7 +167,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
     x.extra.clear();
     x.bands = p.bands.size(), x.band_names = p.bands, x.data_units = p.unit;
     if (x.bands != x.wavelength_um.size()) x.wavelength_um.clear(), x.fwhm_um.clear();
-    x.type = p.whole_numbers ? EnviType::uint16 : spec_.type == OutputSpec::Type::float64 ? EnviType::float64 : EnviType::float32;
+    x.type = p.whole_numbers                           ? EnviType::uint16
+             : spec_.type == OutputSpec::Type::float64 ? EnviType::float64
+                                                       : EnviType::float32;
     x.description = p.name + who + tail;
     m.products.push_back(open("_" + p.name, x));
   }
@@ -163,8 +182,11 @@ void OutputWriter::take(const Delivery& delivery) {
   const std::string stem = stem_of(delivery.rows, spec_.files);
   Image& m = image_of(delivery, stem);
   OutputSpec::Files files = spec_.files;
-  if (files == OutputSpec::Files::natural) files = delivery.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
-  const uint32_t at = files == OutputSpec::Files::capture ? 0 : files == OutputSpec::Files::task ? delivery.rows.row_in_task : delivery.rows.row_in_all;
+  if (files == OutputSpec::Files::natural)
+    files = delivery.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+  const uint32_t at = files == OutputSpec::Files::capture ? 0
+                      : files == OutputSpec::Files::task  ? delivery.rows.row_in_task
+                                                          : delivery.rows.row_in_all;
   m.waiting.emplace(at, delivery);
   // Captures may finish in any order; rows are written in theirs.
   for (auto next = m.waiting.find(m.next); next != m.waiting.end(); next = m.waiting.find(m.next)) {
@@ -201,11 +223,13 @@ void OutputWriter::take(const Delivery& delivery) {
       place = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
       if (notes_.origin.given) place->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
     }
-    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all, strf("suite %s: ", kVersion) + command_line() + m.description, place);
+    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all,
+                     strf("suite %s: ", kVersion) + command_line() + m.description, place);
     m.files.push_back(base + ".tif");
   }
   if (spec_.exr) {
-    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all, strf("suite %s: ", kVersion) + command_line() + m.description);
+    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all,
+              strf("suite %s: ", kVersion) + command_line() + m.description);
     m.files.push_back(base + ".exr");
   }
   std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";

@@ -1,4 +1,5 @@
-// The files of a run: radiance, its standard error, truth, the sensors' own products, previews; cut into files as asked.
+// The files of a run: radiance, its standard error, truth, the sensors' own products, previews; cut into files as
+// asked.
 #pragma once
 #include <map>
 #include <memory>

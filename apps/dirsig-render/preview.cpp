@@ -10,7 +10,8 @@
 
 namespace suite {
 
-void write_preview(const std::string& path, std::span<const double> values, uint32_t columns, uint32_t rows, size_t bands) {
+void write_preview(const std::string& path, std::span<const double> values, uint32_t columns, uint32_t rows,
+                   size_t bands) {
   std::vector<double> finite;
   for (const double v : values)
     if (std::isfinite(v)) finite.push_back(v);
@@ -22,7 +23,8 @@ void write_preview(const std::string& path, std::span<const double> values, uint
   }
   constexpr uint32_t most = 16384;
   const uint32_t stride = std::max((columns + most - 1) / most, (rows + most - 1) / most);
-  Canvas canvas(static_cast<int>((columns + stride - 1) / stride), static_cast<int>((rows + stride - 1) / stride), kBlack);
+  Canvas canvas(static_cast<int>((columns + stride - 1) / stride), static_cast<int>((rows + stride - 1) / stride),
+                kBlack);
   for (uint32_t r = 0; r < rows; r += stride)
     for (uint32_t c = 0; c < columns; c += stride) {
       const double* v = &values[(size_t{r} * columns + c) * bands];

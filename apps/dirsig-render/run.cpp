@@ -17,6 +17,7 @@
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/plugin.h"
+#include "study.h"
 
 namespace suite {
 
@@ -45,18 +46,29 @@ int list_models() {
   return 0;
 }
 
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim) {
+  SceneNeeds needs;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+  return needs;
+}
+
 // All scenes of a simulation as one.
-Scene load_scenes(const std::string& path, const std::vector<SimulationScene>& scenes) {
+Scene load_scenes(const Simulation& sim) {
   std::vector<ScenePart> parts;
-  for (const SimulationScene& s : scenes) {
-    Scene scene = read_scene(s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; });
+  for (const SimulationScene& s : sim.scenes) {
+    LoadReport loaded;
+    Scene scene = read_scene(
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
+    note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
   }
   if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
   try {
     return combine_scenes(std::move(parts));
   } catch (const Error& e) {
-    throw Error(Where{path, 0, 0, {}, -1}, e.message(), e.hint());
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
   }
 }
 
@@ -95,19 +107,19 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sources) return list_sources();
   if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
+  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
-  // The scenes are read when a sensor asks where on the Earth they are, else before rendering.
-  std::shared_ptr<const Scene> scene;
-  const auto load = [&](const std::string& path, const std::vector<SimulationScene>& scenes) -> const Scene& {
-    if (!scene) scene = std::make_shared<const Scene>(load_scenes(path, scenes));
-    return *scene;
-  };
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
-  callbacks.deliver = [&](const Delivery& delivery) { writer->take(delivery); };
-  callbacks.origin = [&](const std::string& path, const std::vector<SimulationScene>& scenes) { return load(path, scenes).origin; };
+  StudyImage* study = nullptr;  // where captures go while a study runs
+  callbacks.deliver = [&](const Delivery& delivery) {
+    if (study) append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    else writer->take(delivery);
+  };
+  // The first scene gives a simulation its frame.
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) { return read_scene_origin(scenes.front().path).origin; };
   Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
@@ -115,10 +127,15 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
+    throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
+  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
+    throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  load(sim.path, sim.scenes);
+  const auto scene = std::make_shared<Scene>(load_scenes(sim));
+  if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
@@ -129,6 +146,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
+  if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   make_folder(o.output);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");

@@ -28,6 +28,7 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.flag("--force", o.force, "prepare again even when inputs, options and version are unchanged");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out", "FEATURE");
   cli.flag("--summary", o.summary, "print what a prepared scene holds");
   cli.option("--raycast", o.raycast,
              "print what a ray through a prepared scene meets: from x y z along dx dy dz, ENU, m", "'X Y Z DX DY DZ'");

@@ -8,7 +8,7 @@
 namespace suite {
 
 struct ScenePrepOptions {
-  std::string input, output, report, raycast, export_obj, quick_look;
+  std::string input, output, report, raycast, explain, export_obj, quick_look;
   long long pixels = 800;
   std::vector<std::string> search, mute;
   bool repair = false, quick = false, force = false;

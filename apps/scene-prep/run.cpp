@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/params.h"
+#include "base/progress.h"
 #include "base/report.h"
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
@@ -92,9 +93,11 @@ int prepare(const ScenePrepOptions& o) {
 
 namespace {
 
-void print_summary(const ScenePrepOptions& o, const Scene& scene) {
+void print_summary(const ScenePrepOptions& o, const Scene& scene, const LoadReport& stored) {
   const Provenance p = read_provenance(o.input);
   std::printf("%s", summary_text(scene).c_str());
+  for (const LoadRow& row : stored.rows)
+    if (row.stored) std::printf("%-13s %s, loaded when needed (--explain '%s')\n", "stored", (row.feature + " " + human_bytes(static_cast<double>(row.stored))).c_str(), row.feature.c_str());
   std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
               p.inputs.size(), p.input_sha256.c_str());
 }
@@ -111,12 +114,14 @@ Ray parse_ray(const std::string& text) {
 int inspect(const ScenePrepOptions& o) {
   if (!o.output.empty()) throw UsageError("--output goes with a scene text, not with questions about a prepared scene");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
-  const auto scene = std::make_shared<const Scene>(read_scene(o.input));
-  if (o.summary) print_summary(o, *scene);
+  LoadReport stored;
+  const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));
+  if (o.summary) print_summary(o, *scene, stored);
   if (!o.export_obj.empty())
     if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));
   if (o.raycast.empty() && o.quick_look.empty()) return 0;
-  const Tracer tracer(scene);
+  const double time = time_of_all(*scene);
+  const Tracer tracer(scene, std::nullopt, {time, time});
   if (!o.raycast.empty()) std::fputs(describe_hit(tracer, parse_ray(o.raycast)).c_str(), stdout);
   if (!o.quick_look.empty()) {
     const View view = view_from_above(tracer, static_cast<int>(o.pixels));
@@ -130,6 +135,7 @@ int inspect(const ScenePrepOptions& o) {
 int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
   if (o.list_models) return list_models(), 0;
+  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.input.empty()) throw UsageError("an input is needed");
   const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();
   return questions ? inspect(o) : prepare(o);

@@ -1,8 +1,10 @@
 #include "input.h"
 
+#include "base/error.h"
 #include "base/files.h"
 #include "formats/measured/measured.h"
 #include "optics/model_function.h"
+#include "sqt/narrow_lobe.h"
 #include "sqt/scattered.h"
 
 namespace suite {
@@ -22,6 +24,17 @@ FitInput load_input(const SqtFitOptions& options) {
       input.function = sqt::interpolate(std::get<1>(measured));
     input.provenance.input = options.input;
     input.provenance.input_sha256 = sha256(read_bytes(options.input));
+  }
+  if (options.method == "aligned") {
+    const sqt::NarrowLobe narrow =
+        sqt::split_narrow_lobe(input.function, options.order ? static_cast<int>(options.order) : 10);
+    if (narrow.rest) {
+      input.function = narrow.rest;
+      note(
+          strf("a lobe narrower than the finest cell in the %s, up to %.3f of the total: stored as a Dirac lobe that "
+               "stands for the %.2f deg (half vector) around it",
+               narrow.where.c_str(), narrow.largest, narrow.core / kDegree));
+    }
   }
   input.provenance.conventions = input.function->info().source;
   return input;

@@ -7,24 +7,33 @@ namespace suite {
 AppInfo sqt_fit_info() {
   return {
       "sqt-fit", "Fits a spherical quad-tree (.sqt) to a measured or modelled scattering function.",
-      "Inputs, by content: MERL .binary (90x90x180 or 90x90x360), RGL .bsdf (rgb or spectral).\n"
-      "Conventions:\n"
-      "  units      values are BSDF in 1/sr; angles of files as their formats say; wavelengths in um\n"
-      "  cosine     values carry no cosine; the weight that is integrated and sampled is value x |cos theta_in|\n"
-      "  bins       a bin of a table stands for its centre; tables are looked up in the nearest bin\n"
-      "  horizon    nothing at or below it; cells that it cuts carry the mass above it; RGL files are divided by the\n"
-      "             cosine, clamped at 88 deg\n"
-      "  views      0 to 89.9 deg; incident directions to the horizon\n"
-      "  errors     --max-error is the cosine-weighted relative L1: sum |f'-f| cos / sum f cos, both angles uniform "
-      "on\n"
-      "             the hemisphere up to 80 deg, over all channels\n"
-      "Examples:\n"
-      "  sqt-fit satin.bsdf -o satin.sqt\n"
-      "  sqt-fit gold.binary -o gold.sqt --max-error 0.05 --report gold.json\n"
-      "  sqt-fit gold.binary -o gold.sqt --max-bytes 50000 --curve gold.csv\n"
-      "  sqt-fit --model ward:reflectance=0.2,roughness=0.15 -o ward.sqt\n"
-      "  sqt-fit gold.binary -o old.sqt --method paper --order 6 --views 24 --threshold 0.2\n"
-      "Exit codes: 0 written, 1 bad input or (--strict) a promise not kept, 2 wrong usage, 3 a bug of ours."};
+      "Inputs, recognised by content:\n" + measured_formats() +
+          "Models (--model): every scattering model of scenes and every phase function, e.g. lambert, oren_nayar, "
+          "ward,\n"
+          "  ggx, ggx_dielectric (both sides), rpv, ross_li, mirror, hg:g=0.9, double_hg, rayleigh; one channel at "
+          "0.55 um.\n"
+          "  A wrong name or parameter is answered with those that exist. A lobe narrower than the finest cell becomes "
+          "a\n"
+          "  Dirac lobe, and the summary says so.\n"
+          "Conventions:\n"
+          "  units      values are BSDF in 1/sr; angles of files as their formats say; wavelengths in um\n"
+          "  cosine     values carry no cosine; the weight that is integrated and sampled is value x |cos theta_in|\n"
+          "  bins       a bin of a table stands for its centre; tables are looked up in the nearest bin\n"
+          "  horizon    nothing at or below it; cells that it cuts carry the mass above it; RGL files are divided by "
+          "the\n"
+          "             cosine, clamped at 88 deg\n"
+          "  views      0 to 89.9 deg; incident directions to the horizon\n"
+          "  errors     --max-error is the cosine-weighted relative L1: sum |f'-f| cos / sum f cos, both angles "
+          "uniform "
+          "on\n"
+          "             the hemisphere up to 80 deg, over all channels\n"
+          "Examples:\n"
+          "  sqt-fit satin.bsdf -o satin.sqt\n"
+          "  sqt-fit gold.binary -o gold.sqt --max-error 0.05 --report gold.json\n"
+          "  sqt-fit gold.binary -o gold.sqt --max-bytes 50000 --curve gold.csv\n"
+          "  sqt-fit --model ward:diffuse=0.1,specular=0.2,roughness=0.15 -o ward.sqt\n"
+          "  sqt-fit gold.binary -o old.sqt --method paper --order 6 --views 24 --threshold 0.2\n"
+          "Exit codes: 0 written, 1 bad input or (--strict) a promise not kept, 2 wrong usage, 3 a bug of ours."};
 }
 
 void declare(Cli& cli, SqtFitOptions& o) {

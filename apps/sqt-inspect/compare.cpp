@@ -71,6 +71,16 @@ struct LobeSampler {
   }
 };
 
+// Directions within the narrow lobe for which a Dirac lobe stands: there is nothing to compare.
+bool replaced_by_dirac(const sqt::Bundle& bundle, Dir out, Dir in) {
+  if (!bundle.info().has_delta()) return false;
+  if (bundle.info().delta == sqt::Dirac::through) in.z = -in.z;
+  if (in.z <= 0) return false;
+  if (bundle.info().delta == sqt::Dirac::retro) out = {-out.x, -out.y, out.z};
+  const Dir h = normalized(in + out);
+  return h.x * h.x + h.y * h.y < bundle.info().delta_core * bundle.info().delta_core;
+}
+
 void peak_ratios(const sqt::Bundle& bundle, const sqt::Function& data, Comparison& result) {
   const size_t n = bundle.channels();
   std::vector<double> f(n), g(n);
@@ -79,6 +89,7 @@ void peak_ratios(const sqt::Bundle& bundle, const sqt::Function& data, Compariso
     std::vector<double> top_f(n), top_g(n);
     for (int i = -8000; i <= 8000; ++i) {
       const Dir in = dir_from_angles(std::fabs(i * 0.01) * kDegree, i < 0 ? kPi : 0);
+      if (replaced_by_dirac(bundle, out, in)) continue;
       data.value(out, in, f);
       bundle.value(out, in, g);
       for (size_t c = 0; c < n; ++c)
@@ -126,6 +137,7 @@ Comparison compare(const sqt::Bundle& bundle, const sqt::Function& data, size_t 
     if (!sphere && b[0] < 0.5) in.z = std::fabs(in.z);
     if (out.z == 0 || in.z == 0 || (!sphere && in.z < 0)) continue;
     const double weight = 1 / (0.5 / (sphere ? 4 * kPi : 2 * kPi) + 0.5 * LobeSampler::density(axis, in));
+    if (replaced_by_dirac(bundle, out, in)) continue;
     data.value(out, in, f);
     bundle.value(out, in, g);
     const bool narrow = phase || std::min(std::fabs(out.z), std::fabs(in.z)) >= kLimitCosine;

@@ -79,7 +79,7 @@ Json header_json(const SqtFile& file, const std::string& path) {
   j.set("views", std::move(views));
   j.set("max_order", i.max_order);
   j.set("leaves", i.leaves);
-  j.set("has_delta", i.has_delta);
+  j.set("has_delta", i.has_delta());
   j.set("stored_header", to_json(Params::parse_text(file.header, path)));
   return j;
 }
@@ -99,7 +99,7 @@ std::string header_text(const SqtFile& file, const std::string& path) {
             i.function.wavelength_um.front(), i.function.wavelength_um.back(), i.magnitude_um.size());
   t += strf("  slices     %zu views, %.1f to %.1f deg\n", i.views.size(), i.views.front().theta / kDegree,
             i.views.back().theta / kDegree);
-  t += strf("  leaves     %zu%s\n", i.leaves, i.has_delta ? ", and a Dirac lobe" : "");
+  t += strf("  leaves     %zu%s\n", i.leaves, i.has_delta() ? ", and a Dirac lobe" : "");
   for (const double deg : {0.0, 45.0, 75.0}) {
     t += strf("  total %2.0f  ", deg);
     for (size_t c = 0; c < bundle.channels(); ++c)

@@ -231,6 +231,7 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
 
 void Reader::read(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t count) {
   if (!count) return;
+  note_read(name);
   herr_t status;
   if (first == 0 && count == d.count) {
     status = H5Dread(d.dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
@@ -241,6 +242,17 @@ void Reader::read(const std::string& name, const Opened& d, hid_t type, void* ou
     if (status >= 0) status = H5Dread(d.dataset, type, memory, space, H5P_DEFAULT, out);
   }
   if (status < 0) fail("dataset '" + name + "' cannot be read");
+}
+
+void Reader::read_strided(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t blocks, size_t stride, size_t run) {
+  if (!blocks || !run) return;
+  SUITE_CHECK(run <= stride && first + (blocks - 1) * stride + run <= d.count);
+  note_read(name);
+  const hsize_t start = first, step = stride, count = blocks, block = run, all = blocks * run;
+  const Handle space(H5Dget_space(d.dataset), H5Sclose), memory(H5Screate_simple(1, &all, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, &step, &count, &block) < 0 ||
+      H5Dread(d.dataset, type, memory, space, H5P_DEFAULT, out) < 0)
+    fail("dataset '" + name + "' cannot be read");
 }
 
 uint64_t Reader::file_offset(const std::string& name, const Opened& d) const {

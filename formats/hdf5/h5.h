@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -101,6 +102,11 @@ class Reader {
   };
   Opened open(const std::string& name, Id type, const char* units, size_t width, long long rows);
   void read(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t count);
+  // `blocks` runs of `run` values, the first at `first`, each `stride` values behind the one before.
+  void read_strided(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t blocks, size_t stride, size_t run);
+  // Datasets of which some value was read, here or by who says so.
+  const std::set<std::string>& names_read() const { return names_read_; }
+  void note_read(const std::string& name) { names_read_.insert(name); }
   // Where the values of a dataset start in the file, for reading past the library (which knows one thread only).
   uint64_t file_offset(const std::string& name, const Opened& d) const;
   bool has(const std::string& name) const;
@@ -111,6 +117,7 @@ class Reader {
  private:
   std::string path_, hint_;
   Handle file_;
+  std::set<std::string> names_read_;
 };
 
 }  // namespace suite::h5

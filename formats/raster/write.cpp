@@ -1,5 +1,6 @@
-// Based on: OGC 19-008r4, GeoTIFF Standard 1.1 (user-defined projected CRS, CT_Orthographic). The ellipsoidal orthographic
-// projection (EPSG method 9840) of a point is its east and north in the tangent plane, which is what scene ENU is.
+// Based on: OGC 19-008r4, GeoTIFF Standard 1.1 (user-defined projected CRS, CT_Orthographic). The ellipsoidal
+// orthographic projection (EPSG method 9840) of a point is its east and north in the tangent plane, which is what scene
+// ENU is.
 #include <OpenImageIO/imageio.h>
 #include <geo_normalize.h>
 #include <geotiff.h>
@@ -17,13 +18,14 @@ namespace suite {
 
 namespace {
 
-void write_image(const std::string& path, const char* format, uint32_t width, uint32_t height, const std::vector<std::string>& channels,
-                 std::span<const float> values, const std::string& comment) {
+void write_image(const std::string& path, const char* format, uint32_t width, uint32_t height,
+                 const std::vector<std::string>& channels, std::span<const float> values, const std::string& comment) {
   const Where where{path, 0, 0, {}, -1};
   SUITE_CHECK_EQ(values.size(), size_t{width} * height * channels.size());
   auto out = OIIO::ImageOutput::create(format);
   if (!out) throw Error(where, std::string("this build writes no ") + format);
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()),
+                       OIIO::TypeDesc::FLOAT);
   spec.channelnames = channels;
   spec.attribute("ImageDescription", comment);
   spec.attribute("compression", "zip");
@@ -64,13 +66,15 @@ void add_keys(const std::string& path, const RasterPlacement& at) {
     GTIFKeySet(keys.get(), GTModelTypeGeoKey, TYPE_SHORT, 1, KvUserDefined);
     GTIFKeySet(keys.get(), GTCitationGeoKey, TYPE_ASCII, 0, "local plane, m");
   }
-  if (!GTIFWriteKeys(keys.get()) || !TIFFRewriteDirectory(tiff.get())) throw Error(Where{path, 0, 0, {}, -1}, "its position cannot be written");
+  if (!GTIFWriteKeys(keys.get()) || !TIFFRewriteDirectory(tiff.get()))
+    throw Error(Where{path, 0, 0, {}, -1}, "its position cannot be written");
 }
 
 }  // namespace
 
-void write_float_tiff(const std::string& path, uint32_t width, uint32_t height, const std::vector<std::string>& channels,
-                      std::span<const float> values, const std::string& comment, const std::optional<RasterPlacement>& placement) {
+void write_float_tiff(const std::string& path, uint32_t width, uint32_t height,
+                      const std::vector<std::string>& channels, std::span<const float> values,
+                      const std::string& comment, const std::optional<RasterPlacement>& placement) {
   AtomicFile file(path);
   write_image(file.temporary(), "tiff", width, height, channels, values, comment);
   if (placement) add_keys(file.temporary(), *placement);

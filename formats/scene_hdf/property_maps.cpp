@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "formats/scene_hdf/internal.h"
 
 namespace suite {
@@ -32,6 +34,12 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
   w.put(kTable + "/materials", materials, "1");
   w.put(kTable + "/wavelength", wavelength, "um");
   write_curves(w, kTable + "/family", family);
+  std::vector<float> range;  // lowest and highest value
+  for (const PropertyMap& m : maps) {
+    const auto [low, high] = std::minmax_element(m.values.begin(), m.values.end());
+    range.insert(range.end(), {m.values.empty() ? 0 : *low, m.values.empty() ? 0 : *high});
+  }
+  w.put(kTable + "/range", range, "SI", 2);
   auto values = w.column(kTable + "/values", h5::native<float>(), total, "SI");
   for (const PropertyMap& m : maps) values.append(std::span<const float>(m.values));
   w.put("/property_bindings/material", pick(s.property_bindings, [](const PropertyBinding& b) { return b.material; }),
@@ -40,7 +48,7 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
         pick(s.property_bindings, [](const PropertyBinding& b) { return b.property_map; }), "1");
 }
 
-void read_property_maps(h5::Reader& r, Scene& s) {
+void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
   const std::vector<std::string> names = r.get_names(kTable + "/name");
   const auto n = static_cast<long long>(names.size());
   const std::vector<std::string> parameter = r.get_names(kTable + "/parameter", n);
@@ -49,6 +57,8 @@ void read_property_maps(h5::Reader& r, Scene& s) {
   const auto drape = r.get<double>(kTable + "/drape", "m", 4, n);
   Stretch<uint32_t> materials(r, kTable + "/materials", "1");
   Stretch<double> wavelength(r, kTable + "/wavelength", "um");
+  const auto range = r.get<float>(kTable + "/range", "SI", 2, n);
+  std::vector<uint32_t> number;  // of each stored map among those read
   Stretch<float> values(r, kTable + "/values", "SI");
   const std::vector<Curve> family = read_curves(r, kTable + "/family");
   size_t curve = 0;
@@ -74,14 +84,35 @@ void read_property_maps(h5::Reader& r, Scene& s) {
     m.family.assign(family.begin() + static_cast<std::ptrdiff_t>(curve),
                     family.begin() + static_cast<std::ptrdiff_t>(curve + z[5]));
     curve += z[5];
-    m.values = values.next(uint64_t{z[0]} * z[1] * z[2]);
+    const uint64_t pixels = uint64_t{z[0]} * z[1];
+    const bool heat = m.kind == MapKind::temperature, cube = m.kind == MapKind::cube;
+    LoadRow* row = heat ? &loading.row("temperatures") : cube ? &loading.row("cube channels") : nullptr;
+    if (row) row->stored += 4 * pixels * m.channels;
+    number.push_back(heat && !loading.glows(range[2 * k + 1]) ? kNone : static_cast<uint32_t>(s.property_maps.size()));
+    if (number.back() == kNone) {
+      values.skip(pixels * m.channels);
+      continue;
+    }
+    if (cube && m.channels == m.wavelength_um.size()) {
+      const auto [from, to] = loading.channels(m.wavelength_um);
+      m.values = values.next_columns(pixels, m.channels, from, to - from);
+      m.wavelength_um = {m.wavelength_um.begin() + static_cast<std::ptrdiff_t>(from),
+                         m.wavelength_um.begin() + static_cast<std::ptrdiff_t>(to)};
+      m.channels = static_cast<uint32_t>(to - from);
+    } else {
+      m.values = values.next(pixels * m.channels);
+    }
+    if (row) row->read += 4 * m.values.size();
     s.property_maps.push_back(std::move(m));
   }
   materials.finish(), wavelength.finish(), values.finish();
   if (curve != family.size()) r.fail("there are curves of no map");
   const auto material = r.get<uint32_t>("/property_bindings/material", "1");
   const auto map = r.get<uint32_t>("/property_bindings/property_map", "1", 1, static_cast<long long>(material.size()));
-  for (size_t k = 0; k < material.size(); ++k) s.property_bindings.push_back({material[k], map[k]});
+  for (size_t k = 0; k < material.size(); ++k) {
+    if (map[k] >= number.size()) r.fail("a map binding names something that is not there");
+    if (number[map[k]] != kNone) s.property_bindings.push_back({material[k], number[map[k]]});
+  }
 }
 
 }  // namespace suite

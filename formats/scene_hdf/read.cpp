@@ -34,6 +34,7 @@ class Stored {
   void finish(Reader& r) const {
     if (at_ != count_) r.fail("dataset '" + name_ + "' is longer than its table says");
   }
+  const std::string& name() const { return name_; }
   std::vector<T> values(const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
     std::vector<T> out(n + pad);
     file.read_at(offset_ + first * sizeof(T), std::as_writable_bytes(std::span(out.data(), n)));
@@ -53,7 +54,8 @@ struct MeshRows {
 };
 
 // The big arrays of all meshes, several meshes at a time.
-void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, std::vector<Mesh>& meshes) {
+void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, const std::vector<bool>& with_uvs,
+                      Loading& loading, std::vector<Mesh>& meshes) {
   Stored<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
   Stored<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
   struct Start {
@@ -67,6 +69,14 @@ void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, 
                       uv.take(r, rows.uvs[k] ? 2 * v : 0)});
   }
   p.finish(r), uv.finish(r), i.finish(r), nrm.finish(r);
+  LoadRow &geometry = loading.row("geometry"), &textures = loading.row("texture coordinates");
+  for (size_t k = 0; k < meshes.size(); ++k) {
+    geometry.stored += 12 * rows.vertices[k] + 12 * rows.triangles[k] + (rows.normals[k] ? 4 * rows.vertices[k] : 0);
+    if (rows.uvs[k]) textures.stored += 8 * rows.vertices[k], textures.read += with_uvs[k] ? 8 * rows.vertices[k] : 0;
+  }
+  geometry.read = geometry.stored;
+  for (const std::string* name : {&p.name(), &i.name(), &nrm.name()}) r.note_read(*name);
+  if (textures.read) r.note_read(uv.name());
   const RandomAccessFile file(path);
   parallel_for(0, meshes.size(), 1, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
@@ -74,12 +84,14 @@ void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, 
       meshes[k].positions = p.values(file, starts[k].p, 3 * v, v ? 1 : 0);
       meshes[k].indices = i.values(file, starts[k].i, 3 * rows.triangles[k]);
       if (rows.normals[k]) meshes[k].normals = nrm.values(file, starts[k].n, v);
-      if (rows.uvs[k]) meshes[k].uvs = uv.values(file, starts[k].uv, 2 * v);
+      if (rows.uvs[k] && with_uvs[k]) meshes[k].uvs = uv.values(file, starts[k].uv, 2 * v);
     }
   });
 }
 
-void read_meshes(Reader& r, const std::string& path, std::vector<Mesh>& meshes) {
+// After everything else: what the materials are decides what is read of the meshes.
+void read_meshes(Reader& r, const std::string& path, Scene& scene, Loading& loading) {
+  std::vector<Mesh>& meshes = scene.meshes;
   MeshRows rows;
   rows.names = r.get_names("/meshes/name");
   const auto n = static_cast<long long>(rows.names.size());
@@ -94,7 +106,6 @@ void read_meshes(Reader& r, const std::string& path, std::vector<Mesh>& meshes) 
   const auto part_triangles = r.get<uint32_t>("/parts/triangles", "1", 1, part_rows),
              part_material = r.get<uint32_t>("/parts/material", "1", 1, part_rows);
   meshes.resize(rows.names.size());
-  read_mesh_arrays(r, path, rows, meshes);
   size_t part = 0;
   for (size_t k = 0; k < meshes.size(); ++k) {
     Mesh& m = meshes[k];
@@ -111,6 +122,8 @@ void read_meshes(Reader& r, const std::string& path, std::vector<Mesh>& meshes) 
     }
   }
   if (part != part_name.size()) r.fail("there are parts of no mesh");
+  const std::vector<bool> with_uvs = meshes_with_uvs(scene, loading);
+  read_mesh_arrays(r, path, rows, with_uvs, loading, meshes);
 }
 
 void read_hierarchy(Reader& r, Scene& s) {
@@ -277,7 +290,9 @@ SceneOrigin read_scene_origin(const std::string& path) {
   return {{o[0], o[1], o[2], o[3] != 0}, r.text("epoch_utc")};
 }
 
-Scene read_scene(const std::string& path, const BundleReader& decode) {
+Scene read_scene(const std::string& path, const BundleReader& decode, const SceneNeeds& needs, LoadReport* report) {
+  Loading loading;
+  loading.needs = needs;
   Reader r(path);
   if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
   if (const std::string version = r.text("version"); version != h5::kVersionText)
@@ -290,15 +305,17 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
   s.bounds = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
   s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
   try {
-    read_meshes(r, path, s.meshes);
+    read_materials(r, s.materials);
+    read_maps(r, s);
+    read_property_maps(r, s, loading);
+    read_temperatures(r, s, loading);
     s.epoch = r.text("epoch_utc");
     read_hierarchy(r, s);
     read_tracks(r, s);
-    read_materials(r, s.materials);
-    read_maps(r, s);
-    read_property_maps(r, s);
     read_media(r, s);
-    read_temperatures(r, s);
+    resolve(s, path, decode);
+    drop_unseen(s, loading);
+    read_meshes(r, path, s, loading);
   } catch (const Error& e) {
     // Faults of the values (a curve, say) carry no place of their own.
     if (!e.where().file.empty()) throw;
@@ -306,7 +323,8 @@ Scene read_scene(const std::string& path, const BundleReader& decode) {
   }
   for (const Primitive& p : s.primitives) check_primitive(p, Where{path, 0, 0, {}, -1});
   check_scene(s, path);
-  resolve(s, path, decode);
+  loading.report.datasets.assign(r.names_read().begin(), r.names_read().end());
+  if (report) *report = std::move(loading.report);
   return s;
 }
 

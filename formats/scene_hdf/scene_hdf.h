@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "formats/scene_hdf/needs.h"
 #include "scene/draft.h"
 #include "scene/scene.h"
 
@@ -25,9 +26,11 @@ void write_scene(const Scene& scene, const Provenance& provenance, const std::st
 using BundleReader =
     std::function<std::shared_ptr<const sqt::Bundle>(std::span<const std::byte> bytes, const std::string& name)>;
 
-// Reads and checks everything (sizes before allocating, every index). Materials whose `file` names an embedded file get
-// their `bundle` from decode; without decode it stays null. Error: no scene, another version, damaged.
-Scene read_scene(const std::string& path, const BundleReader& decode = {});
+// Reads and checks (sizes before allocating, every index) what the needs ask for; what they do not is left out of the scene as
+// if it had never been there, and told in the report. Materials whose `file` names an embedded file get their `bundle` from
+// decode; without decode it stays null. Error: no scene, another version, damaged.
+Scene read_scene(const std::string& path, const BundleReader& decode = {}, const SceneNeeds& needs = {},
+                 LoadReport* report = nullptr);
 // Where second 0 and the zero of the frame are; reads attributes only.
 struct SceneOrigin {
   GeodeticOrigin origin;

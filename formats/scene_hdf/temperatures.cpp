@@ -54,7 +54,7 @@ void write_temperatures(h5::Writer& w, const Scene& s) {
   w.put(kTable + "/numbers/value", value, "SI");
 }
 
-void read_temperatures(h5::Reader& r, Scene& s) {
+void read_temperatures(h5::Reader& r, Scene& s, Loading& loading) {
   const std::vector<std::string> model = r.get_names(kTable + "/model");
   const auto n = static_cast<long long>(model.size());
   const auto size = r.get<uint32_t>(kTable + "/size", "1", 4, n);
@@ -76,6 +76,8 @@ void read_temperatures(h5::Reader& r, Scene& s) {
     for (uint32_t i = 0; i < size[4 * k + 2]; ++i, ++layer) t.spec.layers.push_back(layer_of(&layers[kLayer * layer]));
     for (uint32_t i = 0; i < size[4 * k + 3]; ++i, ++number) t.spec.numbers[name[number]] = value[number];
     if (!t.spec.model.empty()) make_temperature_model(t.spec);
+    loading.row("layers").stored += 8 * kLayer * t.spec.layers.size();
+    loading.row("temperatures").stored += 16 * t.spec.times.size();
     s.temperatures.push_back(std::move(t));
   }
   time.finish(), kelvin.finish();

@@ -36,9 +36,12 @@ ScatterRule read_scatter(const Params& p) {
 std::shared_ptr<const Track> Reader::read_motion(const Params& p, bool world) {
   MotionContext context;
   if (world && draft_.origin.given)
-    context.frame.emplace(Geodetic{draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
+    context.frame.emplace(
+        Geodetic{draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
   if (!draft_.epoch.empty()) context.clock.emplace(parse_iso8601(draft_.epoch));
-  context.satellites = [](const std::string& path, const std::string& satellite) { return read_tle_of(path, satellite).elements; };
+  context.satellites = [](const std::string& path, const std::string& satellite) {
+    return read_tle_of(path, satellite).elements;
+  };
   context.resolve = [this](const Params& file) { return input(file); };
   return track_from(p, context);
 }

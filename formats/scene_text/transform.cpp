@@ -53,7 +53,8 @@ Affine3 read_matrix(const Params& p) {
 }  // namespace
 
 std::optional<Affine3> find_transform(const Params& p) {
-  const auto matrix = p.find("matrix"), scale = p.find("scale"), rotate = p.find("rotate"), translate = p.find("translate");
+  const auto matrix = p.find("matrix"), scale = p.find("scale"), rotate = p.find("rotate"),
+             translate = p.find("translate");
   if (matrix) {
     for (const char* other : {"translate", "rotate", "scale"})
       if (p.has(other)) throw p.error(strf("'matrix' and '%s' cannot be combined", other));

@@ -39,7 +39,9 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   auto shared = std::make_shared<Shared>();
   shared->motion.dut1 = sim.dut1;
   if (sim.epoch) shared->motion.clock = Clock(*sim.epoch);
-  shared->motion.satellites = [](const std::string& path, const std::string& name) { return read_tle_of(path, name).elements; };
+  shared->motion.satellites = [](const std::string& path, const std::string& name) {
+    return read_tle_of(path, name).elements;
+  };
   auto motion = [shared, origin = callbacks.origin, path = sim.path, scenes = sim.scenes]() -> const MotionContext& {
     if (!shared->asked && origin) {
       const GeodeticOrigin at = origin(path, scenes);
@@ -58,14 +60,17 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   context.time = [shared](const Params& p) {
     const std::string text = p.as_text();
     if (text.find_first_of(":T") == std::string::npos) return p.as_number();
-    if (!shared->motion.clock) throw p.error("a date needs the simulation's `epoch`", "give seconds, or epoch: 2026-06-21T10:30:00Z");
+    if (!shared->motion.clock)
+      throw p.error("a date needs the simulation's `epoch`", "give seconds, or epoch: 2026-06-21T10:30:00Z");
     try {
       return shared->motion.clock->seconds(parse_iso8601(text));
     } catch (const Error& e) {
       throw p.error(e.message(), e.hint());
     }
   };
-  context.utc = [shared](double t) { return shared->motion.clock ? to_iso8601(shared->motion.clock->utc(t), 6) : std::string(); };
+  context.utc = [shared](double t) {
+    return shared->motion.clock ? to_iso8601(shared->motion.clock->utc(t), 6) : std::string();
+  };
   return context;
 }
 

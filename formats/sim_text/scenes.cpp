@@ -13,9 +13,12 @@ namespace {
 TrackPtr read_motion(const Params& p, const std::string& first) {
   MotionContext context;
   const SceneOrigin at = read_scene_origin(first);
-  if (at.origin.given) context.frame.emplace(Geodetic{at.origin.latitude_deg, at.origin.longitude_deg, at.origin.ellipsoid_height_m});
+  if (at.origin.given)
+    context.frame.emplace(Geodetic{at.origin.latitude_deg, at.origin.longitude_deg, at.origin.ellipsoid_height_m});
   if (!at.epoch.empty()) context.clock.emplace(parse_iso8601(at.epoch));
-  context.satellites = [](const std::string& path, const std::string& satellite) { return read_tle_of(path, satellite).elements; };
+  context.satellites = [](const std::string& path, const std::string& satellite) {
+    return read_tle_of(path, satellite).elements;
+  };
   return track_from(p, context);
 }
 
@@ -34,7 +37,8 @@ void read_scenes(const Params& root, Simulation& sim) {
       }
       SimulationScene scene{p.at("file").as_path(), {}, {}};
       scene.placement = find_transform(p);
-      if (const auto motion = p.find("motion")) scene.motion = read_motion(*motion, sim.scenes.empty() ? scene.path : sim.scenes.front().path);
+      if (const auto motion = p.find("motion"))
+        scene.motion = read_motion(*motion, sim.scenes.empty() ? scene.path : sim.scenes.front().path);
       sim.scenes.push_back(std::move(scene));
     }
     if (sim.scenes.empty()) throw list->error("a simulation needs at least one scene");

@@ -56,6 +56,9 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   d.totals.theta = angles_of(t.at("theta"));
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();
+  if (t.boolean("delta", false))
+    d.totals.delta_kind = static_cast<sqt::Dirac>(1 + t.at("delta_toward").as_choice({"mirror", "retro", "through"}));
+  if (t.find("delta_core")) d.totals.delta_core = t.number_in("delta_core", 0, 1, "rad");
   // Every number of the tables costs the file something; these bounds keep memory in proportion.
   if (layout.theta.size() * layout.phi_count > kMaxSide || layout.channels > kMaxSide)
     throw l.error("more views or channels than this reader accepts", "at most 1024 of each");
@@ -66,7 +69,7 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   const auto length = reader.get<uint32_t>();
   const auto totals = reader.take(length);
   if (!reader.ok()) throw Error("SQT payload is damaged: its totals end too early");
-  sqt::decode_totals(totals, layout.channels, t.boolean("delta", false), d.totals);
+  sqt::decode_totals(totals, layout.channels, d.totals.delta_kind != sqt::Dirac::none, d.totals);
   const auto trees = reader.take(reader.left());
   // Eight leaves to a byte is more than the coder reaches; what they need in memory is bounded as well.
   const auto leaves = static_cast<size_t>(l.integer("leaves", 1, 1 << 28));

@@ -115,7 +115,10 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   totals.set("theta", numbers(t.theta));
   totals.set("phi_count", t.phi_count);
   totals.set("wavelength_um", numbers(t.magnitude_um));
-  totals.set("delta", !t.delta.empty());
+  constexpr const char* kDirac[] = {"none", "mirror", "retro", "through"};
+  totals.set("delta", t.delta_kind != sqt::Dirac::none);
+  if (t.delta_kind != sqt::Dirac::none) totals.set("delta_toward", kDirac[static_cast<size_t>(t.delta_kind)]);
+  if (t.delta_core > 0) totals.set("delta_core", t.delta_core);
   header.set("totals", std::move(totals));
   std::vector<std::byte> payload;
   put<uint32_t>(payload, static_cast<uint32_t>(fit.totals_bytes.size()));

@@ -11,7 +11,8 @@ namespace suite {
 namespace record {
 
 void put(std::vector<double>& n, const Pose& p) {
-  n.insert(n.end(), {p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z, p.translation.x, p.translation.y, p.translation.z});
+  n.insert(n.end(),
+           {p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z, p.translation.x, p.translation.y, p.translation.z});
 }
 void put(std::vector<double>& n, const SceneFrame& frame) {
   const Geodetic& g = frame.origin();
@@ -136,7 +137,9 @@ TrackPtr make(const TrackRecord& r, int depth) {
   using Kind = TrackRecord::Kind;
   if (depth > kDeepest) throw Error("a stored motion is nested too deeply");
   const size_t parts = r.parts.size();
-  const bool right = r.kind == Kind::composed ? parts == 2 : r.kind == Kind::pointed ? parts == 1 || parts == 2 : parts == 0;
+  const bool right = r.kind == Kind::composed  ? parts == 2
+                     : r.kind == Kind::pointed ? parts == 1 || parts == 2
+                                               : parts == 0;
   if (!right) throw Error("a stored motion has the wrong number of parts");
   Numbers n(r);
   TrackPtr made;

@@ -19,6 +19,7 @@ class ModelFunction final : public sqt::Function {
     info_.wavelength_um = {state.reference_um};
     info_.domain = model_->opaque() ? sqt::Domain::hemisphere : sqt::Domain::sphere;
     info_.isotropic = info_.bilateral = rotation_does_not_matter();
+    if (model_->has_delta()) find_dirac();
   }
   const Info& info() const override { return info_; }
   void value(Dir out, Dir in, std::span<double> f) const override {
@@ -30,8 +31,43 @@ class ModelFunction final : public sqt::Function {
     model_->eval(out, in, {&w, 1});
     f[0] = w / std::fabs(in.z);
   }
+  sqt::Dirac dirac() const override { return dirac_; }
+  void dirac_total(Dir out, std::span<double> W) const override {
+    const auto drawn = draw_dirac(out);
+    float w = 0;
+    if (drawn) model_->delta_weight(out, drawn->lobe, 0, {&w, 1});
+    W[0] = w;
+  }
 
  private:
+  // One draw of the model's Dirac lobe, if it makes any.
+  std::optional<ScatterModel::Sample> draw_dirac(Dir out) const {
+    for (int k = 0; k < 64; ++k) {
+      const auto s = model_->sample(out, {0.5, 0.5}, (k + 0.5) / 64, 0);
+      if (s && s->delta) return s;
+    }
+    return std::nullopt;
+  }
+  // Which way the lobe points; a fitted file holds one, of three directions.
+  void find_dirac() {
+    for (const double theta : {0.3, 0.8, 1.3}) {
+      const Dir out = dir_from_angles(theta, 0.4);
+      for (int k = 0; k < 64; ++k) {
+        const auto s = model_->sample(out, {0.5, 0.5}, (k + 0.5) / 64, 0);
+        if (!s || !s->delta) continue;
+        const sqt::Dirac kind = length(s->in - Dir{-out.x, -out.y, out.z}) < 1e-6 ? sqt::Dirac::mirror
+                                : length(s->in - out) < 1e-6                      ? sqt::Dirac::retro
+                                : length(s->in + out) < 1e-6                      ? sqt::Dirac::through
+                                                                                  : sqt::Dirac::none;
+        if (kind == sqt::Dirac::none || (dirac_ != sqt::Dirac::none && kind != dirac_))
+          throw Error(
+              "model '" + info_.name + "' has Dirac lobes that a fitted file cannot hold",
+              "one lobe is possible: in the mirror direction, back to the viewer, or straight on; use the model "
+              "itself in the scene");
+        dirac_ = kind;
+      }
+    }
+  }
   bool rotation_does_not_matter() const {
     auto w = [&](Dir out, Dir in) {
       float v = 0;
@@ -49,6 +85,7 @@ class ModelFunction final : public sqt::Function {
 
   std::unique_ptr<const ScatterModel> model_;
   Info info_;
+  sqt::Dirac dirac_ = sqt::Dirac::none;
 };
 
 class PhaseModelFunction final : public sqt::Function {

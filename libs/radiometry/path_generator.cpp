@@ -140,6 +140,8 @@ bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   hit.distance = met->distance;
   hit.position = met->position;
   hit.normal = met->normal;
+  hit.step = Earth::step;
+  hit.time = wave.path(p).ray.time;
   Node& node = add_node(wave, p, hit);
   node.at = Interaction{};
   node.at.position = met->position;
@@ -148,10 +150,6 @@ bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   node.at.material = environment_.earth->material();
   node.at.baked = &optics_.material(node.at.material);
   return scatters(wave.path(p), node);
-}
-
-Vec3 PathGenerator::leave(const Node& node, Dir direction) const {
-  return node.hit.hit() ? surface_.tracer().leave(node.hit, direction) : Earth::leave(node.hit.position, node.hit.normal);
 }
 
 // Draws where the path goes from its last node; false when it ends there.
@@ -218,7 +216,7 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   live.scattered = false;
   if (volume_ && dot(node.in, node.hit.normal) * dot(node.out, node.hit.normal) < 0) volume_->cross(live, node);
   live.direction = node.in;
-  live.origin = leave(node, node.in);
+  live.origin = surface_.tracer().leave(node.hit, node.in);
   return true;
 }
 

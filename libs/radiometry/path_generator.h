@@ -40,7 +40,6 @@ class PathGenerator {
   bool arrive_on_earth(Wave& wave, uint32_t p);
   Node& add_node(Wave& wave, uint32_t p, const Hit& hit);
   bool scatters(Path& path, const Node& node) const;
-  Vec3 leave(const Node& node, Dir direction) const;
   // Sources (path_sources.cpp).
   void escape(Path& path, const Live& live) const;
   void ask_sources(Wave& wave, uint32_t p);

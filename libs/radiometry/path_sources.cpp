@@ -48,7 +48,7 @@ void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLigh
   // Light may come in only from the side of the surface that the shading frame says it comes from.
   if (in_side * dot(light.direction, node.at.frame.z) <= 0) return;
   node.light[slot] = light;
-  const Vec3 origin = leave(node, light.direction);
+  const Vec3 origin = surface_.tracer().leave(node.hit, light.direction);
   Dir direction = light.direction;
   if (end) {
     const Vec3 way = *end - origin;

@@ -67,6 +67,7 @@ class Baker {
   void check_coverage(const DraftMaterial& m);
   void class_maps();
   void property_maps();
+  void check_parts(const PropertyMap& map, const Where& where);
   void geometry();
   Built build_mesh(const DraftGeometry& g);
   Built build_terrain(const DraftGeometry& g);
@@ -171,6 +172,22 @@ void Baker::class_maps() {
   }
 }
 
+// A mixture puts whole materials side by side, which cannot be mixtures or bend the surface themselves.
+void Baker::check_parts(const PropertyMap& map, const Where& where) {
+  for (const uint32_t id : map.materials) {
+    if (id == kNone) continue;
+    const DraftMaterial& part = draft_.materials[id];
+    bool fits = part.has_model && !part.map.given();
+    for (const Reference& r : part.property_maps)
+      for (const DraftPropertyMap& m : draft_.property_maps)
+        if (m.map.name == r.name && (m.map.kind == MapKind::mixture || m.map.kind >= MapKind::bump)) fits = false;
+    if (!fits)
+      add("SP501", where,
+          "material '" + part.material.id + "' cannot be part of mixture '" + map.name +
+              "': a part has a model and at most curve index, texture, cube and temperature maps");
+  }
+}
+
 void Baker::property_maps() {
   std::map<std::string, uint32_t> ids;
   for (const DraftPropertyMap& d : draft_.property_maps) {
@@ -191,6 +208,7 @@ void Baker::property_maps() {
       }
       used_maps_.insert(r.name);
       const PropertyMap& map = scene_.property_maps[found->second];
+      check_parts(map, r.where);
       if (!kinds.insert(map.kind).second)
         add("SP501", r.where,
             "material '" + draft_.materials[m].material.id + "' has two maps of the kind of '" + r.name + "'");

@@ -16,8 +16,10 @@ namespace {
 template <class T>
 uint32_t move_behind(std::vector<T>& all, std::vector<T>& more) {
   const auto first = static_cast<uint32_t>(all.size());
-  if (all.empty()) all = std::move(more);
-  else all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  if (all.empty())
+    all = std::move(more);
+  else
+    all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   return first;
 }
 
@@ -25,7 +27,9 @@ void shift(uint32_t& index, uint32_t by) {
   if (index != kNone) index += by;
 }
 
-SceneFrame frame_of(const GeodeticOrigin& o) { return SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m}); }
+SceneFrame frame_of(const GeodeticOrigin& o) {
+  return SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m});
+}
 
 class Combiner {
  public:
@@ -69,6 +73,7 @@ class Combiner {
     if (!part.motion) all_.bounds.grow(transformed(s.bounds, root.to_parent));
     move_behind(all_.class_maps, s.class_maps), move_behind(all_.map_bindings, s.map_bindings);
     move_behind(all_.property_maps, s.property_maps), move_behind(all_.property_bindings, s.property_bindings);
+    move_behind(all_.temperatures, s.temperatures);
     move_behind(all_.meshes, s.meshes), move_behind(all_.primitives, s.primitives);
     move_behind(all_.materials, s.materials), move_behind(all_.files, s.files);
   }
@@ -93,7 +98,8 @@ class Combiner {
     if (part.motion || first) return {};
     for (const ScenePart* p : {&parts_.front(), &part})
       if (!p->scene.origin.given)
-        throw Error("scene '" + p->name + "' has no origin on the Earth, so scenes cannot be related by it", "give '" + part.name + "' a placement");
+        throw Error("scene '" + p->name + "' has no origin on the Earth, so scenes cannot be related by it",
+                    "give '" + part.name + "' a placement");
     // Through the Earth's centre and back: an ulp there is a nanometre.
     return (frame_of(all_.origin).to_ecef().inverse() * frame_of(part.scene.origin).to_ecef()).affine();
   }
@@ -112,9 +118,11 @@ class Combiner {
     }
     const auto move = [&](const std::string& name, Projection projection, Drape& d) {
       if (projection != Projection::drape) return;
-      if (part.motion) throw Error("map '" + name + "' is draped over scene '" + part.name + "', which moves", "project it by UV");
+      if (part.motion)
+        throw Error("map '" + name + "' is draped over scene '" + part.name + "', which moves", "project it by UV");
       if (off > 0.1 * std::min(std::fabs(d.gsd_x), std::fabs(d.gsd_y)))
-        throw Error(strf("map '%s' of scene '%s' would be off by %.3g m, because draped maps cannot turn with a scene", name.c_str(), part.name.c_str(), off),
+        throw Error(strf("map '%s' of scene '%s' would be off by %.3g m, because draped maps cannot turn with a scene",
+                         name.c_str(), part.name.c_str(), off),
                     "project it by UV, or take the origin of that scene for all");
       d.origin_x += place.b.x;
       d.origin_y += place.b.y;
@@ -149,8 +157,10 @@ class Combiner {
   }
 
   void indices(Scene& s, uint32_t tracks) {
-    const auto materials = static_cast<uint32_t>(all_.materials.size()), meshes = static_cast<uint32_t>(all_.meshes.size());
-    const auto primitives = static_cast<uint32_t>(all_.primitives.size()), groups = static_cast<uint32_t>(all_.groups.size());
+    const auto materials = static_cast<uint32_t>(all_.materials.size()),
+               meshes = static_cast<uint32_t>(all_.meshes.size());
+    const auto primitives = static_cast<uint32_t>(all_.primitives.size()),
+               groups = static_cast<uint32_t>(all_.groups.size());
     std::vector<uint32_t> tags;
     for (const std::string& tag : s.tags) {
       const auto found = std::find(all_.tags.begin(), all_.tags.end(), tag);
@@ -169,10 +179,13 @@ class Combiner {
       }
     for (ClassMap& m : s.class_maps)
       for (uint32_t& id : m.materials) id += materials;
-    for (MapBinding& b : s.map_bindings) b.material += materials, b.class_map += static_cast<uint32_t>(all_.class_maps.size());
+    for (MapBinding& b : s.map_bindings)
+      b.material += materials, b.class_map += static_cast<uint32_t>(all_.class_maps.size());
     for (PropertyMap& m : s.property_maps)
       for (uint32_t& id : m.materials) id += materials;
-    for (PropertyBinding& b : s.property_bindings) b.material += materials, b.property_map += static_cast<uint32_t>(all_.property_maps.size());
+    for (PropertyBinding& b : s.property_bindings)
+      b.material += materials, b.property_map += static_cast<uint32_t>(all_.property_maps.size());
+    for (TemperatureBinding& t : s.temperatures) t.material += materials;
   }
 
   std::vector<ScenePart> parts_;
@@ -183,5 +196,14 @@ class Combiner {
 }  // namespace
 
 Scene combine_scenes(std::vector<ScenePart> parts) { return Combiner(std::move(parts)).run(); }
+
+void set_epoch(Scene& scene, const std::string& epoch) {
+  if (!scene.epoch.empty()) {
+    const double later = instant_from_utc(parse_iso8601(scene.epoch)) - instant_from_utc(parse_iso8601(epoch));
+    for (SceneTrack& t : scene.tracks)
+      if (later != 0) t.track = delayed_track(t.track, later);
+  }
+  scene.epoch = epoch;
+}
 
 }  // namespace suite

@@ -9,7 +9,7 @@
 namespace suite {
 
 struct ScenePart {
-  std::string name;                     // for messages, e.g. its file
+  std::string name;  // for messages, e.g. its file
   Scene scene;
   std::optional<Affine3> placement;     // its frame -> the moving body's axes, or the first scene's frame
   std::shared_ptr<const Track> motion;  // of the whole scene in the first scene's frame; null: at rest
@@ -22,5 +22,9 @@ struct ScenePart {
 // Error: a part that can be placed by origins only while it or the first scene has none; draped maps that the part's
 // turn would shift by more than a tenth of a pixel.
 Scene combine_scenes(std::vector<ScenePart> parts);
+
+// Lets second 0 be at `epoch` (UTC, ISO 8601): the motions of a scene that has an epoch of its own keep their dates;
+// those of a scene without count from there.
+void set_epoch(Scene& scene, const std::string& epoch);
 
 }  // namespace suite

@@ -1,6 +1,9 @@
 // What can be asked about the moving parts of a scene before anything is traced.
-#include "motion/track.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include "motion/track.h"
 #include "scene/scene.h"
 
 namespace suite {
@@ -19,6 +22,17 @@ void check_motion(const Scene& scene, double begin, double end, const Where& whe
                        scene.tracks[k].name.c_str(), c.begin, c.end, begin, end),
                   "give it more keys, or look at another time");
   }
+}
+
+double time_of_all(const Scene& scene) {
+  double latest = -std::numeric_limits<double>::infinity();
+  bool zero = true;
+  for (const SceneTrack& t : scene.tracks) {
+    const TimeSpan c = t.track->covered();
+    latest = std::max(latest, c.begin);
+    zero = zero && c.contains(0);
+  }
+  return zero ? 0 : std::isfinite(latest) ? latest : 0;
 }
 
 }  // namespace suite

@@ -204,6 +204,8 @@ Box3 transformed(const Box3& box, const Affine3& map);
 
 // Error naming the track and the span unless every track that a placement uses covers [begin, end], s.
 void check_motion(const Scene& scene, double begin, double end, const Where& where);
+// A time (s) to look at a scene whose motions need not cover second 0: 0 if all do, else where the last one begins.
+double time_of_all(const Scene& scene);
 
 // Octahedral encoding of unit vectors in 2 x 16 bits; error below 5e-5 rad.
 // Based on: Cigolle et al., "A survey of efficient representations for independent unit vectors", JCGT 3(2), 2014.

@@ -101,6 +101,7 @@ class Job {
 
   JobReport run() {
     const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    for (const Item& item : items) check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);

@@ -4,7 +4,8 @@
 
 namespace suite {
 
-std::vector<std::vector<ImageRows>> lay_out(std::span<const Task> tasks, const std::vector<std::vector<ImageKey>>& key_of) {
+std::vector<std::vector<ImageRows>> lay_out(std::span<const Task> tasks,
+                                            const std::vector<std::vector<ImageKey>>& key_of) {
   struct Count {
     size_t tasks = 0, captures = 0;
     uint32_t rows = 0;

@@ -18,7 +18,8 @@ struct Product {
   std::vector<double> values;  // [problem][band]
 };
 
-// How an image lies on the ground: its outer north-west corner (m, scene ENU) and the size of its pixels; rows go south.
+// How an image lies on the ground: its outer north-west corner (m, scene ENU) and the size of its pixels; rows go
+// south.
 struct MapGrid {
   Vec2 origin;
   double gsd_x = 0, gsd_y = 0;  // m
@@ -26,9 +27,9 @@ struct MapGrid {
 
 // Where the rows of a capture stand among those of the same image.
 struct ImageRows {
-  std::string image;          // name, the stem of its files
-  std::string task, capture;  // names
-  size_t task_number = 0, tasks = 1;      // that show this image
+  std::string image;                  // name, the stem of its files
+  std::string task, capture;          // names
+  size_t task_number = 0, tasks = 1;  // that show this image
   size_t capture_number = 0, captures = 1;
   uint32_t row_in_task = 0, rows_of_task = 0;
   uint32_t row_in_all = 0, rows_of_all = 0;
@@ -52,7 +53,8 @@ struct ImageKey {
   std::string image;
   bool lines = false;
 };
-std::vector<std::vector<ImageRows>> lay_out(std::span<const Task> tasks, const std::vector<std::vector<ImageKey>>& key_of);
+std::vector<std::vector<ImageRows>> lay_out(std::span<const Task> tasks,
+                                            const std::vector<std::vector<ImageKey>>& key_of);
 // The same for a sensor whose captures all belong to one image.
 std::vector<std::vector<ImageRows>> lay_out(std::span<const Task> tasks, const std::string& image);
 

@@ -50,7 +50,8 @@ double poisson(double mean, Pcg32& random) {
     return k;
   }
   const double root = std::sqrt(mean), b = 0.931 + 2.53 * root, a = -0.059 + 0.02483 * b;
-  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4), log_mean = std::log(mean), squeeze = 0.9277 - 3.6224 / (b - 2);
+  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4), log_mean = std::log(mean),
+               squeeze = 0.9277 - 3.6224 / (b - 2);
   for (;;) {
     const double u = random.uniform() - 0.5, v = random.uniform(), us = 0.5 - std::fabs(u);
     const double k = std::floor((2 * a / us + b) * u + mean + 0.43);
@@ -89,7 +90,8 @@ std::optional<DetectorSpec> read_detector(const Params& params, const SensorCont
   DetectorSpec d;
   const Params qe = p->at("quantum_efficiency");
   d.quantum_efficiency = context.curve(qe);
-  if (d.quantum_efficiency.min() < 0 || d.quantum_efficiency.max() > 1) throw qe.error("the quantum efficiency leaves 0..1", "electrons per photon");
+  if (d.quantum_efficiency.min() < 0 || d.quantum_efficiency.max() > 1)
+    throw qe.error("the quantum efficiency leaves 0..1", "electrons per photon");
   constexpr double many = 1e12;
   d.fill_factor = p->number_in("fill_factor", 1e-6, 1, "(share of the pitch's area)", 1);
   d.dark_current = p->number_in("dark_current_e_s", 0, many, "electrons/s", 0);
@@ -106,7 +108,8 @@ std::optional<DetectorSpec> read_detector(const Params& params, const SensorCont
   if (const auto bad = p->find("bad_pixels"))
     for (const Params& item : bad->items()) {
       const std::vector<double> at = item.as_numbers();
-      if (at.size() != 2 || at[0] < 0 || at[1] < 0 || at[0] != std::floor(at[0]) || at[1] != std::floor(at[1]) || at[0] > 1e9 || at[1] > 1e9)
+      if (at.size() != 2 || at[0] < 0 || at[1] < 0 || at[0] != std::floor(at[0]) || at[1] != std::floor(at[1]) ||
+          at[0] > 1e9 || at[1] > 1e9)
         throw item.error("a bad pixel is [column, row], counted from 0");
       d.bad.push_back({static_cast<uint32_t>(at[0]), static_cast<uint32_t>(at[1])});
     }

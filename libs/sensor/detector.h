@@ -1,9 +1,9 @@
 // From radiance in front of the optics to digital counts: signal electrons, noise, gain and quantisation.
 //
-// Assumes: an extended scene in focus (camera equation); noise sources independent; the full well clips before the gain.
-// The noise is added to the computed radiance as it is, with what is left of its Monte Carlo error.
-// Based on: P. N. Slater, "Remote Sensing: Optics and Optical Systems", 1980 (G# = (1 + 4 N^2) / (tau pi), E = L / G#);
-// J. R. Janesick, "Photon Transfer", SPIE 2007 (shot, read and fixed-pattern noise).
+// Assumes: an extended scene in focus (camera equation); noise sources independent; the full well clips before the
+// gain. The noise is added to the computed radiance as it is, with what is left of its Monte Carlo error. Based on: P.
+// N. Slater, "Remote Sensing: Optics and Optical Systems", 1980 (G# = (1 + 4 N^2) / (tau pi), E = L / G#); J. R.
+// Janesick, "Photon Transfer", SPIE 2007 (shot, read and fixed-pattern noise).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,26 +18,27 @@
 namespace suite {
 
 struct DetectorSpec {
-  Curve quantum_efficiency;       // electrons per photon, 0..1
-  double fill_factor = 1;         // sensitive share of the pitch, 0..1
-  double dark_current = 0;        // electrons/s
-  double read_noise = 0;          // electrons, standard deviation
-  double full_well = 0;           // electrons; 0 = no limit
-  double gain = 1;                // electrons per count, > 0
-  double bias = 0;                // counts
-  int bits = 16;                  // 1..16
+  Curve quantum_efficiency;  // electrons per photon, 0..1
+  double fill_factor = 1;    // sensitive share of the pitch, 0..1
+  double dark_current = 0;   // electrons/s
+  double read_noise = 0;     // electrons, standard deviation
+  double full_well = 0;      // electrons; 0 = no limit
+  double gain = 1;           // electrons per count, > 0
+  double bias = 0;           // counts
+  int bits = 16;             // 1..16
   bool shot_noise = true;
-  double nonuniformity = 0;       // standard deviation of a detector's relative response (PRNU)
-  double dark_nonuniformity = 0;  // standard deviation of its relative dark current
-  double dead = 0, hot = 0;       // shares of detectors that give 0, or full scale, always
+  double nonuniformity = 0;                  // standard deviation of a detector's relative response (PRNU)
+  double dark_nonuniformity = 0;             // standard deviation of its relative dark current
+  double dead = 0, hot = 0;                  // shares of detectors that give 0, or full scale, always
   std::vector<std::array<uint32_t, 2>> bad;  // column, row of further dead ones
-  uint64_t seed = 0;              // of everything random; fixed pattern depends on it alone
+  uint64_t seed = 0;                         // of everything random; fixed pattern depends on it alone
 };
 
 // Reads key `detector`; nothing when absent.
 std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context);
 
-// 1/sr: irradiance on the focal plane = radiance / G#. throughput: 0..1 of the optics; obscuration: share of the diameter.
+// 1/sr: irradiance on the focal plane = radiance / G#. throughput: 0..1 of the optics; obscuration: share of the
+// diameter.
 double g_number(double f_number, double throughput, double obscuration = 0);
 
 // A band that weighs photons as the detector counts them: response x quantum efficiency x wavelength. `electrons`

@@ -8,7 +8,8 @@ namespace suite {
 
 Vec2 Distortion::distorted(Vec2 i) const {
   const double r2 = i.x * i.x + i.y * i.y, radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  return {i.x * radial + 2 * p1 * i.x * i.y + p2 * (r2 + 2 * i.x * i.x), i.y * radial + p1 * (r2 + 2 * i.y * i.y) + 2 * p2 * i.x * i.y};
+  return {i.x * radial + 2 * p1 * i.x * i.y + p2 * (r2 + 2 * i.x * i.x),
+          i.y * radial + p1 * (r2 + 2 * i.y * i.y) + 2 * p2 * i.x * i.y};
 }
 
 std::optional<Vec2> Distortion::ideal(Vec2 d) const {
@@ -16,8 +17,10 @@ std::optional<Vec2> Distortion::ideal(Vec2 d) const {
   Vec2 i = d;
   for (int n = 0; n < 50; ++n) {
     const Vec2 at = distorted(i);
-    const double r2 = i.x * i.x + i.y * i.y, radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)), slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));
-    const double xx = radial + i.x * i.x * slope + 2 * p1 * i.y + 6 * p2 * i.x, xy = i.x * i.y * slope + 2 * p1 * i.x + 2 * p2 * i.y;
+    const double r2 = i.x * i.x + i.y * i.y, radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)),
+                 slope = 2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));
+    const double xx = radial + i.x * i.x * slope + 2 * p1 * i.y + 6 * p2 * i.x,
+                 xy = i.x * i.y * slope + 2 * p1 * i.x + 2 * p2 * i.y;
     const double yy = radial + i.y * i.y * slope + 6 * p1 * i.y + 2 * p2 * i.x, determinant = xx * yy - xy * xy;
     // Beyond the fold the picture is turned over: such a solution is not the one that a lens shows.
     if (!(determinant > 0) || !(xx > 0)) return std::nullopt;
@@ -59,10 +62,12 @@ Lens read_lens(const Params& p) {
   lens.cos4 = p.boolean("cos4", false);
   if (const auto focus = p.find("focus_distance_m")) {
     lens.focus_distance = focus->as_number_in(1e-3, 1e9, "m");
-    if (!(lens.aperture > 0)) throw focus->error("a focus distance matters only with an aperture", "give aperture_mm or f_number");
+    if (!(lens.aperture > 0))
+      throw focus->error("a focus distance matters only with an aperture", "give aperture_mm or f_number");
   }
   if (const auto d = p.find("distortion")) {
-    lens.distortion.k1 = d->number("k1", 0), lens.distortion.k2 = d->number("k2", 0), lens.distortion.k3 = d->number("k3", 0);
+    lens.distortion.k1 = d->number("k1", 0), lens.distortion.k2 = d->number("k2", 0),
+    lens.distortion.k3 = d->number("k3", 0);
     lens.distortion.p1 = d->number("p1", 0), lens.distortion.p2 = d->number("p2", 0);
   }
   return lens;

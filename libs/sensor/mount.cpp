@@ -13,9 +13,12 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 Dir axis_named(const Params& p) {
   const auto axis = p.find("axis");
   switch (axis ? axis->as_choice({"across", "along", "vertical"}) : 0) {
-    case 0: return {0, 1, 0};  // turning about the forward axis sweeps the view across the track
-    case 1: return {1, 0, 0};
-    default: return {0, 0, 1};
+    case 0:
+      return {0, 1, 0};  // turning about the forward axis sweeps the view across the track
+    case 1:
+      return {1, 0, 0};
+    default:
+      return {0, 0, 1};
   }
 }
 
@@ -28,7 +31,10 @@ struct Fixed final : Mount {
 struct Whisk final : Mount {
   Quat at(double t, const Pose&) const override {
     const double phase = rate * (t - start) + offset, turn = phase - std::floor(phase);
-    const double swing = sine ? std::sin(2 * kPi * turn) : turn < 0.25 ? 4 * turn : turn < 0.75 ? 2 - 4 * turn : 4 * turn - 4;
+    const double swing = sine          ? std::sin(2 * kPi * turn)
+                         : turn < 0.25 ? 4 * turn
+                         : turn < 0.75 ? 2 - 4 * turn
+                                       : 4 * turn - 4;
     return quat_about(axis, center + amplitude * swing);
   }
   Dir axis;
@@ -76,14 +82,16 @@ struct LookAt final : Mount {
 };
 
 Quat rotation_of(const std::array<double, 3>& deg) {
-  return quat_about({0, 0, 1}, deg[2] * kDegree) * quat_about({0, 1, 0}, deg[1] * kDegree) * quat_about({1, 0, 0}, deg[0] * kDegree);
+  return quat_about({0, 0, 1}, deg[2] * kDegree) * quat_about({0, 1, 0}, deg[1] * kDegree) *
+         quat_about({1, 0, 0}, deg[0] * kDegree);
 }
 
 std::unique_ptr<Mount> read_tabulated(const Params& m) {
   auto t = std::make_unique<Tabulated>();
   t->times = m.at("times_s").as_numbers();
   const std::vector<Params> rows = m.at("rotate_deg").items();
-  if (t->times.empty() || rows.size() != t->times.size()) throw m.error("a tabulated mount needs as many rotations as times", "rotate_deg: [[x, y, z], ...]");
+  if (t->times.empty() || rows.size() != t->times.size())
+    throw m.error("a tabulated mount needs as many rotations as times", "rotate_deg: [[x, y, z], ...]");
   for (size_t i = 1; i < t->times.size(); ++i)
     if (!(t->times[i] > t->times[i - 1])) throw m.at("times_s").error("the times do not ascend");
   for (const Params& r : rows) t->rotations.push_back(rotation_of(r.as_vec3()));
@@ -124,7 +132,8 @@ std::unique_ptr<Mount> read_mount(const Params& params, const SensorContext& con
       s->start = m->number("start_s", 0);
       return s;
     }
-    case 3: return read_tabulated(*m);
+    case 3:
+      return read_tabulated(*m);
     default: {
       if (!context.track) throw m->error("motions cannot be read here");
       auto l = std::make_unique<LookAt>();
@@ -138,8 +147,10 @@ std::unique_ptr<Mount> read_mount(const Params& params, const SensorContext& con
 Pose Attachment::at(double t, const Pose& carrier, const JitterWindow* table) const {
   Pose pose = carrier * fixed;
   if (mount) pose.rotation = pose.rotation * mount->at(t, pose);
-  if (table) pose = pose * table->pose(t);
-  else if (jitter) pose = pose * jitter->pose(t);
+  if (table)
+    pose = pose * table->pose(t);
+  else if (jitter)
+    pose = pose * jitter->pose(t);
   return pose;
 }
 

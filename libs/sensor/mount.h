@@ -1,4 +1,5 @@
-// How a thing sits on its vehicle: nested attachments, each at rest or swinging, scanning, tabulated or following a target.
+// How a thing sits on its vehicle: nested attachments, each at rest or swinging, scanning, tabulated or following a
+// target.
 //
 // A body's axes are x right, y forward, z up. Angles in rad; times in simulation seconds.
 #pragma once
@@ -25,9 +26,9 @@ std::unique_ptr<Mount> read_mount(const Params& params, const SensorContext& con
 
 // One link of the chain from a vehicle to an instrument.
 struct Attachment {
-  Pose fixed;                           // offset and rotation on the carrier
-  std::shared_ptr<const Mount> mount;   // null = at rest
-  std::shared_ptr<const Jitter> jitter; // null = none
+  Pose fixed;                            // offset and rotation on the carrier
+  std::shared_ptr<const Mount> mount;    // null = at rest
+  std::shared_ptr<const Jitter> jitter;  // null = none
   Pose at(double t, const Pose& carrier, const JitterWindow* table) const;
 };
 // Keys offset_m, rotate_deg, mount, jitter. seed: mixed into the jitter's.

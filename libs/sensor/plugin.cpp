@@ -46,7 +46,8 @@ int host_numbers(void* context, const char* key, double* values, uint32_t capaci
     const auto found = p.find(key);
     if (!found) return 0;
     const std::vector<double> list = found->as_numbers();
-    if (list.size() > capacity) throw found->error(strf("%zu numbers, the plug-in takes %u at most", list.size(), capacity));
+    if (list.size() > capacity)
+      throw found->error(strf("%zu numbers, the plug-in takes %u at most", list.size(), capacity));
     std::copy(list.begin(), list.end(), values);
     *count = static_cast<uint32_t>(list.size());
     return 1;
@@ -66,13 +67,23 @@ void host_fail(void* context, const char* message) {
   static_cast<Making*>(context)->failure = message ? message : "no reason given";
 }
 
+// Element i of a plug-in's array, whose elements are as large as the plug-in knows them. Error: smaller than ours.
+template <class T>
+const T& element(const T* first, uint32_t i, const char* what) {
+  if (first->size < sizeof(T)) throw Error(strf("its %s are %u bytes, %zu are expected", what, first->size, sizeof(T)));
+  return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(first) + size_t{i} * first->size);
+}
+
 Band band_of(const suite_band& b) {
   if (!b.name) throw Error("a band has no name");
   if (b.shape == SUITE_BAND_TABULATED) {
-    if (!b.points || !b.wavelength_um || !b.response) throw Error(std::string("the tabulated band '") + b.name + "' has no table");
-    return Band::tabulated(b.name, Curve({b.wavelength_um, b.wavelength_um + b.points}, {b.response, b.response + b.points}, Outside::zero));
+    if (!b.points || !b.wavelength_um || !b.response)
+      throw Error(std::string("the tabulated band '") + b.name + "' has no table");
+    return Band::tabulated(b.name, Curve({b.wavelength_um, b.wavelength_um + b.points},
+                                         {b.response, b.response + b.points}, Outside::zero));
   }
-  if (!(b.center_um > 0 && b.fwhm_um > 0 && b.fwhm_um < 2 * b.center_um)) throw Error(std::string("the band '") + b.name + "' has no sound centre and width");
+  if (!(b.center_um > 0 && b.fwhm_um > 0 && b.fwhm_um < 2 * b.center_um))
+    throw Error(std::string("the band '") + b.name + "' has no sound centre and width");
   return b.shape == SUITE_BAND_RECTANGULAR  ? Band::rectangular(b.name, b.center_um, b.fwhm_um)
          : b.shape == SUITE_BAND_TRIANGULAR ? Band::triangular(b.name, b.center_um, b.fwhm_um)
                                             : Band::gaussian(b.name, b.center_um, b.fwhm_um);
@@ -83,7 +94,8 @@ class PluginSensor final : public Sensor {
   PluginSensor(const suite_sensor_plugin& plugin, const Params& params, const SensorContext& context)
       : deliver_(context.deliver), kind_(plugin.kind), name_(params.text("name", plugin.kind)) {
     Making making{params, {}, {}};
-    const suite_host host{sizeof(suite_host), SUITE_SENSOR_ABI, &making, host_number, host_numbers, host_text, host_fail};
+    const suite_host host{sizeof(suite_host), SUITE_SENSOR_ABI, &making,  host_number,
+                          host_numbers,       host_text,        host_fail};
     sensor_.size = sizeof(suite_sensor);
     int failed = 1;
     try {
@@ -92,7 +104,9 @@ class PluginSensor final : public Sensor {
       making.failure = "it threw an exception across the border";
     }
     if (making.error) throw *making.error;
-    if (failed) throw params.error("the plug-in '" + kind_ + "' made no sensor: " + (making.failure.empty() ? "no reason given" : making.failure));
+    if (failed)
+      throw params.error("the plug-in '" + kind_ +
+                         "' made no sensor: " + (making.failure.empty() ? "no reason given" : making.failure));
     try {
       take();
     } catch (const Error& e) {
@@ -111,26 +125,45 @@ class PluginSensor final : public Sensor {
 
   SensorRay ray(const RayRequest& r) const override {
     const auto [task, index] = place_of(r.capture);
-    const suite_ray_request request{sizeof(suite_ray_request), numbers_[task][index], r.problem, r.u.data(), static_cast<uint32_t>(r.u.size()), static_cast<uint32_t>(r.spectral.size()), r.spectral.data()};
+    const suite_ray_request request{sizeof(suite_ray_request),
+                                    numbers_[task][index],
+                                    r.problem,
+                                    r.u.data(),
+                                    static_cast<uint32_t>(r.u.size()),
+                                    static_cast<uint32_t>(r.spectral.size()),
+                                    r.spectral.data()};
     suite_ray out{sizeof(suite_ray), 0, {0, 0, 0}, {0, 0, 0}, r.capture.window.begin, 1};
     bool good = false;
     try {
       good = sensor_.ray(sensor_.self, &request, &out) == 0;
     } catch (...) {
     }
-    const Vec3 origin{out.origin[0], out.origin[1], out.origin[2]}, direction{out.direction[0], out.direction[1], out.direction[2]};
+    const Vec3 origin{out.origin[0], out.origin[1], out.origin[2]},
+        direction{out.direction[0], out.direction[1], out.direction[2]};
     const double len = length(direction);
-    good = good && finite(origin) && len > 0 && std::isfinite(len) && std::isfinite(out.weight) && out.weight >= 0 && std::isfinite(out.time_s);
+    good = good && finite(origin) && len > 0 && std::isfinite(len) && std::isfinite(out.weight) && out.weight >= 0 &&
+           std::isfinite(out.time_s);
     // A ray that is none: harmless, and with a weight that makes its sample count as failed.
     if (!good) return {{{}, {0, 0, 1}, r.capture.window.begin}, std::numeric_limits<double>::quiet_NaN(), false};
-    return {{origin, direction / len, std::clamp(out.time_s, r.capture.window.begin, r.capture.window.end)}, out.weight, out.weighted != 0};
+    return {{origin, direction / len, std::clamp(out.time_s, r.capture.window.begin, r.capture.window.end)},
+            out.weight,
+            out.weighted != 0};
   }
 
   void accept(CaptureResult&& r) override {
     std::vector<const char*> names;
     for (const std::string& n : r.truth_names) names.push_back(n.c_str());
-    const suite_result result{sizeof(suite_result), numbers_[r.task][r.capture], r.columns, r.rows, static_cast<uint32_t>(r.bands), static_cast<uint32_t>(names.size()),
-                              r.radiance.data(), r.standard_error.data(), r.paths.data(), names.data(), r.truth.data()};
+    const suite_result result{sizeof(suite_result),
+                              numbers_[r.task][r.capture],
+                              r.columns,
+                              r.rows,
+                              static_cast<uint32_t>(r.bands),
+                              static_cast<uint32_t>(names.size()),
+                              r.radiance.data(),
+                              r.standard_error.data(),
+                              r.paths.data(),
+                              names.data(),
+                              r.truth.data()};
     int failed = 0;
     try {
       if (sensor_.accept) failed = sensor_.accept(sensor_.self, &result);
@@ -151,22 +184,30 @@ class PluginSensor final : public Sensor {
 
   void take() {
     if (!sensor_.ray) throw Error("it gives no rays");
-    if (sensor_.numbers < 1 || sensor_.numbers > 8) throw Error(strf("it asks for %u numbers a ray", sensor_.numbers), "1 to 8");
-    if (!sensor_.state_count || !sensor_.capture_count || !sensor_.states || !sensor_.captures) throw Error("it has no states or no captures");
+    if (sensor_.numbers < 1 || sensor_.numbers > 8)
+      throw Error(strf("it asks for %u numbers a ray", sensor_.numbers), "1 to 8");
+    if (!sensor_.state_count || !sensor_.capture_count || !sensor_.states || !sensor_.captures)
+      throw Error("it has no states or no captures");
     for (uint32_t s = 0; s < sensor_.state_count; ++s) {
-      const suite_state& state = sensor_.states[s];
+      const suite_state& state = element(sensor_.states, s, "states");
       bands_.emplace_back();
-      for (uint32_t b = 0; b < state.band_count; ++b) bands_.back().push_back(band_of(state.bands[b]));
+      for (uint32_t b = 0; b < state.band_count; ++b)
+        bands_.back().push_back(band_of(element(state.bands, b, "bands")));
       states_.push_back(make_state(bands_.back(), state.step_um > 0 ? state.step_um : 0.01, state.reference_um));
     }
-    for (uint32_t t = 0; t < sensor_.task_count; ++t) tasks_.push_back({sensor_.tasks[t].name ? sensor_.tasks[t].name : strf("task_%u", t), {sensor_.tasks[t].begin_s, sensor_.tasks[t].end_s}, {}});
+    for (uint32_t t = 0; t < sensor_.task_count; ++t) {
+      const suite_task& task = element(sensor_.tasks, t, "tasks");
+      tasks_.push_back({task.name ? task.name : strf("task_%u", t), {task.begin_s, task.end_s}, {}});
+    }
     if (tasks_.empty()) tasks_.push_back({"task", {}, {}});
     numbers_.resize(tasks_.size());
     std::vector<std::vector<ImageKey>> keys(tasks_.size());
     for (uint32_t c = 0; c < sensor_.capture_count; ++c) {
-      const suite_capture& from = sensor_.captures[c];
-      if (from.task >= tasks_.size() || from.state >= states_.size()) throw Error(strf("capture %u belongs to no task or state", c));
-      if (!from.columns || !from.rows || !(from.end_s >= from.begin_s) || !from.min_paths || from.max_paths < from.min_paths || !(from.relative_error >= 0))
+      const suite_capture& from = element(sensor_.captures, c, "captures");
+      if (from.task >= tasks_.size() || from.state >= states_.size())
+        throw Error(strf("capture %u belongs to no task or state", c));
+      if (!from.columns || !from.rows || !(from.end_s >= from.begin_s) || !from.min_paths ||
+          from.max_paths < from.min_paths || !(from.relative_error >= 0))
         throw Error(strf("capture %u has no problems, no paths, or a window that ends before it begins", c));
       Capture capture;
       capture.name = strf("%s_%04u", name_.c_str(), c);
@@ -186,7 +227,8 @@ class PluginSensor final : public Sensor {
   std::pair<size_t, size_t> place_of(const Capture& capture) const {
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const auto& list = tasks_[t].captures;
-      if (!list.empty() && &capture >= list.data() && &capture < list.data() + list.size()) return {t, static_cast<size_t>(&capture - list.data())};
+      if (!list.empty() && &capture >= list.data() && &capture < list.data() + list.size())
+        return {t, static_cast<size_t>(&capture - list.data())};
     }
     for (size_t t = 0; t < tasks_.size(); ++t)
       for (size_t c = 0; c < tasks_[t].captures.size(); ++c)
@@ -217,17 +259,26 @@ std::string load_plugin(const std::string& path) {
   }
   const auto entry = reinterpret_cast<const suite_sensor_plugin* (*)()>(dlsym(library, "suite_sensor_plugin_entry"));
   const suite_sensor_plugin* plugin = nullptr;
-  if (!entry) throw Error(where, "exports no suite_sensor_plugin_entry", "build it against suite_sensor.h with SUITE_SENSOR_PLUGIN(...)");
+  if (!entry)
+    throw Error(where, "exports no suite_sensor_plugin_entry",
+                "build it against suite_sensor.h with SUITE_SENSOR_PLUGIN(...)");
   try {
     plugin = entry();
   } catch (...) {
   }
   if (!plugin) throw Error(where, "describes no sensor");
   if (plugin->abi != SUITE_SENSOR_ABI)
-    throw Error(where, strf("was built for version %u of the sensor interface, this program has version %u", plugin->abi, SUITE_SENSOR_ABI), "rebuild the plug-in against the installed suite_sensor.h");
-  if (plugin->size < sizeof(suite_sensor_plugin) || !plugin->kind || !*plugin->kind || !plugin->make) throw Error(where, "describes no kind of sensor");
+    throw Error(where,
+                strf("was built for version %u of the sensor interface, this program has version %u", plugin->abi,
+                     SUITE_SENSOR_ABI),
+                "rebuild the plug-in against the installed suite_sensor.h");
+  if (plugin->size < sizeof(suite_sensor_plugin) || !plugin->kind || !*plugin->kind || !plugin->make)
+    throw Error(where, "describes no kind of sensor");
   try {
-    add_sensor_kind({plugin->kind, plugin->summary ? plugin->summary : "", [plugin](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<PluginSensor>(*plugin, p, c); }});
+    add_sensor_kind({plugin->kind, plugin->summary ? plugin->summary : "",
+                     [plugin](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+                       return std::make_unique<PluginSensor>(*plugin, p, c);
+                     }});
   } catch (const Error& e) {
     throw Error(where, e.message(), e.hint());
   }

@@ -27,8 +27,10 @@ struct Rings {
     upto.back() = 1;
   }
   double radius(double u) const {
-    const size_t k = std::min(static_cast<size_t>(std::upper_bound(upto.begin(), upto.end(), u) - upto.begin()), upto.size() - 1);
-    const double low = k ? upto[k - 1] : 0, at = upto[k] > low ? (u - low) / (upto[k] - low) : 0.5, inner = static_cast<double>(k);
+    const size_t k =
+        std::min(static_cast<size_t>(std::upper_bound(upto.begin(), upto.end(), u) - upto.begin()), upto.size() - 1);
+    const double low = k ? upto[k - 1] : 0, at = upto[k] > low ? (u - low) / (upto[k] - low) : 0.5,
+                 inner = static_cast<double>(k);
     return step * std::sqrt(inner * inner + at * (2 * inner + 1));  // uniform in area within the ring
   }
   double at(double radius_value) const {
@@ -109,9 +111,11 @@ struct Picture final : PointSpread {
     for (double& v : upto) v /= sum;
   }
   Vec2 sample(double u, double v, double) const override {
-    const size_t i = std::min(static_cast<size_t>(std::upper_bound(upto.begin(), upto.end(), u) - upto.begin()), upto.size() - 1);
+    const size_t i =
+        std::min(static_cast<size_t>(std::upper_bound(upto.begin(), upto.end(), u) - upto.begin()), upto.size() - 1);
     const double low = i ? upto[i - 1] : 0, within = upto[i] > low ? (u - low) / (upto[i] - low) : 0.5;
-    return {(static_cast<double>(i % width) + within - 0.5 * width) * cell, (static_cast<double>(i / width) + v - 0.5 * height) * cell};
+    return {(static_cast<double>(i % width) + within - 0.5 * width) * cell,
+            (static_cast<double>(i / width) + v - 0.5 * height) * cell};
   }
   uint32_t width, height;
   double cell;
@@ -132,17 +136,23 @@ std::unique_ptr<PointSpread> airy_spread(double f_number, double obscuration, do
   return std::make_unique<Airy>(f_number, obscuration, tail, state);
 }
 
-std::unique_ptr<PointSpread> image_spread(const GreyImage& picture, double cell) { return std::make_unique<Picture>(picture, cell); }
+std::unique_ptr<PointSpread> image_spread(const GreyImage& picture, double cell) {
+  return std::make_unique<Picture>(picture, cell);
+}
 
-std::unique_ptr<PointSpread> mtf_spread(const std::vector<double>& frequency, const std::vector<double>& mtf, double most_negative) {
-  if (frequency.size() < 2 || frequency.size() != mtf.size()) throw Error("an MTF needs two frequencies at least and as many values");
+std::unique_ptr<PointSpread> mtf_spread(const std::vector<double>& frequency, const std::vector<double>& mtf,
+                                        double most_negative) {
+  if (frequency.size() < 2 || frequency.size() != mtf.size())
+    throw Error("an MTF needs two frequencies at least and as many values");
   if (frequency[0] != 0 || std::fabs(mtf[0] - 1) > 1e-9) throw Error("an MTF starts with the value 1 at frequency 0");
   for (size_t i = 0; i < mtf.size(); ++i)
     if (!(mtf[i] >= 0 && mtf[i] <= 1) || (i && !(frequency[i] > frequency[i - 1])))
       throw Error("an MTF has ascending frequencies and values from 0 to 1");
   const double highest = frequency.back(), step = 1 / (16 * highest), reach = 24 / highest;
   auto at = [&](double f) {
-    const size_t i = std::clamp(static_cast<size_t>(std::upper_bound(frequency.begin(), frequency.end(), f) - frequency.begin()), size_t{1}, mtf.size() - 1);
+    const size_t i =
+        std::clamp(static_cast<size_t>(std::upper_bound(frequency.begin(), frequency.end(), f) - frequency.begin()),
+                   size_t{1}, mtf.size() - 1);
     return mtf[i - 1] + (mtf[i] - mtf[i - 1]) * (f - frequency[i - 1]) / (frequency[i] - frequency[i - 1]);
   };
   // Light inside radius r is r times the integral of M(f) J1(2 pi f r) 2 pi df (Hankel transform, integrated over r).
@@ -163,13 +173,16 @@ std::unique_ptr<PointSpread> mtf_spread(const std::vector<double>& frequency, co
     light.push_back(std::max(0.0, ring));
   }
   if (negative > most_negative * (positive - negative))
-    throw Error(strf("this MTF belongs to a pattern with %.1f %% of negative light", 100 * negative / (positive - negative)), "a table of a real lens is expected; add points or let it fall to 0 smoothly");
+    throw Error(
+        strf("this MTF belongs to a pattern with %.1f %% of negative light", 100 * negative / (positive - negative)),
+        "a table of a real lens is expected; add points or let it fall to 0 smoothly");
   auto pattern = std::make_unique<Radial>();
   pattern->rings.set(step, std::move(light));
   return pattern;
 }
 
-std::unique_ptr<PointSpread> read_psf(const Params& params, const SensorContext& context, double f_number, double obscuration, const SpectralState& state) {
+std::unique_ptr<PointSpread> read_psf(const Params& params, const SensorContext& context, double f_number,
+                                      double obscuration, const SpectralState& state) {
   const auto p = params.find("psf");
   if (!p) return nullptr;
   try {
@@ -180,7 +193,8 @@ std::unique_ptr<PointSpread> read_psf(const Params& params, const SensorContext&
       }
       case 1: {
         const double tail = p->number_in("tail", 1e-4, 0.1, "(share of the light)", 0.005);
-        if (!(f_number > 0)) throw p->error("an Airy pattern needs the aperture", "give the instrument aperture_mm or f_number");
+        if (!(f_number > 0))
+          throw p->error("an Airy pattern needs the aperture", "give the instrument aperture_mm or f_number");
         return airy_spread(f_number, obscuration, tail, state);
       }
       case 2: {

@@ -40,12 +40,13 @@ std::unique_ptr<PointSpread> airy_spread(double f_number, double obscuration, do
 std::unique_ptr<PointSpread> image_spread(const GreyImage& picture, double cell);
 
 // The radially symmetric pattern with a modulation transfer function given at ascending frequencies (cycles/m), linear
-// between, 0 beyond the last; by Hankel transform. Error: it does not start at 1 at frequency 0, leaves 0..1, or belongs
-// to a pattern of which more than `most_negative` of the light is negative.
-std::unique_ptr<PointSpread> mtf_spread(const std::vector<double>& frequency, const std::vector<double>& mtf, double most_negative = 0.01);
+// between, 0 beyond the last; by Hankel transform. Error: it does not start at 1 at frequency 0, leaves 0..1, or
+// belongs to a pattern of which more than `most_negative` of the light is negative.
+std::unique_ptr<PointSpread> mtf_spread(const std::vector<double>& frequency, const std::vector<double>& mtf,
+                                        double most_negative = 0.01);
 
 // Reads key `psf` ({kind: gaussian | airy | image | mtf, ...}; see SENSORS.md); null when absent. f_number 0 = unknown.
-std::unique_ptr<PointSpread> read_psf(const Params& params, const SensorContext& context, double f_number, double obscuration,
-                                      const SpectralState& state);
+std::unique_ptr<PointSpread> read_psf(const Params& params, const SensorContext& context, double f_number,
+                                      double obscuration, const SpectralState& state);
 
 }  // namespace suite

@@ -33,9 +33,10 @@ struct Capture {
   Convergence convergence;
   bool neighbours = true;  // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
-  // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings of
-  // equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths from east; each is the part of
-  // the radiance that came in from there along paths that left the scene (the bins add up to the radiance from above).
+  // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
+  // of equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths from east; each is the
+  // part of the radiance that came in from there along paths that left the scene (the bins add up to the radiance from
+  // above).
   enum class BinBy : uint8_t { none, time, escape } bin_by = BinBy::none;
   uint32_t bins = 1, escape_rings = 0;
   size_t problems() const { return size_t{columns} * rows; }
@@ -85,7 +86,8 @@ struct CaptureResult {
   std::vector<uint8_t> quality;          // [problem], bits of QualityFlag
   std::vector<std::string> truth_names;  // "material", "range [m]", ...
   std::vector<double> truth;             // [problem][truth_names]; NaN = no data
-  std::vector<double> error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
+  std::vector<double>
+      error_correlation;  // [band][band] of the first channel: bands share paths, so their errors do too
   size_t problems() const { return size_t{columns} * rows; }
   size_t values_per_problem() const { return channels * bins * bands; }
 };

@@ -9,7 +9,8 @@ namespace suite {
 
 namespace {
 std::vector<SensorRow>& table() {
-  static std::vector<SensorRow> rows{frame_camera_row(), platform_row(), orthographic_row(), fisheye_row(), point_row(), goniometer_row(), rami_row()};
+  static std::vector<SensorRow> rows{frame_camera_row(), platform_row(),   orthographic_row(), fisheye_row(),
+                                     point_row(),        goniometer_row(), rami_row()};
   return rows;
 }
 }  // namespace
@@ -18,7 +19,8 @@ std::span<const SensorRow> sensor_kinds() { return table(); }
 
 void add_sensor_kind(SensorRow row) {
   for (const SensorRow& known : table())
-    if (known.name == row.name) throw Error("there is a sensor kind '" + row.name + "' already", "rename the plug-in's");
+    if (known.name == row.name)
+      throw Error("there is a sensor kind '" + row.name + "' already", "rename the plug-in's");
   table().push_back(std::move(row));
 }
 
@@ -34,7 +36,8 @@ std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& c
 
 SpectralState read_state(const Params& p, std::span<const Band> bands) {
   const double step = p.number_in("spectral_step_um", 1e-6, 1000, "um", 0.01);
-  return make_state(bands, step, p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
+  return make_state(bands, step, p.number_in("reference_um", 0, 10000, "um", 0),
+                    static_cast<size_t>(p.integer("knots", 1, 8, 4)));
 }
 
 std::vector<std::string> read_truth(const Params& params) {
@@ -68,9 +71,14 @@ std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
     const double width = item.number_in("fwhm_um", 1e-6, 2 * center * 0.999, "um");
     const auto shape = item.find("shape");
     switch (shape ? shape->as_choice({"gaussian", "rectangular", "triangular"}) : 0) {
-      case 0: bands.push_back(Band::gaussian(name, center, width)); break;
-      case 1: bands.push_back(Band::rectangular(name, center, width)); break;
-      default: bands.push_back(Band::triangular(name, center, width));
+      case 0:
+        bands.push_back(Band::gaussian(name, center, width));
+        break;
+      case 1:
+        bands.push_back(Band::rectangular(name, center, width));
+        break;
+      default:
+        bands.push_back(Band::triangular(name, center, width));
     }
   }
   if (bands.empty()) throw list.error("a sensor needs at least one band");

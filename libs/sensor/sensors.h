@@ -52,7 +52,8 @@ std::vector<Band> read_bands(const Params& list, const SensorContext& context);
 Convergence read_convergence(const Params& params);  // key `paths`: N, or {min, max, relative_error, absolute_floor}
 // Keys spectral_step_um, reference_um, knots.
 SpectralState read_state(const Params& params, std::span<const Band> bands);
-// Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the renderer.
+// Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the
+// renderer.
 std::vector<std::string> read_truth(const Params& params);
 // Keys time_s and integration_time_s of sensors with one capture.
 TimeWindow read_window(const Params& params);

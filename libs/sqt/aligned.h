@@ -40,8 +40,11 @@ struct AlignedLayout {
 
 // Decoded leaves of one sheet.
 struct AlignedSheet {
+  static constexpr size_t kStride = 4;
   std::vector<CellId> leaves;
-  std::vector<float> plane;  // [leaf][view][channel]{value, slope x, slope y}, log2 units per cell width
+  // [leaf][view][channel]{value, slope x, slope y, mean}: log2 units, per cell width; mean over the leaf of 2^(value +
+  // slope . offset)
+  std::vector<float> plane;
 };
 
 // Totals over view angle and wavelength, and the scale s of each channel, on a finer grid of view angles.
@@ -49,9 +52,11 @@ struct AlignedTotals {
   std::vector<double> theta;  // rad, ascending, from 0
   size_t phi_count = 1;
   std::vector<double> magnitude_um;  // ascending
-  std::vector<float> magnitudes;     // [theta][phi][magnitude]
+  std::vector<float> magnitudes;     // [theta][phi][magnitude], without the Dirac lobe
   std::vector<float> log2_scale;     // [theta][phi][channel]
-  std::vector<float> delta;          // [theta][channel] total of the Dirac lobe, or empty
+  std::vector<float> delta;          // [theta][phi][channel] total of the Dirac lobe, or empty
+  Dirac delta_kind = Dirac::none;
+  double delta_core = 0;  // half-vector angle within which it stands for a narrow lobe, rad
 };
 
 struct AlignedData {

@@ -233,6 +233,7 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
                    Targets* targets, size_t max_nodes) {
   const size_t width = layout.width();
   Lattice lattice({layout.upper_only, layout.half_stored}, width);
+  if (!targets) lattice.reserve(std::min(max_nodes, (size_t{1} << 23) / width));
   BlockModel model(layout, transform);
   std::vector<float> predicted(width, 0.0f), difference(3 * width), coefficient(3 * width), change(3 * width);
   std::vector<int16_t> levels(3 * width);

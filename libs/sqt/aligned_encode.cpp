@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "sqt/aligned_source.h"
+#include "sqt/portable_math.h"
 
 namespace suite::sqt {
 
@@ -72,14 +73,20 @@ AlignedSheet leaves_of(const AlignedLayout& layout, const Lattice& lattice) {
   AlignedSheet sheet;
   for (size_t i = 0; i < lattice.size(); ++i)
     if (lattice.node(i).first_child < 0) sheet.leaves.push_back(lattice.node(i).id);
-  sheet.plane.resize(sheet.leaves.size() * width * 3);
+  // Room for coarse leaves to be divided (aligned_tables.cpp), so that the numbers need not move again.
+  sheet.plane.reserve((sheet.leaves.size() + std::min<size_t>(1024, (1 << 20) / width)) * width *
+                      AlignedSheet::kStride);
+  sheet.plane.resize(sheet.leaves.size() * width * AlignedSheet::kStride);
   float* to = sheet.plane.data();
+  std::vector<float> mean(width);
   for (size_t i = 0; i < lattice.size(); ++i) {
     if (lattice.node(i).first_child >= 0) continue;
     const float* value = lattice.value(i).data();
     const float* gx = lattice.slope(i, 0).data();
     const float* gy = lattice.slope(i, 1).data();
-    for (size_t j = 0; j < width; ++j, to += 3) to[0] = value[j], to[1] = gx[j], to[2] = gy[j];
+    for (size_t j = 0; j < width; ++j) mean[j] = portable_exp2(value[j]) * mean_exp2(gx[j]) * mean_exp2(gy[j]);
+    for (size_t j = 0; j < width; ++j, to += AlignedSheet::kStride)
+      to[0] = value[j], to[1] = gx[j], to[2] = gy[j], to[3] = mean[j];
   }
   return sheet;
 }
@@ -112,7 +119,8 @@ std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<c
   const StepRule steps(layout, 0.25 * reference);
   std::vector<AlignedSheet> sheets;
   for (int s = 0; s < layout.sheets; ++s)
-    sheets.push_back(leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, 2 * max_leaves + 64)));
+    sheets.push_back(
+        leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, max_leaves + max_leaves / 2 + 64)));
   if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
   return sheets;
 }

@@ -164,6 +164,23 @@ void survey_totals(const Function& function, const AlignedLayout& layout,
   });
 }
 
+void survey_dirac(const Function& function, const AlignedLayout& layout, AlignedTotals& totals) {
+  totals.delta_kind = function.dirac();
+  totals.delta_core = function.dirac_core();
+  if (totals.delta_kind == Dirac::none) return;
+  const size_t channels = layout.channels, rows = totals.theta.size() * totals.phi_count;
+  totals.delta.assign(rows * channels, 0.0f);
+  parallel_for(0, rows, 1, [&](size_t begin, size_t end) {
+    std::vector<double> W(channels);
+    for (size_t t = begin; t < end; ++t) {
+      const double phi = 2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count);
+      function.dirac_total(dir_from_angles(totals.theta[t / totals.phi_count], phi), W);
+      for (size_t c = 0; c < channels; ++c)
+        totals.delta[t * channels + c] = static_cast<float>(std::clamp(W[c], 0.0, 1.0));
+    }
+  });
+}
+
 // The pyramid in the lattice's order, with slopes.
 AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& pyramid) {
   AlignedSource::Impl::Sheet sheet{Lattice({layout.upper_only, layout.half_stored}, layout.width()), {}, {}, {}};
@@ -265,6 +282,20 @@ void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::
 
 namespace {
 
+// Six steps between views; near the horizon, which cuts lobes within their width of it, steps of at most 0.15 of the
+// angle that is left.
+std::vector<double> angles_of_totals(const std::vector<double>& views) {
+  std::vector<double> theta{views[0]};
+  for (size_t v = 1; v < views.size(); ++v) {
+    const double step = (views[v] - views[v - 1]) / 6;
+    while (theta.back() < views[v]) {
+      const double here = std::min(step, 0.15 * (kPi / 2 - theta.back())), next = theta.back() + here;
+      theta.push_back(next > views[v] - 0.3 * here ? views[v] : next);
+    }
+  }
+  return theta;
+}
+
 // Half vectors, unless the function sends at least twice as much back to the viewer as to the mirror direction.
 LobeFrame detect_frame(const Function& function) {
   std::vector<double> back(function.info().wavelength_um.size()), mirror(back.size());
@@ -303,17 +334,11 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   layout.sheets = surface && m.function.domain == Domain::sphere ? 2 : 1;
   layout.theta = surface ? place_views(function, layout.frame, options.views, 89.9 * kDegree, options.view_error)
                          : std::vector<double>{0};
-  const size_t views = layout.theta.size();
   layout.phi_count = surface && !m.function.isotropic ? 16 : 1;
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;
   std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
-  const size_t fine = 6;
-  for (size_t v = 0; v < views; ++v)
-    for (size_t k = 0; k < (v + 1 < views ? fine : 1); ++k)
-      m.totals.theta.push_back(v + 1 < views ? layout.theta[v] + (layout.theta[v + 1] - layout.theta[v]) *
-                                                                     static_cast<double>(k) / fine
-                                             : layout.theta[v]);
+  m.totals.theta = angles_of_totals(layout.theta);
 
   // A first look at order 4 gives the whole (mean total) and the floor below which values count as dark.
   const Region region{layout.upper_only, layout.half_stored};
@@ -353,8 +378,16 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
     transform_details(layout, m.sheets.back());
   }
   survey_totals(function, layout, leaves, m.totals);
+  survey_dirac(function, layout, m.totals);
   if (surface)  // no surface returns more than it receives
-    for (float& W : m.totals.magnitudes) W = std::min(W, 1.0f);
+    for (size_t t = 0; t < m.totals.theta.size() * m.totals.phi_count; ++t)
+      for (size_t k = 0; k < layout.channels; ++k) {
+        const size_t c = static_cast<size_t>(
+            std::find(m.function.wavelength_um.begin(), m.function.wavelength_um.end(), m.totals.magnitude_um[k]) -
+            m.function.wavelength_um.begin());
+        float& W = m.totals.magnitudes[t * layout.channels + k];
+        W = std::min(W, 1 - (m.totals.delta.empty() ? 0.0f : m.totals.delta[t * layout.channels + c]));
+      }
   if (progress) progress(0.2);
 }
 

@@ -31,7 +31,9 @@ class Bundle {
     std::vector<View> views;           // one slice each
     int max_order = 0;                 // of the finest leaf
     size_t leaves = 0;                 // over all trees
-    bool has_delta = false;            // a Dirac lobe beside the cells
+    Dirac delta = Dirac::none;         // a Dirac lobe beside the cells
+    double delta_core = 0;             // half-vector angle within which it stands for a narrow lobe, rad
+    bool has_delta() const { return delta != Dirac::none; }
   };
   // One leaf of one slice.
   struct Cell {
@@ -59,7 +61,7 @@ class Bundle {
     const double f = value(out, in, channel);
     return cosine_weighted() ? f * std::fabs(in.z) : f;
   }
-  // W: integral of w over `in`, Dirac lobe included.
+  // W: integral of w over `in`, Dirac lobe included (here and in magnitude).
   virtual double total(Dir out, size_t channel) const = 0;
   // W at info().magnitude_um.
   virtual void magnitude(Dir out, std::span<double> W) const = 0;
@@ -68,7 +70,7 @@ class Bundle {
   virtual double pdf(Dir out, Dir in, size_t channel) const = 0;
   // The same for every channel at once.
   virtual void pdf(Dir out, Dir in, std::span<double> p) const = 0;
-  // The Dirac lobe of a channel, when info().has_delta.
+  // The Dirac lobe of a channel, when info().has_delta().
   virtual std::optional<DeltaLobe> delta(Dir out, size_t channel) const = 0;
 
   bool cosine_weighted() const { return info_.function.quantity == Quantity::bsdf; }

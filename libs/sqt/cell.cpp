@@ -28,7 +28,7 @@ uint32_t gather(uint32_t r) {  // the even bits of r
   return r;
 }
 
-double below_one(double v) { return std::clamp(v, 0.0, std::nextafter(1.0, 0.0)); }
+inline double below_one(double v) { return std::min(std::max(v, 0.0), 0x1.fffffffffffffp-1); }
 
 }  // namespace
 
@@ -39,31 +39,28 @@ double quarter_exact(double x, double y) {
   const double quarter = std::atan2(y, x) * (2 / kPi);
   return quarter < 0 ? quarter + 4 : quarter;
 }
-// The same by the Taylor series of atan within tan(pi/8); 0 for x = y = 0.
-double quarter_fast(double x, double y) {
+// The same by the Taylor series of atan within tan(pi/8), without branches; 0 for x = y = 0.
+inline double quarter_fast(double x, double y) {
   const double ax = std::fabs(x), ay = std::fabs(y);
   const double low = std::min(ax, ay), high = std::max(ax, ay);
   const bool upper = low > 0.41421356237309503 * high;  // beyond pi/8: atan t = pi/4 - atan((1 - t) / (1 + t))
   const double n = upper ? high - low : low, m = upper ? high + low : high;
-  const double t = m > 0 ? n / m : 0, t2 = t * t;
-  const double a =
-      t *
-      (1 -
-       t2 * (1.0 / 3 -
-             t2 * (1.0 / 5 -
-                   t2 * (1.0 / 7 - t2 * (1.0 / 9 - t2 * (1.0 / 11 - t2 * (1.0 / 13 - t2 * (1.0 / 15 - t2 / 17))))))));
-  double q = (2 / kPi) * a;
-  if (upper) q = 0.5 - q;
-  if (ay > ax) q = 1 - q;
-  if (x < 0) q = 2 - q;
+  const double t = n / std::max(m, 1e-300), t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
+  const double series = ((1 - t2 * (1.0 / 3)) + t4 * (1.0 / 5 - t2 * (1.0 / 7))) +
+                        t8 * (((1.0 / 9 - t2 * (1.0 / 11)) + t4 * (1.0 / 13 - t2 * (1.0 / 15))) + t8 * (1.0 / 17));
+  double q = (2 / kPi) * t * series;
+  q = upper ? 0.5 - q : q;
+  q = ay > ax ? 1 - q : q;
+  q = x < 0 ? 2 - q : q;
   return y < 0 ? 4 - q : q;
 }
 
-FacePoint from_azimuth(Dir d, double quarter) {
-  if (quarter >= 4) quarter = 0;
-  const double z_abs = std::fabs(d.z);
+// s2 = 1 - z^2.
+inline FacePoint from_azimuth(double quarter, double z, double s2) {
+  quarter = quarter >= 4 ? 0 : quarter;
+  const double z_abs = std::fabs(z);
   if (z_abs <= 2.0 / 3) {  // equatorial belt: lines of constant x and y are straight in (azimuth, z)
-    const double up = 0.5 + quarter + 0.75 * d.z, down = 0.5 + quarter - 0.75 * d.z;
+    const double up = 0.5 + quarter + 0.75 * z, down = 0.5 + quarter - 0.75 * z;
     const int iu = static_cast<int>(up), id = static_cast<int>(down);
     const int face = iu == id ? (iu & 3) | 4 : id < iu ? id & 3 : (iu & 3) + 8;
     return {face, below_one(up - iu), below_one(1 - (down - id))};
@@ -71,18 +68,25 @@ FacePoint from_azimuth(Dir d, double quarter) {
   // Polar caps; 1 - |z| from the horizontal part, which keeps its digits at the pole.
   const int q = std::min(3, static_cast<int>(quarter));
   const double within = quarter - q;
-  const double r = std::sqrt(3 * (d.x * d.x + d.y * d.y) / (1 + z_abs));
+  const double r = std::sqrt(3 * s2 / (1 + z_abs));
   const double a = std::min(1.0, within * r), b = std::min(1.0, (1 - within) * r);
-  if (d.z > 0) return {q, below_one(1 - b), below_one(1 - a)};
+  if (z > 0) return {q, below_one(1 - b), below_one(1 - a)};
   return {q + 8, below_one(a), below_one(b)};
 }
 
 }  // namespace
 
-FacePoint face_point(Dir d) { return from_azimuth(d, quarter_exact(d.x, d.y)); }
-FacePoint face_point_fast(Dir d) { return from_azimuth(d, quarter_fast(d.x, d.y)); }
+FacePoint face_point(Dir d) { return from_azimuth(quarter_exact(d.x, d.y), d.z, d.x * d.x + d.y * d.y); }
+FacePoint face_point_fast(Dir d) { return from_azimuth(quarter_fast(d.x, d.y), d.z, d.x * d.x + d.y * d.y); }
+FacePoint face_point_fast(double x, double y, double z, double s2) { return from_azimuth(quarter_fast(x, y), z, s2); }
 
-Dir direction(FacePoint p) {
+namespace {
+
+// Height, distance from the axis, and azimuth in units of pi/4.
+struct Cylinder {
+  double z, s, eighths;
+};
+inline Cylinder cylinder(FacePoint p) {
   const double ring = kRing[p.face] - p.x - p.y;  // 0 at the north pole, 4 at the south pole
   double width = 1, z, s;
   if (ring < 1 || ring > 3) {
@@ -94,8 +98,28 @@ Dir direction(FacePoint p) {
     z = (2 - ring) * (2.0 / 3);
     s = std::sqrt((1 - z) * (1 + z));
   }
-  const double phi = width > 1e-15 ? (kPi / 4) * ((kLongitude[p.face] * width + p.x - p.y) / width) : 0;
-  return {s * std::cos(phi), s * std::sin(phi), z};
+  return {z, s, width > 1e-15 ? kLongitude[p.face] + (p.x - p.y) / width : 0};
+}
+
+}  // namespace
+
+Dir direction(FacePoint p) {
+  const Cylinder c = cylinder(p);
+  const double phi = (kPi / 4) * c.eighths;
+  return {c.s * std::cos(phi), c.s * std::sin(phi), c.z};
+}
+
+Dir direction_fast(FacePoint p) {
+  // Cosine and sine of the nearest multiple of pi/4, turned by the rest (at most pi/8, Taylor).
+  constexpr double h = 0.70710678118654752;
+  constexpr double kCos[10] = {h, 1, h, 0, -h, -1, -h, 0, h, 1}, kSin[10] = {-h, 0, h, 1, h, 0, -h, -1, -h, 0};
+  const Cylinder c = cylinder(p);
+  const int n = static_cast<int>(c.eighths + 1.5);  // azimuths from -pi/4 to 2 pi
+  const double r = (c.eighths + 1 - n) * (kPi / 4), r2 = r * r, r4 = r2 * r2;
+  const double sine = r * ((1 - r2 * (1.0 / 6)) + r4 * ((1.0 / 120 - r2 * (1.0 / 5040)) + r4 * (1.0 / 362880)));
+  const double cosine =
+      (1 - r2 * 0.5) + r4 * ((1.0 / 24 - r2 * (1.0 / 720)) + r4 * (1.0 / 40320 - r2 * (1.0 / 3628800)));
+  return {c.s * (kCos[n] * cosine - kSin[n] * sine), c.s * (kSin[n] * cosine + kCos[n] * sine), c.z};
 }
 
 CellXY xy_of(CellId cell) {

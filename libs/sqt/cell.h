@@ -23,9 +23,12 @@ struct FacePoint {
   double x = 0, y = 0;  // [0, 1)
 };
 FacePoint face_point(Dir d);  // d a unit vector
-// The same with an azimuth that is right to 1e-8 rad, in a third of the time; for finding cells.
+// The same with an azimuth that is right to 1e-8 rad, in a third of the time; for finding cells. The second form takes
+// the azimuth from (x, y), of any length, and z with 1 - z^2 = s2.
 FacePoint face_point_fast(Dir d);
-Dir direction(FacePoint p);  // x, y in [0, 1]
+FacePoint face_point_fast(double x, double y, double z, double s2);
+Dir direction(FacePoint p);       // x, y in [0, 1]
+Dir direction_fast(FacePoint p);  // within 1e-11 of it, in half the time
 
 // Order (0..13) and nested index in one integer: 4^(order+1) + index (the "unique" numbering of HEALPix).
 struct CellId {

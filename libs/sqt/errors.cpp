@@ -127,9 +127,12 @@ std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std:
   return W;
 }
 
-double Reference::l1(const Bundle& bundle) const {
+Reference::Brief Reference::brief(const Bundle& bundle) const {
+  struct Sums {
+    double error = 0, data = 0, square = 0, data_square = 0;
+  };
   const size_t chunk = 8192, chunks = (pairs_.size() + chunk - 1) / chunk;
-  std::vector<double> difference(chunks, 0.0), sum(chunks, 0.0);
+  std::vector<Sums> parts(chunks);
   parallel_for(0, chunks, 1, [&](size_t begin, size_t end) {
     std::vector<double> g(channels_);
     for (size_t k = begin; k < end; ++k)
@@ -137,17 +140,20 @@ double Reference::l1(const Bundle& bundle) const {
         const Pair& p = pairs_[n];
         if (p.weight == 0 || !p.narrow) continue;
         bundle.value(p.out, p.in, g);
-        const double w = p.weight * (weighted_ ? std::fabs(p.in.z) : 1.0);
+        const double cosine = weighted_ ? std::fabs(p.in.z) : 1.0;
         for (size_t c = 0; c < channels_; ++c) {
-          const double f = value_[n * channels_ + c];
-          difference[k] += w * std::fabs(g[c] - f);
-          sum[k] += w * f;
+          const double f = value_[n * channels_ + c] * cosine, e = g[c] * cosine - f;
+          parts[k].error += p.weight * std::fabs(e);
+          parts[k].data += p.weight * f;
+          parts[k].square += p.weight * e * e;
+          parts[k].data_square += p.weight * f * f;
         }
       }
   });
-  double d = 0, s = 0;
-  for (size_t k = 0; k < chunks; ++k) d += difference[k], s += sum[k];
-  return s > 0 ? d / s : 0;
+  Sums all;
+  for (const Sums& s : parts)
+    all.error += s.error, all.data += s.data, all.square += s.square, all.data_square += s.data_square;
+  return {all.data > 0 ? all.error / all.data : 0, all.data_square > 0 ? std::sqrt(all.square / all.data_square) : 0};
 }
 
 std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
@@ -211,7 +217,8 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
             view)[c];
         const double expected = total_[t * channels_ + c];
         if (expected > 0) out[c].total_error = std::max(out[c].total_error, std::fabs(W - expected) / expected);
-        const double whole = bundle.total(view, c);
+        const auto dirac = bundle.delta(view, c);
+        const double whole = bundle.total(view, c) - (dirac ? dirac->total : 0);
         const SampleStream stream(5, t, c);
         for (uint32_t n = 0; n < 2000 && whole > 0; ++n) {
           const auto u = stream.draw(n, 0);

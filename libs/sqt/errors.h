@@ -33,8 +33,12 @@ class Reference {
             const std::function<void(double)>& progress = {});
   // One entry per channel and a last one over all channels (sums over channels; maxima of the maxima).
   std::vector<ErrorFigures> measure(const Bundle& bundle) const;
-  // l1 over all channels only (fast).
-  double l1(const Bundle& bundle) const;
+  // l1 and cos_rmse over all channels only (fast).
+  struct Brief {
+    double l1 = 0, cos_rmse = 0;
+  };
+  Brief brief(const Bundle& bundle) const;
+  double l1(const Bundle& bundle) const { return brief(bundle).l1; }
   // Unphysical data, measured on the way.
   struct Findings {
     double largest_total = 0;      // over view angles up to 80 deg and channels

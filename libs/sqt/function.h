@@ -18,6 +18,9 @@ enum class Domain { hemisphere, sphere };
 // `out` is ignored.
 enum class Quantity { bsdf, phase, intensity };
 
+// Where a Dirac lobe points, if there is one.
+enum class Dirac { none = 0, mirror = 1, retro = 2, through = 3 };
+
 class Function {
  public:
   struct Info {
@@ -35,6 +38,13 @@ class Function {
   // One value per channel. Directions are unit vectors, out.z > 0 for surfaces. NaN in a channel = no valid data there
   // (below the horizon, missing measurement). Thread-safe.
   virtual void value(Dir out, Dir in, std::span<double> f) const = 0;
+  // A Dirac lobe beside the values (surfaces only): its part of the total, per channel, and the half-vector angle
+  // (rad) within which it stands for a narrow lobe; 0 for a true one.
+  virtual Dirac dirac() const { return Dirac::none; }
+  virtual void dirac_total(Dir, std::span<double> W) const {
+    for (double& w : W) w = 0;
+  }
+  virtual double dirac_core() const { return 0; }
 };
 
 // Scattered measurements (goniometer tables, raw sample text): value per channel for each pair.

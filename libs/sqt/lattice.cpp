@@ -34,6 +34,12 @@ Lattice::Lattice(Region region, size_t width) : region_(region), width_(width), 
   slope_.resize(2 * nodes_.size() * width_);
 }
 
+void Lattice::reserve(size_t nodes) {
+  nodes_.reserve(nodes);
+  value_.reserve(nodes * width_);
+  slope_.reserve(2 * nodes * width_);
+}
+
 void Lattice::insert(CellId id, size_t index) {
   if (2 * nodes_.size() >= table_.size()) {
     std::vector<uint64_t> old(4 * table_.size(), 0);

@@ -42,6 +42,7 @@ class Lattice {
     return {&slope_[(2 * i + static_cast<size_t>(axis)) * width_], width_};
   }
 
+  void reserve(size_t nodes);
   // Appends the children of a node (values unset); their slopes and values are the caller's to fill, all values of a
   // level before compute_slopes of that level.
   void divide(size_t i);

@@ -5,27 +5,36 @@
 namespace suite::sqt {
 
 Tree::Tree(std::span<const CellId> leaves) : cells_(leaves.begin(), leaves.end()) {
+  SUITE_CHECK(cells_.size() < (size_t{1} << 27));
   for (size_t i = 0; i < cells_.size(); ++i) {
     const int order = cells_[i].order();
     const CellXY at = xy_of(cells_[i]);
-    size_t node = static_cast<size_t>(at.face);
-    for (int bit = order - 1; bit >= 0; --bit) {
-      SUITE_CHECK(nodes_[node] >= 0);  // a leaf above a leaf
-      if (nodes_[node] == 0) {
-        nodes_[node] = static_cast<int>(nodes_.size());
-        nodes_.resize(nodes_.size() + 4, 0);
+    const int leaf = -(16 * static_cast<int>(i) + order) - 1;
+    // Go down through full tables to the one whose entries are as fine as the leaf or finer.
+    size_t table = static_cast<size_t>(at.face) << (2 * kTopOrder);
+    int level = kTopOrder, bits = kTopOrder;
+    while (level < order) {
+      const int shift = order - level;
+      const uint32_t mask = (1u << bits) - 1;
+      const size_t slot = table + (((at.y >> shift) & mask) << bits) + ((at.x >> shift) & mask);
+      SUITE_CHECK(entries_[slot] >= 0);  // a leaf above a leaf
+      if (entries_[slot] == 0) {
+        entries_[slot] = static_cast<int>(entries_.size());
+        entries_.resize(entries_.size() + (size_t{1} << (2 * kStride)), 0);
       }
-      node = static_cast<size_t>(nodes_[node]) + (((at.y >> bit) & 1) * 2 + ((at.x >> bit) & 1));
+      table = static_cast<size_t>(entries_[slot]);
+      level += kStride, bits = kStride;
     }
-    SUITE_CHECK(nodes_[node] == 0);
-    nodes_[node] = -static_cast<int>(i) - 1;
-  }
-  for (size_t t = 0; t < top_.size(); ++t) {
-    const uint32_t x = t & ((1u << kTopOrder) - 1), y = (t >> kTopOrder) & ((1u << kTopOrder) - 1);
-    int node = nodes_[t >> (2 * kTopOrder)];
-    for (int bit = kTopOrder - 1; bit >= 0 && node > 0; --bit)
-      node = nodes_[static_cast<size_t>(node) + (((y >> bit) & 1) * 2 + ((x >> bit) & 1))];
-    top_[t] = node;
+    // The leaf fills a square of entries.
+    const int grow = level - order;
+    const uint32_t mask = (1u << bits) - 1, n = 1u << grow;
+    const uint32_t x = (at.x << grow) & mask, y = (at.y << grow) & mask;
+    for (uint32_t v = y; v < y + n; ++v)
+      for (uint32_t u = x; u < x + n; ++u) {
+        int& entry = entries_[table + (static_cast<size_t>(v) << bits) + u];
+        SUITE_CHECK(entry == 0);
+        entry = leaf;
+      }
   }
 }
 

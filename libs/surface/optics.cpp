@@ -193,4 +193,14 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
   baked.maps = std::move(maps);
 }
 
+void check_temperatures(const Scene& scene, double begin, double end) {
+  for (const TemperatureBinding& t : scene.temperatures) {
+    if (t.spec.times.empty() || t.spec.repeat) continue;
+    if (begin < t.spec.times.front() || end > t.spec.times.back())
+      throw Error(strf("material '%s': its temperatures are given from %g to %g s, %g to %g s are simulated",
+                       scene.materials[t.material].id.c_str(), t.spec.times.front(), t.spec.times.back(), begin, end),
+                  "give a longer table, or 'repeat: true'");
+  }
+}
+
 }  // namespace suite

@@ -48,6 +48,9 @@ class Optics {
   bool any_emission_ = false, spectral_flights_ = false;
 };
 
+// Error naming the material when its temperature is a table that does not reach over the times from begin to end (s).
+void check_temperatures(const Scene& scene, double begin, double end);
+
 // The material of a place as it is there: `base` itself where nothing varies, else `made`, filled with the help of
 // `memory`. time: s. out: towards the viewer in the shading frame (emission of mixtures).
 const BakedMaterial* material_here(const BakedMaterial& base, const SpectralState& state, const MapPlace& place,

@@ -31,8 +31,8 @@ void arrange(TileSet& set, std::span<const uint32_t> members, std::span<const Bo
     fill(tile, own);
     const Vec3 low = tile.bounds.low - tile.origin, high = tile.bounds.high - tile.origin;
     for (int a = 0; a < 3; ++a) tile.scale = std::max({tile.scale, std::fabs(low[a]), std::fabs(high[a])});
-    // Rays are advanced to these bounds. Embree's coherent packets miss surfaces that lie within some ulp of where their
-    // rays begin (seen with 3.13.5 and a sheet in the upper face of a tile), so they begin well before.
+    // Rays are advanced to these bounds. Embree's coherent packets miss surfaces that lie within some ulp of where
+    // their rays begin (seen with 3.13.5 and a sheet in the upper face of a tile), so they begin well before.
     tile.bounds = enlarged(tile.bounds, tile.slack() + tile.scale / 1024);
   };
   Box3 all;
@@ -42,8 +42,10 @@ void arrange(TileSet& set, std::span<const uint32_t> members, std::span<const Bo
   std::map<std::tuple<long, long, long, long>, std::vector<uint32_t>> cells;
   for (const uint32_t i : members) {
     const Vec3 c = boxes[i].center();
-    if (widest(boxes[i].size()) > 2 * kTileSize) cells[{0, 0, 0, 1 + static_cast<long>(i)}].push_back(i);
-    else cells[{std::lround(c.x / kTileSize), std::lround(c.y / kTileSize), std::lround(c.z / kTileSize), 0}].push_back(i);
+    if (widest(boxes[i].size()) > 2 * kTileSize)
+      cells[{0, 0, 0, 1 + static_cast<long>(i)}].push_back(i);
+    else
+      cells[{std::lround(c.x / kTileSize), std::lround(c.y / kTileSize), std::lround(c.z / kTileSize), 0}].push_back(i);
   }
   for (const auto& [key, own] : cells) add(own);
 }

@@ -17,8 +17,10 @@ namespace {
 // holes: hits are put to the filter. object: whose geometry it is, for one that no instances share.
 void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint32_t object = kNone) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12, mesh.vertex_count());
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12, mesh.triangle_count());
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12,
+                             mesh.vertex_count());
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0, 12,
+                             mesh.triangle_count());
   rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
   rtcSetGeometryUserData(g, reinterpret_cast<void*>(uintptr_t{object}));
   if (holes) {
@@ -45,7 +47,9 @@ void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, 
   parallel_for(0, keys.size(), 4096, [&](size_t b, size_t e) {
     for (size_t k = b; k < e; ++k) {
       const Vec3 c = (boxes[objects[k]].center() - all.low) / widest * 2097151.0;
-      keys[k] = {spread(static_cast<uint64_t>(c.x)) | spread(static_cast<uint64_t>(c.y)) << 1 | spread(static_cast<uint64_t>(c.z)) << 2, objects[k]};
+      keys[k] = {spread(static_cast<uint64_t>(c.x)) | spread(static_cast<uint64_t>(c.y)) << 1 |
+                     spread(static_cast<uint64_t>(c.z)) << 2,
+                 objects[k]};
     }
   });
   std::sort(keys.begin(), keys.end());
@@ -81,7 +85,9 @@ void Tile::build(const World& world) {
     for (size_t i = b; i < e; ++i) world.mesh_scene(meshes[i]);
   });
   handle.scene = new_scene();
-  for (uint32_t id = 0; id < direct.size(); ++id) attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id, world.filter && world.may_pass[direct[id]], direct[id]);
+  for (uint32_t id = 0; id < direct.size(); ++id)
+    attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id,
+                world.filter && world.may_pass[direct[id]], direct[id]);
   for (uint32_t k = 0; k < sets.size(); ++k) sets[k]->attach(handle.scene, static_cast<unsigned>(direct.size()) + k);
   rtcCommitScene(handle.scene);
   for (const auto& set : sets) std::vector<Box3>().swap(set->boxes);
@@ -119,7 +125,11 @@ Box3 World::local_box(const TracedObject& o) const {
 }
 
 World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
-    : scene(std::move(given)), periodic(cell), filter(std::move(holes)), flat(flatten(*scene)), meshes(new MeshEntry[scene->meshes.size()]) {
+    : scene(std::move(given)),
+      periodic(cell),
+      filter(std::move(holes)),
+      flat(flatten(*scene)),
+      meshes(new MeshEntry[scene->meshes.size()]) {
   const FlushDenormals flush;
   std::vector<bool> used(scene->meshes.size(), false);
   for (const TracedObject& o : flat.objects)
@@ -153,8 +163,10 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
   members.reserve(boxes.size());
   for (uint32_t i = 0; i < boxes.size(); ++i) {
     bounds.grow(boxes[i]);
-    if (boxes[i].empty()) unbounded.push_back(i);
-    else members.push_back(i);
+    if (boxes[i].empty())
+      unbounded.push_back(i);
+    else
+      members.push_back(i);
   }
   arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });
   // The boxes of a set are needed in its own order.
@@ -171,7 +183,9 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
 // others that stand at the same origin.
 void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes) {
   size_t most = 0;
-  const auto lone = [&](const TracedObject& o) { return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place); };
+  const auto lone = [&](const TracedObject& o) {
+    return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place);
+  };
   const auto place = [&](const TracedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
   const double reach = length(tile.bounds.size()) + kTileSize;
   for (const uint32_t i : members) {
@@ -183,25 +197,16 @@ void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const 
   set->world = this;
   for (const uint32_t i : members) {
     const TracedObject& o = flat.objects[i];
-    if (most && lone(o) && place(o) == tile.origin) tile.direct.push_back(i);
-    else set->objects.push_back(i);
+    if (most && lone(o) && place(o) == tile.origin)
+      tile.direct.push_back(i);
+    else
+      set->objects.push_back(i);
   }
   if (set->objects.empty()) return;
   set->objects.shrink_to_fit();
   sort_in_space(set->objects, boxes, tile.bounds);
   set->origin = tile.origin;
-  set->inverse.resize(set->objects.size());
-  parallel_for(0, set->objects.size(), 4096, [&](size_t b, size_t e) {
-    for (size_t k = b; k < e; ++k) {
-      const TracedObject& o = flat.objects[set->objects[k]];
-      PlacedSet::Inverse& inverse = set->inverse[k];
-      inverse.mesh = o.mesh;
-      if (o.mesh == kNone) continue;
-      inverse.base = o.place->point(scene->meshes[o.mesh].origin);
-      const Affine3 back = o.place->inverse();
-      for (size_t j = 0; j < 9; ++j) inverse.linear[j] = static_cast<float>(back.a[j]);
-    }
-  });
+  set->fill_inverse();
   tile.sets.push_back(std::move(set));
 }
 
@@ -209,25 +214,32 @@ void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const 
 void World::repeat_at_sides() {
   const Periodic& cell = *periodic;
   if (!(cell.size.x > 0 && cell.size.y > 0)) throw Error("the cell of a periodic scene needs a positive size");
-  if (flat.fixed != flat.objects.size()) throw Error("a periodic scene cannot hold anything that moves", "drop the motion, or the periodic cell");
+  if (flat.fixed != flat.objects.size())
+    throw Error("a periodic scene cannot hold anything that moves", "drop the motion, or the periodic cell");
   const size_t count = flat.objects.size();
   for (size_t i = 0; i < count; ++i) {
     const TracedObject o = flat.objects[i];
     const Box3 b = transformed(local_box(o), *o.place);
     if (b.empty()) continue;
     const auto reach = [](double low, double high, double from, double size) {
-      return std::pair{static_cast<long>(std::floor((low - from) / size)), static_cast<long>(std::ceil((high - from) / size)) - 1};
+      return std::pair{static_cast<long>(std::floor((low - from) / size)),
+                       static_cast<long>(std::ceil((high - from) / size)) - 1};
     };
     const auto [x0, x1] = reach(b.low.x, b.high.x, cell.low.x, cell.size.x);
     const auto [y0, y1] = reach(b.low.y, b.high.y, cell.low.y, cell.size.y);
-    if (x1 - x0 > 64 || y1 - y0 > 64) throw Error("an object is more than 64 times as wide as the cell of the periodic scene", "make the cell larger");
+    if (x1 - x0 > 64 || y1 - y0 > 64)
+      throw Error("an object is more than 64 times as wide as the cell of the periodic scene", "make the cell larger");
     for (long x = x0; x <= std::max(x0, x1); ++x)
       for (long y = y0; y <= std::max(y0, y1); ++y) {
         TracedObject copy = o;
         if (x != 0 || y != 0)
-          copy.place = &flat.composed.emplace_back(translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) * *o.place);
-        if (x == x0 && y == y0) flat.objects[i] = copy;
-        else flat.objects.push_back(copy);
+          copy.place = &flat.composed.emplace_back(
+              translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) *
+              *o.place);
+        if (x == x0 && y == y0)
+          flat.objects[i] = copy;
+        else
+          flat.objects.push_back(copy);
       }
   }
   flat.fixed = flat.objects.size();

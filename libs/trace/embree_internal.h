@@ -57,10 +57,10 @@ class BuildOnce {
 
 // A mesh that instances share, with its own acceleration structure.
 struct MeshEntry {
-  Box3 box;              // local, mesh origin included
-  Box3 room;             // around the floats (without the mesh's origin), enlarged by what float rounding moves
-  double scale = 0;      // largest float coordinate
-  uint32_t uses = 0;     // objects
+  Box3 box;           // local, mesh origin included
+  Box3 room;          // around the floats (without the mesh's origin), enlarged by what float rounding moves
+  double scale = 0;   // largest float coordinate
+  uint32_t uses = 0;  // objects
   SceneHandle handle;
   BuildOnce once;
 };
@@ -78,38 +78,39 @@ struct World;
 // Handed to Embree and by it to the callbacks: the unrounded rays.
 struct TraceContext : RTCIntersectContext {
   const Ray* rays = nullptr;
-  const Packet* packet = nullptr;   // lanes are the ids of the float rays
+  const Packet* packet = nullptr;  // lanes are the ids of the float rays
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
-  uint32_t object = kNone;          // the instance that rays are inside of; kNone = in the tile itself
+  uint32_t object = kNone;  // the instance that rays are inside of; kNone = in the tile itself
   const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
 };
 
 // Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
 struct PlacedSet {
-  // From ENU into the floats of an instance at rest; one cache line.
+  // From ENU into the floats of an instance that rests in the window; one cache line.
   struct Inverse {
-    Vec3 base;             // ENU place of the floats' (0, 0, 0)
+    Vec3 base;  // ENU place of the floats' (0, 0, 0)
     float linear[9];
     uint32_t mesh;
   };
   const World* world = nullptr;
-  const MovingPart* moving = nullptr;   // null: all at rest
-  Vec3 origin;                          // of the tile
-  unsigned times = 1;                   // boxes of an object, equally spaced over the window
-  std::vector<uint32_t> objects;        // indices into Tracer::objects()
-  std::vector<Inverse> inverse;         // at rest only
-  std::vector<Box3> boxes;              // [object][time], ENU; until the tile is built
+  const MovingPart* moving = nullptr;  // null: all at rest
+  Vec3 origin;                         // of the tile
+  unsigned times = 1;                  // boxes of an object, equally spaced over the window
+  std::vector<uint32_t> objects;       // indices into Tracer::objects()
+  std::vector<Inverse> inverse;        // of each object; empty when they move within the window
+  std::vector<Box3> boxes;             // [object][time], ENU; until the tile is built
 
+  void fill_inverse();  // from the poses of the window
   void attach(RTCScene scene, unsigned id);
 };
 
 // Geometry ids inside a tile: first the meshes that are attached as they are, then the sets.
 struct Tile {
-  Vec3 origin;                       // ENU
-  Box3 bounds;                       // ENU, a little enlarged
-  double scale = 0;                  // largest float coordinate of the tile, m
-  std::vector<uint32_t> direct;      // indices into Tracer::objects()
+  Vec3 origin;                   // ENU
+  Box3 bounds;                   // ENU, a little enlarged
+  double scale = 0;              // largest float coordinate of the tile, m
+  std::vector<uint32_t> direct;  // indices into Tracer::objects()
   std::vector<std::unique_ptr<PlacedSet>> sets;
   SceneHandle handle;
   BuildOnce once;
@@ -123,7 +124,7 @@ struct TileSet {
   std::vector<std::unique_ptr<Tile>> tiles;
   TileBvh bvh;
 
-  void close(const World& world);    // after the tiles are filled: the hierarchy, and small sets are built at once
+  void close(const World& world);  // after the tiles are filled: the hierarchy, and small sets are built at once
   // Sends every ray through its tiles, nearest first, eight rays that are at the same tile at a time.
   // send(tile, packet) traces a packet and lowers reach[] of rays that need not go on.
   template <class Send>
@@ -138,23 +139,25 @@ struct World {
   World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter);
   std::shared_ptr<const Scene> scene;
   std::optional<Periodic> periodic;
-  std::shared_ptr<const HitFilter> filter;   // null: no surface has holes
+  std::shared_ptr<const HitFilter> filter;  // null: no surface has holes
   Flattened flat;
   std::unique_ptr<MeshEntry[]> meshes;
-  TileSet tiles;                     // of what is at rest
-  std::vector<uint32_t> unbounded;   // exact surfaces without bounds at rest, met in double one by one
-  Box3 bounds;                       // of what is at rest
+  TileSet tiles;                    // of what is at rest
+  std::vector<uint32_t> unbounded;  // exact surfaces without bounds at rest, met in double one by one
+  Box3 bounds;                      // of what is at rest
   size_t triangles = 0;
-  std::vector<char> may_pass;        // objects with holes; empty without a filter
-  std::vector<char> holed_meshes;    // meshes that some such object shows; empty without a filter
+  std::vector<char> may_pass;      // objects with holes; empty without a filter
+  std::vector<char> holed_meshes;  // meshes that some such object shows; empty without a filter
 
   // Asks the filter about a point of an object; true when the object has no holes.
-  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal = {}) const;
+  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position,
+             Vec3 normal = {}) const;
   // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
   // through; its t counts from there.
-  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min, double t_max) const;
-  RTCScene mesh_scene(uint32_t mesh) const;   // built on the first call
-  Affine3 pose(uint32_t node, double time) const;   // exact
+  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
+                               double t_max) const;
+  RTCScene mesh_scene(uint32_t mesh) const;        // built on the first call
+  Affine3 pose(uint32_t node, double time) const;  // exact
   Affine3 to_world(const TracedObject& o, double time) const {
     return o.node == kNone ? *o.place : pose(o.node, time) * *o.place;
   }
@@ -177,10 +180,10 @@ struct MovingPart {
   struct Keys {
     std::vector<Stretch> stretches;
     std::vector<Affine3> poses;
-    double radius = 0;               // of what moves with the node, m
-    double bound = 0;                // m, between keys; 0 for an instant, which is exact
+    double radius = 0;  // of what moves with the node, m
+    double bound = 0;   // m, between keys; 0 for an instant, which is exact
     Affine3 at(double time) const;
-    bool at_rest() const { return poses.size() <= 1; }   // none: nothing hangs on the node itself
+    bool at_rest() const { return poses.size() <= 1; }  // none: nothing hangs on the node itself
   };
   const World& world;
   TimeSpan window;
@@ -189,7 +192,7 @@ struct MovingPart {
   std::vector<uint32_t> unbounded;
   Box3 bounds;
 
-  float fraction(double time) const;   // of the window, 0 to 1
+  float fraction(double time) const;  // of the window, 0 to 1
   // As rays see it: linear between keys.
   Affine3 to_world(const TracedObject& o, double time) const { return nodes[o.node].at(time) * *o.place; }
   static Keys keys_of(const World& world, TimeSpan window, uint32_t node, double radius);
@@ -205,8 +208,8 @@ std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, cons
 // One packet against one tile.
 class PacketTracer {
  public:
-  PacketTracer(const World& world, const MovingPart* moving, std::span<const Ray> rays, std::span<double> reach, bool coherent,
-               TraceStatistics& statistics)
+  PacketTracer(const World& world, const MovingPart* moving, std::span<const Ray> rays, std::span<double> reach,
+               bool coherent, TraceStatistics& statistics)
       : world_(world), moving_(moving), rays_(rays), reach_(reach), coherent_(coherent), statistics_(statistics) {}
   void nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits);
   void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
@@ -216,7 +219,8 @@ class PacketTracer {
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
   TraceContext context(const Packet& packet) const;
-  void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const;
+  void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v,
+              Hit& hit) const;
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
 
   const World& world_;

@@ -10,7 +10,7 @@ namespace {
 struct Inherited {
   Affine3 to_node;
   uint32_t node = kNone, material = kNone, tag = kNone;
-  bool same = true;   // to_node is the identity
+  bool same = true;  // to_node is the identity
 };
 
 struct Walk {
@@ -42,13 +42,15 @@ struct Walk {
   }
 
   void object(const Placement& p, const Inherited& here) {
-    if (out.objects.size() >= limit) throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
+    if (out.objects.size() >= limit)
+      throw Error(strf("the scene unfolds into more than %zu instances", limit), "place fewer copies");
     const bool mesh = p.kind == TargetKind::mesh;
     const uint32_t instance = instances++;
     if (mesh && scene.meshes[p.target].triangle_count() == 0) return;
     // A transform that is in the scene already is not stored again.
     const Affine3* place = here.same ? &p.to_parent : &out.composed.emplace_back(here.to_node * p.to_parent);
-    out.objects.push_back({place, mesh ? p.target : kNone, mesh ? kNone : p.target, here.material, here.tag, instance, here.node});
+    out.objects.push_back(
+        {place, mesh ? p.target : kNone, mesh ? kNone : p.target, here.material, here.tag, instance, here.node});
   }
 };
 
@@ -58,7 +60,8 @@ Flattened flatten(const Scene& scene, size_t limit) {
   Flattened flat;
   if (scene.groups.size() == 1) flat.objects.reserve(scene.groups[0].placements.size());
   Walk{scene, limit, flat}.group(0, {});
-  const auto moving = std::stable_partition(flat.objects.begin(), flat.objects.end(), [](const TracedObject& o) { return o.node == kNone; });
+  const auto moving = std::stable_partition(flat.objects.begin(), flat.objects.end(),
+                                            [](const TracedObject& o) { return o.node == kNone; });
   flat.fixed = static_cast<size_t>(moving - flat.objects.begin());
   return flat;
 }

@@ -9,16 +9,16 @@ namespace suite {
 
 // A frame that moves: its axes -> the track's pose -> `before` -> the parent frame (kNone: ENU).
 struct MovingNode {
-  uint32_t parent = kNone;   // a node with a smaller number
+  uint32_t parent = kNone;  // a node with a smaller number
   Affine3 before;
-  uint32_t track = kNone;    // index into Scene::tracks
+  uint32_t track = kNone;  // index into Scene::tracks
 };
 
 struct Flattened {
-  std::vector<TracedObject> objects;   // those at rest first, then the moving ones
+  std::vector<TracedObject> objects;  // those at rest first, then the moving ones
   std::vector<MovingNode> nodes;
-  size_t fixed = 0;                    // objects at rest
-  std::deque<Affine3> composed;        // transforms that stand nowhere in the scene itself; objects point into it
+  size_t fixed = 0;              // objects at rest
+  std::deque<Affine3> composed;  // transforms that stand nowhere in the scene itself; objects point into it
 };
 
 // Depth-first in the order of the groups. The scene must outlive the result. Error when the hierarchy unfolds into more

@@ -15,7 +15,8 @@ Affine3 MovingPart::Keys::at(double time) const {
   if (poses.size() == 1) return poses.front();
   const Stretch* s = &stretches.front();
   if (stretches.size() > 1) {
-    const auto after = std::upper_bound(stretches.begin(), stretches.end(), time, [](double t, const Stretch& x) { return t < x.begin; });
+    const auto after = std::upper_bound(stretches.begin(), stretches.end(), time,
+                                        [](double t, const Stretch& x) { return t < x.begin; });
     s = &*(after == stretches.begin() ? after : after - 1);
   }
   if (s->count == 1) return poses[s->first];
@@ -31,7 +32,9 @@ Affine3 MovingPart::Keys::at(double time) const {
 }
 
 float MovingPart::fraction(double time) const {
-  return window.end > window.begin ? static_cast<float>(std::clamp((time - window.begin) / (window.end - window.begin), 0.0, 1.0)) : 0.0f;
+  return window.end > window.begin
+             ? static_cast<float>(std::clamp((time - window.begin) / (window.end - window.begin), 0.0, 1.0))
+             : 0.0f;
 }
 
 MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan window, uint32_t node, double radius) {
@@ -66,17 +69,20 @@ std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, cons
   std::vector<double> knots;
   for (const MovingPart::Stretch& s : keys.stretches)
     for (size_t i = 0; i < s.count; ++i)
-      knots.push_back(s.count == 1 ? s.begin : s.begin + (s.end - s.begin) * static_cast<double>(i) / static_cast<double>(s.count - 1));
+      knots.push_back(s.count == 1
+                          ? s.begin
+                          : s.begin + (s.end - s.begin) * static_cast<double>(i) / static_cast<double>(s.count - 1));
   const auto at = [&](double t) { return enlarged(transformed(box, keys.at(t)), keys.bound); };
   std::vector<Box3> boxes{at(window.begin)};
   if (keys.at_rest() || window.begin == window.end) return boxes;
   const double size = length(boxes[0].size());
-  double way = 0;   // how far the middle goes
+  double way = 0;  // how far the middle goes
   for (size_t i = 1; i < knots.size(); ++i) way += length(at(knots[i]).center() - at(knots[i - 1]).center());
   for (const size_t times : {1, 2, 5, 17, 65}) {
     const double segments = std::max(1.0, static_cast<double>(times - 1));
     boxes.clear();
-    for (size_t k = 0; k < times; ++k) boxes.push_back(at(window.begin + (window.end - window.begin) * static_cast<double>(k) / segments));
+    for (size_t k = 0; k < times; ++k)
+      boxes.push_back(at(window.begin + (window.end - window.begin) * static_cast<double>(k) / segments));
     double excess = 0;
     Box3 all;
     for (const double t : knots) {
@@ -105,15 +111,17 @@ std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, cons
 MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   const size_t first = w.flat.fixed, count = w.flat.objects.size() - first;
   check_motion(*w.scene, span.begin, span.end, {});
-  std::vector<double> radius(w.flat.nodes.size(), -1);   // of what hangs on a node itself; negative: nothing does
-  std::vector<Box3> own(count);   // in the axes of the node
+  std::vector<double> radius(w.flat.nodes.size(), -1);  // of what hangs on a node itself; negative: nothing does
+  std::vector<Box3> own(count);                         // in the axes of the node
   for (size_t i = 0; i < count; ++i) {
     const TracedObject& o = w.flat.objects[first + i];
     own[i] = transformed(w.local_box(o), *o.place);
-    if (own[i].empty()) radius[o.node] = std::max(radius[o.node], 10.0);   // without bounds: motion_bound is at its largest
+    if (own[i].empty())
+      radius[o.node] = std::max(radius[o.node], 10.0);  // without bounds: motion_bound is at its largest
     if (own[i].empty()) continue;
     const Vec3 a = own[i].low, b = own[i].high;
-    radius[o.node] = std::max(radius[o.node], length(Vec3{std::fmax(-a.x, b.x), std::fmax(-a.y, b.y), std::fmax(-a.z, b.z)}));
+    radius[o.node] =
+        std::max(radius[o.node], length(Vec3{std::fmax(-a.x, b.x), std::fmax(-a.y, b.y), std::fmax(-a.z, b.z)}));
   }
   nodes.resize(w.flat.nodes.size());
   parallel_for(0, nodes.size(), 16, [&](size_t b, size_t e) {
@@ -132,8 +140,10 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   std::vector<uint32_t> members;
   for (uint32_t i = 0; i < count; ++i) {
     bounds.grow(whole[i]);
-    if (over[i].empty()) unbounded.push_back(static_cast<uint32_t>(first) + i);
-    else members.push_back(i);
+    if (over[i].empty())
+      unbounded.push_back(static_cast<uint32_t>(first) + i);
+    else
+      members.push_back(i);
   }
   arrange(tiles, members, whole, [&](Tile& tile, std::span<const uint32_t> mine) { fill(tile, mine, over); });
   for (const auto& tile : tiles.tiles)
@@ -142,11 +152,13 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   tiles.close(world);
 }
 
-// One set for each number of times.
+// One set for what rests in this window, and one for each number of times.
 void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<const std::vector<Box3>> boxes) {
   std::map<size_t, std::unique_ptr<PlacedSet>> sets;
   for (const uint32_t i : members) {
-    std::unique_ptr<PlacedSet>& set = sets[boxes[i].size()];
+    const uint32_t object = static_cast<uint32_t>(world.flat.fixed) + i;
+    const bool rests = nodes[world.flat.objects[object].node].at_rest();
+    std::unique_ptr<PlacedSet>& set = sets[rests ? 0 : boxes[i].size()];
     if (!set) {
       set = std::make_unique<PlacedSet>();
       set->world = &world;
@@ -154,10 +166,13 @@ void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<c
       set->origin = tile.origin;
       set->times = static_cast<unsigned>(boxes[i].size());
     }
-    set->objects.push_back(static_cast<uint32_t>(world.flat.fixed) + i);
+    set->objects.push_back(object);
     set->boxes.insert(set->boxes.end(), boxes[i].begin(), boxes[i].end());
   }
-  for (auto& [times, set] : sets) tile.sets.push_back(std::move(set));
+  for (auto& [times, set] : sets) {
+    if (times == 0) set->fill_inverse();
+    tile.sets.push_back(std::move(set));
+  }
 }
 
 }  // namespace suite

@@ -21,7 +21,8 @@ TraceContext PacketTracer::context(const Packet& packet) const {
   return c;
 }
 
-// Rays relative to the tile, advanced in double to where they enter its bounds. Lanes beyond the packet repeat its last.
+// Rays relative to the tile, advanced in double to where they enter its bounds. Lanes beyond the packet repeat its
+// last.
 void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const {
   for (uint32_t i = 0; i < kWidth; ++i) {
     const uint32_t j = std::min(i, packet.size - 1), r = packet.ray[j];
@@ -52,8 +53,10 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit
     reach_[r] = packet.advance[i] + double{rh.ray.tfar[i]};
     const bool direct = id < tile.direct.size();
     const uint32_t object = direct ? tile.direct[id] : tile.sets[id - tile.direct.size()]->objects[rh.hit.instID[0][i]];
-    if (world_.flat.objects[object].mesh != kNone) finish(tile, direct, rays_[r], object, rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
-    else finish_exact(tile.scale, rays_[r], object, reach_[r], hits[r]);
+    if (world_.flat.objects[object].mesh != kNone)
+      finish(tile, direct, rays_[r], object, rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
+    else
+      finish_exact(tile.scale, rays_[r], object, reach_[r], hits[r]);
   }
 }
 
@@ -73,9 +76,12 @@ void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<ui
 }
 
 // How far off a surface rays must start for what moving geometry is seen aside from its place by, m.
-static double aside(const MovingPart* moving, const TracedObject& o) { return o.node == kNone ? 0 : 2 * moving->nodes[o.node].bound; }
+static double aside(const MovingPart* moving, const TracedObject& o) {
+  return o.node == kNone ? 0 : 2 * moving->nodes[o.node].bound;
+}
 
-void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v, Hit& hit) const {
+void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u,
+                          float v, Hit& hit) const {
   const TracedObject& o = world_.flat.objects[object];
   const Mesh& m = world_.scene->meshes[o.mesh];
   const uint32_t* corner = &m.indices[3 * size_t{triangle}];
@@ -85,14 +91,15 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
   };
   const Vec3 p0 = vertex(0), e1 = vertex(1) - p0, e2 = vertex(2) - p0, p = p0 + e1 * double{u} + e2 * double{v};
   const Vec3 across = cross(e1, e2);
-  double reach = 0;   // largest coordinate that was rounded to float on the way to this hit, m
+  double reach = 0;  // largest coordinate that was rounded to float on the way to this hit, m
   if (direct) {
     // A translation only.
     hit.position = p + tile.origin;
     hit.normal = normalized(across);
     reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile.scale, 1e-6});
   } else {
-    const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+    const Affine3 to_world =
+        world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
     hit.position = to_world.point(m.origin + p);
     hit.normal = normalized(to_world.normal(across));
     // The winding turns round under a mirror; the front side stays the front side.
@@ -100,7 +107,8 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
     const double floor = 1e-3 * world_.meshes[o.mesh].scale;
     const Vec3 q{std::fmax(std::fabs(p.x), floor), std::fmax(std::fabs(p.y), floor), std::fmax(std::fabs(p.z), floor)};
     for (size_t k = 0; k < 9; k += 3)
-      reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y + std::fabs(to_world.a[k + 2]) * q.z);
+      reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y +
+                                  std::fabs(to_world.a[k + 2]) * q.z);
   }
   hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * length(hit.position) + aside(moving_, o));
   hit.distance = dot(hit.position - ray.origin, ray.direction);
@@ -111,10 +119,12 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
   hit.v = v;
 }
 
-// `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the tile.
+// `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the
+// tile.
 void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const {
   const TracedObject& o = world_.flat.objects[object];
-  const Affine3 to_world = world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+  const Affine3 to_world =
+      world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
   const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, o);
   auto found = world_.meet(ray, object, to_world, 0, near - window, near + window);
@@ -128,7 +138,8 @@ void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, d
   hit.normal = normalized(to_world.normal(found->normal));
   if (to_world.determinant() < 0) hit.normal = -hit.normal;
   // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
-  const double step = scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
+  const double step =
+      scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
   hit.step = static_cast<float>(step + aside(moving_, o));
   hit.time = ray.time;
   hit.object = object;
@@ -139,7 +150,8 @@ void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, d
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
   const TracedObject& o = world_.flat.objects[object];
   const Ray& ray = rays_[r];
-  const auto found = world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
+  const auto found =
+      world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
   if (!found) return;
   reach_[r] = found->t;
   if (hit) finish_exact(0, ray, object, found->t, *hit);

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "trace/embree_internal.h"
 #include "trace/primitive_hit.h"
 
@@ -14,19 +15,20 @@ namespace {
 template <class T>
 struct Inward {
   Vec3 base;
-  const T* a;   // row-major
+  const T* a;  // row-major
   Vec3 vector(Vec3 v) const {
-    return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z, a[6] * v.x + a[7] * v.y + a[8] * v.z};
+    return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z,
+            a[6] * v.x + a[7] * v.y + a[8] * v.z};
   }
 };
 
 // A ray inside an instance: unit direction, its start where it enters the box.
 struct LocalRay {
   Vec3 origin, direction;
-  double enter;     // along the ray in ENU, m
-  double stretch;   // local length of one metre
-  double reach;     // local
-  unsigned id;      // of the float ray outside
+  double enter;    // along the ray in ENU, m
+  double stretch;  // local length of one metre
+  double reach;    // local
+  unsigned id;     // of the float ray outside
 };
 
 // The stretch of the ray between near and far that lies in the instance's box; false when there is none.
@@ -54,20 +56,24 @@ bool go_in(const Inward<T>& inward, const Box3& box, const Ray& ray, double near
 }
 
 // An object as the ray sees it at its time.
-bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray& ray, double near, double far, LocalRay& out) {
-  if (!set.moving) {
+bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray& ray, double near, double far,
+           LocalRay& out) {
+  if (!set.inverse.empty()) {
     const PlacedSet::Inverse& inverse = set.inverse[prim];
     return go_in(Inward<float>{inverse.base, inverse.linear}, mesh.room, ray, near, far, out);
   }
   const TracedObject& o = set.world->flat.objects[set.objects[prim]];
   const Affine3 to_world = set.moving->to_world(o, ray.time), inverse = to_world.inverse();
-  return go_in(Inward<double>{to_world.point(set.world->scene->meshes[o.mesh].origin), inverse.a.data()}, mesh.room, ray, near, far, out);
+  return go_in(Inward<double>{to_world.point(set.world->scene->meshes[o.mesh].origin), inverse.a.data()}, mesh.room,
+               ray, near, far, out);
 }
 
 // Where the unrounded ray meets an exact surface, from the packet's start on.
-std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near, double far) {
+std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near,
+                           double far) {
   const TracedObject& o = set.world->flat.objects[object];
-  const auto found = set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
+  const auto found =
+      set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
   return found ? std::optional<double>(found->t) : std::nullopt;
 }
 
@@ -78,8 +84,8 @@ struct Entered {
   unsigned count = 0;
 };
 
-void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const TraceContext& context, const int* valid, RTCRayN* rays, unsigned n,
-               Entered& in) {
+void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const TraceContext& context,
+               const int* valid, RTCRayN* rays, unsigned n, Entered& in) {
   for (unsigned i = 0; i < n; ++i) {
     if (!valid[i]) continue;
     const unsigned lane = RTCRayN_id(rays, n, i);
@@ -91,9 +97,12 @@ void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const
 }
 
 void load(const LocalRay& r, unsigned k, RTCRay8& q) {
-  q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y), q.org_z[k] = static_cast<float>(r.origin.z);
-  q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y), q.dir_z[k] = static_cast<float>(r.direction.z);
-  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id, q.flags[k] = 0;
+  q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y),
+  q.org_z[k] = static_cast<float>(r.origin.z);
+  q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y),
+  q.dir_z[k] = static_cast<float>(r.direction.z);
+  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id,
+  q.flags[k] = 0;
 }
 
 void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -135,8 +144,8 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(outer, args->N, i);
-    const auto t = meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(outer, args->N, i),
-                        RTCRayN_tfar(outer, args->N, i));
+    const auto t = meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane],
+                        RTCRayN_tnear(outer, args->N, i), RTCRayN_tfar(outer, args->N, i));
     if (!t) continue;
     RTCRayN_tfar(outer, args->N, i) = static_cast<float>(*t);
     RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
@@ -148,11 +157,13 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
 
 void intersect_placed(const RTCIntersectFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  const uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
   if (mesh != kNone) return intersect_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
-  if (o.mesh != kNone) intersect_mesh(args, set, o.mesh);
-  else intersect_exact(args, set, set.objects[args->primID]);
+  if (o.mesh != kNone)
+    intersect_mesh(args, set, o.mesh);
+  else
+    intersect_exact(args, set, set.objects[args->primID]);
 }
 
 void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
@@ -176,7 +187,7 @@ void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& se
 
 void occlude_placed(const RTCOccludedFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  const uint32_t mesh = set.moving ? kNone : set.inverse[args->primID].mesh;
+  const uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
   if (mesh != kNone) return occlude_mesh(args, set, mesh);
   const TracedObject& o = set.world->flat.objects[set.objects[args->primID]];
   if (o.mesh != kNone) return occlude_mesh(args, set, o.mesh);
@@ -184,8 +195,8 @@ void occlude_placed(const RTCOccludedFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(args->ray, args->N, i);
-    if (meet(set, set.objects[args->primID], context->rays[context->packet->ray[lane]], context->packet->advance[lane], RTCRayN_tnear(args->ray, args->N, i),
-             RTCRayN_tfar(args->ray, args->N, i)))
+    if (meet(set, set.objects[args->primID], context->rays[context->packet->ray[lane]], context->packet->advance[lane],
+             RTCRayN_tnear(args->ray, args->N, i), RTCRayN_tfar(args->ray, args->N, i)))
       RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
   }
 }
@@ -202,6 +213,20 @@ void placed_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 }  // namespace
+
+void PlacedSet::fill_inverse() {
+  inverse.resize(objects.size());
+  parallel_for(0, objects.size(), 4096, [&](size_t b, size_t e) {
+    for (size_t k = b; k < e; ++k) {
+      const TracedObject& o = world->flat.objects[objects[k]];
+      inverse[k].mesh = o.mesh;
+      if (o.mesh == kNone) continue;
+      const Affine3 place = moving ? moving->to_world(o, moving->window.begin) : *o.place, back = place.inverse();
+      inverse[k].base = place.point(world->scene->meshes[o.mesh].origin);
+      for (size_t j = 0; j < 9; ++j) inverse[k].linear[j] = static_cast<float>(back.a[j]);
+    }
+  });
+}
 
 void PlacedSet::attach(RTCScene scene, unsigned id) {
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);

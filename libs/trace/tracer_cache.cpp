@@ -19,7 +19,8 @@ bool at_rest(const MovingPart& part) {
 }
 }  // namespace
 
-TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter)
+TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic,
+                         std::shared_ptr<const HitFilter> filter)
     : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter))) {}
 TracerCache::~TracerCache() = default;
 
@@ -40,8 +41,10 @@ std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
     for (uint32_t n = 0; n < part.nodes.size() && same; ++n) {
       const MovingPart::Keys& there = part.nodes[n];
       if (there.poses.empty()) continue;
-      if (!(world_->pose(n, window.begin) == there.poses.front())) same = false;
-      else same = MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
+      if (!(world_->pose(n, window.begin) == there.poses.front()))
+        same = false;
+      else
+        same = MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
     }
     if (same) return recent(k);
   }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes scene.yaml and sim.yaml of a town at night into a folder: make_scene.py FOLDER [COLUMNS ROWS]
 
-Ten streets of 600 m with 1000 street lamps (two kinds of light), rows of houses with some 300 lit windows, a quarter moon.
+Ten streets of 600 m with 1000 street lamps (two kinds of light), rows of houses with some 300 lit windows, a gibbous moon.
 Needs Python 3 and its standard library only.
 """
 import os

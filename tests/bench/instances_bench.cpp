@@ -64,7 +64,8 @@ Scene forest(size_t instances, uint32_t bases) {
     Placement p;
     const double scale = 0.5 + rng.uniform();
     p.to_parent = translation({(rng.uniform() - 0.5) * side, (rng.uniform() - 0.5) * side, rng.uniform() * 3}) *
-                  rotation(normalized(Vec3{rng.uniform() - 0.5, rng.uniform() - 0.5, 1}), 6 * rng.uniform()) * scaling({scale, scale, scale * (1 + rng.uniform())});
+                  rotation(normalized(Vec3{rng.uniform() - 0.5, rng.uniform() - 0.5, 1}), 6 * rng.uniform()) *
+                  scaling({scale, scale, scale * (1 + rng.uniform())});
     p.target = static_cast<uint32_t>(rng.uniform() * bases);
     s.groups[0].placements.push_back(p);
   }
@@ -77,7 +78,8 @@ std::vector<Ray> rays_of(double side, bool coherent) {
   Pcg32 rng(2);
   for (size_t b = 0; b < 16384; ++b)
     for (size_t k = 0; k < 64; ++k) {
-      const double x = (static_cast<double>(b % 128 * 8 + k % 8) / 1024 - 0.5) * side * 0.5, y = (static_cast<double>(b / 128 * 8 + k / 8) / 1024 - 0.5) * side * 0.5;
+      const double x = (static_cast<double>(b % 128 * 8 + k % 8) / 1024 - 0.5) * side * 0.5,
+                   y = (static_cast<double>(b / 128 * 8 + k / 8) / 1024 - 0.5) * side * 0.5;
       Ray r{{x, y, 60}, normalized(Vec3{0.2, 0.1, -1}), 0};
       if (!coherent) {
         r.origin.z = 4 * rng.uniform();
@@ -123,8 +125,10 @@ struct Stock {
       rtcSetSceneFlags(one, RTC_SCENE_FLAG_ROBUST);
       rtcSetSceneBuildQuality(one, RTC_BUILD_QUALITY_HIGH);
       RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m.positions.data(), 0, 12, m.vertex_count());
-      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m.indices.data(), 0, 12, m.triangle_count());
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m.positions.data(), 0, 12,
+                                 m.vertex_count());
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m.indices.data(), 0, 12,
+                                 m.triangle_count());
       rtcCommitGeometry(g);
       rtcAttachGeometry(one, g);
       rtcReleaseGeometry(g);
@@ -168,9 +172,12 @@ struct Stock {
       for (size_t k = 0; k < 8; ++k) {
         const Ray& r = rays[i + k];
         valid[k] = -1;
-        rh.ray.org_x[k] = static_cast<float>(r.origin.x), rh.ray.org_y[k] = static_cast<float>(r.origin.y), rh.ray.org_z[k] = static_cast<float>(r.origin.z);
-        rh.ray.dir_x[k] = static_cast<float>(r.direction.x), rh.ray.dir_y[k] = static_cast<float>(r.direction.y), rh.ray.dir_z[k] = static_cast<float>(r.direction.z);
-        rh.ray.tnear[k] = 0, rh.ray.tfar[k] = INFINITY, rh.ray.time[k] = 0, rh.ray.mask[k] = ~0u, rh.ray.id[k] = 0, rh.ray.flags[k] = 0;
+        rh.ray.org_x[k] = static_cast<float>(r.origin.x), rh.ray.org_y[k] = static_cast<float>(r.origin.y),
+        rh.ray.org_z[k] = static_cast<float>(r.origin.z);
+        rh.ray.dir_x[k] = static_cast<float>(r.direction.x), rh.ray.dir_y[k] = static_cast<float>(r.direction.y),
+        rh.ray.dir_z[k] = static_cast<float>(r.direction.z);
+        rh.ray.tnear[k] = 0, rh.ray.tfar[k] = INFINITY, rh.ray.time[k] = 0, rh.ray.mask[k] = ~0u, rh.ray.id[k] = 0,
+        rh.ray.flags[k] = 0;
         rh.hit.geomID[k] = rh.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       }
       rtcIntersect8(valid, top, &context, &rh);
@@ -183,7 +190,8 @@ struct Stock {
           const float* f = &m.positions[3 * size_t{m.indices[3 * size_t{rh.hit.primID[k]} + c]}];
           v[c] = {f[0], f[1], f[2]};
         }
-        const Vec3 at = p.to_parent.point(m.origin + v[0] + (v[1] - v[0]) * double{rh.hit.u[k]} + (v[2] - v[0]) * double{rh.hit.v[k]});
+        const Vec3 at = p.to_parent.point(m.origin + v[0] + (v[1] - v[0]) * double{rh.hit.u[k]} +
+                                          (v[2] - v[0]) * double{rh.hit.v[k]});
         const Vec3 normal = normalized(p.to_parent.normal(cross(v[1] - v[0], v[2] - v[0])));
         ++seen.hits;
         seen.mean += dot(at - rays[i + k].origin, rays[i + k].direction) + 0 * normal.x;
@@ -212,13 +220,16 @@ int main(int argc, char** argv) try {
     const Tracer tracer(scene);
     const double built = now();
     malloc_trim(0);
-    std::printf("%zu instances of %u objects, %zu triangles unfolded, %zu tiles\n", instances, bases, tracer.triangles(), tracer.tiles());
-    std::printf("load %.3f s, build %.3f s, together %.3f s; resident %.0f B an instance, at the peak %.0f B\n", loaded - start, built - loaded, built - start,
-                (memory("VmRSS:") - before) / count, (memory("VmHWM:") - before) / count);
+    std::printf("%zu instances of %u objects, %zu triangles unfolded, %zu tiles\n", instances, bases,
+                tracer.triangles(), tracer.tiles());
+    std::printf("load %.3f s, build %.3f s, together %.3f s; resident %.0f B an instance, at the peak %.0f B\n",
+                loaded - start, built - loaded, built - start, (memory("VmRSS:") - before) / count,
+                (memory("VmHWM:") - before) / count);
     const double between = memory("VmRSS:");
     const Stock stock(*scene);
     malloc_trim(0);
-    std::printf("Embree's own instances: build %.3f s, %.0f B an instance besides the scene\n", stock.seconds, (memory("VmRSS:") - between) / count);
+    std::printf("Embree's own instances: build %.3f s, %.0f B an instance besides the scene\n", stock.seconds,
+                (memory("VmRSS:") - between) / count);
     const double side = 2 * std::sqrt(count);
     for (const bool coherent : {true, false}) {
       const std::vector<Ray> rays = rays_of(side, coherent);
@@ -228,9 +239,11 @@ int main(int argc, char** argv) try {
         if (x.rays_per_second > a.rays_per_second) a = x;
         if (y.rays_per_second > b.rays_per_second) b = y;
       }
-      std::printf("%s: %.2f Mrays/s a thread, Embree's own %.2f (%+.1f %%); hits %zu and %zu, mean distance %.6f and %.6f m\n", coherent ? "coherent" : "incoherent",
-                  a.rays_per_second / 1e6, b.rays_per_second / 1e6, 100 * (a.rays_per_second / b.rays_per_second - 1), a.hits, b.hits,
-                  a.mean / static_cast<double>(a.hits), b.mean / static_cast<double>(b.hits));
+      std::printf(
+          "%s: %.2f Mrays/s a thread, Embree's own %.2f (%+.1f %%); hits %zu and %zu, mean distance %.6f and %.6f m\n",
+          coherent ? "coherent" : "incoherent", a.rays_per_second / 1e6, b.rays_per_second / 1e6,
+          100 * (a.rays_per_second / b.rays_per_second - 1), a.hits, b.hits, a.mean / static_cast<double>(a.hits),
+          b.mean / static_cast<double>(b.hits));
     }
   }
   std::remove(path.c_str());

@@ -1,9 +1,10 @@
 // Speed of the verbs of a fitted bundle and of making it ready, on one thread, one channel. Run by hand:
-//   build/release/bench/sqt_bench [--file=X.bsdf]      (default: the satin film of tests/data)
+//   build/release/bench/sqt_bench [--file=X.bsdf|X.sqt]      (default: the satin film of tests/data)
 #include <benchmark/benchmark.h>
 
 #include <cstring>
 
+#include "base/files.h"
 #include "base/parallel.h"
 #include "formats/measured/measured.h"
 #include "formats/sqt/sqt.h"
@@ -26,11 +27,14 @@ struct Fitted {
 const Fitted& fitted() {
   static const Fitted f = [] {
     Fitted made;
-    const auto function = std::get<0>(read_measured(g_file));
-    const sqt::AlignedSource source(*function, {});
-    const sqt::AlignedFit fit = sqt::encode_aligned(source, sqt::kDefaultQuality);
-    made.file = pack_sqt(fit, {}, {});
-    made.bundle = sqt::make_bundle(fit.data);
+    if (g_file.ends_with(".sqt")) {
+      made.file = read_bytes(g_file);
+    } else {
+      const auto function = std::get<0>(read_measured(g_file));
+      const sqt::AlignedSource source(*function, {});
+      made.file = pack_sqt(sqt::encode_aligned(source, sqt::kDefaultQuality), {}, {});
+    }
+    made.bundle = parse_sqt(made.file, g_file).bundle;
     Pcg32 random(3);
     for (int i = 0; i < 65536; ++i) {
       made.out.push_back(uniform_sphere({0.5 * random.uniform(), random.uniform()}));

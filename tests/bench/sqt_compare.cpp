@@ -4,9 +4,12 @@
 //   build/release/bench/sqt_compare FILE.bsdf ... [--direct]
 // The best point of the paper's curve is the one of least l1; ties go to fewer bytes. "At equal l1" searches the
 // aligned quality whose l1 does not exceed it; "at equal bytes" the one that needs no more bytes.
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <vector>
 
 #include "formats/measured/measured.h"
@@ -30,7 +33,7 @@ std::vector<Point> paper_curve(const sqt::Function& function, const sqt::Referen
     options.threshold = threshold;
     options.samples_per_cell_side = 2;
     const sqt::PaperData data = sqt::fit_paper(function, options);
-    const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(data)).back();
+    const sqt::Reference::Brief e = reference.brief(*sqt::make_bundle(data));
     curve.push_back({threshold, pack_sqt(data, {}, {}).size(), e.l1, e.cos_rmse});
   }
   return curve;
@@ -38,9 +41,9 @@ std::vector<Point> paper_curve(const sqt::Function& function, const sqt::Referen
 
 std::vector<Point> aligned_curve(const sqt::AlignedSource& source, const sqt::Reference& reference) {
   std::vector<Point> curve;
-  for (double quality = 0.005; quality < 6; quality *= 1.4) {
+  for (double quality = 0.005; quality < 6; quality *= 1.5) {
     const sqt::AlignedFit fit = sqt::encode_aligned(source, quality);
-    const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(fit.data)).back();
+    const sqt::Reference::Brief e = reference.brief(*sqt::make_bundle(fit.data));
     curve.push_back({quality, pack_sqt(fit, {}, {}).size(), e.l1, e.cos_rmse});
   }
   return curve;
@@ -48,16 +51,20 @@ std::vector<Point> aligned_curve(const sqt::AlignedSource& source, const sqt::Re
 
 void compare(const char* kind, const std::string& name, const sqt::Function& function) {
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu = std::clock();
   const sqt::Reference reference(function, 150000);
   const sqt::AlignedSource source(function, {});
   const sqt::FitResult plain = sqt::fit_to(source, reference, {});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double busy = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
   const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(plain.fit.data)).back();
   std::printf(
       "%s %s\n  aligned at default quality: %zu bytes  l1 %.2f %%  cos_rmse %.2f %%  total_error %.2f %%  max_weight "
-      "%.1f  fit %.1f s\n",
+      "%.1f  fit %.1f s (cpu %.1f s), peak %.0f MiB so far\n",
       kind, name.c_str(), pack_sqt(plain.fit, {}, {}).size(), 100 * e.l1, 100 * e.cos_rmse, 100 * e.total_error,
-      e.max_weight, seconds);
+      e.max_weight, seconds, busy, static_cast<double>(usage.ru_maxrss) / 1024);
   const std::vector<Point> aligned = aligned_curve(source, reference);
   std::printf("  %-34s | %-30s | %s\n", "paper: threshold bytes l1 cos_rmse", "aligned at equal l1: bytes ratio",
               "aligned at equal bytes: l1 ratio, cos_rmse ratio");

@@ -1,5 +1,5 @@
-// A sensor from outside: built by its own CMakeLists against the installed package, loaded, used; and what happens to those
-// that break the rules.
+// A sensor from outside: built by its own CMakeLists against the installed package, loaded, used; and what happens to
+// those that break the rules.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,13 @@ class Plugin : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TempFolder;
-    build_ = run_command("cd '" + folder_->path() + "' && cmake --install '" SUITE_BUILD_DIR "' --component sdk --prefix prefix && cmake -S '" SUITE_SOURCE_DIR "/tests/plugin' -B build -DCMAKE_PREFIX_PATH=\"$PWD/prefix\" && cmake --build build");
-    write_file(*folder_ / "scene.yaml", std::string_view("scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.5}}\nobjects: {p: {plane: {width: 0, depth: 0}, material: grey}}\nworld: [{place: p}]\n"));
+    build_ = run_command("cd '" + folder_->path() +
+                         "' && cmake --install '" SUITE_BUILD_DIR
+                         "' --component sdk --prefix prefix && cmake -S '" SUITE_SOURCE_DIR
+                         "/tests/plugin' -B build -DCMAKE_PREFIX_PATH=\"$PWD/prefix\" && cmake --build build");
+    write_file(*folder_ / "scene.yaml",
+               std::string_view("scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.5}}\nobjects: {p: {plane: "
+                                "{width: 0, depth: 0}, material: grey}}\nworld: [{place: p}]\n"));
     prep_ = run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/scene-prep scene.yaml -o scene.h5 -q");
   }
   static void TearDownTestSuite() {
@@ -26,8 +31,10 @@ class Plugin : public testing::Test {
   }
   // Renders one sensor with a plug-in of the example.
   static CommandResult render(const std::string& sensor, const std::string& plugin, const std::string& out) {
-    write_file(*folder_ / (out + ".yaml"), std::string_view("scene: scene.h5\nsky: {radiance: 1}\nsensors: [" + sensor + "]\n"));
-    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/dirsig-render " + out + ".yaml -o " + out + " -q --plugin build/lib" + plugin + ".so");
+    write_file(*folder_ / (out + ".yaml"),
+               std::string_view("scene: scene.h5\nsky: {radiance: 1}\nsensors: [" + sensor + "]\n"));
+    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/dirsig-render " + out + ".yaml -o " + out +
+                       " -q --plugin build/lib" + plugin + ".so");
   }
   static TempFolder* folder_;
   static CommandResult build_, prep_;
@@ -73,21 +80,26 @@ TEST_F(Plugin, OfAnotherVersionIsRefusedWithASentence) {
 }
 
 TEST_F(Plugin, WhatIsNoPluginIsRefused) {
-  CommandResult r = run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/dirsig-render grid.yaml --plugin scene.h5");
+  CommandResult r =
+      run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/dirsig-render grid.yaml --plugin scene.h5");
   EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("cannot be loaded as a plug-in"));
-  r = run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/dirsig-render grid.yaml --plugin build/libgrid_camera.so --plugin build/libgrid_camera.so");
+  r = run_command("cd '" + folder_->path() +
+                  "' && " SUITE_BIN_DIR
+                  "/dirsig-render grid.yaml --plugin build/libgrid_camera.so --plugin build/libgrid_camera.so");
   EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("there is a sensor kind 'grid_camera' already"));
 }
 
 TEST_F(Plugin, BadRaysAndExceptionsAreContained) {
   for (const std::string trouble : {"nan", "direction", "weight", "throw"}) {
-    const CommandResult r = render("{kind: troublemaker, name: bad, trouble: " + trouble + "}", "troublemaker", trouble);
+    const CommandResult r =
+        render("{kind: troublemaker, name: bad, trouble: " + trouble + "}", "troublemaker", trouble);
     ASSERT_EQ(r.code, 0) << trouble << r.err;
     EXPECT_THAT(r.err, HasSubstr("warning: 128 samples were not finite or negative and were left out"));
     const std::vector<double> image = EnviImage(*folder_ / (trouble + "/bad.img")).read_all();
-    for (size_t i = 1; i < image.size(); i += 2) EXPECT_NEAR(image[i], 0.5, 1e-6);  // the good pixels are as they should be
+    for (size_t i = 1; i < image.size(); i += 2)
+      EXPECT_NEAR(image[i], 0.5, 1e-6);  // the good pixels are as they should be
   }
   for (const std::string trouble : {"make", "accept", "task"}) {
     const CommandResult r = render("{kind: troublemaker, trouble: " + trouble + "}", "troublemaker", trouble);

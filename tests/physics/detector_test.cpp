@@ -18,17 +18,25 @@ SourceSpecs sun_at_60(double irradiance) {
   s.sun = SunSpec{dir_from_angles(60 * kDegree, 0.3), 0, Curve::constant(irradiance)};
   return s;
 }
-std::shared_ptr<Scene> plane(double reflectance) { return test::scene_of({test::quad(1000, 0, 0)}, {test::material("grey", test::lambert(reflectance))}); }
+std::shared_ptr<Scene> plane(double reflectance) {
+  return test::scene_of({test::quad(1000, 0, 0)}, {test::material("grey", test::lambert(reflectance))});
+}
 
-std::string camera(const std::string& detector, const std::string& lens = "", const std::string& array = "", const std::string& bands = "{name: a, center_um: 0.6, fwhm_um: 0.2, shape: rectangular}") {
-  return "kind: platform\nseed: 3\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: []\ninstruments:\n  - focal_length_mm: 100\n    f_number: 4\n" + lens +
-         "    arrays: [{columns: 40, rows: 40, pitch_um: 10, integration_time_s: 0.002, paths: 4, " + array + "bands: [" + bands + "], detector: " + detector + "}]\n";
+std::string camera(const std::string& detector, const std::string& lens = "", const std::string& array = "",
+                   const std::string& bands = "{name: a, center_um: 0.6, fwhm_um: 0.2, shape: rectangular}") {
+  return "kind: platform\nseed: 3\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: "
+         "[]\ninstruments:\n  - focal_length_mm: 100\n    f_number: 4\n" +
+         lens + "    arrays: [{columns: 40, rows: 40, pitch_um: 10, integration_time_s: 0.002, paths: 4, " + array +
+         "bands: [" + bands + "], detector: " + detector + "}]\n";
 }
 
 TEST(Chain, LambertPlaneThroughAnUnobscuredAperture) {
-  // L = rho E cos z / pi; electrons per m2 = t integral (L / G#) QE lambda / (h c) dlambda; G# = (1 + 4 N^2) / (tau pi).
+  // L = rho E cos z / pi; electrons per m2 = t integral (L / G#) QE lambda / (h c) dlambda; G# = (1 + 4 N^2) / (tau
+  // pi).
   PlatformKit kit;
-  kit.render(plane(0.3), sun_at_60(1500), camera("{quantum_efficiency: {wavelength_um: [0.4, 0.55, 0.8], value: [0.2, 0.9, 0.1]}, gain_e_per_dn: 1}", "    throughput: 0.8\n"));
+  kit.render(plane(0.3), sun_at_60(1500),
+             camera("{quantum_efficiency: {wavelength_um: [0.4, 0.55, 0.8], value: [0.2, 0.9, 0.1]}, gain_e_per_dn: 1}",
+                    "    throughput: 0.8\n"));
   const test::Shot& shot = kit.shots.at(0);
   const double L = 0.3 * 1500 * 0.5 / kPi, g = (1 + 4.0 * 16) / (0.8 * kPi);
   EXPECT_NEAR(g_number(4, 0.8), g, 1e-12);
@@ -40,15 +48,20 @@ TEST(Chain, LambertPlaneThroughAnUnobscuredAperture) {
     return m * (b * b * b - a * a * a) / 3 + c * (b * b - a * a) / 2;
   };
   const double integral = piece(0.5, 0.55, 0.4, 0.2, 0.55, 0.9) + piece(0.55, 0.7, 0.55, 0.9, 0.8, 0.1);  // um2
-  const double expected = 0.002 * L / g * integral * 1e-6 / (kPlanckConstant * kSpeedOfLight);  // per m2
+  const double expected = 0.002 * L / g * integral * 1e-6 / (kPlanckConstant * kSpeedOfLight);            // per m2
   const double electrons = shot.products.at(0).values[820] / (10e-6 * 10e-6);
-  std::printf("electrons per m2: %.8g, closed form %.8g, relative difference %.2g\n", electrons, expected, electrons / expected - 1);
+  std::printf("electrons per m2: %.8g, closed form %.8g, relative difference %.2g\n", electrons, expected,
+              electrons / expected - 1);
   EXPECT_NEAR(electrons / expected, 1, 1e-4);
 }
 
 TEST(Chain, Cos4FallsOffAndRadianceDoesNot) {
   PlatformKit kit;
-  kit.render(plane(0.3), sun_at_60(1500), "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: []\ninstruments:\n  - focal_length_mm: 10\n    f_number: 4\n    cos4: true\n    arrays: [{columns: 41, rows: 1, pitch_um: 250, integration_time_s: 0.002, paths: 4, bands: [{name: a, center_um: 0.6, fwhm_um: 0.2}], detector: {quantum_efficiency: 1, gain_e_per_dn: 1e6}}]\n");
+  kit.render(plane(0.3), sun_at_60(1500),
+             "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: "
+             "[]\ninstruments:\n  - focal_length_mm: 10\n    f_number: 4\n    cos4: true\n    arrays: [{columns: 41, "
+             "rows: 1, pitch_um: 250, integration_time_s: 0.002, paths: 4, bands: [{name: a, center_um: 0.6, fwhm_um: "
+             "0.2}], detector: {quantum_efficiency: 1, gain_e_per_dn: 1e6}}]\n");
   const test::Shot& s = kit.shots.at(0);
   const double x = 20 * 0.25 / 10, cosine = 1 / std::sqrt(1 + x * x);
   EXPECT_NEAR(s.products[0].values[40] / s.products[0].values[20], std::pow(cosine, 4), 1e-9);
@@ -58,7 +71,8 @@ TEST(Chain, Cos4FallsOffAndRadianceDoesNot) {
 TEST(Detector, NoiseHasItsMomentsAndTheSeedItsBits) {
   // Mean m e-, read noise r: counts have mean m / g + bias and variance (m + r^2) / g^2 + 1/12.
   PlatformKit kit;
-  const std::string text = camera("{quantum_efficiency: 0.5, gain_e_per_dn: 4, read_noise_e: 20, bias_dn: 100, dark_current_e_s: 50000, bits: 16}");
+  const std::string text = camera(
+      "{quantum_efficiency: 0.5, gain_e_per_dn: 4, read_noise_e: 20, bias_dn: 100, dark_current_e_s: 50000, bits: 16}");
   kit.render(plane(0.3), sun_at_60(5), text);
   kit.render(plane(0.3), sun_at_60(5), text);
   const auto& counts = kit.shots[0].products.at(1).values;
@@ -86,9 +100,12 @@ TEST(Detector, PoissonHasItsMeanAndVarianceOnBothBranches) {
 
 TEST(Detector, FullWellBitsAndBadPixels) {
   PlatformKit kit;
-  kit.render(plane(0.3), sun_at_60(1500), camera("{quantum_efficiency: 1, gain_e_per_dn: 1, full_well_e: 500, shot_noise: false, bits: 12}"));
+  kit.render(plane(0.3), sun_at_60(1500),
+             camera("{quantum_efficiency: 1, gain_e_per_dn: 1, full_well_e: 500, shot_noise: false, bits: 12}"));
   for (const double c : kit.shots[0].products[1].values) EXPECT_EQ(c, 500);
-  kit.render(plane(0.3), sun_at_60(1500), camera("{quantum_efficiency: 1, gain_e_per_dn: 0.01, shot_noise: false, bits: 12, bad_pixels: [[3, 2]], hot_fraction: 0.05, dead_fraction: 0.05}"));
+  kit.render(plane(0.3), sun_at_60(1500),
+             camera("{quantum_efficiency: 1, gain_e_per_dn: 0.01, shot_noise: false, bits: 12, bad_pixels: [[3, 2]], "
+                    "hot_fraction: 0.05, dead_fraction: 0.05}"));
   size_t dead = 0, full = 0;
   for (const double c : kit.shots[1].products[1].values) dead += c == 0, full += c == 4095;
   EXPECT_EQ(kit.shots[1].products[1].values[2 * 40 + 3], 0);
@@ -100,8 +117,13 @@ TEST(Detector, TdiGainsItsNumberOfStagesAndItsRoot) {
   // n stages collect n times the electrons of one, so the signal-to-noise ratio of shot noise grows by sqrt(n).
   PlatformKit kit;
   auto text = [](int stages) {
-    return strf("kind: platform\nmotion: {kind: straight, position_m: [0, 0, 100], heading_deg: 0, speed_m_s: 5}\ntasks: [{start: 0, stop: 0.512}]\ntruth: []\ninstruments:\n  - focal_length_mm: 100\n    f_number: 4\n"
-                "    arrays: [{columns: 16, pitch_um: 10, integration_time_s: 0.002, readout: {kind: line, line_rate_hz: 500}, tdi: {stages: %d}, paths: 4, bands: [{name: a, center_um: 0.6, fwhm_um: 0.2}], detector: {quantum_efficiency: 0.5, gain_e_per_dn: 1}}]\n", stages);
+    return strf(
+        "kind: platform\nmotion: {kind: straight, position_m: [0, 0, 100], heading_deg: 0, speed_m_s: 5}\ntasks: "
+        "[{start: 0, stop: 0.512}]\ntruth: []\ninstruments:\n  - focal_length_mm: 100\n    f_number: 4\n"
+        "    arrays: [{columns: 16, pitch_um: 10, integration_time_s: 0.002, readout: {kind: line, line_rate_hz: 500}, "
+        "tdi: {stages: %d}, paths: 4, bands: [{name: a, center_um: 0.6, fwhm_um: 0.2}], detector: {quantum_efficiency: "
+        "0.5, gain_e_per_dn: 1}}]\n",
+        stages);
   };
   std::vector<double> signal, snr;
   for (const int stages : {1, 16}) {
@@ -117,16 +139,21 @@ TEST(Detector, TdiGainsItsNumberOfStagesAndItsRoot) {
     snr.push_back(s.mean() / std::sqrt(s.variance()));
   }
   EXPECT_NEAR(signal[1] / signal[0], 16, 1e-6);
-  std::printf("TDI of 16 stages: signal x %.4f, signal-to-noise x %.3f (closed form 4)\n", signal[1] / signal[0], snr[1] / snr[0]);
+  std::printf("TDI of 16 stages: signal x %.4f, signal-to-noise x %.3f (closed form 4)\n", signal[1] / signal[0],
+              snr[1] / snr[0]);
   EXPECT_NEAR(snr[1] / snr[0], 4, 4 * 4 * std::sqrt(1.0 / 4096));
 }
 
 TEST(Detector, ChipsHaveTheirOwnResponsesAndGains) {
   PlatformKit kit;
   kit.render(plane(0.3), sun_at_60(1500),
-             "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ninstruments:\n  - focal_length_mm: 100\n    f_number: 4\n    arrays:\n      - rows: 3\n        pitch_um: 10\n        integration_time_s: 0.001\n        paths: 4\n"
+             "kind: platform\nmotion: {kind: static, position_m: [0, 0, 100]}\ntasks: [{start: 0}]\ntruth: [material, "
+             "instance, range, location, paths, hits, reflectance]\ninstruments:\n  - "
+             "focal_length_mm: 100\n    f_number: 4\n    arrays:\n      - rows: 3\n        pitch_um: 10\n        "
+             "integration_time_s: 0.001\n        paths: 4\n"
              "        bands: [{name: a, center_um: 0.6, fwhm_um: 0.1, shape: rectangular}]\n"
-             "        chips: [{columns: 5, offset_mm: [-0.05, 0], gain: 1.5}, {columns: 7, offset_mm: [0.06, 0.2], bands: [{name: a, center_um: 0.6, fwhm_um: 0.2, shape: rectangular}]}]\n"
+             "        chips: [{columns: 5, offset_mm: [-0.05, 0], gain: 1.5}, {columns: 7, offset_mm: [0.06, 0.2], "
+             "bands: [{name: a, center_um: 0.6, fwhm_um: 0.2, shape: rectangular}]}]\n"
              "        detector: {quantum_efficiency: 0.5, gain_e_per_dn: 1, shot_noise: false}\n");
   ASSERT_EQ(kit.shots.size(), 1u);
   const test::Shot& s = kit.shots[0];
@@ -134,12 +161,15 @@ TEST(Detector, ChipsHaveTheirOwnResponsesAndGains) {
   EXPECT_EQ(s.result.rows, 3u);
   const auto& e = s.products[0].values;
   for (int row = 0; row < 3; ++row) {
-    EXPECT_NEAR(e[static_cast<size_t>(12 * row + 8)] / e[static_cast<size_t>(12 * row + 2)], 2 / 1.5, 1e-6);  // twice the width, no gain
-    EXPECT_NEAR(s.result.radiance[static_cast<size_t>(12 * row + 8)], s.result.radiance[static_cast<size_t>(12 * row + 2)], 1e-4);
+    EXPECT_NEAR(e[static_cast<size_t>(12 * row + 8)] / e[static_cast<size_t>(12 * row + 2)], 2 / 1.5,
+                1e-6);  // twice the width, no gain
+    EXPECT_NEAR(s.result.radiance[static_cast<size_t>(12 * row + 8)],
+                s.result.radiance[static_cast<size_t>(12 * row + 2)], 1e-4);
   }
   // Truth stands beside each other too: the second chip looks 0.2 mm further up, 0.2 m on the ground.
   const size_t north = 4, columns = s.result.truth_names.size();
   ASSERT_EQ(s.result.truth_names[north], "north [m]");
+  EXPECT_EQ(columns, 9u);  // and of reflectance only the listed band's
   EXPECT_NEAR(s.result.truth[8 * columns + north] - s.result.truth[2 * columns + north], 0.2, 1e-3);
 }
 

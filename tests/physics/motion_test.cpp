@@ -23,7 +23,9 @@ struct Rotor {
 };
 Rotor rotor(double rate, TrackPtr hub) {
   Rotor r;
-  r.scene = scene_of({mesh_of({{0.2, -0.15, 0}, {5, -0.15, 0.1}, {5, 0.15, 0.1}, {0.2, 0.15, 0}}, {0, 1, 2, 0, 2, 3}, 0)}, {material("blade", lambert(0.5))});
+  r.scene =
+      scene_of({mesh_of({{0.2, -0.15, 0}, {5, -0.15, 0.1}, {5, 0.15, 0.1}, {0.2, 0.15, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
+               {material("blade", lambert(0.5))});
   r.hub = std::move(hub);
   SpinMotion motion;
   motion.rate = rate;
@@ -46,12 +48,14 @@ Rotor rotor(double rate, TrackPtr hub) {
 }
 
 TrackPtr turning_hub() {
-  return keyframe_track({{-1, {quat_about({0, 0, 1}, 0.2), {100, 50, 20}}}, {0.3, {quat_about(normalized(Vec3{1, 1, 0}), 0.5), {130, 52, 24}}}, {2, {quat_about({0, 1, 0}, -0.3), {180, 40, 22}}}});
+  return keyframe_track({{-1, {quat_about({0, 0, 1}, 0.2), {100, 50, 20}}},
+                         {0.3, {quat_about(normalized(Vec3{1, 1, 0}), 0.5), {130, 52, 24}}},
+                         {2, {quat_about({0, 1, 0}, -0.3), {180, 40, 22}}}});
 }
 
 TEST(Motion, RotorOnAMovingHubIsSeenWhereItIs) {
-  const Rotor r = rotor(2 * kPi * 5, turning_hub());   // 5 turns a second
-  const TimeSpan window{0.1, 0.6};                     // with a keyframe inside
+  const Rotor r = rotor(2 * kPi * 5, turning_hub());  // 5 turns a second
+  const TimeSpan window{0.1, 0.6};                    // with a keyframe inside
   const Tracer tracer(r.scene, std::nullopt, window);
   Pcg32 rng(3);
   TraceStatistics statistics;
@@ -61,10 +65,15 @@ TEST(Motion, RotorOnAMovingHubIsSeenWhereItIs) {
   int hits = 0, outside = 0;
   for (int i = 0; i < 20000; ++i) {
     const double t = window.begin + (window.end - window.begin) * rng.uniform();
-    const Affine3 pose = r.hub->at(t).affine() * r.spin->at(t).affine() * r.blade[rng.uniform() * 3 < 1 ? 0 : rng.uniform() < 0.5 ? 1 : 2];
+    const Affine3 pose = r.hub->at(t).affine() * r.spin->at(t).affine() *
+                         r.blade[rng.uniform() * 3 < 1 ? 0
+                                 : rng.uniform() < 0.5 ? 1
+                                                       : 2];
     // A point on the blade, well inside or well outside its edge, seen from a random place 30 m away.
     const bool inside = rng.uniform() < 0.7;
-    const double x = 0.3 + 4.6 * rng.uniform(), y = inside ? 0.29 * (rng.uniform() - 0.5) : (rng.uniform() < 0.5 ? 1 : -1) * (0.15 + edge + 0.002 * rng.uniform());
+    const double x = 0.3 + 4.6 * rng.uniform(),
+                 y = inside ? 0.29 * (rng.uniform() - 0.5)
+                            : (rng.uniform() < 0.5 ? 1 : -1) * (0.15 + edge + 0.002 * rng.uniform());
     const Vec3 point = pose.point({x, y, 0.1 * (x - 0.2) / 4.8});
     const Vec3 from = point + pose.vector({0, 0, rng.uniform() < 0.5 ? 1.0 : -1.0}) * 30.0;
     const Ray ray{from, normalized(point - from), t};
@@ -121,9 +130,10 @@ TEST(Motion, BlurOfARotorIsTheShareOfTimeItIsThere) {
   for (const double x : {0.5, 1.0, 2.5, 4.5}) {
     for (size_t i = 0; i < n; ++i) rays[i] = {{x * 0.6, x * 0.8, 9}, {0, 0, -1}, (static_cast<double>(i) + 0.5) / n};
     tracer.nearest(rays, hits, true, statistics);
-    const double share = static_cast<double>(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.hit(); })) / n;
+    const double share =
+        static_cast<double>(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.hit(); })) / n;
     const double expected = 3 * 2 * std::asin(0.15 / x) / (2 * kPi);
-    EXPECT_NEAR(share, expected, 42.0 / n + 1e-12) << x;   // two edges a blade, 21 passages
+    EXPECT_NEAR(share, expected, 42.0 / n + 1e-12) << x;  // two edges a blade, 21 passages
   }
 }
 
@@ -132,7 +142,8 @@ TEST(Motion, ExactSurfacesAndPlanesMoveToo) {
   scene->primitives = {{"ball", PrimitiveKind::sphere, {1}, 0}, {"floor", PrimitiveKind::plane, {0, 0}, 0}};
   StraightMotion east;
   east.speed = 100;
-  scene->tracks = {{"east", straight_track(east)}, {"rising", keyframe_track({{0, {{}, {0, 0, -10}}}, {2, {{}, {0, 0, -8}}}})}};
+  scene->tracks = {{"east", straight_track(east)},
+                   {"rising", keyframe_track({{0, {{}, {0, 0, -10}}}, {2, {{}, {0, 0, -8}}}})}};
   Placement ball, floor;
   ball.kind = floor.kind = TargetKind::primitive;
   ball.track = 0;
@@ -178,6 +189,72 @@ TEST(Motion, FastAndFarThingsKeepTheirShape) {
   }
 }
 
+TEST(Motion, TheSameBitsForAnyNumberOfThreads) {
+  const Rotor r = rotor(2 * kPi * 5, turning_hub());
+  Pcg32 rng(4);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 8192; ++i) {
+    const double t = 0.1 + 0.5 * rng.uniform();
+    const Vec3 hub = r.hub->at(t).translation;
+    rays.push_back({hub + Vec3{10 * (rng.uniform() - 0.5), 10 * (rng.uniform() - 0.5), 20},
+                    normalized(Vec3{0.1 * rng.uniform(), 0, -1}), t});
+  }
+  std::vector<std::vector<Hit>> results;
+  for (const int count : {1, 3}) {
+    set_threads(count);
+    const Tracer tracer(r.scene, std::nullopt, {0.1, 0.6});
+    std::vector<Hit> hits(rays.size());
+    parallel_for(0, rays.size(), 64, [&](size_t b, size_t e) {
+      const FlushDenormals flush;
+      TraceStatistics statistics;
+      tracer.nearest(std::span(rays).subspan(b, e - b), std::span(hits).subspan(b, e - b), true, statistics);
+    });
+    results.push_back(std::move(hits));
+  }
+  set_threads(0);
+  size_t found = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Hit &a = results[0][i], &b = results[1][i];
+    ASSERT_EQ(a.object, b.object);
+    if (!a.hit()) continue;
+    ++found;
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.u, b.u);
+  }
+  EXPECT_GT(found, 100u);
+}
+
+TEST(Motion, AnInstantIsExact) {
+  // With one time there is one pose: hits agree with a scene at rest placed there, and leave as closely as there.
+  const Rotor r = rotor(2 * kPi * 5, turning_hub());
+  const Tracer moving(r.scene, std::nullopt, {0.37, 0.37});
+  auto frozen = std::make_shared<Scene>(*r.scene);
+  frozen->tracks.clear();
+  for (Group& g : frozen->groups)
+    for (Placement& p : g.placements)
+      if (p.track != kNone)
+        p.to_parent = (p.track == 0 ? r.hub : r.spin)->at(0.37).affine() * p.to_parent, p.track = kNone;
+  const Tracer still(frozen);
+  TraceStatistics statistics;
+  Pcg32 rng(6);
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 hub = r.hub->at(0.37).translation;
+    const Ray ray{hub + Vec3{10 * (rng.uniform() - 0.5), 10 * (rng.uniform() - 0.5), 20}, normalized(Vec3{0.1, 0, -1}),
+                  0.37};
+    Hit a, b;
+    moving.nearest({&ray, 1}, {&a, 1}, true, statistics);
+    still.nearest({&ray, 1}, {&b, 1}, true, statistics);
+    ASSERT_EQ(a.hit(), b.hit());
+    if (!a.hit()) continue;
+    ++found;
+    EXPECT_LT(length(a.position - b.position), 5e-6);
+    EXPECT_FLOAT_EQ(a.step, b.step);
+  }
+  EXPECT_GT(found, 100);
+}
+
 TEST(Motion, AWindowThatIsNotCoveredIsAnError) {
   const Rotor r = rotor(1, turning_hub());
   EXPECT_THROW(Tracer(r.scene, std::nullopt, {0, 3}), Error);
@@ -214,13 +291,15 @@ TEST(Instances, AnyScaleMirroredAndTurned) {
   for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6})
     for (const double mirror : {1.0, -1.0})
       for (const double away : {0.0, 1e4, 1e7}) {
-        if (away * 1e-15 > scale * 1e-7) continue;   // double cannot place it that finely
+        if (away * 1e-15 > scale * 1e-7) continue;  // double cannot place it that finely
         auto scene = scene_of({box({-1, -1, -1}, {1, 1, 1}, 0, true)}, {material("m", lambert(0.5))});
-        const Affine3 place = translation(Vec3{0.6, 0.8, 0.1} * away) * rotation(normalized(Vec3{1, 2, 3}), 0.7) * scaling({mirror * scale, scale, 2 * scale});
+        const Affine3 place = translation(Vec3{0.6, 0.8, 0.1} * away) * rotation(normalized(Vec3{1, 2, 3}), 0.7) *
+                              scaling({mirror * scale, scale, 2 * scale});
         scene->groups[0].placements[0].to_parent = place;
         const Tracer tracer(scene);
         for (int i = 0; i < 50; ++i) {
-          const Vec3 point = place.point({1.9 * (rng.uniform() - 0.5), 1.9 * (rng.uniform() - 0.5), 1}), normal = normalized(place.normal({0, 0, 1})) * mirror;
+          const Vec3 point = place.point({1.9 * (rng.uniform() - 0.5), 1.9 * (rng.uniform() - 0.5), 1}),
+                     normal = normalized(place.normal({0, 0, 1})) * mirror;
           const Dir towards = normalized(normal * -1.0 + Vec3{0.1, 0.05, 0} * rng.uniform());
           const Ray ray{point - towards * (10 * scale), towards, 0};
           Hit hit;

@@ -1,6 +1,6 @@
-// Point spreads by the slanted edge: pictures of a black and white half plane are rendered and their modulation transfer
-// function measured and compared with the product of the pattern's own and the detector's sinc.
-// Based on: ISO 12233 (slanted-edge spatial frequency response), with the known instead of a fitted edge.
+// Point spreads by the slanted edge: pictures of a black and white half plane are rendered and their modulation
+// transfer function measured and compared with the product of the pattern's own and the detector's sinc. Based on: ISO
+// 12233 (slanted-edge spatial frequency response), with the known instead of a fitted edge.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,8 @@ std::shared_ptr<Scene> edge_scene() {
 }
 
 // MTF of a band at frequencies (cycles a pixel), from pixels sorted by their distance from the edge.
-std::vector<double> slanted_edge(const std::vector<double>& radiance, size_t bands, size_t band, const std::vector<double>& frequency) {
+std::vector<double> slanted_edge(const std::vector<double>& radiance, size_t bands, size_t band,
+                                 const std::vector<double>& frequency) {
   const double cosine = 1 / std::sqrt(1 + kSlope * kSlope);
   // Edge spread in bins of a quarter pixel.
   constexpr double bin = 0.25, reach = 22;
@@ -34,7 +35,8 @@ std::vector<double> slanted_edge(const std::vector<double>& radiance, size_t ban
       const double x = (c + 0.5 - 0.5 * kColumns), y = (0.5 * kRows - r - 0.5), d = (x - kSlope * y) * cosine;
       const double k = std::floor((d + reach) / bin);
       if (k < 0 || k >= static_cast<double>(sum.size())) continue;
-      sum[static_cast<size_t>(k)] += radiance[(static_cast<size_t>(r) * kColumns + static_cast<size_t>(c)) * bands + band];
+      sum[static_cast<size_t>(k)] +=
+          radiance[(static_cast<size_t>(r) * kColumns + static_cast<size_t>(c)) * bands + band];
       ++count[static_cast<size_t>(k)];
     }
   std::vector<double> line;
@@ -73,8 +75,15 @@ double airy_mtf(double cycles_per_pixel, double um, double f_number) {
 }
 
 double worst_error(PlatformKit& kit, const Case& c) {
-  const std::string text = strf("kind: platform\nmotion: {kind: static, position_m: [0, 0, %g]}\ntasks: [{start: 0}]\ntruth: []\ninstruments:\n  - focal_length_mm: 100\n    ", kHeight) + c.optics +
-                           strf("\n    arrays: [{columns: %d, rows: %d, pitch_um: 10, paths: %d, spectral_step_um: 0.02, bands: [", kColumns, kRows, c.paths) + c.bands + "]}]\n";
+  const std::string text =
+      strf(
+          "kind: platform\nmotion: {kind: static, position_m: [0, 0, %g]}\ntasks: [{start: 0}]\ntruth: "
+          "[]\ninstruments:\n  - focal_length_mm: 100\n    ",
+          kHeight) +
+      c.optics +
+      strf("\n    arrays: [{columns: %d, rows: %d, pitch_um: 10, paths: %d, spectral_step_um: 0.02, bands: [", kColumns,
+           kRows, c.paths) +
+      c.bands + "]}]\n";
   SourceSpecs sources;
   sources.sky = test::uniform_sky(1, false);
   kit.shots.clear();
@@ -83,7 +92,8 @@ double worst_error(PlatformKit& kit, const Case& c) {
   double worst = 0;
   for (size_t b = 0; b < c.mtf.size(); ++b) {
     const std::vector<double> measured = slanted_edge(kit.shots.at(0).result.radiance, c.mtf.size(), b, frequency);
-    for (size_t i = 0; i < frequency.size(); ++i) worst = std::max(worst, std::fabs(measured[i] - c.mtf[b](frequency[i]) * detector_mtf(frequency[i])));
+    for (size_t i = 0; i < frequency.size(); ++i)
+      worst = std::max(worst, std::fabs(measured[i] - c.mtf[b](frequency[i]) * detector_mtf(frequency[i])));
   }
   std::printf("%-12s largest error of the MTF up to Nyquist %.4f\n", c.name, worst);
   return worst;
@@ -109,7 +119,8 @@ TEST(Mtf, OfAnAiryPatternWhoseWidthFollowsTheWavelength) {
   PlatformKit kit;
   const Case pair{"airy",
                   "f_number: 12\n    psf: {kind: airy, tail: 0.002}",
-                  "{name: a, center_um: 0.45, fwhm_um: 0.02, shape: rectangular}, {name: b, center_um: 0.75, fwhm_um: 0.02, shape: rectangular}",
+                  "{name: a, center_um: 0.45, fwhm_um: 0.02, shape: rectangular}, {name: b, center_um: 0.75, fwhm_um: "
+                  "0.02, shape: rectangular}",
                   {[](double f) { return airy_mtf(f, 0.45, 12); }, [](double f) { return airy_mtf(f, 0.75, 12); }},
                   1024};
   EXPECT_LT(worst_error(kit, pair), 0.01);
@@ -129,14 +140,20 @@ TEST(Mtf, OfAnObscuredAperture) {
     constexpr int n = 600;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
-        const double x = 2 * (i + 0.5) / n - 1, y = 2 * (j + 0.5) / n - 1, r = std::hypot(x, y), s = std::hypot(x - shift, y);
+        const double x = 2 * (i + 0.5) / n - 1, y = 2 * (j + 0.5) / n - 1, r = std::hypot(x, y),
+                     s = std::hypot(x - shift, y);
         if (r > 1 || r < e) continue;
         ++one;
         both += s <= 1 && s >= e;
       }
     return both / one;
   };
-  EXPECT_LT(worst_error(kit, {"obscured", "f_number: 12\n    obscuration: 0.5\n    psf: {kind: airy, tail: 0.003}", kNarrow, {annular}, 512}), 0.01);
+  EXPECT_LT(worst_error(kit, {"obscured",
+                              "f_number: 12\n    obscuration: 0.5\n    psf: {kind: airy, tail: 0.003}",
+                              kNarrow,
+                              {annular},
+                              512}),
+            0.01);
 }
 
 TEST(Mtf, OfAPicture) {

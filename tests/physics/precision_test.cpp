@@ -152,5 +152,25 @@ TEST(Instancing, NestedSixtyFourDeepAgreesWithDoubleReference) {
   EXPECT_LT(length(hit.normal - normal), 1e-9);
 }
 
+// Coherent packets once missed a sheet in the upper face of a tile, because their rays began within an ulp of it.
+TEST(Precision, CoherentPacketsMissNoSheetWhereTheyBegin) {
+  auto scene = scene_of({quad(10, 4, 0), quad(10, 0, 0)}, {material("m", lambert(0.5))});
+  scene->groups[0].placements[1].to_parent = translation({0, 0, 6});
+  scene->groups[0].placements.push_back(scene->groups[0].placements[1]);
+  scene->groups[0].placements[2].to_parent = translation({0, 0, 7}) * rotation({0, 0, 1}, 0.5);
+  const Tracer tracer(scene);
+  const FlushDenormals flush;
+  TraceStatistics statistics;
+  Pcg32 random(9);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4000; ++i)
+    rays.push_back({{12 * random.uniform() - 6, 12 * random.uniform() - 6, 20}, normalized(Vec3{0.1 * random.uniform(), 0.1 * random.uniform(), -1}), 0});
+  std::vector<Hit> hits(rays.size());
+  for (const bool coherent : {true, false}) {
+    tracer.nearest(rays, hits, coherent, statistics);
+    EXPECT_EQ(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.object != 2; }), 0) << coherent;
+  }
+}
+
 }  // namespace
 }  // namespace suite::test

@@ -1,6 +1,6 @@
-// A Landsat-like push-broom from 705 km over relief: seven staggered sub-chip assemblies, nine bands in rows of their own.
-// Each place is seen by the bands one after the other and from other directions, so that relief shifts the bands against
-// each other (parallax).
+// A Landsat-like push-broom from 705 km over relief: seven staggered sub-chip assemblies, nine bands in rows of their
+// own. Each place is seen by the bands one after the other and from other directions, so that relief shifts the bands
+// against each other (parallax).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,10 +24,13 @@ std::shared_ptr<Scene> terrain() {
   std::vector<Vec3> v;
   std::vector<uint32_t> f;
   for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) v.push_back({i * step - half, j * step - half, relief(i * step - half, j * step - half)});
+    for (int i = 0; i < n; ++i)
+      v.push_back({i * step - half, j * step - half, relief(i * step - half, j * step - half)});
   for (uint32_t j = 0; j + 1 < n; ++j)
     for (uint32_t i = 0; i + 1 < n; ++i)
-      for (const uint32_t k : {j * n + i, j * n + i + 1, (j + 1) * n + i + 1, j * n + i, (j + 1) * n + i + 1, (j + 1) * n + i}) f.push_back(k);
+      for (const uint32_t k :
+           {j * n + i, j * n + i + 1, (j + 1) * n + i + 1, j * n + i, (j + 1) * n + i + 1, (j + 1) * n + i})
+        f.push_back(k);
   return test::scene_of({test::mesh_of(v, f, 0)}, {test::material("ground", test::lambert(0.3))});
 }
 
@@ -38,11 +41,22 @@ double chip_ahead(int chip) { return chip % 2 ? -4e-3 : 4e-3; }
 std::string broom() {
   std::string arrays;
   for (int b = 0; b < 9; ++b) {
-    arrays += strf("      - name: b%d\n        pitch_um: 10\n        integration_time_s: 0\n        readout: {kind: line, line_rate_hz: 1500, lines_per_capture: 512}\n        paths: 16\n        bands: [{name: b%d, center_um: %g, fwhm_um: 0.02}]\n        chips:\n", b, b, 0.45 + 0.1 * b);
-    for (int c = 0; c < kChips; ++c) arrays += strf("          - {columns: %d, offset_mm: [%g, %g]}\n", kChip, (c - 3) * kChip * kPitch * 1e3, (chip_ahead(c) + band_ahead(b)) * 1e3);
+    arrays += strf(
+        "      - name: b%d\n        pitch_um: 10\n        integration_time_s: 0\n        readout: {kind: line, "
+        "line_rate_hz: 1500, lines_per_capture: 512}\n        paths: 16\n        bands: [{name: b%d, center_um: %g, "
+        "fwhm_um: 0.02}]\n        chips:\n",
+        b, b, 0.45 + 0.1 * b);
+    for (int c = 0; c < kChips; ++c)
+      arrays += strf("          - {columns: %d, offset_mm: [%g, %g]}\n", kChip, (c - 3) * kChip * kPitch * 1e3,
+                     (chip_ahead(c) + band_ahead(b)) * 1e3);
   }
   // From 9.5 km before to 9.5 km behind: the rows look up to 8 km ahead or behind.
-  return strf("kind: platform\nmotion: {kind: straight, position_m: [0, -9500, %g], heading_deg: 0, speed_m_s: %g}\ntasks: [{start: 0, stop: 2.5333334}]\ntruth: [location]\ninstruments:\n  - focal_length_mm: 1410\n    arrays:\n", kHeight, kSpeed) + arrays;
+  return strf(
+             "kind: platform\nmotion: {kind: straight, position_m: [0, -9500, %g], heading_deg: 0, speed_m_s: "
+             "%g}\ntasks: [{start: 0, stop: 2.5333334}]\ntruth: [location]\ninstruments:\n  - focal_length_mm: 1410\n  "
+             "  arrays:\n",
+             kHeight, kSpeed) +
+         arrays;
 }
 
 TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
@@ -85,11 +99,12 @@ TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
       for (double north = -700; north <= 700; north += 70) {
         const double first = line_of(0, column, north), later = line_of(band, column, north);
         if (std::isnan(first) || std::isnan(later)) continue;
-        // Seen at heights h: band b stands kHeight - h above it, and sees it (offset / f)(kHeight - h) ahead. Place and height are
-        // interpolated like the line itself.
+        // Seen at heights h: band b stands kHeight - h above it, and sees it (offset / f)(kHeight - h) ahead. Place and
+        // height are interpolated like the line itself.
         const auto& l0 = of[0][static_cast<size_t>(first)][column];
         const double h = l0.up;
-        const double angle_first = (chip_ahead(chip) + band_ahead(0)) / kFocal, angle_later = (chip_ahead(chip) + band_ahead(band)) / kFocal;
+        const double angle_first = (chip_ahead(chip) + band_ahead(0)) / kFocal,
+                     angle_later = (chip_ahead(chip) + band_ahead(band)) / kFocal;
         const double expected = (angle_first - angle_later) * (kHeight - h) / per_line;
         const double flat = (angle_first - angle_later) * kHeight / per_line;
         const double slope = std::fabs(l0.up - of[0][static_cast<size_t>(first) + 1][column].up);
@@ -100,7 +115,10 @@ TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
         ++n;
       }
   }
-  std::printf("%d places at heights of %.0f to %.0f m, %.3f m pixels, %.3f m lines: parallax up to %.2f lines, predicted to %.3f lines\n", n, lowest, highest, gsd, per_line, largest, worst);
+  std::printf(
+      "%d places at heights of %.0f to %.0f m, %.3f m pixels, %.3f m lines: parallax up to %.2f lines, predicted to "
+      "%.3f lines\n",
+      n, lowest, highest, gsd, per_line, largest, worst);
   EXPECT_GT(n, 100);
   EXPECT_GT(largest, 1);
   EXPECT_LT(worst, 0.1);

@@ -17,8 +17,11 @@ namespace {
 using test::PlatformKit;
 
 std::string instrument(double half, double top, int sun, double soil, int paths) {
-  return strf("kind: rami\nname: r\nbands: [{name: b, center_um: 0.85, fwhm_um: 0.01, shape: rectangular}]\npatch: {origin_m: [%g, %g], size_m: [%g, %g]}\ntop_m: %g\nsun_zenith_deg: %d\nsun_azimuth_deg: 90\nirradiance: 2\nground_reflectance: %g\ntruth: []\npaths: %d\n",
-              -half, -half, 2 * half, 2 * half, top, sun, soil, paths);
+  return strf(
+      "kind: rami\nname: r\nbands: [{name: b, center_um: 0.85, fwhm_um: 0.01, shape: rectangular}]\npatch: {origin_m: "
+      "[%g, %g], size_m: [%g, %g]}\ntop_m: %g\nsun_zenith_deg: %d\nsun_azimuth_deg: 90\nirradiance: "
+      "2\nground_reflectance: %g\ntruth: []\npaths: %d\n",
+      -half, -half, 2 * half, 2 * half, top, sun, soil, paths);
 }
 
 struct Views {
@@ -35,7 +38,8 @@ Views views_of(const test::Shot& shot) {
       std::vector<std::string> cells;
       std::stringstream cell(line);
       for (std::string c; std::getline(cell, c, ',');) cells.push_back(c);
-      if (text.name == "r_brf.csv" && cells[0] == "principal") v.principal[std::stod(cells[1])] = {std::stod(cells[4]), std::stod(cells[5]), std::stod(cells[6])};
+      if (text.name == "r_brf.csv" && cells[0] == "principal")
+        v.principal[std::stod(cells[1])] = {std::stod(cells[4]), std::stod(cells[5]), std::stod(cells[6])};
       if (text.name == "r_fluxes.csv") v.flux[cells[1]] = {std::stod(cells[2]), std::stod(cells[3])};
     }
   }
@@ -60,7 +64,8 @@ Views render(const std::shared_ptr<Scene>& scene, double half, const std::string
 std::shared_ptr<Scene> canopy(double half, double r, double rho, double tau, double soil) {
   auto scene = std::make_shared<Scene>();
   scene->materials = {test::material("leaf", test::lambert(rho, tau)), test::material("soil", test::lambert(soil))};
-  scene->primitives = {{"disc", PrimitiveKind::disk, {r, 0}, 0}, {"ground", PrimitiveKind::plane, {2 * half, 2 * half}, 1}};
+  scene->primitives = {{"disc", PrimitiveKind::disk, {r, 0}, 0},
+                       {"ground", PrimitiveKind::plane, {2 * half, 2 * half}, 1}};
   Group root;
   Pcg32 random(7);
   const int count = static_cast<int>(3 * 4 * half * half / (kPi * r * r));
@@ -71,7 +76,8 @@ std::shared_ptr<Scene> canopy(double half, double r, double rho, double tau, dou
     Placement p;
     p.kind = TargetKind::primitive;
     p.to_parent = rotation({0, 0, 1}, 2 * kPi * random.uniform()) * rotation({1, 0, 0}, zenith);
-    p.to_parent.b = {half * (2 * random.uniform() - 1), half * (2 * random.uniform() - 1), r + (2 - 2 * r) * random.uniform()};
+    p.to_parent.b = {half * (2 * random.uniform() - 1), half * (2 * random.uniform() - 1),
+                     r + (2 - 2 * r) * random.uniform()};
     root.placements.push_back(p);
   }
   Placement ground;

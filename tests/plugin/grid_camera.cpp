@@ -17,7 +17,8 @@ class GridCamera final : public suite_sdk::Sensor {
     truth = {"material", "range"};
   }
   void ray(const suite_ray_request& request, suite_ray& ray) const override {
-    const double column = static_cast<double>(request.problem % size_) + request.u[0], row = static_cast<double>(request.problem / size_) + request.u[1];
+    const double column = static_cast<double>(request.problem % size_) + request.u[0],
+                 row = static_cast<double>(request.problem / size_) + request.u[1];
     ray.origin[0] = (column - 0.5 * size_) * gsd_;
     ray.origin[1] = (0.5 * size_ - row) * gsd_;
     ray.origin[2] = height_;

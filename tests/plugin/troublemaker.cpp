@@ -1,4 +1,5 @@
-// Does what a plug-in must not do, as the key `trouble` says: rays of NaN, of no direction, of infinite weight; exceptions.
+// Does what a plug-in must not do, as the key `trouble` says: rays of NaN, of no direction, of infinite weight;
+// exceptions.
 #include <suite_sensor.h>
 
 #include <cmath>
@@ -9,8 +10,10 @@ class Troublemaker final : public suite_sdk::Sensor {
   explicit Troublemaker(const suite_sdk::Keys& keys) : trouble_(keys.text("trouble", "none")) {
     if (trouble_ == "make") throw std::runtime_error("this one does not want to be made");
     const uint32_t state = add_state({gaussian("green", 0.55, 0.02)});
-    if (trouble_ == "task") add_capture(7, state, 4, 4, 0, 0, 16);
-    else add_capture(0, state, 4, 4, 0, 0, 16);
+    if (trouble_ == "task")
+      add_capture(7, state, 4, 4, 0, 0, 16);
+    else
+      add_capture(0, state, 4, 4, 0, 0, 16);
     tasks.push_back({sizeof(suite_task), "look", 0, 0});
   }
   void ray(const suite_ray_request& request, suite_ray& ray) const override {

@@ -29,7 +29,8 @@ struct PlatformKit {
     motion.clock = Clock({2026, 6, 21, 10, 30, 0});
     SensorContext context;
     context.curve = [](const Params& p) {
-      if (p.kind() == Params::Kind::map) return Curve(p.at("wavelength_um").as_numbers(), p.at("value").as_numbers(), Outside::zero);
+      if (p.kind() == Params::Kind::map)
+        return Curve(p.at("wavelength_um").as_numbers(), p.at("value").as_numbers(), Outside::zero);
       return Curve::constant(p.as_number());
     };
     context.deliver = [this](const Delivery& d) { shots.push_back({d.rows, d.result, d.products, d.texts}); };
@@ -61,6 +62,8 @@ inline SensorRay ray_of(const Sensor& sensor, const Capture& capture, size_t pro
   return sensor.ray({capture, problem, {u.data(), static_cast<size_t>(sensor.numbers())}, weights});
 }
 // Where a ray meets the plane z = height.
-inline Vec3 on_ground(const Ray& ray, double height = 0) { return ray.origin + ray.direction * ((height - ray.origin.z) / ray.direction.z); }
+inline Vec3 on_ground(const Ray& ray, double height = 0) {
+  return ray.origin + ray.direction * ((height - ray.origin.z) / ray.direction.z);
+}
 
 }  // namespace suite::test

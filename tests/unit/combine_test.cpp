@@ -85,6 +85,19 @@ TEST(Combine, PlacementsMotionsAndTimes) {
   EXPECT_THAT(message_of([&] { check_motion(*all, 0, 5, {}); }), HasSubstr("car in traffic is known from 60 to 70 s"));
 }
 
+TEST(Combine, MotionsKeepTheirDates) {
+  Scene s = part(48, 9, "t");
+  s.tracks = {{"car", keyframe_track({{0, {}}, {10, {{}, {100, 0, 0}}}})}};
+  s.epoch = "2024-05-01T10:01:00Z";
+  set_epoch(s, "2024-05-01T10:00:30Z");
+  EXPECT_EQ(s.tracks[0].track->covered().begin, 30);
+  EXPECT_LT(length(s.tracks[0].track->at(35).translation - Vec3{50, 0, 0}), 1e-9);
+  // Without an epoch of its own, second 0 is second 0.
+  s.epoch.clear();
+  set_epoch(s, "2025-01-01T00:00:00Z");
+  EXPECT_EQ(s.tracks[0].track->covered().begin, 30);
+}
+
 TEST(Combine, WhatCannotBeRelatedIsRefused) {
   std::vector<ScenePart> parts(2);
   parts[0] = {"a", part(48, 9, "t"), {}, nullptr};

@@ -129,6 +129,72 @@ TEST_F(SceneHdf, SameSceneSameBytes) {
   EXPECT_EQ(read_bytes(path_), read_bytes(folder_ / "other.h5"));
 }
 
+// Two Lambert plates with texture coordinates, layers, a temperature and a long cube: a camera that sees 0.5 to 0.6 um
+// needs the geometry only.
+TEST_F(SceneHdf, OnlyWhatIsNeededIsRead) {
+  Scene s = small_scene();
+  s.class_maps.clear(), s.map_bindings.clear(), s.property_maps.clear(), s.property_bindings.clear(), s.files.clear();
+  s.materials[1] = s.materials[0];
+  s.materials[1].id = "other";
+  const auto map = [&](MapKind kind, uint32_t channels, std::vector<float> values) {
+    PropertyMap m;
+    m.name = "map";
+    m.kind = kind;
+    m.width = 2, m.height = 1, m.channels = channels;
+    m.values = std::move(values);
+    s.property_maps.push_back(m);
+    s.property_bindings.push_back({0, static_cast<uint32_t>(s.property_maps.size() - 1)});
+    return &s.property_maps.back();
+  };
+  map(MapKind::temperature, 1, {290, 310});
+  s.temperatures = {{1, {"tabulated", {}, {0, 10}, {280, 300}, false, {SlabLayer{}}}}};
+  s.temperatures[0].spec.layers.clear();
+  write_scene(s, {}, path_);
+  LoadReport all, seen;
+  const Scene whole = read_scene(path_, {}, {}, &all);
+  EXPECT_EQ(all.left_out(), 0u);
+  EXPECT_EQ(whole.property_maps.size(), 1u);
+  const SceneNeeds visible{{{0.5, 0.6}}}, thermal{{{0.5, 0.6}, {9, 11}}};
+  const Scene part = read_scene(path_, {}, visible, &seen);
+  EXPECT_EQ(part.meshes[0].positions, whole.meshes[0].positions);
+  EXPECT_TRUE(part.meshes[0].uvs.empty());
+  EXPECT_TRUE(part.property_maps.empty());
+  EXPECT_TRUE(part.property_bindings.empty());
+  EXPECT_TRUE(part.temperatures.empty());
+  EXPECT_EQ(part.materials[0].temperature_k, 0);
+  EXPECT_TRUE(part.materials[0].thermal.empty());
+  const auto read = [&](const LoadReport& report, const char* name) {
+    return std::find(report.datasets.begin(), report.datasets.end(), name) != report.datasets.end();
+  };
+  for (const char* name : {"/geometry/uvs", "/property_maps/values"}) {
+    EXPECT_TRUE(read(all, name)) << name;
+    EXPECT_FALSE(read(seen, name)) << name;
+  }
+  EXPECT_EQ(seen.datasets.size() + 2, all.datasets.size());
+  EXPECT_EQ(seen.left_out(), 2u * 4 + 8 * 4 + 2 * 8 + 2 * 16 + 2 * 8);  // map, UVs, constants, table, densities
+  EXPECT_EQ(read_scene(path_, {}, thermal).property_maps.size(), 1u);
+  EXPECT_EQ(read_scene(path_, {}, thermal).temperatures.size(), 1u);
+}
+
+// Of a cube and of curves only what decides inside the window stays, and decides the same.
+TEST_F(SceneHdf, SpectraAreCutToTheWindow) {
+  Scene s = small_scene();
+  PropertyMap& cube = s.property_maps[0];
+  cube.channels = 5, cube.wavelength_um = {0.4, 0.5, 0.6, 0.7, 0.8}, cube.values.clear();
+  for (int i = 0; i < 10; ++i) cube.values.push_back(0.05f * static_cast<float>(i));
+  s.materials[0].surface.curves["reflectance"] =
+      Curve({0.3, 0.4, 0.5, 0.6, 0.7}, {0.1, 0.2, 0.3, 0.4, 0.5}, Outside::hold);
+  write_scene(s, {}, path_);
+  const Scene part = read_scene(path_, {}, {{{0.52, 0.58}}});
+  EXPECT_EQ(part.property_maps[0].wavelength_um, (std::vector<double>{0.5, 0.6}));
+  EXPECT_EQ(part.property_maps[0].values, (std::vector<float>{0.05f, 0.1f, 0.05f * 6, 0.05f * 7}));
+  EXPECT_EQ(part.materials[0].surface.curves.at("reflectance").wavelength_um(), (std::vector<double>{0.5, 0.6}));
+  EXPECT_DOUBLE_EQ(part.materials[0].surface.curves.at("reflectance").at(0.55), 0.35);
+  const Scene beyond = read_scene(path_, {}, {{{0.9, 1.0}}});
+  EXPECT_EQ(beyond.property_maps[0].wavelength_um, (std::vector<double>{0.8}));
+  EXPECT_DOUBLE_EQ(beyond.materials[0].surface.curves.at("reflectance").at(0.95), 0.5);
+}
+
 TEST_F(SceneHdf, EmptySceneRoundTrips) {
   Scene s;
   s.groups = {{"world", {}}};

@@ -24,7 +24,8 @@ class SceneMotion : public ::testing::Test {
  protected:
   SceneMotion() {
     write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    write_file(folder_ / "flight.csv", "time_s,east_m,north_m,up_m,heading_deg\n0,0,0,100,90\n10,500,0,100,90\n20,500,500,120,0\n");
+    write_file(folder_ / "flight.csv",
+               "time_s,east_m,north_m,up_m,heading_deg\n0,0,0,100,90\n10,500,0,100,90\n20,500,500,120,0\n");
   }
   Scene bake(const std::string& more) {
     write_file(folder_ / "s.yaml", kHead + more);
@@ -72,7 +73,8 @@ TEST_F(SceneMotion, StoredMotionsAreTheSameBitForBit) {
   for (size_t k = 0; k < made.tracks.size(); ++k) {
     EXPECT_EQ(read.tracks[k].name, made.tracks[k].name);
     EXPECT_EQ(read.tracks[k].track->covered().end, made.tracks[k].track->covered().end);
-    for (const double t : {0.0, 3.7, 10.0, 19.9}) EXPECT_EQ(read.tracks[k].track->at(t).affine(), made.tracks[k].track->at(t).affine()) << k;
+    for (const double t : {0.0, 3.7, 10.0, 19.9})
+      EXPECT_EQ(read.tracks[k].track->at(t).affine(), made.tracks[k].track->at(t).affine()) << k;
   }
   // The table of poses is an input like any other file.
   EXPECT_TRUE(std::any_of(inputs_.begin(), inputs_.end(), [](const InputFile& f) { return f.name == "flight.csv"; }));
@@ -102,13 +104,20 @@ TEST_F(SceneMotion, FaultsAreToldWithTheirLine) {
   bake("world:\n  - {place: tri, motion: {kind: keyframes, file: nothing.csv}}\n");
   EXPECT_THAT(report_.text(), HasSubstr("nothing.csv"));
   EXPECT_FALSE(report_.ok());
-  bake("world:\n  - {place: tri, motion: {kind: spin, position_m: [0, 0, 0], axis: [0, 0, 1], rate_deg_s: 1, speed: 3}}\n");
+  bake(
+      "world:\n  - {place: tri, motion: {kind: spin, position_m: [0, 0, 0], axis: [0, 0, 1], rate_deg_s: 1, speed: "
+      "3}}\n");
   EXPECT_THAT(report_.text(), HasSubstr("speed"));
   // Inside a group a latitude means nothing.
-  bake("groups:\n  g: [{place: tri, motion: {kind: static, latitude_deg: 48, longitude_deg: 9, height_m: 0}}]\nworld: [{place: g}]\n");
+  bake(
+      "groups:\n  g: [{place: tri, motion: {kind: static, latitude_deg: 48, longitude_deg: 9, height_m: 0}}]\nworld: "
+      "[{place: g}]\n");
   EXPECT_THAT(report_.text(), HasSubstr("origin"));
-  bake("world:\n  - {place: tri, motion: {kind: keyframes, keys: [{time_s: 0, position_m: [0, 0, 0]}, {time_s: 1, position_m: [0, 0, 0]}]}}\n"
-       "  - {place: tri, motion: {kind: keyframes, keys: [{time_s: 2, position_m: [0, 0, 0]}, {time_s: 3, position_m: [0, 0, 0]}]}}\n");
+  bake(
+      "world:\n  - {place: tri, motion: {kind: keyframes, keys: [{time_s: 0, position_m: [0, 0, 0]}, {time_s: 1, "
+      "position_m: [0, 0, 0]}]}}\n"
+      "  - {place: tri, motion: {kind: keyframes, keys: [{time_s: 2, position_m: [0, 0, 0]}, {time_s: 3, position_m: "
+      "[0, 0, 0]}]}}\n");
   EXPECT_THAT(report_.text(), HasSubstr("no time in common"));
 }
 

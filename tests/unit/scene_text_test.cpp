@@ -247,5 +247,53 @@ TEST_F(SceneText, EmptyAndForeignTexts) {
   EXPECT_THAT(message_of([&] { bake("just text"); }), HasSubstr("s.yaml:1:1"));
 }
 
+TEST_F(SceneText, TemperaturesAndLayers) {
+  const std::string tail = "objects:\n  tri: {obj: tri.obj}\nworld:\n  - {place: tri}\n";
+  const auto material = [&](const std::string& more) {
+    return "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2, " + more + "}\n" + tail;
+  };
+  Scene s = bake(material("temperature: {table: [[0, 280], [100, 300]], repeat: true}"));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  ASSERT_EQ(s.temperatures.size(), 1u);
+  EXPECT_EQ(s.temperatures[0].spec.model, "tabulated");
+  EXPECT_EQ(s.temperatures[0].spec.kelvins, (std::vector<double>{280, 300}));
+  EXPECT_TRUE(s.temperatures[0].spec.repeat);
+  s =
+      bake(material("thermal: {layers: [{thickness_m: 0.01, density_kg_m3: 1000, specific_heat_j_kg_k: [800, 0.5], "
+                    "conductivity_w_m_k: 2}]}"));
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  EXPECT_EQ(s.temperatures.at(0).spec.layers.at(0).specific_heat[1], 0.5);
+  EXPECT_THAT(findings(material("temperature: {table: [[0, 280], [0, 300]]}")), HasSubstr("s.yaml:3"));
+  EXPECT_THAT(findings(material("temperature: {table: [[0, 280, 1]]}")), HasSubstr("a point is [seconds, kelvin]"));
+  EXPECT_THAT(findings(material("temperature: {model: tabluated}")), HasSubstr("did you mean 'tabulated'?"));
+  EXPECT_THAT(findings(material("temperature_k: 300, temperature: {model: constant, kelvin: 300}")),
+              HasSubstr("either"));
+  EXPECT_THAT(
+      findings(material(
+          "thermal: {layers: [{thickness_m: 0, density_kg_m3: 1, specific_heat_j_kg_k: 1, conductivity_w_m_k: 1}]}")),
+      HasSubstr("thickness_m"));
+}
+
+TEST_F(SceneText, PartsOfMixturesAreWholeMaterials) {
+  // A 1 x 1 pixel RGB image in the plain PPM format, which every reader of images knows.
+  write_file(folder_ / "one.ppm", std::string_view("P3\n1 1\n255\n100 100 55\n"));
+  const std::string text =
+      "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2}\n  other: {model: lambert, reflectance: 0.1, "
+      "maps: [deep]}\n"
+      "  mix: {model: lambert, reflectance: 0.2, maps: [fractions]}\n"
+      "maps:\n  fractions: {type: mixture, file: one.ppm, materials: [grey, PART, grey], projection: uv}\n"
+      "  deep: {type: normal, file: one.ppm, projection: uv}\n"
+      "objects:\n  tri: {obj: tri.obj, materials: {grey: mix}}\nworld:\n  - {place: tri}\n  - {place: tri, material: "
+      "other}\n";
+  const auto with = [&](const std::string& part) {
+    std::string t = text;
+    return findings(t.replace(t.find("PART"), 4, part));
+  };
+  EXPECT_THAT(with("grey"), Not(HasSubstr("cannot be part")));
+  EXPECT_TRUE(report_.ok()) << report_.text();
+  EXPECT_THAT(with("other"), HasSubstr("material 'other' cannot be part of mixture 'fractions'"));
+  EXPECT_THAT(with("mix"), HasSubstr("material 'mix' cannot be part of mixture 'fractions'"));
+}
+
 }  // namespace
 }  // namespace suite

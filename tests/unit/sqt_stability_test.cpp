@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "math/sampling.h"
 #include "sqt/fit.h"
+#include "sqt/narrow_lobe.h"
 #include "sqt/scattered.h"
 #include "support/sqt_examples.h"
 
@@ -105,6 +106,39 @@ TEST(SqtStability, NarrowLobesAtEveryWidth) {
       EXPECT_NEAR(b->value(dir_from_angles(0.5, 0), dir_from_angles(0.5, kPi), 0) / peak, 1, 0.15) << width;
     }
   }
+}
+
+// A lobe of one third of a cell's width is a Dirac lobe with its energy; one of several cells stays in the cells.
+TEST(SqtStability, LobesNarrowerThanACellBecomeDirac) {
+  const int order = 7;  // cells of 0.5 deg
+  const double cell = std::sqrt(cell_solid_angle(order));
+  auto lobe_and_floor = [](double width) {
+    return std::make_shared<Analytic>(
+        [width](Dir out, Dir in) { return 0.2 / kPi + 0.3 * (test::glossy_value(out, in, width) - 0.1); });
+  };
+  EXPECT_EQ(split_narrow_lobe(lobe_and_floor(3 * cell), order).rest, nullptr);
+  const auto function = lobe_and_floor(cell / 3);
+  const NarrowLobe split = split_narrow_lobe(function, order);
+  ASSERT_NE(split.rest, nullptr);
+  const auto b = fit(*split.rest);
+  expect_sane(*b);
+  ASSERT_TRUE(b->info().has_delta());
+  const Dir out = dir_from_angles(0.5, 0.3);
+  const auto dirac = b->delta(out, 0);
+  ASSERT_TRUE(dirac.has_value());
+  EXPECT_LT(length(dirac->in - Dir{-out.x, -out.y, out.z}), 1e-9);
+  // The lobe's energy by a fine quadrature of the function itself.
+  double lobe = 0;
+  const int rings = 4000, spokes = 32;
+  for (int r = 0; r < rings; ++r)
+    for (int k = 0; k < spokes; ++k) {
+      const double theta = 8 * cell / 3 * (r + 0.5) / rings, phi = 2 * kPi * (k + 0.5) / spokes;
+      const Dir h = dir_from_angles(theta, phi), in = h * (2 * dot(h, out)) - out;
+      lobe += 0.3 * (test::glossy_value(out, in, cell / 3) - 0.1) * 4 * dot(h, out) * in.z * std::sin(theta) *
+              (8 * cell / 3 / rings) * (2 * kPi / spokes);
+    }
+  EXPECT_NEAR(dirac->total / lobe, 1, 0.01);
+  EXPECT_NEAR(b->total(out, 0) - dirac->total, 0.2, 4e-3);
 }
 
 TEST(SqtStability, LobesAreFollowedWhereverTheyPoint) {

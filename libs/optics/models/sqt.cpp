@@ -53,7 +53,7 @@ class Sqt final : public ScatterModel {
     f.resize(bundle_->channels());
     bundle_->value(out, in, f);
     for (size_t c = 0; c < f.size(); ++c) {
-      const double total = f[c] > 0 ? scattered(out, c) : 0;
+      const double total = f[c] > 0 ? bundle_->total(out, c) : 0;
       f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
     }
     magnitudes(out, W);
@@ -71,7 +71,14 @@ class Sqt final : public ScatterModel {
     const double first = 1 - s.t;
     const bool low = lobe_u < first;
     const double rest = low ? lobe_u / first : (lobe_u - first) / s.t;
-    const auto in = bundle_->sample(out, u, std::min(rest, 0x1.fffffffffffffp-1), low ? s.low : s.high);
+    const size_t channel = low ? s.low : s.high;
+    double within = rest;
+    if (has_delta()) {
+      const Dirac d = dirac(out, channel);
+      if (rest < d.share) return Sample{d.in, kDirac, true};
+      within = d.share < 1 ? (rest - d.share) / (1 - d.share) : 0;
+    }
+    const auto in = bundle_->sample(out, u, std::min(within, 0x1.fffffffffffffp-1), channel);
     if (!in) return std::nullopt;
     return Sample{*in, out.z * in->z > 0 ? 0 : 1, false};
   }
@@ -79,16 +86,40 @@ class Sqt final : public ScatterModel {
     thread_local std::vector<double> q;
     q.resize(bundle_->channels());
     bundle_->pdf(out, in, q);
+    if (has_delta())
+      for (size_t c = 0; c < q.size(); ++c) q[c] *= 1 - dirac(out, c).share;
     for (size_t k = 0; k < p.size(); ++k)
       p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
+  }
+  bool has_delta() const override { return bundle_->info().has_delta(); }
+  void delta_weight(Dir out, int, int, std::span<float> weight) const override {
+    thread_local std::vector<double> W;
+    magnitudes(out, W);
+    for (size_t i = 0; i < weight.size(); ++i) weight[i] = static_cast<float>(at_bin(W, i) * share(out, shape_[i]));
+  }
+  void delta_probability(Dir out, int, int, std::span<float> probability) const override {
+    for (size_t k = 0; k < probability.size(); ++k) probability[k] = static_cast<float>(share(out, knot_[k]));
   }
   bool spectrally_uniform_shape() const override { return bundle_->channels() == 1; }
   bool isotropic() const override { return bundle_->info().function.isotropic; }
   bool opaque() const override { return bundle_->info().function.domain == sqt::Domain::hemisphere; }
 
  private:
-  // What the cells scatter: the total without a Dirac lobe.
-  double scattered(Dir out, size_t channel) const { return bundle_->total(out, channel); }
+  static constexpr int kDirac = 2;  // lobe number; 0 and 1 are the reflected and the transmitted side
+  struct Dirac {
+    Dir in;
+    double share;  // of the total
+  };
+  Dirac dirac(Dir out, size_t channel) const {
+    const auto lobe = bundle_->delta(out, channel);
+    const double total = lobe ? bundle_->total(out, channel) : 0;
+    return total > 0 ? Dirac{lobe->in, std::min(1.0, lobe->total / total)} : Dirac{{0, 0, 1}, 0};
+  }
+  // The Dirac lobe's share between two channels.
+  double share(Dir out, const Between& b) const {
+    const double low = dirac(out, b.low).share;
+    return b.t > 0 ? (1 - b.t) * low + b.t * dirac(out, b.high).share : low;
+  }
   void magnitudes(Dir out, std::vector<double>& W) const {
     W.resize(bundle_->info().magnitude_um.size());
     bundle_->magnitude(out, W);
@@ -106,7 +137,7 @@ class Sqt final : public ScatterModel {
 // A glossy lobe over a diffuse floor whose colour changes, for the conformance tests.
 class Glossy final : public sqt::Function {
  public:
-  Glossy() {
+  explicit Glossy(double dirac = 0) : dirac_(dirac) {
     info_.name = "glossy";
     info_.wavelength_um = {0.65, 0.55, 0.45};
   }
@@ -121,20 +152,27 @@ class Glossy final : public sqt::Function {
     f[0] = 0.15 + 0.3 * lobe, f[1] = 0.06 + 0.8 * lobe, f[2] = 0.01 + 1.2 * lobe;
   }
 
+  sqt::Dirac dirac() const override { return dirac_ > 0 ? sqt::Dirac::mirror : sqt::Dirac::none; }
+  void dirac_total(Dir out, std::span<double> W) const override {
+    for (size_t c = 0; c < 3; ++c) W[c] = dirac_ * (1 + static_cast<double>(c)) * (1 - 0.5 * out.z);
+  }
+
  private:
   Info info_;
+  double dirac_;
 };
 
 std::vector<ModelSpec> examples() {
-  static const std::shared_ptr<const sqt::Bundle> bundle = [] {
+  auto fitted = [](double dirac) {
     sqt::AlignedSource::Options options;
     options.views = 9;
     options.base_order = 5;
     options.max_order = 7;
-    const sqt::AlignedSource source(Glossy(), options);
-    return sqt::make_bundle(sqt::encode_aligned(source, 0.1).data);
-  }();
-  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, bundle}};
+    const sqt::AlignedSource source(Glossy(dirac), options);
+    return std::shared_ptr<const sqt::Bundle>(sqt::make_bundle(sqt::encode_aligned(source, 0.1).data));
+  };
+  static const std::shared_ptr<const sqt::Bundle> plain = fitted(0), with_dirac = fitted(0.08);
+  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, plain}, {"sqt", {}, {}, {{"file", "lacquer.sqt"}}, with_dirac}};
 }
 
 }  // namespace

@@ -30,8 +30,7 @@ class Earth {
   };
   // Where a ray enters the Earth within `reach` (m, infinity allowed).
   std::optional<Meeting> meet(Vec3 origin, Dir direction, double reach) const;
-  // Start of a ray that leaves the surface.
-  static Vec3 leave(Vec3 position, Dir normal) { return position + normal * 1e-3; }
+  static constexpr float step = 1e-3f;  // m, how far rays that leave the surface must start off it
   uint32_t material() const { return material_; }
 
  private:

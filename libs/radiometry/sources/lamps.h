@@ -74,13 +74,10 @@ class Lamps {
   // which it met at an angle of the given cosine; 0 when that surface is met by chance only.
   double density(const LightReceiver& at, const Hit& hit, double distance, double cosine) const;
   size_t size() const;  // lamps in the tree
-  bool empty() const { return !any_; }
 
  private:
-  struct Shape;
   struct Core;
   std::unique_ptr<Core> core_;
-  bool any_ = false;
 };
 
 }  // namespace suite

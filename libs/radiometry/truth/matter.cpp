@@ -41,11 +41,12 @@ uint32_t id_of(What what, const TruthContext& c, const Node& node) {
     case What::material:
       return node.at.material;
     case What::instance:
+      if (!node.hit.hit()) return kNone;  // the Earth under the scene
       return c.tracer.objects()[node.hit.object].instance;
     case What::tag:
       break;
   }
-  return c.tracer.objects()[node.hit.object].tag;
+  return node.hit.hit() ? c.tracer.objects()[node.hit.object].tag : kNone;
 }
 
 struct Majority final : TruthCollector {

@@ -1,6 +1,6 @@
-// A spherical collector: radiance from all directions around a vertical axis in one round picture, the angle from the axis
-// growing linearly with the distance from the middle (equidistant projection). North is up; looking up, east is to the
-// left, as one sees it lying on one's back.
+// A spherical collector: radiance from all directions around a vertical axis in one round picture, the angle from the
+// axis growing linearly with the distance from the middle (equidistant projection). North is up; looking up, east is to
+// the left, as one sees it lying on one's back.
 #include <cmath>
 
 #include "sensor/kinds/simple.h"
@@ -41,7 +41,9 @@ class Fisheye final : public SimpleSensor {
 
 SensorRow fisheye_row() {
   return {"fisheye", "radiance from a hemisphere or more around the vertical, in one round picture",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<Fisheye>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<Fisheye>(p, c);
+          }};
 }
 
 }  // namespace suite

@@ -1,6 +1,7 @@
 // A framing camera: a two-dimensional array of square detectors behind a pinhole, all integrating at once.
 // Image coordinates: columns to the right, rows downwards as seen along the view direction.
-// Based on: Goodenough & Brown, section III-B (2-D framing arrays; samples over the pixel area and the integration time).
+// Based on: Goodenough & Brown, section III-B (2-D framing arrays; samples over the pixel area and the integration
+// time).
 #include <cmath>
 
 #include "math/vec.h"
@@ -12,7 +13,8 @@ namespace {
 
 class FrameCamera final : public Sensor {
  public:
-  FrameCamera(const Params& p, const SensorContext& context) : deliver_(context.deliver), name_(p.text("name", "camera")) {
+  FrameCamera(const Params& p, const SensorContext& context)
+      : deliver_(context.deliver), name_(p.text("name", "camera")) {
     bands_ = read_bands(p.at("bands"), context);
     state_ = read_state(p, bands_);
     truth_ = read_truth(p);
@@ -26,7 +28,8 @@ class FrameCamera final : public Sensor {
     position_ = {x, y, z};
     const auto [tx, ty, tz] = p.at("look_at_m").as_vec3();
     const Vec3 to = Vec3{tx, ty, tz} - position_;
-    if (!(length(to) > 0)) throw p.at("look_at_m").error("look_at_m is the position of the camera", "give another point");
+    if (!(length(to) > 0))
+      throw p.at("look_at_m").error("look_at_m is the position of the camera", "give another point");
     forward_ = normalized(to);
     Vec3 up{0, 0, 1};
     if (const auto u = p.find("up")) {
@@ -52,7 +55,8 @@ class FrameCamera final : public Sensor {
 
   SensorRay ray(const RayRequest& request) const override {
     const auto& [capture, problem, u, spectral] = request;
-    const double column = static_cast<double>(problem % capture.columns) + u[0], row = static_cast<double>(problem / capture.columns) + u[1];
+    const double column = static_cast<double>(problem % capture.columns) + u[0],
+                 row = static_cast<double>(problem / capture.columns) + u[1];
     const double x = (column - 0.5 * capture.columns) * pitch_, y = (row - 0.5 * capture.rows) * pitch_;
     SensorRay r;
     r.ray.origin = position_;
@@ -82,7 +86,9 @@ class FrameCamera final : public Sensor {
 
 SensorRow frame_camera_row() {
   return {"frame_camera", "2-D framing array behind a pinhole, global shutter",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<FrameCamera>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<FrameCamera>(p, c);
+          }};
 }
 
 }  // namespace suite

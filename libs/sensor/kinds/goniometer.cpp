@@ -1,8 +1,8 @@
-// A virtual goniometer: the BRDF of a patch of a scene, as samples that sqt-fit reads, so that a detailed tree becomes the
-// material of a coarser scene.
+// A virtual goniometer: the BRDF of a patch of a scene, as samples that sqt-fit reads, so that a detailed tree becomes
+// the material of a coarser scene.
 //
-// Rays come in from a few view zeniths all over the patch; what they would carry back is binned by the direction in which
-// the paths leave the scene. Under a sky of radiance 1 everywhere and without a sun, a bin holds the integral of
+// Rays come in from a few view zeniths all over the patch; what they would carry back is binned by the direction in
+// which the paths leave the scene. Under a sky of radiance 1 everywhere and without a sun, a bin holds the integral of
 // f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there.
 // Assumes: a patch whose mean does not depend on the view azimuth (the samples are isotropic), in a scene that repeats
 // itself or that is wider than light travels sideways.
@@ -17,12 +17,14 @@ namespace {
 
 class Goniometer final : public SimpleSensor {
  public:
-  Goniometer(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "goniometer"), patch_(read_patch(p.at("patch"))) {
+  Goniometer(const Params& p, const SensorContext& context)
+      : SimpleSensor(p, context, "goniometer"), patch_(read_patch(p.at("patch"))) {
     height_ = p.number_in("height_m", -1e7, 1e7, "m");
     back_ = p.number_in("distance_m", 0, 1e6, "m", 1000);
     for (const Params& z : p.at("view_zenith_deg").items()) {
       zeniths_.push_back(z.as_number_in(0, 89, "degrees") * kDegree);
-      if (zeniths_.size() > 1 && !(zeniths_.back() > zeniths_[zeniths_.size() - 2])) throw z.error("the view zeniths do not ascend");
+      if (zeniths_.size() > 1 && !(zeniths_.back() > zeniths_[zeniths_.size() - 2]))
+        throw z.error("the view zeniths do not ascend");
     }
     if (zeniths_.empty()) throw p.at("view_zenith_deg").error("there is no view zenith in the list");
     rings_ = static_cast<uint32_t>(p.integer("rings", 2, 256, 16));
@@ -54,14 +56,19 @@ class Goniometer final : public SimpleSensor {
       for (uint32_t ring = 0; ring < rings_; ++ring)
         for (uint32_t a = 0; a < azimuths; ++a) {
           // Rings are equal in z; the cosine's integral over a cell is its solid angle times its mean z.
-          const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins, phi = 2 * kPi * (a + 0.5) / azimuths, s = std::sqrt(1 - z * z);
+          const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins,
+                       phi = 2 * kPi * (a + 0.5) / azimuths, s = std::sqrt(1 - z * z);
           text += strf("%zu %.9g %.9g %.9g", v, s * std::cos(phi), s * std::sin(phi), z);
           for (size_t b = 0; b < bands_.size(); ++b)
-            text += strf(" %.7g", d.result.radiance[(v * capture_.bins + size_t{ring} * azimuths + a) * bands_.size() + b] / cell);
+            text +=
+                strf(" %.7g",
+                     d.result.radiance[(v * capture_.bins + size_t{ring} * azimuths + a) * bands_.size() + b] / cell);
           text += "\n";
         }
     d.texts.push_back({name_ + ".rawbh", std::move(text)});
-    d.description = "integral of BRDF times cosine over cells of the hemisphere; right under a sky of radiance 1 everywhere and no sun";
+    d.description =
+        "integral of BRDF times cosine over cells of the hemisphere; right under a sky of radiance 1 everywhere and no "
+        "sun";
     d.result.columns = 0;  // the table is the result; a picture of cells is none
   }
   Patch patch_;
@@ -74,7 +81,9 @@ class Goniometer final : public SimpleSensor {
 
 SensorRow goniometer_row() {
   return {"goniometer", "BRDF of a patch of a scene as samples for sqt-fit",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<Goniometer>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<Goniometer>(p, c);
+          }};
 }
 
 }  // namespace suite

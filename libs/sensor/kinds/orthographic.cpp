@@ -18,8 +18,11 @@ class Orthographic final : public SimpleSensor {
     done();
   }
   SensorRay ray(const RayRequest& r) const override {
-    const double column = static_cast<double>(r.problem % r.capture.columns) + r.u[0], row = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
-    return {{{grid_.origin.x + column * grid_.gsd_x, grid_.origin.y - row * grid_.gsd_y, height_}, {0, 0, -1}, moment(r.u[2])}};
+    const double column = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
+                 row = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
+    return {{{grid_.origin.x + column * grid_.gsd_x, grid_.origin.y - row * grid_.gsd_y, height_},
+             {0, 0, -1},
+             moment(r.u[2])}};
   }
 
  private:
@@ -32,7 +35,9 @@ class Orthographic final : public SimpleSensor {
 
 SensorRow orthographic_row() {
   return {"orthographic", "a map: parallel rays straight down, with map coordinates in its header",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<Orthographic>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<Orthographic>(p, c);
+          }};
 }
 
 }  // namespace suite

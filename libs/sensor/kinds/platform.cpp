@@ -1,7 +1,7 @@
 // The default sensor: a vehicle with instruments, each a lens over arrays of detectors with their timing.
 //
-// Rays are drawn over the detector's area, moved by the point-spread function, spread over the integration time, and sent
-// from where the instrument is at that time, so that blur, rolling-shutter skew and TDI come out by themselves.
+// Rays are drawn over the detector's area, moved by the point-spread function, spread over the integration time, and
+// sent from where the instrument is at that time, so that blur, rolling-shutter skew and TDI come out by themselves.
 // Based on: Goodenough & Brown, section III-B.
 #include "sensor/kinds/platform.h"
 
@@ -29,7 +29,8 @@ class Platform final : public Sensor {
       }
     }
     rows_ = lay_out(spec_.tasks, keys);
-    for (const Segment& s : spec_.segments) wide_ = wide_ || s.psf || spec_.instruments[spec_.arrays[s.array].instrument].lens.thin();
+    for (const Segment& s : spec_.segments)
+      wide_ = wide_ || s.psf || spec_.instruments[spec_.arrays[s.array].instrument].lens.thin();
   }
 
   std::string name() const override { return spec_.name; }
@@ -47,7 +48,8 @@ class Platform final : public Sensor {
     prepared_.window = capture.window;
     const TimeSpan span{capture.window.begin, capture.window.end};
     if (spec_.jitter) prepared_.vehicle = std::make_unique<JitterWindow>(*spec_.jitter, span);
-    for (const Attachment& a : instrument.chain) prepared_.chain.push_back(a.jitter ? std::make_unique<JitterWindow>(*a.jitter, span) : nullptr);
+    for (const Attachment& a : instrument.chain)
+      prepared_.chain.push_back(a.jitter ? std::make_unique<JitterWindow>(*a.jitter, span) : nullptr);
     prepared_.ready = true;
     if (capture.window.begin == capture.window.end) prepared_.still = pose(instrument, capture, capture.window.begin);
   }
@@ -59,14 +61,20 @@ class Platform final : public Sensor {
     const Instrument& instrument = spec_.instruments[array.instrument];
     const Readout& r = array.readout;
     const std::span<const double> u = request.u;
-    uint32_t column = static_cast<uint32_t>(request.problem % capture.columns), row = static_cast<uint32_t>(request.problem / capture.columns);
+    uint32_t column = static_cast<uint32_t>(request.problem % capture.columns),
+             row = static_cast<uint32_t>(request.problem / capture.columns);
 
     // Find the detector and the moment.
     double t = capture.window.begin;
     switch (r.kind) {
-      case Readout::Kind::global: break;
-      case Readout::Kind::rolling: t += row * r.row_time; break;
-      case Readout::Kind::line: t += row * r.line_period, row = 0; break;
+      case Readout::Kind::global:
+        break;
+      case Readout::Kind::rolling:
+        t += row * r.row_time;
+        break;
+      case Readout::Kind::line:
+        t += row * r.line_period, row = 0;
+        break;
       case Readout::Kind::whisk:
         t += (row / array.rows) * r.line_period + column * r.sample_period;
         row %= array.rows, column = 0;
@@ -139,7 +147,9 @@ class Platform final : public Sensor {
     std::vector<std::unique_ptr<JitterWindow>> chain;
     std::optional<Pose> still;
   };
-  bool mine(const Capture& c) const { return prepared_.ready && prepared_.state == c.state && prepared_.window == c.window; }
+  bool mine(const Capture& c) const {
+    return prepared_.ready && prepared_.state == c.state && prepared_.window == c.window;
+  }
 
   Pose pose(const Instrument& instrument, const Capture& capture, double t) const {
     if (!mine(capture)) return pose_at(spec_, instrument, t);
@@ -154,7 +164,8 @@ class Platform final : public Sensor {
     const FocalArray& array = spec_.arrays[part.array];
     Piece& first = pieces.at(array.segments[0]);
     const size_t task = first.result.task, capture = first.result.capture;
-    std::vector<Band> bands(spec_.segments[array.segments[0]].bands.begin(), spec_.segments[array.segments[0]].bands.begin() + static_cast<long>(first.result.bands));
+    std::vector<Band> bands(spec_.segments[array.segments[0]].bands.begin(),
+                            spec_.segments[array.segments[0]].bands.begin() + static_cast<long>(first.result.bands));
     if (pieces.size() > 1) {
       std::vector<CaptureResult*> results;
       std::vector<std::vector<Product>*> products;
@@ -163,7 +174,8 @@ class Platform final : public Sensor {
     }
     const Instrument& instrument = spec_.instruments[array.instrument];
     const Capture& c = spec_.tasks[task].captures[capture];
-    Delivery d{*this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
+    Delivery d{
+        *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
     d.description = strf("instrument '%s', %.9g to %.9g s", instrument.name.c_str(), c.window.begin, c.window.end);
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)
       d.description += strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
@@ -171,17 +183,20 @@ class Platform final : public Sensor {
   }
 
   template <class T>
-  static std::vector<T> beside(const std::vector<const std::vector<T>*>& parts, const std::vector<uint32_t>& columns, uint32_t rows) {
+  static std::vector<T> beside(const std::vector<const std::vector<T>*>& parts, const std::vector<uint32_t>& columns,
+                               uint32_t rows) {
     std::vector<T> all;
     for (uint32_t r = 0; r < rows; ++r)
       for (size_t i = 0; i < parts.size(); ++i) {
         const size_t width = parts[i]->size() / rows / columns[i] * columns[i];
-        all.insert(all.end(), parts[i]->begin() + static_cast<long>(r * width), parts[i]->begin() + static_cast<long>((r + 1) * width));
+        all.insert(all.end(), parts[i]->begin() + static_cast<long>(r * width),
+                   parts[i]->begin() + static_cast<long>((r + 1) * width));
       }
     return all;
   }
 
-  static void join(const std::vector<CaptureResult*>& results, const std::vector<std::vector<Product>*>& products, Piece& into) {
+  static void join(const std::vector<CaptureResult*>& results, const std::vector<std::vector<Product>*>& products,
+                   Piece& into) {
     std::vector<uint32_t> columns;
     uint32_t all = 0;
     for (const CaptureResult* r : results) columns.push_back(r->columns), all += r->columns;
@@ -211,14 +226,17 @@ class Platform final : public Sensor {
   std::vector<std::vector<ImageRows>> rows_;
   bool wide_ = false;
   Prepared prepared_;
-  std::map<std::pair<size_t, uint64_t>, std::map<size_t, Piece>> waiting_;  // events of which not all segments are there
+  std::map<std::pair<size_t, uint64_t>, std::map<size_t, Piece>>
+      waiting_;  // events of which not all segments are there
 };
 
 }  // namespace
 
 SensorRow platform_row() {
   return {"platform", "a vehicle with instruments: cameras, push-brooms, whiskbrooms, logs; motion, jitter, detectors",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<Platform>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<Platform>(p, c);
+          }};
 }
 
 }  // namespace suite

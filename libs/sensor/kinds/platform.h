@@ -36,20 +36,20 @@ struct Readout {
 
 struct Chip {
   uint32_t columns = 0, rows = 0;
-  Vec2 offset;              // m in the focal plane, right and down, of its centre
-  double gain = 1;          // relative response
+  Vec2 offset;                // m in the focal plane, right and down, of its centre
+  double gain = 1;            // relative response
   uint32_t first_column = 0;  // in the array's image
 };
 
 struct FocalArray {
   std::string image;
-  Vec2 pitch;               // m
+  Vec2 pitch;  // m
   bool flip_columns = false, flip_rows = false;
   std::vector<Chip> chips;
   uint32_t columns = 0, rows = 0;  // of detectors, over all chips
   Readout readout;
   Convergence convergence;
-  uint32_t time_bins = 1;          // parts of the exposure, each with a picture of its own
+  uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
   size_t instrument = 0;
   std::vector<size_t> segments;
@@ -62,19 +62,19 @@ struct Segment {
   uint32_t first_column = 0, columns = 0;  // of the array's image
   std::vector<Band> bands;                 // as listed, then those that count photons when there is a detector
   size_t radiance_bands = 0;
-  std::vector<double> electrons;           // per W/(m2 um) s m2 of irradiance, of each band
+  std::vector<double> electrons;  // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;
 };
 
 struct Instrument {
   std::string name;
   Lens lens;
-  std::vector<Attachment> chain;  // from the vehicle outwards
-  Params text;                    // where it was written
-  std::vector<double> triggers;   // s, of frames, when they do not follow a clock
+  std::vector<Attachment> chain;            // from the vehicle outwards
+  Params text;                              // where it was written
+  std::vector<double> triggers;             // s, of frames, when they do not follow a clock
   double clock_rate = 0, clock_offset = 0;  // Hz, s; rate 0 = one frame a task
-  double trigger_distance = 0;    // m along the track; 0 = none
-  double log_rate = 0;            // Hz; > 0: a log of pose and time instead of images
+  double trigger_distance = 0;              // m along the track; 0 = none
+  double log_rate = 0;                      // Hz; > 0: a log of pose and time instead of images
 };
 
 // What the text of a platform says.
@@ -85,11 +85,11 @@ struct PlatformSpec {
   std::vector<Instrument> instruments;
   std::vector<FocalArray> arrays;
   std::vector<Segment> segments;
-  std::vector<SpectralState> states;     // of the segments
-  std::vector<Task> tasks;               // with captures
-  struct Part {                          // what a capture is
+  std::vector<SpectralState> states;  // of the segments
+  std::vector<Task> tasks;            // with captures
+  struct Part {                       // what a capture is
     size_t array = 0, segment = 0;
-    uint64_t event = 0;                  // number of the frame or block; the segments of one event share it
+    uint64_t event = 0;  // number of the frame or block; the segments of one event share it
   };
   std::vector<std::vector<Part>> parts;  // [task][capture]
   std::vector<std::string> truth;

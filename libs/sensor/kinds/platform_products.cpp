@@ -12,7 +12,8 @@ namespace {
 void keep_bands(CaptureResult& r, size_t keep) {
   auto cut = [&](std::vector<double>& v) {
     const size_t groups = v.size() / r.bands;
-    for (size_t g = 0; g < groups; ++g) std::copy_n(v.begin() + static_cast<long>(g * r.bands), keep, v.begin() + static_cast<long>(g * keep));
+    for (size_t g = 0; g < groups; ++g)
+      std::copy_n(v.begin() + static_cast<long>(g * r.bands), keep, v.begin() + static_cast<long>(g * keep));
     v.resize(groups * keep);
   };
   cut(r.radiance);
@@ -22,16 +23,36 @@ void keep_bands(CaptureResult& r, size_t keep) {
   r.bands = keep;
 }
 
+// Drops the truth of the photon bands, which are the computation's own affair.
+void drop_truth_of(CaptureResult& r, const std::vector<Band>& bands, size_t keep) {
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < r.truth_names.size(); ++i) {
+    const bool theirs = std::any_of(bands.begin() + static_cast<long>(keep), bands.end(),
+                                    [&](const Band& b) { return r.truth_names[i] == "reflectance " + b.name; });
+    if (!theirs) kept.push_back(i);
+  }
+  if (kept.size() == r.truth_names.size()) return;
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const size_t i : kept) names.push_back(r.truth_names[i]);
+  for (size_t p = 0; p < r.problems(); ++p)
+    for (const size_t i : kept) values.push_back(r.truth[p * r.truth_names.size() + i]);
+  r.truth_names = std::move(names);
+  r.truth = std::move(values);
+}
+
 }  // namespace
 
-std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result, uint64_t read_out) {
+std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result,
+                            uint64_t read_out) {
   const FocalArray& array = spec.arrays[segment.array];
   if (!array.detector) return {};
   const Lens& lens = spec.instruments[array.instrument].lens;
   const Detector detector(*array.detector);
   const DetectorSpec& d = detector.spec();
   const size_t bands = segment.radiance_bands, n = result.problems();
-  const double area = array.pitch.x * array.pitch.y * d.fill_factor, g = g_number(lens.f_number(), lens.throughput, lens.obscuration);
+  const double area = array.pitch.x * array.pitch.y * d.fill_factor,
+               g = g_number(lens.f_number(), lens.throughput, lens.obscuration);
   Product electrons{"electrons", "electrons", false, {}, std::vector<double>(n * bands)};
   Product counts{"dn", "DN", true, {}, std::vector<double>(n * bands)};
   for (size_t b = 0; b < bands; ++b) electrons.bands.push_back(segment.bands[b].name);
@@ -39,11 +60,15 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   const bool whisk = array.readout.kind == Readout::Kind::whisk, line = array.readout.kind == Readout::Kind::line;
   for (size_t i = 0; i < n; ++i) {
     const uint32_t row = static_cast<uint32_t>(i / result.columns), at = static_cast<uint32_t>(i % result.columns);
-    const uint32_t detector_row = line ? 0 : whisk ? row % array.rows : row, column = whisk ? 0 : segment.first_column + at;
+    const uint32_t detector_row = line    ? 0
+                                  : whisk ? row % array.rows
+                                          : row,
+                   column = whisk ? 0 : segment.first_column + at;
     const DetectorPlace place = place_of(array, column, detector_row, 0.5, 0.5);
     const double cosine = lens.cos4 ? -lens.look(place.place).z : 1;
     const double factor = area / g * array.readout.exposure() * place.chip->gain * cosine * cosine * cosine * cosine;
-    const bool bad = std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{column, detector_row}) != d.bad.end();
+    const bool bad =
+        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{column, detector_row}) != d.bad.end();
     for (size_t b = 0; b < bands; ++b) {
       // The photon bands follow the listed ones; every band has detectors of its own.
       double signal = 0;
@@ -54,9 +79,11 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       Detector::Character character = detector.character(own);
       character.dead = character.dead || bad;
       electrons.values[i * bands + b] = signal;
-      counts.values[i * bands + b] = detector.counts(signal, array.readout.exposure(), character, hash_of(own, read_out, i));
+      counts.values[i * bands + b] =
+          detector.counts(signal, array.readout.exposure(), character, hash_of(own, read_out, i));
     }
   }
+  drop_truth_of(result, segment.bands, bands);
   keep_bands(result, bands);
   std::vector<Product> out;
   out.push_back(std::move(electrons));

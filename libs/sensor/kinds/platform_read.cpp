@@ -28,15 +28,21 @@ Readout read_readout(const Params& array) {
       r.samples = static_cast<uint32_t>(p->integer("samples", 1, 1000000));
       r.sample_period = 1 / p->number_in("sample_rate_hz", 1e-6, 1e12, "Hz");
       if (r.samples * r.sample_period > r.line_period * (1 + 1e-9))
-        throw p->error(strf("%u samples take %g s, a scan %g s", r.samples, r.samples * r.sample_period, r.line_period), "raise sample_rate_hz or lower scan_rate_hz");
+        throw p->error(strf("%u samples take %g s, a scan %g s", r.samples, r.samples * r.sample_period, r.line_period),
+                       "raise sample_rate_hz or lower scan_rate_hz");
     }
-    if (r.kind == Readout::Kind::line || r.kind == Readout::Kind::whisk) r.per_capture = static_cast<uint32_t>(p->integer("lines_per_capture", 1, 100000, 64));
+    if (r.kind == Readout::Kind::line || r.kind == Readout::Kind::whisk)
+      r.per_capture = static_cast<uint32_t>(p->integer("lines_per_capture", 1, 100000, 64));
   }
-  const double longest = r.kind == Readout::Kind::line ? r.line_period : r.kind == Readout::Kind::whisk ? r.sample_period : 86400;
+  const double longest = r.kind == Readout::Kind::line    ? r.line_period
+                         : r.kind == Readout::Kind::whisk ? r.sample_period
+                                                          : 86400;
   if (r.integration > longest * (1 + 1e-9))
-    throw array.at("integration_time_s").error(strf("the integration takes longer than the %g s from one sample to the next", longest));
+    throw array.at("integration_time_s")
+        .error(strf("the integration takes longer than the %g s from one sample to the next", longest));
   if (const auto tdi = array.find("tdi")) {
-    if (r.kind != Readout::Kind::line) throw tdi->error("time delay and integration needs a line read-out", "readout: {kind: line, line_rate_hz: N}");
+    if (r.kind != Readout::Kind::line)
+      throw tdi->error("time delay and integration needs a line read-out", "readout: {kind: line, line_rate_hz: N}");
     r.stages = static_cast<uint32_t>(tdi->integer("stages", 1, 4096));
     const auto direction = tdi->find("direction");
     r.direction = direction && direction->as_choice({"down", "up"}) == 1 ? -1 : 1;
@@ -62,7 +68,8 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
   const auto chips = p.find("chips");
   if (!chips) {
     const bool whisk = array.readout.kind == Readout::Kind::whisk;
-    const uint32_t columns = static_cast<uint32_t>(whisk ? p.integer("columns", 1, 1, 1) : p.integer("columns", 1, 10000000));
+    const uint32_t columns =
+        static_cast<uint32_t>(whisk ? p.integer("columns", 1, 1, 1) : p.integer("columns", 1, 10000000));
     add(columns, rows, {}, 1, std::nullopt);
     return;
   }
@@ -70,10 +77,12 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     add(static_cast<uint32_t>(chip.integer("columns", 1, 1000000)), rows, pair_of(chip.at("offset_mm"), "offset_mm"),
         chip.number_in("gain", 1e-6, 1e6, "(relative response)", 1), chip.find("bands"));
   if (array.chips.empty()) throw chips->error("an array has at least one chip");
-  if (array.readout.kind == Readout::Kind::whisk && array.columns != 1) throw chips->error("a whisk read-out has one column of detectors");
+  if (array.readout.kind == Readout::Kind::whisk && array.columns != 1)
+    throw chips->error("a whisk read-out has one column of detectors");
 }
 
-void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, size_t chips, const Params& p, const Params& bands, const SensorContext& context) {
+void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, size_t chips, const Params& p,
+                 const Params& bands, const SensorContext& context) {
   FocalArray& array = spec.arrays[array_number];
   const Lens& lens = spec.instruments[array.instrument].lens;
   Segment s;
@@ -97,7 +106,8 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
       s.electrons.push_back(electrons);
     }
   // An array may have a pattern of its own; else the instrument's holds.
-  s.psf = read_psf(p.has("psf") ? p : spec.instruments[array.instrument].text, context, lens.f_number(), lens.obscuration, spec.states.back());
+  s.psf = read_psf(p.has("psf") ? p : spec.instruments[array.instrument].text, context, lens.f_number(),
+                   lens.obscuration, spec.states.back());
   array.segments.push_back(spec.segments.size());
   spec.segments.push_back(std::move(s));
 }
@@ -110,32 +120,42 @@ void check_lens(const FocalArray& array, const Lens& lens, const Params& p) {
         for (const double e : {0.0, 1.0}) {
           const Vec2 at = place_of(array, chip.first_column + c, r, e, e).place;
           if (!lens.distortion.ideal({at.x / lens.focal_length, at.y / lens.focal_length}))
-            throw p.error(strf("the lens distortion folds over at (%.3f, %.3f) mm of the focal plane", at.x * 1e3, at.y * 1e3), "use smaller coefficients or a smaller array");
+            throw p.error(
+                strf("the lens distortion folds over at (%.3f, %.3f) mm of the focal plane", at.x * 1e3, at.y * 1e3),
+                "use smaller coefficients or a smaller array");
         }
 }
 
-void read_array(const Params& p, size_t instrument, const std::string& image, PlatformSpec& spec, const SensorContext& context) {
+void read_array(const Params& p, size_t instrument, const std::string& image, PlatformSpec& spec,
+                const SensorContext& context) {
   FocalArray array;
   array.instrument = instrument;
   array.image = image;
   array.readout = read_readout(p);
   const Params pitch = p.at("pitch_um");
-  const std::vector<double> size = pitch.kind() == Params::Kind::list ? pitch.as_numbers() : std::vector<double>(2, pitch.as_number());
+  const std::vector<double> size =
+      pitch.kind() == Params::Kind::list ? pitch.as_numbers() : std::vector<double>(2, pitch.as_number());
   if (size.size() != 2 || !(size[0] >= 1e-3 && size[1] >= 1e-3 && size[0] <= 1e6 && size[1] <= 1e6))
     throw pitch.error("the pitch of a detector is 0.001 to 1e6 um, one number or two (right, up)");
   array.pitch = {size[0] * 1e-6, size[1] * 1e-6};
   if (const auto flip = p.find("flip"))
-    for (const Params& f : flip->items()) (f.as_choice({"columns", "rows"}) == 0 ? array.flip_columns : array.flip_rows) = true;
+    for (const Params& f : flip->items())
+      (f.as_choice({"columns", "rows"}) == 0 ? array.flip_columns : array.flip_rows) = true;
   std::vector<std::optional<Params>> own_bands;
   read_chips(p, array, own_bands);
-  if (static_cast<double>(array.image_columns()) * array.rows > 4e9) throw p.error("an array of more than 4e9 detectors");
+  if (static_cast<double>(array.image_columns()) * array.rows > 4e9)
+    throw p.error("an array of more than 4e9 detectors");
   array.convergence = read_convergence(p);
   array.time_bins = static_cast<uint32_t>(p.integer("time_bins", 1, 10000, 1));
-  if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global) throw p.at("time_bins").error("time bins need a global read-out");
+  if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global)
+    throw p.at("time_bins").error("time bins need a global read-out");
   array.detector = read_detector(p, context);
   const Lens& lens = spec.instruments[instrument].lens;
-  if (array.detector && !(lens.aperture > 0)) throw p.at("detector").error("a detector needs to know how much light comes in", "give the instrument aperture_mm or f_number");
-  if (array.detector && !(array.readout.integration > 0)) throw p.at("detector").error("a detector needs an integration time", "integration_time_s: N");
+  if (array.detector && !(lens.aperture > 0))
+    throw p.at("detector")
+        .error("a detector needs to know how much light comes in", "give the instrument aperture_mm or f_number");
+  if (array.detector && !(array.readout.integration > 0))
+    throw p.at("detector").error("a detector needs an integration time", "integration_time_s: N");
   check_lens(array, lens, p);
   spec.arrays.push_back(std::move(array));
   const size_t number = spec.arrays.size() - 1, chips = own_bands.size();
@@ -144,15 +164,18 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   if (shared) {
     add_segment(spec, number, 0, chips, p, p.at("bands"), context);
   } else {
-    for (size_t i = 0; i < chips; ++i) add_segment(spec, number, i, 1, p, own_bands[i] ? *own_bands[i] : p.at("bands"), context);
+    for (size_t i = 0; i < chips; ++i)
+      add_segment(spec, number, i, 1, p, own_bands[i] ? *own_bands[i] : p.at("bands"), context);
   }
 }
 
-void read_instrument(const Params& p, const std::vector<Attachment>& carrier, PlatformSpec& spec, const SensorContext& context, uint64_t seed) {
+void read_instrument(const Params& p, const std::vector<Attachment>& carrier, PlatformSpec& spec,
+                     const SensorContext& context, uint64_t seed) {
   const size_t number = spec.instruments.size();
   Instrument instrument{p.text("name", strf("instrument_%zu", number + 1)), {}, carrier, p, {}};
   for (const Instrument& other : spec.instruments)
-    if (other.name == instrument.name) throw p.error("two instruments are named '" + instrument.name + "'", "give each its own name");
+    if (other.name == instrument.name)
+      throw p.error("two instruments are named '" + instrument.name + "'", "give each its own name");
   instrument.chain.push_back(read_attachment(p, context, hash_of(seed, 1000 + number)));
   const auto kind = p.find("kind");
   if (kind && kind->as_choice({"camera", "log"}) == 1) {
@@ -167,8 +190,10 @@ void read_instrument(const Params& p, const std::vector<Attachment>& carrier, Pl
   }
   if (const auto trigger = p.find("trigger")) {
     if (instrument.clock_rate > 0) throw trigger->error("an instrument follows a clock or triggers");
-    if (const auto times = trigger->find("times_s")) instrument.triggers = times->as_numbers();
-    else instrument.trigger_distance = trigger->number_in("distance_m", 1e-6, 1e9, "m");
+    if (const auto times = trigger->find("times_s"))
+      instrument.triggers = times->as_numbers();
+    else
+      instrument.trigger_distance = trigger->number_in("distance_m", 1e-6, 1e9, "m");
   }
   spec.instruments.push_back(std::move(instrument));
   const Params list = p.at("arrays");
@@ -181,7 +206,8 @@ void read_instrument(const Params& p, const std::vector<Attachment>& carrier, Pl
   if (names.empty()) throw list.error("an instrument has at least one array");
 }
 
-void read_carrier(const Params& p, const std::vector<Attachment>& chain, PlatformSpec& spec, const SensorContext& context, uint64_t& seed, int depth) {
+void read_carrier(const Params& p, const std::vector<Attachment>& chain, PlatformSpec& spec,
+                  const SensorContext& context, uint64_t& seed, int depth) {
   if (depth > 32) throw p.error("attachments nested more than 32 deep");
   if (const auto list = p.find("instruments"))
     for (const Params& i : list->items()) read_instrument(i, chain, spec, context, seed);
@@ -203,7 +229,9 @@ DetectorPlace place_of(const FocalArray& array, uint32_t column, uint32_t row, d
   double x = column - chip.first_column + u, y = row + v;
   if (array.flip_columns) x = chip.columns - x;
   if (array.flip_rows) y = chip.rows - y;
-  return {{chip.offset.x + (x - 0.5 * chip.columns) * array.pitch.x, chip.offset.y + (y - 0.5 * chip.rows) * array.pitch.y}, &chip};
+  return {
+      {chip.offset.x + (x - 0.5 * chip.columns) * array.pitch.x, chip.offset.y + (y - 0.5 * chip.rows) * array.pitch.y},
+      &chip};
 }
 
 PlatformSpec read_platform(const Params& params, const SensorContext& context) {

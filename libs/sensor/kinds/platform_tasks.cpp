@@ -38,14 +38,16 @@ std::vector<double> frame_times(const PlatformSpec& spec, const Instrument& i, T
   }
   if (!(i.clock_rate > 0)) return {w.begin + i.clock_offset};
   const double count = std::floor((w.end - w.begin - i.clock_offset) * i.clock_rate + 1e-6) + 1;
-  if (!(count < kMostCaptures)) throw where.error(strf("%.0f frames in one task", count), "lower rate_hz or shorten the task");
+  if (!(count < kMostCaptures))
+    throw where.error(strf("%.0f frames in one task", count), "lower rate_hz or shorten the task");
   std::vector<double> times;
   for (double k = 0; k < count; ++k) times.push_back(w.begin + i.clock_offset + k / i.clock_rate);
   return times;
 }
 
 // One event: a capture for each segment of the array.
-void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& parts, size_t array_number, TimeWindow window, uint32_t rows, uint64_t event) {
+void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& parts, size_t array_number,
+               TimeWindow window, uint32_t rows, uint64_t event) {
   const FocalArray& array = spec.arrays[array_number];
   for (const size_t s : array.segments) {
     Capture c;
@@ -62,17 +64,20 @@ void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
   }
 }
 
-void add_lines(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& parts, size_t array_number, const Params& where, uint64_t& event) {
+void add_lines(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& parts, size_t array_number,
+               const Params& where, uint64_t& event) {
   const FocalArray& array = spec.arrays[array_number];
   const Readout& r = array.readout;
   const double lines = std::max(1.0, std::floor((task.window.end - task.window.begin) / r.line_period + 1e-6));
   const uint32_t rows_a_line = r.kind == Readout::Kind::whisk ? array.rows : 1;
-  if (!(lines * rows_a_line < 4e9) || lines / r.per_capture > kMostCaptures) throw where.error(strf("%.0f lines in one task", lines), "lower the rate or shorten the task");
+  if (!(lines * rows_a_line < 4e9) || lines / r.per_capture > kMostCaptures)
+    throw where.error(strf("%.0f lines in one task", lines), "lower the rate or shorten the task");
   const uint64_t count = static_cast<uint64_t>(lines);
   for (uint64_t first = 0; first < count; first += r.per_capture, ++event) {
     const uint32_t n = static_cast<uint32_t>(std::min<uint64_t>(r.per_capture, count - first));
     const double begin = task.window.begin + static_cast<double>(first) * r.line_period;
-    const double last = (n - 1) * r.line_period + (r.samples ? (r.samples - 1) * r.sample_period : 0) + (r.stages - 1) * r.line_period;
+    const double last =
+        (n - 1) * r.line_period + (r.samples ? (r.samples - 1) * r.sample_period : 0) + (r.stages - 1) * r.line_period;
     add_event(spec, task, parts, array_number, {begin, begin + last + r.integration}, n * rows_a_line, event);
   }
 }
@@ -81,7 +86,9 @@ void add_lines(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
 void check_motion(const PlatformSpec& spec, const Instrument& instrument, TimeWindow w, const Params& task) {
   auto check = [&](TimeSpan s, const char* what) {
     if (w.begin < s.begin || w.end > s.end)
-      throw task.error(strf("the task needs %s from %g to %g s, and knows it from %g to %g s", what, w.begin, w.end, s.begin, s.end), "shorten the task or extend the motion");
+      throw task.error(
+          strf("the task needs %s from %g to %g s, and knows it from %g to %g s", what, w.begin, w.end, s.begin, s.end),
+          "shorten the task or extend the motion");
   };
   check(spec.track->covered(), "the vehicle's motion");
   for (const Attachment& a : instrument.chain)
@@ -94,7 +101,9 @@ void check_motion(const PlatformSpec& spec, const Instrument& instrument, TimeWi
     } catch (const Error& e) {
       throw task.error(strf("no pose at %g s: %s", t, e.message().c_str()), e.hint());
     }
-    if (!finite(pose.translation) || !finite(pose.vector({0, 0, 1}))) throw task.error(strf("the instrument '%s' has no pose at %g s", instrument.name.c_str(), t), "is a mount's target in its own place?");
+    if (!finite(pose.translation) || !finite(pose.vector({0, 0, 1})))
+      throw task.error(strf("the instrument '%s' has no pose at %g s", instrument.name.c_str(), t),
+                       "is a mount's target in its own place?");
   }
 }
 

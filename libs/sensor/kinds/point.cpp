@@ -40,7 +40,8 @@ class PointCollectors final : public SimpleSensor {
     const Collector& c = collectors_[r.problem];
     SensorRay out{{c.position, c.frame.z, moment(r.u[2])}};
     // The estimator of each integral over directions: radiance over the density of its direction, times its cosine.
-    if (c.kind == Collector::Kind::irradiance) out.ray.direction = c.frame.to_world(cosine_hemisphere({r.u[0], r.u[1]})), out.weight = kPi;
+    if (c.kind == Collector::Kind::irradiance)
+      out.ray.direction = c.frame.to_world(cosine_hemisphere({r.u[0], r.u[1]})), out.weight = kPi;
     if (c.kind == Collector::Kind::actinic) out.ray.direction = uniform_sphere({r.u[0], r.u[1]}), out.weight = 4 * kPi;
     return out;
   }
@@ -49,12 +50,14 @@ class PointCollectors final : public SimpleSensor {
   void finish(Delivery& d) const override {
     std::string text = "# a collimated sun is not met by chance and adds nothing to irradiance and actinic flux here\n";
     text += "name,quantity,unit,band,wavelength_um,value,standard_error\n";
-    static constexpr const char* kNames[][2] = {{"irradiance", "W/(m2 um)"}, {"radiance", "W/(m2 sr um)"}, {"actinic_flux", "W/(m2 um)"}};
+    static constexpr const char* kNames[][2] = {
+        {"irradiance", "W/(m2 um)"}, {"radiance", "W/(m2 sr um)"}, {"actinic_flux", "W/(m2 um)"}};
     for (size_t i = 0; i < collectors_.size(); ++i)
       for (size_t b = 0; b < bands_.size(); ++b) {
         const auto& n = kNames[static_cast<size_t>(collectors_[i].kind)];
-        text += strf("%s,%s,%s,%s,%.9g,%.9g,%.9g\n", collectors_[i].name.c_str(), n[0], n[1], bands_[b].name.c_str(), bands_[b].center_um,
-                     d.result.radiance[i * bands_.size() + b], d.result.standard_error[i * bands_.size() + b]);
+        text += strf("%s,%s,%s,%s,%.9g,%.9g,%.9g\n", collectors_[i].name.c_str(), n[0], n[1], bands_[b].name.c_str(),
+                     bands_[b].center_um, d.result.radiance[i * bands_.size() + b],
+                     d.result.standard_error[i * bands_.size() + b]);
       }
     d.texts.push_back({name_ + ".csv", std::move(text)});
     d.description = "one column a collector; irradiance and actinic flux are W/(m2 um), see the CSV";
@@ -66,7 +69,9 @@ class PointCollectors final : public SimpleSensor {
 
 SensorRow point_row() {
   return {"point", "irradiance, radiance and flux at points, as CSV",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<PointCollectors>(p, c); }};
+          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+            return std::make_unique<PointCollectors>(p, c);
+          }};
 }
 
 }  // namespace suite

@@ -8,7 +8,10 @@ namespace suite {
 class SimpleSensor : public Sensor {
  public:
   SimpleSensor(const Params& p, const SensorContext& context, const std::string& default_name)
-      : deliver_(context.deliver), name_(p.text("name", default_name)), bands_(read_bands(p.at("bands"), context)), truth_(read_truth(p)) {
+      : deliver_(context.deliver),
+        name_(p.text("name", default_name)),
+        bands_(read_bands(p.at("bands"), context)),
+        truth_(read_truth(p)) {
     states_.push_back(read_state(p, bands_));
     capture_.name = name_;
     capture_.window = read_window(p);

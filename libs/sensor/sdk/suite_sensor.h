@@ -3,8 +3,8 @@
  * A plug-in is a shared library that exports suite_sensor_plugin_entry(). It describes one kind of sensor: its spectral
  * states, tasks and captures; the host asks it for rays and gives it results. All structures start with their size in
  * bytes, as the side that fills them knows it; readers look no further than that, so that fields can be added at their
- * ends. Calls across the border are C: no exceptions, no C++ types, no ownership except where said. Strings are UTF-8 and
- * live as long as the structure they are in. C++ authors derive from suite_sdk::Sensor below and need nothing else.
+ * ends. Calls across the border are C: no exceptions, no C++ types, no ownership except where said. Strings are UTF-8
+ * and live as long as the structure they are in. C++ authors derive from suite_sdk::Sensor below and need nothing else.
  *
  * Units: m, s, rad, W/(m2 sr um); wavelengths in um. Coordinates: scene ENU (x east, y north, z up).
  * Based on: Goodenough & Brown, section III-B ("The sensor API is openly documented ...").
@@ -20,14 +20,19 @@ extern "C" {
 /* Raised when a plug-in built with an older header cannot work any more. */
 #define SUITE_SENSOR_ABI 1u
 
-enum suite_band_shape { SUITE_BAND_GAUSSIAN = 0, SUITE_BAND_RECTANGULAR = 1, SUITE_BAND_TRIANGULAR = 2, SUITE_BAND_TABULATED = 3 };
+enum suite_band_shape {
+  SUITE_BAND_GAUSSIAN = 0,
+  SUITE_BAND_RECTANGULAR = 1,
+  SUITE_BAND_TRIANGULAR = 2,
+  SUITE_BAND_TABULATED = 3
+};
 
 typedef struct suite_band {
   uint32_t size;
-  uint32_t shape;                      /* suite_band_shape */
+  uint32_t shape; /* suite_band_shape */
   const char* name;
-  double center_um, fwhm_um;           /* not for tabulated ones */
-  uint32_t points;                     /* tabulated only */
+  double center_um, fwhm_um;              /* not for tabulated ones */
+  uint32_t points;                        /* tabulated only */
   const double *wavelength_um, *response; /* ascending; relative, >= 0 */
 } suite_band;
 
@@ -35,18 +40,18 @@ typedef struct suite_state {
   uint32_t size;
   uint32_t band_count;
   const suite_band* bands;
-  double step_um;                      /* widest bin of the quadrature; 0 = 0.01 */
-  double reference_um;                 /* drives directions; 0 = middle of the bands */
+  double step_um;      /* widest bin of the quadrature; 0 = 0.01 */
+  double reference_um; /* drives directions; 0 = middle of the bands */
 } suite_state;
 
 typedef struct suite_capture {
   uint32_t size;
-  uint32_t task, state;                /* indices */
-  uint32_t columns, rows;              /* problems, row-major */
-  uint32_t min_paths, max_paths;       /* equal = a fixed number */
-  uint32_t no_neighbours;              /* 1: problems beside each other have nothing to do with each other */
-  double begin_s, end_s;               /* all rays have their times in here */
-  double relative_error;               /* target of the standard error; 0 = none */
+  uint32_t task, state;          /* indices */
+  uint32_t columns, rows;        /* problems, row-major */
+  uint32_t min_paths, max_paths; /* equal = a fixed number */
+  uint32_t no_neighbours;        /* 1: problems beside each other have nothing to do with each other */
+  double begin_s, end_s;         /* all rays have their times in here */
+  double relative_error;         /* target of the standard error; 0 = none */
 } suite_capture;
 
 typedef struct suite_task {
@@ -57,20 +62,20 @@ typedef struct suite_task {
 
 typedef struct suite_ray_request {
   uint32_t size;
-  uint32_t capture;                    /* index */
+  uint32_t capture; /* index */
   uint64_t problem;
-  const double* u;                     /* `numbers` uniform numbers in [0, 1) */
+  const double* u; /* `numbers` uniform numbers in [0, 1) */
   uint32_t numbers;
-  uint32_t bins;                       /* of the state */
-  float* weights;                      /* one per bin, to be filled when suite_ray.weighted is set */
+  uint32_t bins;  /* of the state */
+  float* weights; /* one per bin, to be filled when suite_ray.weighted is set */
 } suite_ray_request;
 
 typedef struct suite_ray {
   uint32_t size;
-  uint32_t weighted;                   /* 1: weights were filled, see the request */
-  double origin[3], direction[3];      /* ENU; the direction need not be a unit vector, but finite and not 0 */
+  uint32_t weighted;              /* 1: weights were filled, see the request */
+  double origin[3], direction[3]; /* ENU; the direction need not be a unit vector, but finite and not 0 */
   double time_s;
-  double weight;                       /* pupil weight; 0 = contributes nothing */
+  double weight; /* pupil weight; 0 = contributes nothing */
 } suite_ray;
 
 typedef struct suite_result {
@@ -78,13 +83,14 @@ typedef struct suite_result {
   uint32_t capture;
   uint32_t columns, rows, bands, truth_count;
   const double *radiance, *standard_error; /* [problem][band] */
-  const uint32_t* paths;               /* [problem] */
+  const uint32_t* paths;                   /* [problem] */
   const char* const* truth_names;
-  const double* truth;                 /* [problem][truth]; NaN = nothing known */
+  const double* truth; /* [problem][truth]; NaN = nothing known */
 } suite_result;
 
-/* What the host offers while a sensor is made. Each returns 1 when the key was given, 0 when not, -1 when what was given is
- * wrong (the host then reports where; the plug-in should give up). A key that is not asked for is an error of the user. */
+/* What the host offers while a sensor is made. Each returns 1 when the key was given, 0 when not, -1 when what was
+ * given is wrong (the host then reports where; the plug-in should give up). A key that is not asked for is an error of
+ * the user. */
 typedef struct suite_host {
   uint32_t size, abi;
   void* context;
@@ -97,13 +103,13 @@ typedef struct suite_host {
 /* A sensor. The arrays must stay where they are until destroy(). */
 typedef struct suite_sensor {
   uint32_t size;
-  uint32_t numbers;                    /* uniform numbers a ray takes, 1..8 */
+  uint32_t numbers; /* uniform numbers a ray takes, 1..8 */
   void* self;
   uint32_t state_count, task_count, capture_count, truth_count;
   const suite_state* states;
   const suite_task* tasks;
   const suite_capture* captures;
-  const char* const* truth;            /* names of the truth to collect */
+  const char* const* truth; /* names of the truth to collect */
   /* Called from many threads. Returns 0, or anything else when there is no ray: the sample counts as failed. */
   int (*ray)(void* self, const suite_ray_request* request, suite_ray* ray);
   /* Called from one thread, once per capture, in any order. Returns 0 or anything else for a failure. */
@@ -112,7 +118,7 @@ typedef struct suite_sensor {
 } suite_sensor;
 
 typedef struct suite_sensor_plugin {
-  uint32_t size, abi;                  /* SUITE_SENSOR_ABI of the header that it was built with */
+  uint32_t size, abi; /* SUITE_SENSOR_ABI of the header that it was built with */
   const char *kind, *summary;
   /* Fills the sensor; returns 0, or anything else after host->fail. */
   int (*make)(const suite_host* host, suite_sensor* sensor);
@@ -122,7 +128,7 @@ typedef struct suite_sensor_plugin {
 const suite_sensor_plugin* suite_sensor_plugin_entry(void);
 
 #ifdef __cplusplus
-}  /* extern "C" */
+} /* extern "C" */
 
 #include <exception>
 #include <initializer_list>
@@ -186,10 +192,12 @@ class Sensor {
   /* The state keeps its bands here. */
   uint32_t add_state(std::vector<suite_band> bands, double step_um = 0.01, double reference_um = 0) {
     bands_.push_back(std::move(bands));
-    states.push_back({sizeof(suite_state), static_cast<uint32_t>(bands_.back().size()), bands_.back().data(), step_um, reference_um});
+    states.push_back({sizeof(suite_state), static_cast<uint32_t>(bands_.back().size()), bands_.back().data(), step_um,
+                      reference_um});
     return static_cast<uint32_t>(states.size() - 1);
   }
-  void add_capture(uint32_t task, uint32_t state, uint32_t columns, uint32_t rows, double begin_s, double end_s, uint32_t paths) {
+  void add_capture(uint32_t task, uint32_t state, uint32_t columns, uint32_t rows, double begin_s, double end_s,
+                   uint32_t paths) {
     captures.push_back({sizeof(suite_capture), task, state, columns, rows, paths, paths, 0, begin_s, end_s, 0});
   }
 
@@ -199,6 +207,10 @@ class Sensor {
 
 template <class T>
 int make(const suite_host* host, suite_sensor* out) noexcept {
+  if (out->size < sizeof(suite_sensor)) {
+    host->fail(host->context, "this program knows a smaller suite_sensor than the plug-in");
+    return 1;
+  }
   try {
     T* sensor = new T(Keys(*host));
     out->self = static_cast<Sensor*>(sensor);
@@ -236,11 +248,11 @@ int make(const suite_host* host, suite_sensor* out) noexcept {
 }  // namespace suite_sdk
 
 /* Puts a class derived from suite_sdk::Sensor, made from (const suite_sdk::Keys&), behind the entry point. */
-#define SUITE_SENSOR_PLUGIN(kind_, summary_, Class)                                                                  \
-  extern "C" __attribute__((visibility("default"))) const suite_sensor_plugin* suite_sensor_plugin_entry(void) {     \
-    static const suite_sensor_plugin plugin = {sizeof(suite_sensor_plugin), SUITE_SENSOR_ABI, kind_, summary_,       \
-                                               &suite_sdk::make<Class>};                                             \
-    return &plugin;                                                                                                  \
+#define SUITE_SENSOR_PLUGIN(kind_, summary_, Class)                                                              \
+  extern "C" __attribute__((visibility("default"))) const suite_sensor_plugin* suite_sensor_plugin_entry(void) { \
+    static const suite_sensor_plugin plugin = {sizeof(suite_sensor_plugin), SUITE_SENSOR_ABI, kind_, summary_,   \
+                                               &suite_sdk::make<Class>};                                         \
+    return &plugin;                                                                                              \
   }
 #endif /* __cplusplus */
 #endif

@@ -1,0 +1,214 @@
+// What sensors leave on disk: how images are cut into files, types, units, map coordinates, products, logs; and that
+// truth is what is there.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/files.h"
+#include "formats/envi/envi.h"
+#include "formats/raster/raster.h"
+#include "motion/scene_frame.h"
+#include "support/run_command.h"
+
+namespace suite {
+namespace {
+
+using testing::HasSubstr;
+
+const char* const kScene =
+    "scene: 1\norigin: {latitude_deg: 49, longitude_deg: 8, height_m: 120}\n"
+    "materials:\n  ground: {model: lambert, reflectance: 0.2}\n  white: {model: lambert, reflectance: 0.8, "
+    "temperature_k: 300}\n"
+    "objects:\n  plane: {plane: {width: 40, depth: 40}, material: ground}\n  board: {box: {x0: -2, y0: -2, z0: 0, x1: "
+    "2, y1: 2, z1: 3}, material: white}\n"
+    "world:\n  - {place: plane, tag: ground}\n  - {place: board, tag: board, translate: [4, 0, 0]}\n";
+const std::string kLight =
+    "scene: scene.h5\nepoch: 2026-06-21T10:30:00Z\nsun: {direction: {zenith_deg: 45, azimuth_deg: 90}, irradiance: "
+    "1000, collimated: true}\n";
+const std::string kBand = "bands: [{name: pan, center_um: 0.6, fwhm_um: 0.1, shape: rectangular}]";
+const std::string kFlight =
+    "  - kind: platform\n    name: uas\n    motion: {kind: straight, position_m: [0, 0, 100], heading_deg: 0, "
+    "speed_m_s: 10}\n";
+
+class SensorOutput : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    write_file(*folder_ / "scene.yaml", std::string_view(kScene));
+    ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static CommandResult run(const std::string& command) {
+    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
+  }
+  // Renders into the folder `out`.
+  static void render(const std::string& text, const std::string& out) {
+    write_file(*folder_ / (out + ".yaml"), std::string_view(kLight + text));
+    const CommandResult r = run("dirsig-render " + out + ".yaml -o " + out + " -q");
+    ASSERT_EQ(r.code, 0) << r.err;
+  }
+  static bool there(const std::string& name) { return file_exists(*folder_ / name); }
+  static TempFolder* folder_;
+};
+TempFolder* SensorOutput::folder_ = nullptr;
+
+std::string two_tasks(const std::string& files) {
+  return "output: {files: " + files + "}\nsensors:\n" + kFlight +
+         "    tasks: [{name: out, start: 0, stop: 1}, {name: back, start: 2, stop: 2.5}]\n    instruments:\n" +
+         "      - {name: eye, focal_length_mm: 50, clock: {rate_hz: 2}, arrays: [{columns: 6, rows: 4, pitch_um: 50, "
+         "paths: 1, " +
+         kBand + "}]}\n";
+}
+
+TEST_F(SensorOutput, FilesHoldACaptureATaskOrAll) {
+  render(two_tasks("capture"), "capture");
+  for (const char* n :
+       {"capture/uas_0000.img", "capture/uas_0004.img", "capture/uas_0002_truth.img", "capture/uas_0001.png"})
+    EXPECT_TRUE(there(n)) << n;
+  EXPECT_FALSE(there("capture/uas_0005.img"));
+  render(two_tasks("task"), "task");
+  EXPECT_EQ(EnviImage(*folder_ / "task/uas_out.img").header().lines, 12u);
+  EXPECT_EQ(EnviImage(*folder_ / "task/uas_back.img").header().lines, 8u);
+  render(two_tasks("simulation"), "all");
+  const EnviImage all(*folder_ / "all/uas.img");
+  EXPECT_EQ(all.header().lines, 20u);
+  EXPECT_THAT(all.header().description, HasSubstr("dirsig-render all.yaml -o all"));
+  EXPECT_THAT(all.header().description, HasSubstr("Embree"));
+  // The same numbers, whatever the files.
+  const std::vector<double> rows = all.read_lines(8, 4);
+  EXPECT_EQ(rows, EnviImage(*folder_ / "capture/uas_0002.img").read_all());
+  EXPECT_EQ(rows, EnviImage(*folder_ / "task/uas_out.img").read_lines(8, 4));
+}
+
+TEST_F(SensorOutput, PushBroomLinesAndLogsAndCounts) {
+  render("sensors:\n" + kFlight +
+             "    tasks: [{name: pass, start: 0, stop: 1}]\n    instruments:\n      - focal_length_mm: 50\n        "
+             "f_number: 4\n        name: broom\n        arrays: [{columns: 9, pitch_um: 50, integration_time_s: 0.01, "
+             "paths: 2, readout: {kind: line, line_rate_hz: 50, lines_per_capture: 7}, " +
+             kBand +
+             ", detector: {quantum_efficiency: 0.5, gain_e_per_dn: 10, bits: 12}}]\n      - {name: imu, kind: log, "
+             "rate_hz: 10}\n",
+         "broom");
+  EXPECT_EQ(EnviImage(*folder_ / "broom/uas.img").header().lines, 50u);
+  const EnviImage counts(*folder_ / "broom/uas_dn.img");
+  EXPECT_EQ(counts.header().type, EnviType::uint16);
+  EXPECT_EQ(counts.header().data_units, "DN");
+  for (const double v : counts.read_all()) EXPECT_LE(v, 4095);
+  EXPECT_TRUE(there("broom/uas_electrons.img"));
+  const std::string log = read_text(*folder_ / "broom/uas_imu.csv");
+  EXPECT_THAT(log, HasSubstr("# second 0 is 2026-06-21T10:30:00.000000Z"));
+  EXPECT_THAT(log, HasSubstr(",5,100,1.000000000000,0.0000"));
+}
+
+TEST_F(SensorOutput, TruthIsWhatIsThere) {
+  render("sensors:\n" + kFlight +
+             "    tasks: [{start: 0}]\n    truth: [material, tag, location, ecef, geodetic, range, incidence, "
+             "view_angle, normal, temperature, sun_visibility, abundance, reflectance, nodes, time, state, "
+             "material_fraction]\n    instruments:\n" +
+             "      - {focal_length_mm: 50, arrays: [{columns: 50, rows: 20, pitch_um: 500, paths: 16, " + kBand +
+             "}]}\n",
+         "truth");
+  const EnviImage image(*folder_ / "truth/uas_truth.img");
+  const std::vector<std::string>& names = image.header().band_names;
+  const std::vector<double> t = image.read_all();
+  auto value = [&](size_t row, size_t column, const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    EXPECT_NE(at, names.end()) << name;
+    return t[(row * 50 + column) * names.size() + static_cast<size_t>(at - names.begin())];
+  };
+  // Pixels are 1 m. Column 14 looks at x = -10.5, row 10 at y = -0.5: bare ground in the sun.
+  EXPECT_EQ(value(10, 14, "material"), 0);
+  EXPECT_NEAR(value(10, 14, "east [m]"), -10.5, 0.1);
+  EXPECT_NEAR(value(10, 14, "north [m]"), -0.5, 0.1);
+  EXPECT_NEAR(value(10, 14, "incidence angle [deg]"), 45, 1e-9);
+  EXPECT_NEAR(value(10, 14, "range [m]"), std::sqrt(10000 + 10.5 * 10.5 + 0.25), 0.05);
+  EXPECT_NEAR(value(10, 14, "view angle [deg]"), std::atan(std::hypot(10.5, 0.5) / 100) * 180 / kPi, 0.05);
+  EXPECT_EQ(value(10, 14, "normal up"), 1);
+  EXPECT_EQ(value(10, 14, "sun visibility"), 1);
+  EXPECT_EQ(value(10, 14, "mean nodes"), 1);
+  EXPECT_NEAR(value(10, 14, "reflectance pan"), 0.2, 1e-6);
+  EXPECT_TRUE(std::isnan(value(10, 14, "temperature [K]")));
+  // The sun stands in the east: the board from x = 2 to 6, 3 m high, throws its shadow to x = -1.
+  EXPECT_EQ(value(10, 25, "sun visibility"), 0);
+  EXPECT_EQ(value(10, 30, "temperature [K]"), 300);
+  EXPECT_NEAR(value(10, 30, "reflectance pan"), 0.8, 1e-6);
+  EXPECT_NEAR(value(10, 30, "up [m]"), 3, 1e-9);
+  EXPECT_EQ(value(10, 30, "share of tag board"), 1);
+  EXPECT_EQ(value(10, 30, "material fraction"), 1);
+  // Place on the Earth: the same point in all three frames.
+  const SceneFrame frame({49, 8, 120});
+  const Vec3 enu{value(10, 14, "east [m]"), value(10, 14, "north [m]"), value(10, 14, "up [m]")};
+  EXPECT_LT(length(frame.ecef_from_enu(enu) -
+                   Vec3{value(10, 14, "ecef x [m]"), value(10, 14, "ecef y [m]"), value(10, 14, "ecef z [m]")}),
+            1e-6);
+  const Geodetic g = frame.geodetic_from_enu(enu);
+  EXPECT_NEAR(value(10, 14, "latitude [deg]"), g.latitude_deg, 1e-12);
+  EXPECT_NEAR(value(10, 14, "height [m]"), g.height_m, 1e-6);
+  // Column 0 looks past the ground's edge: nothing there.
+  for (const char* n : {"material", "east [m]", "range [m]", "incidence angle [deg]", "latitude [deg]", "tag"})
+    EXPECT_TRUE(std::isnan(value(10, 0, n))) << n;
+  EXPECT_EQ(value(10, 0, "share of tag ground"), 0);
+}
+
+TEST_F(SensorOutput, MapsCarryTheirCoordinates) {
+  render(
+      "output: {also: [geotiff, exr], type: float64}\nsensors: [{kind: orthographic, columns: 40, rows: 30, gsd_m: "
+      "0.5, center_m: [3, -2], paths: 4, " +
+          kBand + "}]\n",
+      "map");
+  const EnviImage envi(*folder_ / "map/map.img");
+  ASSERT_EQ(envi.header().map_info.size(), 9u);
+  EXPECT_EQ(envi.header().map_info[3], "-7");   // west edge
+  EXPECT_EQ(envi.header().map_info[4], "5.5");  // north edge
+  const Raster tiff = read_raster(*folder_ / "map/map.tif"), exr = read_raster(*folder_ / "map/map.exr");
+  const std::vector<double> values = envi.read_all();
+  for (size_t i = 0; i < values.size(); ++i) {
+    ASSERT_EQ(tiff.values[i], static_cast<float>(values[i]));
+    ASSERT_EQ(exr.values[i], static_cast<float>(values[i]));
+  }
+  if (run_command("command -v gdalinfo").code != 0)
+    GTEST_SKIP() << "gdalinfo (Debian package gdal-bin) is not installed";
+  const CommandResult r = run_command("gdalinfo '" + (*folder_ / "map/map.tif") + "'");
+  EXPECT_THAT(r.out, HasSubstr("Orthographic"));
+  EXPECT_THAT(r.out, HasSubstr("Origin = (-7.0"));
+  EXPECT_THAT(r.out, HasSubstr("Pixel Size = (0.5"));
+}
+
+TEST_F(SensorOutput, UnitsAndWholeNumbers) {
+  const std::string sensors =
+      "sensors: [{kind: orthographic, columns: 4, rows: 4, gsd_m: 0.5, center_m: [-10, 0], paths: 4, " + kBand + "}]\n";
+  render(sensors, "plain");
+  render("output: {units: W/(cm2 sr um)}\n" + sensors, "per_cm2");
+  render("output: {units: photons/(s m2 sr um)}\n" + sensors, "photons");
+  render("output: {type: uint16, scale: 0.01}\n" + sensors, "whole");
+  const double L = 0.2 * 1000 * std::cos(45 * kDegree) / kPi;
+  EXPECT_NEAR(EnviImage(*folder_ / "plain/map.img").read_all()[5] / L, 1, 1e-6);
+  const EnviImage cm(*folder_ / "per_cm2/map.img"), photons(*folder_ / "photons/map.img"),
+      whole(*folder_ / "whole/map.img");
+  cm.require_units("W/(cm2 sr um)");
+  EXPECT_NEAR(cm.read_all()[5] / L, 1e-4, 1e-9);
+  photons.require_units("photons/(s m2 sr um)");
+  EXPECT_NEAR(photons.read_all()[5] / (L * 0.6e-6 / (6.62607015e-34 * 299792458.0)), 1, 1e-6);
+  EXPECT_EQ(whole.header().type, EnviType::uint16);
+  EXPECT_EQ(whole.read_all()[5], std::round(L / 0.01));
+}
+
+TEST_F(SensorOutput, AnUnknownTruthIsNamed) {
+  write_file(
+      *folder_ / "bad.yaml",
+      std::string_view(
+          kLight +
+          "sensors: [{kind: orthographic, columns: 4, rows: 4, gsd_m: 0.5, center_m: [0, 0], truth: [materiel], " +
+          kBand + "}]\n"));
+  const CommandResult r = run("dirsig-render bad.yaml -o bad");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("unknown truth 'materiel'; did you mean 'material'?"));
+  EXPECT_FALSE(there("bad/map.img"));
+}
+
+}  // namespace
+}  // namespace suite

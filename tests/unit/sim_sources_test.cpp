@@ -1,0 +1,121 @@
+// Sources in simulation texts: what is read, and that faults are told at their place.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/files.h"
+#include "formats/picture/picture.h"
+#include "formats/sim_text/sources.h"
+#include "formats/sqt/sqt.h"
+#include "support/message_of.h"
+#include "support/sqt_examples.h"
+#include "support/temp_folder.h"
+
+namespace suite {
+namespace {
+
+SourceSpecs read(const std::string& text, const std::string& file = "x.yaml") {
+  const Params root = Params::parse_text(text, file);
+  SourceSpecs s = read_sources(root);
+  root.reject_unread();
+  return s;
+}
+
+struct BadCase {
+  const char *text, *message;
+};
+class BadSources : public testing::TestWithParam<BadCase> {};
+TEST_P(BadSources, AreToldAtTheirPlace) {
+  const std::string message = message_of([] { read(GetParam().text); });
+  EXPECT_THAT(message, testing::HasSubstr(GetParam().message));
+  EXPECT_THAT(message, testing::StartsWith("x.yaml:"));
+}
+const BadCase kBad[] = {
+    {"sun: {irradiance: 3}", "the key 'direction' is missing"},
+    {"sun: {direction: {zenith_deg: 190, azimuth_deg: 0}}", "190"},
+    {"sun: {direction: {zenith_deg: 10, azimuth_deg: 0}, irradiance: -3}", "the irradiance is negative"},
+    {"sun: {direction: {time_utc: 2026-13-01}}", "2026-13-01"},
+    {"sun: {direction: {zenith_deg: 1, azimuth_deg: 0}, collimated: true, half_angle_deg: 1}", "collimated"},
+    {"moon: {direction: {zenith_deg: 1, azimuth_deg: 0}}", "the moon's light is not given"},
+    {"moon: {direction: {zenith_deg: 1, azimuth_deg: 0}, phase_deg: 10, irradiance: 1}", "drop one of the two"},
+    {"sky: {kind: clear}", "a clear sky needs a sun"},
+    {"sky: {kind: cloudy}", "clear"},
+    {"sky: {radiance: 1, table: [[1, 2], [1]]}", "equally long"},
+    {"sky: {radiance: 1, table: [[1, 2]]}", "at least two rows"},
+    {"sky: {radiance: 1, tables: [{wavelength_um: 0.6, table: [[1], [1]]}, {wavelength_um: 0.5, table: [[1], [1]]}]}",
+     "not ascending"},
+    {"sky: {radiance: 1, tables: [{wavelength_um: 0.5, table: [[1], [1]]}, {wavelength_um: 0.6, table: [[1, 1], [1, "
+     "1]]}]}",
+     "differ in size"},
+    {"sky: {kind: thermal, layers: [{temperature_k: -3, optical_depth: 1}]}", "-3"},
+    {"sky: {kind: thermal, layers: [{temperature_k: 3, optical_depth: -1}]}", "the optical depth is negative"},
+    {"lamps: [{kind: point, intensity: 1}]", "either position_m or positions_m"},
+    {"lamps: [{kind: spot, position_m: [0, 0, 1], intensity: 1}]", "outer_deg"},
+    {"lamps: [{kind: spot, position_m: [0, 0, 1], intensity: 1, outer_deg: 10, inner_deg: 20}]", "narrower"},
+    {"lamps: [{kind: point, position_m: [0, 0, 1], intensity: 1, axis: [0, 0, 0]}]", "no length"},
+    {"lamps: [{kind: point, position_m: [0, 0, 1], intensity: 1, distribution: {table: [[1]]}}]", "two rows"},
+    {"lamps: [{kind: point, position_m: [0, 0, 1], intensity: 1, distribution: {table: [[1], [-1]]}}]", "negative"},
+    {"lamps: [{kind: surface, radiance: 1}]", "material"},
+    {"lamps: [{kind: surface, material: a, radiance: 1, both_side: true}]", "both_sides"},
+    {"atmosphere: {heights_m: [0, 10, 5]}", "not ascending"},
+    {"atmosphere: {heights_m: [0]}", "2 to 201"},
+    {"atmosphere: {heights_m: [0, 1000], temperature_k: [280, 270]}", "2 temperatures for 1 layers"},
+    {"atmosphere: {aerosol: {depth_550: 0.1, phase: {model: hgg}}}", "unknown"},
+    {"atmosphere: {aerosol: {depth_550: 0.1, albedo: 1.2}}", "exceeds 1"},
+    {"atmosphere: {gases: [{name: a, layer_depths: [1, 2]}]}", "2 optical depths for 17 layers"},
+    {"sun: {direction: {zenith_deg: 1, azimuth_deg: 0}}\nsky: {kind: clear}\natmosphere: {}",
+     "stands for the atmosphere"},
+    {"earth: {height_m: 3}", "material"}};
+INSTANTIATE_TEST_SUITE_P(All, BadSources, testing::ValuesIn(kBad));
+
+TEST(SimSources, AMissingPictureIsNamed) {
+  EXPECT_THAT(message_of([] { read("sky: {kind: image, file: nowhere.png}"); }),
+              testing::HasSubstr("nowhere.png: error: no such file"));
+}
+
+TEST(SimSources, PanoramaLooksTheWayThePictureDoes) {
+  // A bright pixel column in the middle of a picture whose left edge is north: it stands in the south.
+  const TempFolder folder;
+  Canvas canvas(8, 4, kBlack);
+  canvas.fill(4, 1, 1, 1, kWhite);
+  write_png(folder / "sky.png", canvas, "test");
+  const SourceSpecs s = read("sky: {kind: image, file: sky.png, wavelength_um: [0.45, 0.55, 0.65]}", folder / "x.yaml");
+  const Sky sky(*s.sky, make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.01)}, 1));
+  auto at = [&](double zenith_deg, double compass_deg) {
+    std::vector<float> L(1, 0.0f);
+    sky.add(dir_from_angles(zenith_deg * kDegree, azimuth_from_compass_deg(compass_deg)), 1, L);
+    return L[0];
+  };
+  EXPECT_EQ(at(67, 202), 255);  // row 1 of 4: 45 to 90 degrees; column 4 of 8: 180 to 225 degrees
+  EXPECT_EQ(at(67, 178), 0);
+  EXPECT_EQ(at(67, 227), 0);
+  EXPECT_EQ(at(40, 202), 0);
+  EXPECT_EQ(at(95, 202), 0);
+  EXPECT_THAT(message_of([&] { read("sky: {kind: image, file: sky.png}", folder / "x.yaml"); }),
+              testing::HasSubstr("3 channels and 0 wavelengths"));
+}
+
+TEST(SimSources, DistributionFromAnSqt) {
+  // A distribution fitted to 1 + cos of the polar angle comes back within the fit's error, as a lamp uses it.
+  const TempFolder folder;
+  const test::Analytic f([](Dir, Dir in) { return 1 + in.z; }, 1, sqt::Domain::sphere, sqt::Quantity::intensity);
+  const std::vector<std::byte> bytes = pack_sqt(test::small_fit(f), {"test", "test", "1 + cos", "", "intensity"}, {});
+  write_file(folder / "lamp.sqt", bytes);
+  const SourceSpecs s = read(
+      "lamps: [{kind: point, position_m: [0, 0, 3], intensity: 2, distribution: {sqt: lamp.sqt}}]", folder / "x.yaml");
+  ASSERT_TRUE(s.lamps.at(0).table && s.lamps.at(0).table->sqt);
+  for (const double polar : {0.1, 0.8, 1.4, 2.2})
+    EXPECT_NEAR(s.lamps[0].table->sqt->value({0, 0, 1}, dir_from_angles(polar, 1), 0), 1 + std::cos(polar), 0.05)
+        << polar;
+  const test::Analytic brdf([](Dir, Dir) { return 0.3; });
+  write_file(folder / "brdf.sqt", pack_sqt(test::small_fit(brdf), {"test", "test", "flat", "", "bsdf"}, {}));
+  EXPECT_THAT(message_of([&] {
+                read("lamps: [{kind: point, position_m: [0, 0, 3], intensity: 2, distribution: {sqt: brdf.sqt}}]",
+                     folder / "x.yaml");
+              }),
+              testing::HasSubstr("holds no distribution of intensity"));
+}
+
+}  // namespace
+}  // namespace suite
