@@ -27,15 +27,15 @@ void write_phases(h5::Writer& w, const std::vector<Medium>& media) {
     for (const auto& [name, value] : media[m].phase.texts)
       text_of.push_back(m), text_name.push_back(name), texts.push_back(value);
   }
-  w.put("/media/numbers/medium", number_of, "1");
-  w.put_names("/media/numbers/name", number_name);
-  w.put("/media/numbers/value", numbers, "SI");
-  w.put("/media/texts/medium", text_of, "1");
-  w.put_names("/media/texts/name", text_name);
-  w.put_names("/media/texts/value", texts);
-  w.put("/media/phase_curves/medium", curve_of, "1");
-  w.put_names("/media/phase_curves/name", curve_name);
-  write_curves(w, "/media/phase_curves", curves);
+  w.put("/volume_media/numbers/medium", number_of, "1");
+  w.put_names("/volume_media/numbers/name", number_name);
+  w.put("/volume_media/numbers/value", numbers, "SI");
+  w.put("/volume_media/texts/medium", text_of, "1");
+  w.put_names("/volume_media/texts/name", text_name);
+  w.put_names("/volume_media/texts/value", texts);
+  w.put("/volume_media/phase_curves/medium", curve_of, "1");
+  w.put_names("/volume_media/phase_curves/name", curve_name);
+  write_curves(w, "/volume_media/phase_curves", curves);
 }
 
 void read_phases(h5::Reader& r, std::vector<Medium>& media) {
@@ -45,14 +45,14 @@ void read_phases(h5::Reader& r, std::vector<Medium>& media) {
       if (m >= media.size()) r.fail("'" + table + "' names a medium that is not there");
     return owner;
   };
-  const auto number_of = rows("/media/numbers"), text_of = rows("/media/texts"), curve_of = rows("/media/phase_curves");
+  const auto number_of = rows("/volume_media/numbers"), text_of = rows("/volume_media/texts"), curve_of = rows("/volume_media/phase_curves");
   const auto count = [](const auto& v) { return static_cast<long long>(v.size()); };
-  const std::vector<std::string> number_name = r.get_names("/media/numbers/name", count(number_of)),
-                                 text_name = r.get_names("/media/texts/name", count(text_of)),
-                                 curve_name = r.get_names("/media/phase_curves/name", count(curve_of)),
-                                 texts = r.get_names("/media/texts/value", count(text_of));
-  const auto numbers = r.get<double>("/media/numbers/value", "SI", 1, count(number_of));
-  const std::vector<Curve> curves = read_curves(r, "/media/phase_curves");
+  const std::vector<std::string> number_name = r.get_names("/volume_media/numbers/name", count(number_of)),
+                                 text_name = r.get_names("/volume_media/texts/name", count(text_of)),
+                                 curve_name = r.get_names("/volume_media/phase_curves/name", count(curve_of)),
+                                 texts = r.get_names("/volume_media/texts/value", count(text_of));
+  const auto numbers = r.get<double>("/volume_media/numbers/value", "SI", 1, count(number_of));
+  const std::vector<Curve> curves = read_curves(r, "/volume_media/phase_curves");
   if (curves.size() != curve_of.size()) r.fail("curves of phase functions are missing");
   for (size_t k = 0; k < number_of.size(); ++k) media[number_of[k]].phase.numbers[number_name[k]] = numbers[k];
   for (size_t k = 0; k < text_of.size(); ++k) media[text_of[k]].phase.texts[text_name[k]] = texts[k];
@@ -86,16 +86,16 @@ void read_grids(h5::Reader& r, Scene& s) {
 }  // namespace
 
 void write_media(h5::Writer& w, const Scene& s) {
-  w.put_names("/media/id", pick(s.media, [](const Medium& m) { return m.id; }));
-  w.put_names("/media/description", pick(s.media, [](const Medium& m) { return m.description; }));
-  w.put_names("/media/phase", pick(s.media, [](const Medium& m) { return m.phase.model; }));
-  w.put("/media/temperature", pick(s.media, [](const Medium& m) { return m.temperature_k; }), "K");
-  w.put("/media/priority", pick(s.media, [](const Medium& m) { return double(m.priority); }), "1");
+  w.put_names("/volume_media/id", pick(s.media, [](const Medium& m) { return m.id; }));
+  w.put_names("/volume_media/description", pick(s.media, [](const Medium& m) { return m.description; }));
+  w.put_names("/volume_media/phase", pick(s.media, [](const Medium& m) { return m.phase.model; }));
+  w.put("/volume_media/temperature", pick(s.media, [](const Medium& m) { return m.temperature_k; }), "K");
+  w.put("/volume_media/priority", pick(s.media, [](const Medium& m) { return double(m.priority); }), "1");
   std::vector<Curve> curves;
   for (const Medium& m : s.media) curves.insert(curves.end(), {m.absorption, m.scattering, m.index});
-  write_curves(w, "/media/curves", curves);
+  write_curves(w, "/volume_media/curves", curves);
   write_phases(w, s.media);
-  w.put("/media/ambient", std::vector<uint32_t>{s.ambient}, "1");
+  w.put("/volume_media/ambient", std::vector<uint32_t>{s.ambient}, "1");
   w.put("/materials/inside", pick(s.materials, [](const Material& m) { return m.inside; }), "1");
   w.put("/materials/outside", pick(s.materials, [](const Material& m) { return m.outside; }), "1");
 
@@ -131,13 +131,13 @@ void write_media(h5::Writer& w, const Scene& s) {
 }
 
 void read_media(h5::Reader& r, Scene& s) {
-  const std::vector<std::string> ids = r.get_names("/media/id");
+  const std::vector<std::string> ids = r.get_names("/volume_media/id");
   const auto n = static_cast<long long>(ids.size());
-  const std::vector<std::string> description = r.get_names("/media/description", n),
-                                 phase = r.get_names("/media/phase", n);
-  const auto temperature = r.get<double>("/media/temperature", "K", 1, n),
-             priority = r.get<double>("/media/priority", "1", 1, n);
-  const std::vector<Curve> curves = read_curves(r, "/media/curves");
+  const std::vector<std::string> description = r.get_names("/volume_media/description", n),
+                                 phase = r.get_names("/volume_media/phase", n);
+  const auto temperature = r.get<double>("/volume_media/temperature", "K", 1, n),
+             priority = r.get<double>("/volume_media/priority", "1", 1, n);
+  const std::vector<Curve> curves = read_curves(r, "/volume_media/curves");
   if (curves.size() != kCurves * ids.size()) r.fail("curves of media are missing");
   for (size_t k = 0; k < ids.size(); ++k) {
     if (!(std::abs(priority[k]) <= 1e6)) r.fail("medium '" + ids[k] + "' has an absurd priority");
@@ -147,7 +147,7 @@ void read_media(h5::Reader& r, Scene& s) {
     s.media.push_back(std::move(m));
   }
   read_phases(r, s.media);
-  s.ambient = r.get<uint32_t>("/media/ambient", "1", 1, 1)[0];
+  s.ambient = r.get<uint32_t>("/volume_media/ambient", "1", 1, 1)[0];
   const auto materials = static_cast<long long>(s.materials.size());
   const auto inside = r.get<uint32_t>("/materials/inside", "1", 1, materials),
              outside = r.get<uint32_t>("/materials/outside", "1", 1, materials);
