@@ -49,8 +49,10 @@ int list_models() {
 // What the sensors can see decides what is loaded.
 SceneNeeds needs_of(const Simulation& sim) {
   SceneNeeds needs;
-  for (const auto& sensor : sim.sensors)
+  for (const auto& sensor : sim.sensors) {
     for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
+    for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
+  }
   return needs;
 }
 

@@ -10,6 +10,7 @@ namespace suite {
 // Nothing given = everything is read.
 struct SceneNeeds {
   std::vector<std::array<double, 2>> windows_um;  // wavelengths that some sensor sees; empty = all
+  bool temperatures = false;                      // wanted for themselves (truth), whether they glow or not
 };
 
 // Parts of a scene that a simulation may do without.
