@@ -47,7 +47,7 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
     }
   }
   if (g.material.given()) material_id(g.material);  // even when every face has a better one, the name must exist
-  Mesh mesh = make_mesh(g.mesh, g.to_local, g.normals, ids);
+  Mesh mesh = make_mesh(g.mesh, g.to_local, g.normals, ids, g.crease_rad);
   mesh.name = g.name;
   scene_.meshes.push_back(std::move(mesh));
   return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size() - 1), 1, nullptr};

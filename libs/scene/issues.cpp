@@ -25,7 +25,7 @@ std::vector<IssueKind> scene_issues() {
       {"SP205", info, "lines, points, curves or free-form surfaces are left out", "only faces are geometry here"},
       {"SP206", warning, "a concave or non-planar polygon cannot be split cleanly",
        "triangulate it in the modelling tool"},
-      {"SP207", info, "not every corner has a normal", "corners without one get their facet's normal"},
+      {"SP207", info, "not every corner has a normal", "corners without one are smoothed within their smoothing group ('s'), flat where they have none"},
       {"SP208", info, "not every corner has a texture coordinate", "corners without one get (0, 0)"},
       {"SP209", warning, "a face names a normal or texture coordinate that is not there",
        "the corner is taken as having none"},
