@@ -16,14 +16,14 @@ namespace {
 using h5::Reader;
 
 // One of the large arrays, read past the HDF5 library by several threads: contiguous and little-endian, as this machine
-// is.
+// is. A packed one is read by the library, which knows one thread only.
 template <class T>
 class Stored {
  public:
   Stored(Reader& r, const std::string& name, const char* units) : name_(name) {
-    const Reader::Opened d = r.open(name, h5::native<T>(), units, 1, -1);
-    count_ = d.count;
-    offset_ = r.file_offset(name, d);
+    opened_ = r.open(name, h5::native<T>(), units, 1, -1);
+    count_ = opened_.count;
+    if (!opened_.packed) offset_ = r.file_offset(name, opened_);
   }
   // Sets aside the next n values; where they start.
   uint64_t take(Reader& r, uint64_t n) {
@@ -35,14 +35,20 @@ class Stored {
     if (at_ != count_) r.fail("dataset '" + name_ + "' is longer than its table says");
   }
   const std::string& name() const { return name_; }
-  std::vector<T> values(const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
+  bool packed() const { return opened_.packed; }
+  std::vector<T> values(Reader& r, const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
     std::vector<T> out(n + pad);
+    if (opened_.packed) {
+      r.read(name_, opened_, h5::native<T>(), out.data(), first, n);
+      return out;
+    }
     file.read_at(offset_ + first * sizeof(T), std::as_writable_bytes(std::span(out.data(), n)));
     return out;
   }
 
  private:
   std::string name_;
+  Reader::Opened opened_;
   uint64_t count_ = 0, offset_ = 0, at_ = 0;
 };
 
@@ -78,15 +84,19 @@ void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, 
   for (const std::string* name : {&p.name(), &i.name(), &nrm.name()}) r.note_read(*name);
   if (textures.read) r.note_read(uv.name());
   const RandomAccessFile file(path);
-  parallel_for(0, meshes.size(), 1, [&](size_t begin, size_t end) {
+  const auto read = [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       const uint64_t v = rows.vertices[k];
-      meshes[k].positions = p.values(file, starts[k].p, 3 * v, v ? 1 : 0);
-      meshes[k].indices = i.values(file, starts[k].i, 3 * rows.triangles[k]);
-      if (rows.normals[k]) meshes[k].normals = nrm.values(file, starts[k].n, v);
-      if (rows.uvs[k] && with_uvs[k]) meshes[k].uvs = uv.values(file, starts[k].uv, 2 * v);
+      meshes[k].positions = p.values(r, file, starts[k].p, 3 * v, v ? 1 : 0);
+      meshes[k].indices = i.values(r, file, starts[k].i, 3 * rows.triangles[k]);
+      if (rows.normals[k]) meshes[k].normals = nrm.values(r, file, starts[k].n, v);
+      if (rows.uvs[k] && with_uvs[k]) meshes[k].uvs = uv.values(r, file, starts[k].uv, 2 * v);
     }
-  });
+  };
+  if (p.packed() || uv.packed() || i.packed() || nrm.packed())
+    read(0, meshes.size());
+  else
+    parallel_for(0, meshes.size(), 1, read);
 }
 
 // After everything else: what the materials are decides what is read of the meshes.
@@ -144,7 +154,8 @@ void read_hierarchy(Reader& r, Scene& s) {
   const auto what = r.get<uint8_t>("/placements/kind", "1", 1, rows);
   const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows),
              override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
-  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows), track = r.get<uint32_t>("/placements/track", "1", 1, rows);
+  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows),
+             track = r.get<uint32_t>("/placements/track", "1", 1, rows);
   size_t at = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
     if (placements[g] > target.size() - at) r.fail("group '" + groups[g] + "' declares more placements than there are");

@@ -150,10 +150,15 @@ void write_maps(Writer& w, const Scene& s) {
 
 }  // namespace
 
-void write_scene(const Scene& s, const Provenance& provenance, const std::string& path) {
+void write_scene(const Scene& s, const Provenance& provenance, const std::string& path,
+                 const Compression& compression) {
   AtomicFile file(path);
+  std::vector<std::string> names;
   {
-    Writer w(file.temporary(), path);
+    Writer w(file.temporary(), path, [&](const std::string& name) {
+      names.push_back(name);
+      return compression.of_dataset(name);
+    });
     w.attribute("format", h5::kFormat);
     w.attribute("version", h5::kVersionText);
     w.attribute("name", s.name);
@@ -181,6 +186,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));
     w.close();
   }
+  compression.check_names(names);
   file.commit();
 }
 
