@@ -11,7 +11,7 @@ namespace suite {
 
 namespace h5 {
 inline constexpr const char* kFormat = "suite.scene";
-inline constexpr const char* kVersionText = "2";
+inline constexpr const char* kVersionText = "3";
 inline constexpr int kConstantCurve = 255;  // in place of an Outside rule
 }  // namespace h5
 

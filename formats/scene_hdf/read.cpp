@@ -7,6 +7,7 @@
 #include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
+#include "scene/curvature.h"
 #include "scene/primitives.h"
 
 namespace suite {
@@ -315,6 +316,10 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
   const auto box = r.numbers("bounds_m", 6), origin = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
   s.bounds = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
   s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
+  const std::string curvature = r.text("curvature");
+  s.curved = curvature == "wgs84";
+  if (!s.curved && curvature != "flat") r.fail("has an unknown curvature '" + curvature + "'");
+  if (s.curved && !s.origin.given) r.fail("is curved and has no origin");
   try {
     read_materials(r, s.materials);
     read_maps(r, s);
@@ -324,6 +329,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
     read_hierarchy(r, s);
     read_tracks(r, s);
     read_media(r, s);
+    set_flat_plane(s);
     resolve(s, path, decode);
     drop_unseen(s, loading);
     read_meshes(r, path, s, loading);

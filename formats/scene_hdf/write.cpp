@@ -173,6 +173,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     const double origin[4] = {s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m,
                               s.origin.given ? 1.0 : 0.0};
     w.attribute("origin_latitude_deg_longitude_deg_height_m_given", origin);
+    w.attribute("curvature", s.curved ? "wgs84" : "flat");
     write_meshes(w, s.meshes);
     w.attribute("epoch_utc", s.epoch);
     write_hierarchy(w, s);

@@ -130,6 +130,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
     const GeoReference ref = read_georeference(path);
     if (!no_data) no_data = ref.no_data;
+    g.terrain.georeferenced = true;
     g.terrain.place = georeferenced_grid(ref, separation, draft_.origin, Where{path, 0, 0, {}, -1});
   }
   read_heights(path, no_data, g.terrain);

@@ -5,6 +5,7 @@
 
 #include "motion/track.h"
 #include "scene/baker.h"
+#include "scene/curvature.h"
 
 namespace suite {
 
@@ -21,6 +22,7 @@ Scene Baker::run() {
   geometry();
   groups();
   unused();
+  if (draft_.curvature_m && report_.count(Severity::error) == 0) curve();
   scene_.epoch = draft_.epoch;
   const TimeSpan times = time_window();
   if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_, times.begin, times.end);
@@ -53,9 +55,37 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
   return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size() - 1), 1, nullptr};
 }
 
+// A scene that is to be curved is put together on the flat plane; a georeferenced terrain is laid there first.
+SourceTerrain Baker::on_plane(const SourceTerrain& terrain) const {
+  if (!draft_.curvature_m || !terrain.georeferenced) return terrain;
+  SourceTerrain flat = terrain;
+  const GeodeticOrigin& o = draft_.origin;
+  flat.place = [place = terrain.place, frame = SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m})](
+                   double column, double row, double height) { return frame.flattened(place(column, row, height)); };
+  return flat;
+}
+
+void Baker::curve() {
+  const Where& where = draft_.curvature_where;
+  Curved done;
+  try {
+    done = curve_scene(scene_, *draft_.curvature_m);
+  } catch (const Error& e) {
+    return add("SP404", where, e.message() + "; " + e.hint());
+  }
+  for (const std::string& name : done.rigid)
+    add("SP408", where, name + " is too large for the curvature and only turned with it");
+  for (const auto& [name, count] : done.long_edges)
+    report_.add("SP409", draft_.file,
+                {where, strf("mesh '%s': %zu triangles have edges that leave the surface by more than %g m",
+                             name.c_str(), count, *draft_.curvature_m)},
+                count);
+  if (done.moving) add("SP410", where, strf("%zu moving placements", done.moving));
+}
+
 Baker::Built Baker::build_terrain(const DraftGeometry& g) {
   try {
-    terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+    terrains_.push_back(std::make_unique<TerrainGrid>(on_plane(g.terrain)));
   } catch (const Error& e) {  // a sample that lies nowhere on Earth
     add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
     return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr};

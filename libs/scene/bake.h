@@ -22,6 +22,9 @@ void bake_media(const Draft& draft, Report& report, Scene& scene);
 Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials,
                double crease_rad = kPi);
 
+// The origin that make_mesh chooses for vertices in a box.
+Vec3 mesh_origin(const Box3& box);
+
 // A terrain in scene ENU: the grid of a raster, its triangles and its surface.
 class TerrainGrid {
  public:

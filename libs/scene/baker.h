@@ -43,6 +43,8 @@ class Baker {
   void check_parts(const PropertyMap& map, const Where& where);
   void geometry();
   Built build_mesh(const DraftGeometry& g);
+  SourceTerrain on_plane(const SourceTerrain& terrain) const;
+  void curve();
   Built build_terrain(const DraftGeometry& g);
   Built build_primitive(const DraftGeometry& g);
   void groups();

@@ -46,6 +46,7 @@ struct SourceTerrain {
   std::vector<float> heights;  // m, row-major, first row first; NaN = no data
   // Scene ENU position of the sample in column i, row j (both may be fractional) with the height given.
   std::function<Vec3(double column, double row, double height)> place;
+  bool georeferenced = false;  // place() knows the Earth's curvature already
 };
 
 // file: the file's own, those that are missing by its smoothing groups; facet: none; smooth: all made anew.
@@ -143,6 +144,8 @@ struct Draft {
   std::string epoch;  // UTC of second 0, or empty
   std::optional<TimeWindowSpec> times;
   GeodeticOrigin origin;
+  std::optional<double> curvature_m;    // the scene is flat and to be laid onto the ellipsoid this exactly, m
+  Where curvature_where;
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;

@@ -7,9 +7,7 @@
 
 namespace suite {
 
-namespace {
-
-Vec3 choose_origin(const Box3& box) {
+Vec3 mesh_origin(const Box3& box) {
   // Whole metres keep round coordinates round; tiny objects need a finer step to stay near zero.
   const Vec3 size = box.size();
   const double extent = std::max({size.x, size.y, size.z});
@@ -19,8 +17,6 @@ Vec3 choose_origin(const Box3& box) {
   const double s = std::min(step, 1.0);
   return {std::round(c.x / s) * s, std::round(c.y / s) * s, std::round(c.z / s) * s};
 }
-
-}  // namespace
 
 Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials,
                double crease_rad) {
@@ -44,7 +40,7 @@ Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rul
   std::vector<Vec3> points(old_id.size());
   Box3 box;
   for (size_t i = 0; i < old_id.size(); ++i) box.grow(points[i] = to_local.point(source.positions[vertex(old_id[i])]));
-  mesh.origin = points.empty() ? Vec3{} : choose_origin(box);
+  mesh.origin = points.empty() ? Vec3{} : mesh_origin(box);
   mesh.positions.reserve(3 * points.size() + 1);
   for (const Vec3& p : points)
     for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k] - mesh.origin[k]));
