@@ -27,6 +27,13 @@ void write_meshes(Writer& w, const std::vector<Mesh>& meshes) {
     parts.insert(parts.end(), m.parts.begin(), m.parts.end());
   }
   w.put("/meshes/origin", origin, "m", 3);
+  std::vector<double> boxes;
+  for (const Mesh& m : meshes)
+    if (const Box3 b = mesh_box(m); b.empty())
+      boxes.insert(boxes.end(), 6, 0.0);
+    else
+      boxes.insert(boxes.end(), {b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z});
+  w.put("/meshes/box", boxes, "m", 6);
   w.put("/meshes/vertices", pick(meshes, [](const Mesh& m) { return uint64_t{m.vertex_count()}; }), "1");
   w.put("/meshes/triangles", pick(meshes, [](const Mesh& m) { return uint64_t{m.triangle_count()}; }), "1");
   w.put("/meshes/has_normals", pick(meshes, [](const Mesh& m) { return uint8_t{!m.normals.empty()}; }), "1");

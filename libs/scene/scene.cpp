@@ -71,7 +71,13 @@ void check_arrays(const Mesh& m, const std::string& file) {
 void Mesh::require() const {
   if (!stored) return;
   const std::lock_guard lock(stored->turn);
-  if (positions.empty() && indices.empty() && stored->vertices) stored->fill(*this);
+  if (!positions.empty() || !indices.empty() || !stored->vertices) return;
+  try {
+    stored->fill(*this);
+  } catch (...) {  // whoever asks again must be told again
+    positions.clear(), indices.clear(), normals.clear(), uvs.clear();
+    throw;
+  }
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "base/files.h"
 #include "formats/scene_hdf/scene_hdf.h"
@@ -181,6 +182,60 @@ TEST_F(SceneHdf, PackedDatasetsHoldTheSameAndRepeat) {
   EXPECT_LT(but_indices, plain);
   // indices + the rest = all, up to the library's bookkeeping
   EXPECT_NEAR(double(plain) - double(all), 2 * double(plain) - double(indices) - double(but_indices), 4096.0);
+}
+
+// Arrays that wait are read once a mesh, when asked for, checked then, and are the same; from any thread.
+TEST_F(SceneHdf, ArraysAreReadWhenAskedFor) {
+  const Scene s = large_scene();
+  const std::string path = folder_ / "later.h5";
+  write_scene(s, {}, path);
+  SceneNeeds needs;
+  needs.later_from = 0;
+  LoadReport report;
+  const Scene b = read_scene(path, {}, needs, &report);
+  ASSERT_TRUE(report.later);
+  EXPECT_EQ(std::count(report.datasets.begin(), report.datasets.end(), "/geometry/positions"), 0);
+  EXPECT_EQ(report.later->meshes, 2u);
+  EXPECT_EQ(report.later->meshes_read, 0u);
+  EXPECT_THAT(report.text(), HasSubstr("geometry             later"));
+  EXPECT_TRUE(b.meshes[1].positions.empty());
+  EXPECT_EQ(b.meshes[1].vertex_count(), s.meshes[1].vertex_count());
+  EXPECT_EQ(b.meshes[1].triangle_count(), s.meshes[1].triangle_count());
+  EXPECT_EQ(mesh_box(b.meshes[1]).high, mesh_box(s.meshes[1]).high);
+  EXPECT_EQ(scene_bounds(b).low, scene_bounds(s).low);
+  EXPECT_EQ(report.later->meshes_read, 0u);
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k) threads.emplace_back([&] { b.meshes[1].require(); });
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(report.later->meshes_read, 1u);
+  EXPECT_EQ(report.later->read, 12 * (s.meshes[1].vertex_count() + s.meshes[1].triangle_count()));
+  EXPECT_EQ(b.meshes[1].positions, s.meshes[1].positions);
+  EXPECT_EQ(b.meshes[1].indices, s.meshes[1].indices);
+  EXPECT_TRUE(b.meshes[0].positions.empty());
+  b.meshes[0].require();
+  EXPECT_EQ(b.meshes[0].uvs, s.meshes[0].uvs);
+  // Less than the limit is read at once.
+  needs.later_from = uint64_t{1} << 30;
+  EXPECT_FALSE(read_scene(path, {}, needs).meshes[1].positions.empty());
+}
+
+TEST_F(SceneHdf, DamageIsFoundWhenArraysAreRead) {
+  const Scene s = large_scene();
+  const std::string path = folder_ / "later.h5";
+  write_scene(s, {}, path);
+  std::vector<std::byte> bytes = read_bytes(path);
+  // The x of vertices 299 and 599 of the sheet is 299, its largest; one of all is moved beyond the box.
+  const float largest = 299;
+  const auto* want = reinterpret_cast<const std::byte*>(&largest);
+  const auto at = std::search(bytes.begin(), bytes.end(), want, want + 4);
+  ASSERT_NE(at, bytes.end());
+  const float wrong = 2990;
+  std::copy_n(reinterpret_cast<const std::byte*>(&wrong), 4, at);
+  write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  SceneNeeds needs;
+  needs.later_from = 0;
+  const Scene b = read_scene(path, {}, needs);
+  EXPECT_THAT(message_of([&] { b.meshes[1].require(); }), HasSubstr("it is not as large as was said of it"));
 }
 
 TEST_F(SceneHdf, CompressionsAreCheckedAndDamageIsRefused) {
