@@ -59,6 +59,9 @@ std::vector<Curve> Reader::read_family(const Params& p) {
 }
 
 void Reader::read_cube(const Params& p, PropertyMap& map) {
+  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
+  const auto outside = p.find("outside");
+  map.outside = outside ? rules[outside->as_choice({"error", "hold", "zero"})] : Outside::error;
   const Params file = p.at("file");
   const EnviImage cube(input(file));
   const EnviHeader& h = cube.header();

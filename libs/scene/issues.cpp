@@ -17,6 +17,8 @@ std::vector<IssueKind> scene_issues() {
        "give a longer curve, or declare 'outside: hold' or 'zero'"},
       {"SP105", error, "a material reflects and transmits more than it receives",
        "reflectance + transmittance must not exceed 1"},
+      {"SP106", error, "a temperature table does not cover the time that is looked at",
+       "give a longer table, 'repeat: true', or a shorter 'times_s'"},
       {"SP201", error, "a face names something that is not there",
        "indices count from 1, or from the end when negative; 0 is nothing"},
       {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},
