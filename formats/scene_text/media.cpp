@@ -121,12 +121,8 @@ std::optional<Curve> Reader::relative_index(const Params& p) {
 }
 
 VoxelData Reader::read_voxel_input(const Params& p) {
-  const std::string name = p.as_text();
   VoxelData data = read_voxels(input(p));
-  for (const std::string& raw : data.raw_files) {
-    const std::string beside = (std::filesystem::path(name).parent_path() / raw).string();
-    draft_.inputs.push_back({beside, sha256(read_bytes(resolve_path(input(p), raw), size_t{64} << 30))});
-  }
+  for (const std::string& raw : data.raw_files) companion(p, raw);
   return data;
 }
 

@@ -64,6 +64,7 @@ void Reader::read_cube(const Params& p, PropertyMap& map) {
   map.outside = outside ? rules[outside->as_choice({"error", "hold", "zero"})] : Outside::error;
   const Params file = p.at("file");
   const EnviImage cube(input(file));
+  header_input(file);
   const EnviHeader& h = cube.header();
   if (h.wavelength_um.empty())
     throw file.error("the cube has no wavelengths", "its header needs 'wavelength' and 'wavelength units'");

@@ -65,6 +65,9 @@ class Reader {
   void item(const char* code, const Params& p, const std::function<void()>& read);
   // The file a value names, looked for beside the text and in the search folders; hashed into the inputs.
   std::string input(const Params& p);
+  // A file that stands beside the one that p names and is read with it: hashed too, or noted as not being there.
+  void companion(const Params& p, const std::string& other);
+  void header_input(const Params& p);
   static Reference reference(const Params& p) { return {p.as_text(), p.where()}; }
 
   const SceneTextOptions& options_;

@@ -128,7 +128,8 @@ struct SpectralWindow {
   Where where;
 };
 
-// One file that the scene was made from: the name as written, and its SHA-256.
+// One file that the scene was made from: the name as written, and its SHA-256. A file that another one brings along is
+// called "grid.vox -> density.raw"; one that would be read if it were there has no hash.
 struct InputFile {
   std::string name, sha256;
 };
