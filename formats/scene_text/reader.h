@@ -37,6 +37,7 @@ class Reader {
   void read_grid(const std::string& name, const Params& p);
   void read_volume(const Params& p);
   void read_voxel_geometry(const Params& p, DraftGeometry& g);
+  VoxelData read_any_voxels(const Params& p, const Params& file);
   // The voxels that a value names, with their raw files among the inputs.
   VoxelData read_voxel_input(const Params& p);
   // temperatures.cpp

@@ -24,8 +24,7 @@ void Baker::check_coverage(const DraftMaterial& m) {
   for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
   for (const DraftPropertyMap& map : draft_.property_maps)
     for (const Reference& r : m.property_maps)
-      if (r.name == map.map.name)
-        check_map_coverage(m, map.map, check);
+      if (r.name == map.map.name) check_map_coverage(m, map.map, check);
 }
 
 // Beyond the channels of a cube its rule decides, as beyond the points of a curve.
@@ -73,7 +72,8 @@ void Baker::check_map_energy(const DraftMaterial& m, const PropertyMap& map, con
   }
   for (const Curve& curve : map.family)
     for (size_t k = 0; k < curve.value().size(); ++k)
-      if (curve.is_constant() ? too_much(1, curve.value()[0]) : too_much(curve.wavelength_um()[k], curve.value()[k])) return;
+      if (curve.is_constant() ? too_much(1, curve.value()[0]) : too_much(curve.wavelength_um()[k], curve.value()[k]))
+        return;
 }
 
 void Baker::materials() {

@@ -30,6 +30,7 @@ class Baker {
     TargetKind kind;
     uint32_t first, count;
     const TerrainGrid* terrain = nullptr;
+    bool failed = false;  // has been filed; placements of it say nothing more
   };
 
   void add(const char* code, const Where& where, const std::string& message) {

@@ -65,6 +65,7 @@ struct DraftGeometry {
   NormalRule normals = NormalRule::file;
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
   double tile_m = 0;        // largest extent of one terrain tile
+  bool failed = false;           // could not be read, which has been filed: only the name is sure
 };
 
 struct DraftPlacement {
@@ -115,6 +116,7 @@ struct DraftGrid {
   Where where;
   VoxelGrid grid;  // `media` still empty
   std::vector<Reference> media;
+  std::vector<std::vector<float>> shares;  // of each medium, per cell; empty = each cell has one medium
 };
 
 struct DraftVolume {

@@ -47,6 +47,8 @@ std::vector<IssueKind> scene_issues() {
       {"SP312", info, "surfaces touch in a single vertex", ""},
       {"SP313", warning, "the extent is absurd", "check 'unit_m'"},
       {"SP314", warning, "two triangles lie back to back", "which one is hit is arbitrary; use one two-sided face"},
+      {"SP315", warning, "too many triangles overlap to look for crossings",
+       "the mesh is badly tangled; mend it in the modelling tool, or use --no-crossing-check"},
       {"SP320", info, "repaired", ""},
       {"SP401", error, "a placement names something that is not there", ""},
       {"SP402", error, "groups contain each other", "a group may only contain groups that do not lead back to it"},
