@@ -19,6 +19,7 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  asks_around_ = environment.lamps || (environment.sky && environment.sky->tabulated());
   if (!optics.media().empty()) {
     volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
     transmission_.resize(optics.state().size());
@@ -77,11 +78,14 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (options_.explicit_sources) ask_sources(wave, p);
+      if (options_.explicit_sources) ask_disks(wave, p);
     }
+    const size_t parallel = wave.rays.size();
+    if (options_.explicit_sources && asks_around_)
+      for (const uint32_t p : wave.active) ask_around(wave, p);
     wave.blocked.resize(wave.rays.size());
     if (volume_) volume_->look(wave, live_, statistics);
-    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    else see(wave, parallel, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
@@ -96,6 +100,17 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
       if (go_on(wave, p)) wave.active[kept++] = p;
     wave.active.resize(kept);
   }
+}
+
+// Which sources are visible. Rays towards the same far disk run alongside each other where paths have just started, the
+// others (from `parallel` on) do not.
+void PathGenerator::see(Wave& wave, size_t parallel, bool first, TraceStatistics& statistics) const {
+  const std::span<const Ray> rays = wave.rays;
+  const std::span<const double> distance = wave.distance;
+  const std::span<uint8_t> blocked = wave.blocked;
+  const Tracer& tracer = surface_.tracer();
+  if (parallel) tracer.occluded(rays.first(parallel), distance.first(parallel), blocked.first(parallel), first, statistics);
+  if (parallel < rays.size()) tracer.occluded(rays.subspan(parallel), distance.subspan(parallel), blocked.subspan(parallel), false, statistics);
 }
 
 // The next node of a path, without its surface.

@@ -42,7 +42,9 @@ class PathGenerator {
   bool scatters(Path& path, const Node& node) const;
   // Sources (path_sources.cpp).
   void escape(Path& path, const Live& live) const;
-  void ask_sources(Wave& wave, uint32_t p);
+  void ask_disks(Wave& wave, uint32_t p);
+  void ask_around(Wave& wave, uint32_t p);
+  void see(Wave& wave, size_t parallel, bool first, TraceStatistics& statistics) const;
   void ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance, const Vec3* end);
   void ask_lamps(Wave& wave, uint32_t p);
   void meet_glow(Wave& wave, uint32_t p);
@@ -55,6 +57,7 @@ class PathGenerator {
   const Environment& environment_;
   PipelineOptions options_;
   size_t knots_;
+  bool asks_around_;  // explicit sources other than far disks
   double knot_probability_[kMaxKnots];
   std::vector<size_t> knot_bins_;
   std::vector<Live> live_;

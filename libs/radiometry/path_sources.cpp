@@ -62,25 +62,29 @@ void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLigh
   wave.light.push_back(slot);
 }
 
-void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
+// Sun and Moon.
+void PathGenerator::ask_disks(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
-  auto ask_far = [&](uint8_t slot, const DirectionSample& drawn, double relative, const float* spectrum) {
-    if (relative > 0)
-      ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar,
-          nullptr);
+  auto ask_disk = [&](uint8_t slot, const Sun& disk, Vec2 u) {
+    const DirectionSample drawn = disk.sample(u);
+    ask(wave, p, slot, {drawn.direction, drawn.density, 1, disk.spectrum(), nullptr, 0}, kFar, nullptr);
   };
-  if (environment_.sun)
-    ask_far(light_sun, environment_.sun->sample({live.u[2], live.u[3]}), 1, environment_.sun->spectrum());
-  const auto block = static_cast<uint32_t>(wave.path(p).size - 1);
-  if (environment_.moon) {
-    const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + block);
-    ask_far(light_moon, environment_.moon->sample({v[0], v[1]}), 1, environment_.moon->spectrum());
-  }
+  if (environment_.sun) ask_disk(light_sun, *environment_.sun, {live.u[2], live.u[3]});
+  if (!environment_.moon) return;
+  const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + static_cast<uint32_t>(wave.path(p).size - 1));
+  ask_disk(light_moon, *environment_.moon, {v[0], v[1]});
+}
+
+// Sky and lamps.
+void PathGenerator::ask_around(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
   if (environment_.sky && environment_.sky->tabulated()) {
-    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + block);
+    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + static_cast<uint32_t>(wave.path(p).size - 1));
     const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
     const float* spectrum = environment_.sky->spectrum();
-    ask_far(light_sky, drawn, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum);
+    const double relative = spectrum ? environment_.sky->relative(drawn.direction) : 1;
+    if (relative > 0)
+      ask(wave, p, light_sky, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar, nullptr);
   }
   if (environment_.lamps) ask_lamps(wave, p);
 }

@@ -1,5 +1,5 @@
-// The radiometry pipeline (paper, section IV-A): as wide as a block of problems, each pass takes one ray of each problem,
-// constructs its path, and turns the path into radiance, which is added to the problem's accumulators.
+// The radiometry pipeline (paper, section IV-A): each pass takes a few rays of each of a few neighbouring problems,
+// constructs their paths, and turns the paths into radiance, which is added to the problems' accumulators.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -143,7 +143,8 @@ class Pipeline {
   PipelineOptions options_;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;
-  std::unique_ptr<Workspace> borrow(size_t width) const;
+  class BlockRun;
+  std::unique_ptr<Workspace> borrow() const;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };
