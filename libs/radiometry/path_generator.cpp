@@ -44,10 +44,8 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
-  path = Path{};
-  path.ray = ray.ray;
+  path.begin(ray.ray, ray.weight);
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
-  path.weight = ray.weight;
   if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1) {
     const double u = stream.hashed(sample, kKnotPurpose);
