@@ -11,8 +11,10 @@
 
 namespace suite {
 
-// The explicit sources that a node may ask, one sample each.
-enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_slots };
+// The explicit sources that a node may ask, one sample a slot.
+// Of the lamps, the first node may ask several.
+inline constexpr int kLampDraws = 4;
+enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_slots = light_lamp + kLampDraws };
 
 // Light that a node receives straight from an explicit source.
 struct ExplicitLight {

@@ -17,9 +17,13 @@ constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 
 PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options)
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
+  paper_ = options.method == Method::paper;
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
-  asks_around_ = environment.lamps || (environment.sky && environment.sky->tabulated());
+  if (paper_) std::fill_n(knot_probability_, knots_, 0.0), knot_probability_[0] = 1, options_.roulette_after = kMaxNodes;
+  asks_disks_ = options.explicit_sources && !paper_;
+  asks_around_ = asks_disks_ && (environment.lamps || (environment.sky && environment.sky->tabulated()));
+  if (environment.lamps && !paper_) lamp_draws_ = static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
   if (!optics.media().empty()) {
     volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
     transmission_.resize(optics.state().size());
@@ -47,7 +51,7 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   path.begin(ray.ray, ray.weight);
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   if (volume_) volume_->start(live, ray.ray.time, probing_);
-  if (knots_ > 1) {
+  if (knots_ > 1 && !paper_) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
   }
@@ -76,10 +80,11 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (options_.explicit_sources) ask_disks(wave, p);
+      if (asks_disks_) ask_disks(wave, p);
+      else if (options_.explicit_sources) ask_one(wave, p);
     }
-    const size_t parallel = wave.rays.size();
-    if (options_.explicit_sources && asks_around_)
+    const size_t parallel = paper_ ? 0 : wave.rays.size();
+    if (asks_around_)
       for (const uint32_t p : wave.active) ask_around(wave, p);
     wave.blocked.resize(wave.rays.size());
     if (volume_) volume_->look(wave, live_, statistics);

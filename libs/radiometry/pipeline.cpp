@@ -115,6 +115,9 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
     : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
   if (!optics.media().empty() && environment.atmosphere)
     throw Error("layers of air and media in the scene cannot be combined", "let a clear sky stand for the air, or leave the media out");
+  if (options_.method == Method::paper && !optics.media().empty())
+    throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
+  if (options_.lamp_draws < 1 || options_.lamp_draws > kLampDraws) throw Error(strf("%d lamps a node are not between 1 and %d", options_.lamp_draws, kLampDraws));
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
@@ -239,10 +242,13 @@ class Pipeline::BlockRun {
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
       const auto [scramble, index] = deal(sample);
-      const SampleStream stream(keys_[place], scramble);
-      const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, index, {&workspace_.weights[p * bins], bins});
+      // Independent numbers: every sample is the first of a sequence of its own.
+      const bool independent = pipeline_.options_.method == Method::paper;
+      const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
+      const uint32_t number = independent ? 0 : index;
+      const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {&workspace_.weights[p * bins], bins});
       workspace_.weighted[p] = ray.spectral;
-      workspace_.generator.start(wave, p, ray, stream, index);
+      workspace_.generator.start(wave, p, ray, stream, number);
     }
     workspace_.generator.complete(wave, statistics_);
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
