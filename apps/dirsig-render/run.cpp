@@ -131,6 +131,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
   if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
