@@ -64,7 +64,9 @@ struct Path {
   double sky_factor = 0;
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
   int size = 0;                  // nodes
-  bool scattered_first = false;  // a medium scattered it before the first node
+  bool received = false;         // node 0 is the sensor's own receiver (receiver.h), no surface
+  bool scattered_first = false;  // a medium scattered it before it met anything
+  int first_met() const { return received ? 1 : 0; }  // number of the node of the first surface
 };
 
 }  // namespace suite

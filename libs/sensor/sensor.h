@@ -68,6 +68,10 @@ struct SensorRay {
   // These weights are independent of the path that follows, so they multiply its own balance-heuristic weights; a
   // sensor keeps them bounded by drawing from the mixture over the wavelengths of the state.
   bool spectral = false;
+  // Rays that collect light over many directions instead of looking into one. plane: at ray.origin, facing
+  // ray.direction; the sample is irradiance / pi. sphere: flux through a small sphere / (4 pi). The core chooses where
+  // to look and asks Sun, Moon, sky and lamps as it does at surfaces; the receiver counts as a node of the path.
+  enum class Receiver : uint8_t { none, plane, sphere } receiver = Receiver::none;
 };
 
 // What a path can be turned into. radiance: all of it. single: what was scattered or emitted once, at the
