@@ -31,6 +31,10 @@ struct Capture {
   uint32_t columns = 0, rows = 0;  // problems = columns * rows, row-major
   size_t state = 0;                // index into Sensor::states()
   Convergence convergence;
+  // Target for the relative standard error of each band, 0 = its error does not matter. Empty: the target is
+  // convergence.relative_error at the reference wavelength. convergence.relative_error is the least of those that matter.
+  std::vector<double> band_targets;
+  bool own_convergence = false;  // Sensor::convergence says for each problem what it may take
   bool neighbours = true;  // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
   // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
@@ -120,6 +124,9 @@ class Sensor {
   virtual std::span<const Channel> channels() const;
   // The truth to collect for each problem: names of rows of the table in radiometry/truth.
   virtual std::span<const std::string> truth() const;
+  // What a problem of a capture with own_convergence may take, instead of what the capture says for all. Asked before
+  // the job starts, from one thread; at least one path.
+  virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }
   // Called once per capture before its rays are asked for, from one thread.
   virtual void begin(const Capture&) {}
   // The ray of a sample. Called from many threads; does not throw.

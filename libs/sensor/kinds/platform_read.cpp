@@ -57,7 +57,8 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     return o ? pair_of(*o, "offset_mm") : Vec2{};
   }();
   auto add = [&](uint32_t columns, uint32_t rows, Vec2 at, double gain, std::optional<Params> bands) {
-    array.chips.push_back({columns, rows, {(shift.x + at.x) * 1e-3, -(shift.y + at.y) * 1e-3}, gain, array.columns});
+    array.chips.push_back(
+        {columns, rows, {(shift.x + at.x) * 1e-3, -(shift.y + at.y) * 1e-3}, gain, {}, array.columns});
     array.columns += columns;
     array.rows = rows;
     own_bands.push_back(std::move(bands));
@@ -73,9 +74,11 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     add(columns, rows, {}, 1, std::nullopt);
     return;
   }
-  for (const Params& chip : chips->items())
+  for (const Params& chip : chips->items()) {
     add(static_cast<uint32_t>(chip.integer("columns", 1, 1000000)), rows, pair_of(chip.at("offset_mm"), "offset_mm"),
         chip.number_in("gain", 1e-6, 1e6, "(relative response)", 1), chip.find("bands"));
+    if (chip.has("paths")) array.chips.back().convergence = read_convergence(chip);
+  }
   if (array.chips.empty()) throw chips->error("an array has at least one chip");
   if (array.readout.kind == Readout::Kind::whisk && array.columns != 1)
     throw chips->error("a whisk read-out has one column of detectors");
@@ -92,6 +95,8 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   if (array.readout.kind == Readout::Kind::whisk) s.columns = array.readout.samples;
   s.bands = read_bands(bands, context);
   s.radiance_bands = s.bands.size();
+  s.convergence = read_convergence(p);
+  s.band_targets = read_band_targets(p, s.bands, s.convergence);
   if (!array.segments.empty() && s.radiance_bands != spec.segments[array.segments[0]].radiance_bands)
     throw bands.error("the chips of an array have the same number of bands");
   spec.states.push_back(read_state(p, s.bands));
@@ -145,7 +150,6 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   read_chips(p, array, own_bands);
   if (static_cast<double>(array.image_columns()) * array.rows > 4e9)
     throw p.error("an array of more than 4e9 detectors");
-  array.convergence = read_convergence(p);
   array.time_bins = static_cast<uint32_t>(p.integer("time_bins", 1, 10000, 1));
   if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global)
     throw p.at("time_bins").error("time bins need a global read-out");

@@ -57,7 +57,11 @@ void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
     c.columns = spec.segments[s].columns;
     c.rows = rows;
     c.state = s;
-    c.convergence = array.convergence;
+    c.convergence = spec.segments[s].convergence;
+    c.band_targets = spec.segments[s].band_targets;
+    for (size_t chip = 0; chip < spec.segments[s].chips; ++chip)
+      c.own_convergence =
+          c.own_convergence || array.chips[spec.segments[s].first_chip + chip].convergence.has_value();
     if (array.time_bins > 1) c.bin_by = Capture::BinBy::time, c.bins = array.time_bins;
     task.captures.push_back(std::move(c));
     parts.push_back({array_number, s, event});
