@@ -117,6 +117,27 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   spec.segments.push_back(std::move(s));
 }
 
+// Chips are beside each other, and bad pixels in the image.
+void check_parts(const FocalArray& array, const Params& p) {
+  auto apart = [&](double a, double b, uint32_t m, uint32_t n, double pitch) {
+    return std::fabs(a - b) >= 0.5 * (m + n) * pitch * (1 - 1e-9);
+  };
+  for (size_t i = 0; i < array.chips.size(); ++i)
+    for (size_t j = 0; j < i; ++j) {
+      const Chip &a = array.chips[i], &b = array.chips[j];
+      if (!apart(a.offset.x, b.offset.x, a.columns, b.columns, array.pitch.x) &&
+          !apart(a.offset.y, b.offset.y, a.rows, b.rows, array.pitch.y))
+        throw p.at("chips")[i].error(strf("chip %zu overlaps chip %zu in the focal plane", i + 1, j + 1),
+                                     "give it another offset_mm, or an array of its own");
+    }
+  for (size_t i = 0; array.detector && i < array.detector->bad.size(); ++i)
+    if (array.detector->bad[i][0] >= array.columns || array.detector->bad[i][1] >= array.rows)
+      throw p.at("detector")
+          .at("bad_pixels")[i]
+          .error(strf("there is no detector [%u, %u]", array.detector->bad[i][0], array.detector->bad[i][1]),
+                 strf("columns 0 to %u, rows 0 to %u", array.columns - 1, array.rows - 1));
+}
+
 // Every detector must see through the lens.
 void check_lens(const FocalArray& array, const Lens& lens, const Params& p) {
   for (const Chip& chip : array.chips)
@@ -154,6 +175,7 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global)
     throw p.at("time_bins").error("time bins need a global read-out");
   array.detector = read_detector(p, context);
+  check_parts(array, p);
   const Lens& lens = spec.instruments[instrument].lens;
   if (array.detector && !(lens.aperture > 0))
     throw p.at("detector")
@@ -194,10 +216,12 @@ void read_instrument(const Params& p, const std::vector<Attachment>& carrier, Pl
   }
   if (const auto trigger = p.find("trigger")) {
     if (instrument.clock_rate > 0) throw trigger->error("an instrument follows a clock or triggers");
-    if (const auto times = trigger->find("times_s"))
+    if (const auto times = trigger->find("times_s")) {
       instrument.triggers = times->as_numbers();
-    else
+      if (instrument.triggers.empty()) throw times->error("no times: nothing would ever be taken");
+    } else {
       instrument.trigger_distance = trigger->number_in("distance_m", 1e-6, 1e9, "m");
+    }
   }
   spec.instruments.push_back(std::move(instrument));
   const Params list = p.at("arrays");
@@ -250,6 +274,10 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
   }
   spec.truth = read_truth(params);
   read_carrier(params, {}, spec, context, seed, 0);
+  for (const std::string& key : spec.instruments.empty() ? params.keys() : std::vector<std::string>{})
+    if (const std::string near = nearest_name(key, std::vector<std::string>{"attachments", "instruments"});
+        !near.empty() && !params.has(near))
+      throw Error(params.where(key), "unknown key '" + key + "'", "did you mean '" + near + "'?");
   if (spec.instruments.empty()) throw params.error("a platform carries at least one instrument", "instruments: [...]");
   // Names of images: the platform's alone while there is only one.
   size_t cameras = 0;
