@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 
@@ -92,6 +94,16 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
   return 0;
 }
 
+// A capture that could never be held is refused before anything is computed.
+void check_memory(const Simulation& sim, const JobOptions& options) {
+  const double needed = forecast_bytes(sim.sensors, options),
+               there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed > there)
+    throw Error(Where{sim.path, 0, 0, {}, -1},
+                strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(), human_bytes(there).c_str()),
+                "fewer columns or rows, or fewer lines_per_capture");
+}
+
 void tell(const JobReport& r) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer", human_count(paths).c_str(),
@@ -131,11 +143,13 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
   if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
+  check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
   std::vector<std::shared_ptr<const LaterReads>> later;
