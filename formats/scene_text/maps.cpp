@@ -39,18 +39,22 @@ void read_drape(const Params& p, Drape& drape) {
 void read_projection(const Params& p, Projection& projection, Drape& drape) {
   if (const auto named = p.find("projection"); named && named->as_choice({"drape", "uv"}) == 1)
     projection = Projection::uv;
-  if (projection == Projection::drape) read_drape(p.at("drape"), drape);
-  else read_extend(p, drape);
+  if (projection == Projection::drape)
+    read_drape(p.at("drape"), drape);
+  else
+    read_extend(p, drape);
 }
 
 void Reader::read_map(const std::string& name, const Params& p) {
   static constexpr std::initializer_list<const char*> types{"class",       "mixture", "texture", "curve_index", "cube",
                                                             "temperature", "bump",    "normal",  "opacity"};
+  draft_.failed_maps.insert(name);
   const size_t type = p.at("type").as_choice(types);
   if (type == 0)
     read_class_map(name, p);
   else
     read_property_map(name, p, types.begin()[type]);
+  draft_.failed_maps.erase(name);
 }
 
 void Reader::read_class_map(const std::string& name, const Params& p) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "formats/instances/instances.h"
 #include "formats/motion/motion.h"
@@ -75,7 +76,11 @@ void Reader::read_group(const std::string& name, const Params& p) {
   const size_t slot = draft_.groups.size();
   draft_.groups.push_back({name, p.where(), {}});
   for (const Params& row : p.items())
-    item("SP001", row, [&] { draft_.groups[slot].placements.push_back(read_placement(row, slot == 0)); });
+    item("SP001", row, [&] {
+      const bool before = std::exchange(draft_.failed_placements, true);
+      draft_.groups[slot].placements.push_back(read_placement(row, slot == 0));
+      draft_.failed_placements = before;
+    });
 }
 
 }  // namespace suite::scene_text

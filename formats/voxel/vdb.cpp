@@ -24,7 +24,8 @@ openvdb::FloatGrid::Ptr float_grid(openvdb::io::File& file, const std::string& n
   auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
   if (!grid) throw Error(where, "grid '" + name + "' is not one of floats", "fog volumes of floats are read");
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
-    throw Error(where, "grid '" + name + "' is a level set", "fog volumes are read; convert it, or export its surface as OBJ");
+    throw Error(where, "grid '" + name + "' is a level set",
+                "fog volumes are read; convert it, or export its surface as OBJ");
   if (!grid->transform().isLinear()) throw Error(where, "grid '" + name + "' is not a box of equal cells");
   return grid;
 }
@@ -37,7 +38,8 @@ std::vector<float> spread(const openvdb::FloatGrid& grid, const openvdb::CoordBB
 
 void check_values(const std::vector<float>& values, double high, const std::string& name, const Where& where) {
   for (const float v : values)
-    if (!(v >= 0 && v <= high)) throw Error(where, strf("grid '%s' has a value of %g", name.c_str(), v), strf("0 to %g", high));
+    if (!(v >= 0 && v <= high))
+      throw Error(where, strf("grid '%s' has a value of %g", name.c_str(), v), strf("0 to %g", high));
 }
 
 // OpenVDB puts the value of a voxel at whole indices; here a cell reaches from one whole index to the next.
@@ -66,9 +68,11 @@ VoxelData read_vdb(const std::string& path, const std::string& density, const st
     const openvdb::CoordBBox box = fog->evalActiveVoxelBoundingBox();
     if (box.empty()) throw Error(where, "grid '" + density + "' is empty");
     const double cells = double(box.dim().x()) * box.dim().y() * box.dim().z();
-    if (!(cells <= kMostVdbCells)) throw Error(where, strf("grid '%s' covers %g cells", density.c_str(), cells), "at most 2^28");
+    if (!(cells <= kMostVdbCells))
+      throw Error(where, strf("grid '%s' covers %g cells", density.c_str(), cells), "at most 2^28");
     VoxelData data;
-    data.cells = {static_cast<uint32_t>(box.dim().x()), static_cast<uint32_t>(box.dim().y()), static_cast<uint32_t>(box.dim().z())};
+    data.cells = {static_cast<uint32_t>(box.dim().x()), static_cast<uint32_t>(box.dim().y()),
+                  static_cast<uint32_t>(box.dim().z())};
     data.to_local = to_local(fog->transform(), box.min());
     data.density = spread(*fog, box);
     check_values(data.density, 3e38, density, where);
@@ -83,7 +87,8 @@ VoxelData read_vdb(const std::string& path, const std::string& density, const st
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {  // what OpenVDB throws
-    throw Error(where, std::string("cannot be read as OpenVDB: ") + e.what(), "is it a .vdb file of version 3 or later?");
+    throw Error(where, std::string("cannot be read as OpenVDB: ") + e.what(),
+                "is it a .vdb file of version 3 or later?");
   }
 }
 

@@ -93,6 +93,12 @@ std::optional<std::vector<uint32_t>> self_intersecting(std::span<const Vec3> pos
   }
   std::vector<uint32_t> found;
   size_t left = most_pairs(boxes.size());
+  // All triangles at a vertex touch each other: where that is too much already nobody needs to begin.
+  std::vector<size_t> faces(positions.size(), 0);
+  for (const Box& b : boxes)
+    for (int k = 0; k < 3; ++k) ++faces[soup.id(b.info(), k)];
+  for (const size_t n : faces)
+    if (n > 4096 && n * (n - 1) / 2 > left) return std::nullopt;
   try {
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
       if (left-- == 0) throw GivenUp{};

@@ -209,6 +209,10 @@ bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& al
   return true;
 }
 
+namespace {
+constexpr double kFarthest = 1e13;  // m; beyond, a millimetre is lost in double
+}
+
 void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   Placement made;
   if (p.material.given()) made.material_override = material_id(p.material);
@@ -224,6 +228,10 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
     return add("SP404", p.where, "the transform of '" + p.target.name + "' has no volume");
   std::vector<Affine3> all = transforms(p);
   if (p.on.given() && !p.scatter && !put_on(p, world, all)) return;
+  for (const Affine3& t : all)
+    if (!(length(t.b) < kFarthest))
+      return add("SP404", p.where,
+                 strf("'%s' is placed absurdly far away, at (%g, %g, %g)", p.target.name.c_str(), t.b.x, t.b.y, t.b.z));
   if (!what) return;
   if (p.motion) {
     if (p.on.given()) return add("SP405", p.on.where, "what moves cannot stand 'on' something");
@@ -273,7 +281,7 @@ void Baker::groups() {
     scene_.groups.push_back(std::move(group));
   }
   const bool media = !draft_.volumes.empty() || draft_.ambient.given();
-  if (scene_.groups.empty() || (draft_.groups.front().placements.empty() && !media))
+  if (!draft_.failed_placements && (scene_.groups.empty() || (draft_.groups.front().placements.empty() && !media)))
     add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");
 }
 
@@ -284,6 +292,7 @@ void Baker::unused() {
     if (!used_maps_.count(m.map.name)) add("SP503", m.where, "map '" + m.map.name + "' is not used");
   for (const DraftPropertyMap& m : draft_.property_maps)
     if (!used_maps_.count(m.map.name)) add("SP503", m.where, "map '" + m.map.name + "' is not used");
+  if (draft_.failed_placements) return;
   for (const DraftGeometry& g : draft_.geometry)
     if (!used_targets_.count(g.name)) add("SP403", g.where, "object '" + g.name + "' is never placed");
   for (size_t g = 1; g < draft_.groups.size(); ++g)

@@ -125,6 +125,7 @@ void Baker::class_maps() {
     const DraftMaterial& d = draft_.materials[m];
     if (!d.map.given()) continue;
     const auto found = map_ids_.find(d.map.name);
+    if (found == map_ids_.end() && draft_.failed_maps.count(d.map.name)) continue;
     if (found == map_ids_.end()) {
       const auto known = names_of(draft_.class_maps, [](const DraftClassMap& c) { return c.map.name; });
       add("SP501", d.map.where, "unknown map '" + d.map.name + "'; " + name_hint(d.map.name, known));
@@ -171,6 +172,7 @@ void Baker::property_maps() {
     std::set<MapKind> kinds;
     for (const Reference& r : draft_.materials[m].property_maps) {
       const auto found = ids.find(r.name);
+      if (found == ids.end() && draft_.failed_maps.count(r.name)) continue;
       if (found == ids.end()) {
         add("SP501", r.where,
             "unknown map '" + r.name + "'; " +

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -160,6 +161,8 @@ struct Draft {
   std::vector<DraftGeometry> geometry;
   std::vector<DraftGroup> groups;  // [0] = world
   std::vector<DataFile> files;
+  std::set<std::string> failed_maps;  // could not be read, which has been filed: naming one is no second fault
+  bool failed_placements = false;     // the same; what seems not to be placed may be
   std::vector<InputFile> inputs;
 };
 

@@ -91,6 +91,15 @@ TEST(Mesh, TangledMeshesAreGivenUp) {
   }
   EXPECT_EQ(count(soup(fan, corners), "SP315"), 1u);
   EXPECT_EQ(count(soup(fan, corners), "SP308"), 0u);
+  // The same without a common vertex: long strips through each other.
+  std::vector<Vec3> strips;
+  std::vector<uint32_t> apart;
+  for (uint32_t k = 0; k < 3000; ++k) {
+    const double y = 1e-3 * k;
+    for (const Vec3& p : {Vec3{0, y, 0}, Vec3{1, 3 - y, 0.1}, Vec3{1, 3 - y, 0.2}}) strips.push_back(p);
+    apart.insert(apart.end(), {3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  EXPECT_EQ(count(soup(strips, apart), "SP315"), 1u);
   EXPECT_EQ(count(soup(fan, same), "SP315"), 0u);
   EXPECT_EQ(count(soup(fan, same), "SP304"), 19999u);
 }

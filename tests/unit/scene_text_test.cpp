@@ -216,6 +216,36 @@ TEST_F(SceneText, AllFaultsInOneRun) {
   EXPECT_THAT(text, HasSubstr("verdict: refused (8 errors"));
 }
 
+// What could not be read is told once, not again by everything that names it.
+TEST_F(SceneText, OneFaultOneMessage) {
+  const auto faults = [&](const std::string& text) {
+    findings(text);
+    return report_.count(Severity::error) + report_.count(Severity::warning);
+  };
+  const std::string grey = "materials: {grey: {model: lambert, reflectance: 0.2}}\n";
+  write_file(folder_ / "bad.obj", std::string("\0\1\2", 3));
+  write_file(folder_ / "bad.csv", std::string_view("x,y,z\n1,2,nan\n"));
+  write_file(folder_ / "far.csv", std::string_view("x,y,z\n1e300,0,0\n"));
+  EXPECT_EQ(
+      faults("scene: 1\n" + grey + "objects: {t: {obj: bad.obj, material: grey}}\nworld: [{place: t}, {place: t}]\n"),
+      1u);
+  EXPECT_EQ(faults("scene: 1\n" + grey +
+                   "objects: {t: {obj: gone.obj, material: grey}, u: {sphere: {radius: 1}, material: grey}}\n"
+                   "world: [{place: t}, {place: u, on: t}]\n"),
+            1u);
+  EXPECT_EQ(faults("scene: 1\n" + grey +
+                   "objects: {t: {obj: tri.obj, material: grey}}\nworld: [{place: t, table: bad.csv}]\n"),
+            1u);
+  EXPECT_EQ(faults("scene: 1\n" + grey +
+                   "objects: {t: {obj: tri.obj, material: grey}}\nworld: [{place: t, table: far.csv}]\n"),
+            1u);
+  EXPECT_EQ(faults("scene: 1\nmaps: {m: {type: class, file: gone.png, materials: {0: grey}, projection: uv}}\n"
+                   "materials: {grey: {model: lambert, reflectance: 0.2}, land: {map: m}}\n"
+                   "objects: {t: {obj: tri.obj, material: land}, u: {obj: tri.obj, material: grey}}\nworld: [{place: "
+                   "t}, {place: u}]\n"),
+            1u);
+}
+
 TEST_F(SceneText, CirclesOfGroupsAreFound) {
   EXPECT_THAT(findings(whole("  - {place: tri}\n", "groups:\n  a: [{place: b}]\n  b: [{place: a}]\n")),
               HasSubstr("[SP402] x2"));

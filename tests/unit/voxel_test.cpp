@@ -77,5 +77,28 @@ TEST(VoxelFaces, CubesOfTwoMaterials) {
   EXPECT_TRUE(voxel_faces({3, 1, 1}, {}, cells, {5}).indices.empty());
 }
 
+TEST_F(VoxelFile, SharesOfSeveralMedia) {
+  const VoxelData g = read(
+      "voxels: 1\ncells: [2, 1, 1]\ncell_m: 1\nfields: {density: 2, shares: [{values: [0.25, 1]}, {values: [0.5, "
+      "0]}]}\n");
+  ASSERT_EQ(g.shares.size(), 2u);
+  EXPECT_THAT(g.shares[0], ElementsAre(0.25f, 1.0f));
+  EXPECT_THAT(g.shares[1], ElementsAre(0.5f, 0.0f));
+  EXPECT_THAT(fault("voxels: 1\ncells: [1, 1, 1]\ncell_m: 1\nfields: {shares: [-1]}\n"),
+              HasSubstr("cell 0 has a share of -1"));
+  EXPECT_THAT(fault("voxels: 1\ncells: [1, 1, 1]\ncell_m: 1\nfields: {shares: [1], medium: 0}\n"),
+              HasSubstr("'medium' and 'shares' cannot be combined"));
+}
+
+TEST_F(VoxelFile, VdbIsRefusedInWords) {
+  write_file(folder_ / "x.vdb", std::string_view("no volume at all"));
+  const std::string said = message_of([&] { read_vdb(folder_ / "x.vdb", "density", ""); });
+  EXPECT_THAT(said, HasSubstr("x.vdb"));
+  EXPECT_THAT(said, HasSubstr(reads_vdb() ? "cannot be read as OpenVDB" : "built without OpenVDB"));
+  if (reads_vdb()) {
+    EXPECT_THAT(message_of([&] { read_vdb(folder_ / "gone.vdb", "density", ""); }), HasSubstr("no such file"));
+  }
+}
+
 }  // namespace
 }  // namespace suite
