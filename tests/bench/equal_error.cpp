@@ -98,7 +98,7 @@ Case trees() {
   }
   SourceSpecs sources = terrain_sources();
   sources.sun->half_angle = 0.00465;
-  return {"terrain with trees", scene, std::move(sources), {0, -220, 190}, {0, 0, 0}, 0.3, 16, 128, 512, 4096};
+  return {"terrain with trees", scene, std::move(sources), {0, -220, 190}, {0, 0, 0}, 0.3, 16, 512, 512, 8192};
 }
 
 // Blocks of houses with streets between them, lamps 8 m high every 10 m or so, three kinds.
@@ -123,32 +123,34 @@ Case street() {
     sources.lamps.push_back(lamp);
   }
   return {"street, 1000 lamps", scene_of(std::move(meshes), {material("road", lambert(0.15)), material("wall", lambert(0.4))}),
-          std::move(sources), {90, -160, 120}, {0, 0, 0}, 0.35, 8, 128, 1024, 4096};
+          std::move(sources), {90, -160, 120}, {0, 0, 0}, 0.35, 8, 512, 1024, 8192};
 }
 
+// Low domes of satin paint and of polished chrome on a field, under sun and clear sky: the upper 20 degrees of spheres,
+// so that the sun they mirror goes up and not onto the field.
 Case gloss() {
   auto scene = scene_of({mesh_of({{-60, -60, 0}, {60, -60, 0}, {60, 60, 0}, {-60, 60, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
-                        {material("ground", lambert(0.3)),
+                        {material("field", lambert(0.3)),
                          material("satin", {"ward", {{"roughness", 0.2}}, {{"diffuse", Curve::constant(0.3)}, {"specular", Curve::constant(0.2)}}, {}, nullptr}),
-                         material("chrome", {"ggx", {{"roughness", 0.05}}, {{"f0", Curve::constant(0.65)}}, {}, nullptr})});
+                         material("chrome", {"ggx", {{"roughness", 0.02}}, {{"f0", Curve::constant(0.65)}}, {}, nullptr})});
+  const double radius = 8;
   for (int i = 0; i < 16; ++i) {
     Primitive ball;
     ball.kind = PrimitiveKind::sphere;
-    ball.parameters = {2};
+    ball.parameters = {radius};
     ball.material = i % 2 ? 2 : 1;
     scene->primitives.push_back(ball);
     Placement p;
     p.kind = TargetKind::primitive;
     p.target = static_cast<uint32_t>(i);
-    p.to_parent = translation({6.0 * (i % 4) - 9, 6.0 * (i / 4) - 9, 2});
+    p.to_parent = translation({6.0 * (i % 4) - 9, 6.0 * (i / 4) - 9, -radius * std::cos(20 * kDegree)});
     scene->groups[0].placements.push_back(p);
   }
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.7, 0.5), 0.00465, solar_irradiance()};
-  ClearSkySpec clear;
-  sources.clear = clear;
+  sources.clear = ClearSkySpec{};
   resolve_sources(sources, *scene);
-  return {"satin and chrome", scene, std::move(sources), {0, -28, 26}, {0, 0, 1}, 0.35, 8, 256, 1024, 8192};
+  return {"satin and chrome", scene, std::move(sources), {0, -28, 30}, {0, 0, 0}, 0.3, 8, 256, 1024, 8192};
 }
 
 struct Outcome {
@@ -164,7 +166,7 @@ Outcome render(const Case& c, uint32_t edge, uint32_t paths, Method method, uint
   options.pipeline.seed = seed;
   options.pipeline.max_nodes = c.max_nodes;
   options.pipeline.method = method;
-  if (const char* draws = std::getenv("LAMP_DRAWS")) options.pipeline.lamp_draws = std::atoi(draws);
+
   const std::clock_t begun = std::clock();
   run_job(c.scene, c.sources, sensors, options);
   Outcome o;

@@ -128,9 +128,10 @@ TEST(StopRules, ThePapersRuleIsBiasedLow) {
 }
 
 // A floor with a box on it under sun and sky, and a corner of two walls: noise from shadow edges and exchange.
-double coverage_of(const std::shared_ptr<Scene>& scene, uint32_t paths, double inflate) {
+// half_angle: of the sun, rad.
+double coverage_of(const std::shared_ptr<Scene>& scene, uint32_t paths, double inflate, double half_angle = 0.05) {
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.7, 1), 0.05, Curve::constant(50)};
+  sources.sun = SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)};
   sources.sky = uniform_sky(10, false);
   auto image = [&](uint32_t n, uint64_t seed) {
     std::vector<std::unique_ptr<Sensor>> sensors;
@@ -147,8 +148,8 @@ double coverage_of(const std::shared_ptr<Scene>& scene, uint32_t paths, double i
     return made;
   };
   const Comparison c = compare(image(paths, 3), image(4 * paths, 1003))[0];
-  std::printf("coverage %.1f %% of %zu pixels, %zu without variance, %zu flagged\n", 100 * c.coverage, c.counted,
-              c.zero_variance, c.flagged);
+  std::printf("%4u paths, sun of %.2f rad: coverage %.1f %% of %zu pixels, %zu without variance, %zu flagged\n", paths, half_angle,
+              100 * c.coverage, c.counted, c.zero_variance, c.flagged);
   EXPECT_GT(c.counted, 1500u);
   return c.coverage;
 }
@@ -166,11 +167,13 @@ std::shared_ptr<Scene> court() {
 }
 
 TEST(Coverage, NinetyFivePerCentIntervalsHold) {
-  for (const auto& scene : {block(), court()}) {
-    const double covered = coverage_of(scene, 256, 1);
-    EXPECT_GT(covered, 0.93);
-    EXPECT_LT(covered, 0.97);
-  }
+  for (const auto& scene : {block(), court()})
+    for (const double half_angle : {0.00465, 0.05, 0.3})
+      for (const uint32_t paths : {32u, 64u, 256u, 512u}) {
+        const double covered = coverage_of(scene, paths, 1, half_angle);
+        EXPECT_GT(covered, 0.93);
+        EXPECT_LT(covered, 0.97);
+      }
 }
 TEST(Coverage, StandardErrorsThatAreHalvedAreNoticed) { EXPECT_LT(coverage_of(court(), 256, 0.5), 0.93); }
 
