@@ -66,7 +66,9 @@ struct Path {
   double sky_factor = 0;
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
   int size = 0;                  // nodes
-  bool scattered_first = false;  // a medium scattered it before the first node
+  bool received = false;         // node 0 is the sensor's own receiver (receiver.h), no surface
+  bool scattered_first = false;  // a medium scattered it before it met anything
+  int first_met() const { return received ? 1 : 0; }  // number of the node of the first surface
 
   // Member by member: a temporary would be cleared and copied for every path.
   void begin(const Ray& from, double sensor_weight) {
@@ -76,7 +78,7 @@ struct Path {
     end = PathEnd::absorbed;
     escape_factor = 1;
     sun_factor = moon_factor = sky_factor = truncated = 0;
-    scattered_first = false;
+    received = scattered_first = false;
   }
 };
 

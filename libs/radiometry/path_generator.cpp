@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "radiometry/receiver.h"
 #include "radiometry/volume_paths.h"
 
 namespace suite {
@@ -50,6 +51,12 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   Path& path = wave.path(p);
   path.begin(ray.ray, ray.weight);
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
+  if (ray.receiver != SensorRay::Receiver::none) {
+    path.received = true;
+    BakedMaterial& receiver = receivers_[ray.receiver == SensorRay::Receiver::sphere];
+    if (!receiver.model) receiver = bake_receiver(ray.receiver, optics_.state());
+    live.receiver = &receiver;
+  }
   if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1 && !paper_) {
     const double u = stream.hashed(sample, kKnotPurpose);
@@ -63,6 +70,7 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   statistics.trace.cycles += std::exchange(probing_.cycles, 0);
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
+    if (depth == 0) set_receivers_aside(wave);
     wave.rays.clear();
     for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
@@ -75,6 +83,8 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     }
     wave.active.resize(kept);
     statistics.nodes += kept;
+    if (depth == 0)
+      for (const uint32_t p : received_) receive(wave, p), wave.active.push_back(p);
 
     // Ask the explicit sources at every node, then see which of them are visible.
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
@@ -130,6 +140,32 @@ Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   node.lights = 0;
   node.glow = nullptr;
   return node;
+}
+
+// Paths that start at a receiver have no ray to trace for their first node.
+void PathGenerator::set_receivers_aside(Wave& wave) {
+  received_.clear();
+  std::erase_if(wave.active, [&](uint32_t p) {
+    if (wave.path(p).received) received_.push_back(p);
+    return wave.path(p).received;
+  });
+}
+
+// The first node of a path that starts at a receiver.
+void PathGenerator::receive(Wave& wave, uint32_t p) {
+  Live& live = live_[p];
+  if (volume_) volume_->open(wave, p);
+  Hit hit;
+  hit.position = live.origin;
+  hit.normal = live.direction;
+  hit.time = wave.path(p).ray.time;
+  Node& node = add_node(wave, p, hit);
+  node.out = hit.normal;
+  node.at = Interaction{};
+  node.at.position = hit.position;
+  node.at.geometric_normal = hit.normal;
+  node.at.frame = Frame::around(hit.normal);
+  node.at.baked = live.receiver;
 }
 
 // False when the path ends at the node because nothing scatters.

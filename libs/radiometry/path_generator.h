@@ -41,6 +41,8 @@ class PathGenerator {
 
  private:
   using Live = LivePath;
+  void set_receivers_aside(Wave& wave);
+  void receive(Wave& wave, uint32_t p);
   bool arrive(Wave& wave, uint32_t p, const Hit& hit);
   bool arrive_on_earth(Wave& wave, uint32_t p);
   Node& add_node(Wave& wave, uint32_t p, const Hit& hit);
@@ -75,6 +77,8 @@ class PathGenerator {
   std::unique_ptr<VolumePaths> volume_;   // null where the scene has no media
   TraceStatistics probing_;               // of rays that look for bodies around sensors
   std::vector<float> transmission_;
+  std::vector<uint32_t> received_;        // paths that start at a receiver
+  BakedMaterial receivers_[2];            // plane, sphere; made when a ray first asks for one
 };
 
 }  // namespace suite

@@ -212,6 +212,7 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
       const uint32_t spec = carried(part.material);
       if (spec == kNone) continue;
       std::vector<uint32_t>& map = shape_of_triangle[o];
+      mesh.require();
       map.resize(mesh.triangle_count(), kNone);
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
         map[t] = add_surface(shape_of(mesh, t, place), spec, o, tracer);
