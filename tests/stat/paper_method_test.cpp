@@ -1,5 +1,5 @@
-// The paper's estimator (Method::paper) has the mean of the default one, and its parts are what they are said to be: one
-// source a node, nothing shared between explicit samples and continuations, independent random numbers.
+// The paper's estimator (Method::paper) has the mean of the default one, and its parts are what they are said to be:
+// one source a node, nothing shared between explicit samples and continuations, independent random numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,8 @@ std::unique_ptr<RaySensor> looking_down(size_t problems, uint32_t paths) {
   }
   return std::make_unique<RaySensor>(std::move(rays), one_band(), paths);
 }
-Rendered run(const std::shared_ptr<Scene>& scene, const SourceSpecs& sources, Method method, size_t problems, uint32_t paths, int max_nodes, uint64_t seed) {
+Rendered run(const std::shared_ptr<Scene>& scene, const SourceSpecs& sources, Method method, size_t problems,
+             uint32_t paths, int max_nodes, uint64_t seed) {
   PipelineOptions options;
   options.method = method;
   options.max_nodes = max_nodes;
@@ -60,7 +61,8 @@ double p_of_difference(const Rendered& a, const Rendered& b, double factor) {
 
 TEST(PaperMethod, HasTheMeanOfTheDefault) {
   const auto scene = room();
-  const Rendered own = run(scene, everything(), Method::standard, 256, 512, 6, 1), paper = run(scene, everything(), Method::paper, 256, 2048, 6, 2);
+  const Rendered own = run(scene, everything(), Method::standard, 256, 512, 6, 1),
+                 paper = run(scene, everything(), Method::paper, 256, 2048, 6, 2);
   EXPECT_GT(p_of_difference(own, paper, 1), 0.001);
   EXPECT_LT(p_of_difference(own, paper, 1.02), 1e-4) << "2 % must be noticed";
 }
@@ -73,8 +75,8 @@ TEST(PaperMethod, AsksOneSourceANode) {
     const RunStatistics s = run(scene, sources, method, 64, 64, 1, 1).report.statistics;
     return static_cast<double>(s.trace.rays) / static_cast<double>(s.paths);
   };
-  EXPECT_EQ(rays_per_path(Method::paper), 2);                    // the sensor's and one
-  EXPECT_EQ(rays_per_path(Method::standard), 2 + kLampDraws);    // the sensor's, the sun's, and lamps
+  EXPECT_EQ(rays_per_path(Method::paper), 2);                  // the sensor's and one
+  EXPECT_EQ(rays_per_path(Method::standard), 2 + kLampDraws);  // the sensor's, the sun's, and lamps
 }
 
 // A lobe much narrower than the sun's disk: whoever may not count the disk when a continuation meets it draws points on
@@ -82,9 +84,12 @@ TEST(PaperMethod, AsksOneSourceANode) {
 TEST(PaperMethod, SharesNothingWithContinuations) {
   SourceSpecs sources;
   sources.sun = SunSpec{{0, 0, 1}, 0.1, Curve::constant(3)};
-  const auto scene = scene_of({quad(50, 0, 0)}, {material("floor", {"ggx", {{"roughness", 0.005}}, {{"f0", Curve::constant(0.6)}}, {}, nullptr})});
+  const auto scene =
+      scene_of({quad(50, 0, 0)},
+               {material("floor", {"ggx", {{"roughness", 0.005}}, {{"f0", Curve::constant(0.6)}}, {}, nullptr})});
   // Problem i looks along one ray, which the sensor is not in the way of.
-  const Rendered own = run(scene, sources, Method::standard, 256, 256, 2, 1), paper = run(scene, sources, Method::paper, 256, 4096, 2, 2);
+  const Rendered own = run(scene, sources, Method::standard, 256, 256, 2, 1),
+                 paper = run(scene, sources, Method::paper, 256, 4096, 2, 2);
   double own_variance = 0, paper_variance = 0;
   for (size_t i = 0; i < 256; ++i) {
     own_variance += 256 * std::pow(own.result.standard_error[i], 2);
@@ -99,7 +104,8 @@ TEST(PaperMethod, SharesNothingWithContinuations) {
 TEST(PaperMethod, DrawsIndependentNumbers) {
   SourceSpecs sources;
   sources.sky = uniform_sky(1, false);
-  const auto scene = scene_of({quad(100, 0, 0), box({-3.5, -90, 0}, {-3.2, 90, 80}, 1, true)}, {material("floor", lambert(1)), material("wall", lambert(0))});
+  const auto scene = scene_of({quad(100, 0, 0), box({-3.5, -90, 0}, {-3.2, 90, 80}, 1, true)},
+                              {material("floor", lambert(1)), material("wall", lambert(0))});
   const auto ratio = [&](Method method) {  // observed variance of the problems' errors over the binomial one
     const uint32_t paths = 64;
     const Rendered r = run(scene, sources, method, 256, paths, 2, 3);
