@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radiometry/many_suns.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/path_processor.h"
 #include "radiometry/wave.h"
@@ -124,6 +125,7 @@ struct Pipeline::Workspace {
   std::vector<float> weights;     // [path][bin], of rays that weigh wavelengths
   std::vector<uint8_t> weighted;  // [path]
   std::vector<float> single;      // [bin]
+  ManySuns suns;
 };
 
 Pipeline::~Pipeline() = default;
@@ -142,7 +144,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
   return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size(), !optics_.media().empty()),
                                                   PathGenerator(surface_, optics_, environment_, options_),
                                                   std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
-                                                  std::vector<float>(state_.size())});
+                                                  std::vector<float>(state_.size()), ManySuns(surface_)});
 }
 
 namespace {
@@ -219,6 +221,16 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
     for (size_t i = 0; i < width; ++i) {
       if (sample < next[i] || sample >= end[i]) continue;
       const size_t slot = slot_of(i);
+      if (capture.bin_by == Capture::BinBy::sun) {
+        const bool good = workspace->suns.add(wave, i, capture.suns, projection_, single, {sums.sums(slot, static_cast<int>(scramble)), sums.bands()}, statistics.trace);
+        ++statistics.paths;
+        statistics.truncated += wave.path(i).truncated;
+        sums.set_paths(slot, sample + 1);
+        sums.truncated(slot) += static_cast<float>(wave.path(i).truncated);
+        if (!good) ++statistics.failures, ++sums.failures(slot);
+        truth_.add(wave, i, sums.truth(slot));
+        continue;
+      }
       const std::span<float> radiance = wave.scratch2();
       process_path(wave, i, environment_, radiance);
       if (single) process_single(wave, i, environment_, radiance, workspace->single);

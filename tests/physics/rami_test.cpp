@@ -110,6 +110,29 @@ TEST(Rami, NothingIsLostOverAWhiteGround) {
   EXPECT_NEAR(albedo[0], 1, 4 * albedo[1] + 1e-3);
 }
 
+TEST(Rami, ViewsByReciprocityAreTheViews) {
+  // The same canopy in both modes: every view within its combined errors, and a mean that would tell 1 %.
+  const auto scene = canopy(2, 0.1, 0.4957, 0.4409, 0.159);
+  const Views direct = render(scene, 2, instrument(2, 2, 30, 0.159, 512), 30);
+  const Views shared =
+      render(scene, 2, instrument(2, 2, 30, 0.159, 32) + "by_reciprocity: true\nstrata: 16\nplanes: [principal]\n", 30);
+  ASSERT_EQ(shared.principal.size(), 76u);
+  double sum = 0, variance = 0;
+  for (const auto& [zenith, value] : direct.principal) {
+    const auto& other = shared.principal.at(zenith);
+    const double error = std::hypot(value[1], other[1]);
+    EXPECT_NEAR(other[0], value[0], 4.5 * error) << zenith;
+    // What was scattered once: both know it better than all of it.
+    EXPECT_NEAR(other[2], value[2], 4.5 * error) << zenith;
+    sum += other[0] / value[0] - 1;
+    variance += error * error / (value[0] * value[0]);
+  }
+  // Views of the second mode share paths: their errors count as one.
+  std::printf("reciprocity: mean difference %+.2f %%, error of one view %.2f %%\n", 100 * sum / 76,
+              100 * std::sqrt(variance / 76));
+  EXPECT_LT(std::fabs(sum / 76), 0.01);
+}
+
 TEST(Rami, Hom03AgreesWithAnotherTracer) {
   std::ifstream in(SUITE_TEST_DATA "/canopy/hom03_ere_nir_20_r005.csv");
   ASSERT_TRUE(in.is_open());
