@@ -91,10 +91,21 @@ class Combiner {
       for (uint32_t& m : g.media) m += first;
     const uint32_t grids = move_behind(all_.grids, s.grids);
     for (const Volume& v : s.volumes) {
-      if (v.track != kNone && (part.motion || !(place == Affine3{})))
-        throw Error("scene '" + part.name + "' has a volume that moves, so it cannot be placed or moved as a whole",
+      if (v.track == kNone) {
+        all_.volumes.push_back({v.grid + grids, place * v.to_world, root.track});
+        continue;
+      }
+      // What moves in a scene that stands elsewhere would need the scene's placement after its own motion.
+      if (!(place == Affine3{}))
+        throw Error("scene '" + part.name + "' has a volume that moves, so it cannot be placed",
                     "make it the first scene, without a placement");
-      all_.volumes.push_back({v.grid + grids, place * v.to_world, part.motion ? root.track : v.track});
+      uint32_t track = v.track;
+      if (part.motion) {
+        const SceneTrack own = all_.tracks[track];
+        track = static_cast<uint32_t>(all_.tracks.size());
+        all_.tracks.push_back({own.name, composed_track(part.motion, own.track)});
+      }
+      all_.volumes.push_back({v.grid + grids, v.to_world, track});
     }
   }
 
