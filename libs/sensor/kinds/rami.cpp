@@ -8,7 +8,8 @@
 // Assumes: a collimated sun of the given direction and irradiance and no sky in the simulation; a Lambertian ground.
 // The reference area is the whole patch at the height of the canopy's top; every problem is a mean over all of it.
 // Based on: J.-L. Widlowski et al., "Third Radiation Transfer Model Intercomparison (RAMI) exercise", J. Geophys. Res.
-// 112, 2007; Goodenough & Brown, section V-B (each measurement is a problem of fixed angles).
+// 112, 2007, and the formats of its online model checker (romc.jrc.ec.europa.eu); Goodenough & Brown, section V-B (each
+// measurement is a problem of fixed angles).
 #include <array>
 #include <cmath>
 
@@ -61,6 +62,10 @@ class Rami final : public SimpleSensor {
       capture_.rows = 1;
     }
     capture_.neighbours = false;
+    model_ = p.text("model", "suite");
+    experiment_ = p.text("experiment", "");
+    if (!experiment_.empty() && bands_.size() > 1)
+      throw p.at("experiment").error("an experiment has one band", "give each band a sensor of its own");
     done();
   }
   std::span<const Channel> channels() const override {
@@ -116,27 +121,43 @@ class Rami final : public SimpleSensor {
     std::string views = "plane,view_zenith_deg,view_azimuth_from_sun_deg,band,brf,standard_error,brf_single\n";
     std::string fluxes = "band,quantity,value,standard_error\n";
     for (size_t b = 0; b < bands_.size(); ++b) {
-      std::array<std::string, 2> tables;
+      std::array<std::string, 2> total, multiple;
       for (size_t i = 0; i < views_.size(); ++i) {
         const View& v = views_[i];
         const Value all = brf(d, i, 0, b);
+        const double single = brf(d, i, 1, b).value;
         views += strf("%s,%g,%g,%s,%.8g,%.3g,%.8g\n", v.plane ? "orthogonal" : "principal", v.zenith_deg,
-                      v.from_sun_deg(), bands_[b].name.c_str(), all.value, all.error, brf(d, i, 1, b).value);
-        tables[v.plane] += strf("%.6f %.6f %.6f %.6f %.6f\n", sun_zenith_, 0.0, std::fabs(v.zenith_deg) * kDegree,
-                                v.from_sun_deg() * kDegree, all.value);
+                      v.from_sun_deg(), bands_[b].name.c_str(), all.value, all.error, single);
+        total[v.plane] += mes_line(v, all.value);
+        multiple[v.plane] += mes_line(v, all.value - single);
       }
       if (!strata_) add_fluxes(d, b, fluxes);
-      // One line a view: sun zenith, sun azimuth, view zenith, view azimuth from the sun (rad), value; the first line
-      // counts lines and columns.
-      for (const size_t plane : {0u, 1u})
-        if (planes_[plane])
-          d.texts.push_back({name_ + "_" + bands_[b].name + (plane ? "-brfop.mes" : "-brfpp.mes"),
-                             strf("%d 5 -1.000000\n", static_cast<int>(kViews)) + tables[plane]});
+      for (const size_t plane : {0u, 1u}) {
+        if (!planes_[plane]) continue;
+        const std::string head = strf("%zu\t5\t-1.000000\n", kViews);
+        add_mes(d, b, plane ? "brfop" : "brfpp", head + total[plane]);
+        add_mes(d, b, plane ? "brfop_mlt" : "brfpp_mlt", head + multiple[plane]);
+      }
+      if (!strata_)
+        add_mes(d, b, "brf1",
+                strf("1\t5\t-1.000000\n%.6f\t-1.000000\t-1.000000\t%.6f\t-1.000000\n", sun_zenith_,
+                     value(d, views_.size(), 0, b).value));
     }
     d.texts.push_back({name_ + "_brf.csv", std::move(views)});
     if (!strata_) d.texts.push_back({name_ + "_fluxes.csv", std::move(fluxes)});
     d.description = strata_ ? "problems: strata of the patch; bins: views, as radiance back along the sun's rays"
                             : "problems: the views of each plane, the upward flux, the ground";
+  }
+  // Tables of the intercomparison's model checker: files <measurement>_<model>-<experiment>.mes; a line that counts
+  // lines and columns; then sun zenith, view zenith, view azimuth from the sun (rad), value, its spread (-1 = not
+  // given).
+  std::string mes_line(const View& v, double value) const {
+    return strf("%.6f\t%.6f\t%.6f\t%.6f\t-1.000000\n", sun_zenith_, std::fabs(v.zenith_deg) * kDegree,
+                v.from_sun_deg() * kDegree, value);
+  }
+  void add_mes(Delivery& d, size_t b, const std::string& measurement, std::string text) const {
+    const std::string experiment = experiment_.empty() ? name_ + "_" + bands_[b].name : experiment_;
+    d.texts.push_back({measurement + "_" + model_ + "-" + experiment + ".mes", std::move(text)});
   }
   void add_fluxes(const Delivery& d, size_t b, std::string& text) const {
     auto line = [&](const char* what, double v, double e) {
@@ -153,6 +174,7 @@ class Rami final : public SimpleSensor {
   }
 
   Patch patch_;
+  std::string model_, experiment_;
   double top_ = 0, ground_ = 0, sun_zenith_ = 0, sun_azimuth_ = 0;
   std::vector<double> irradiance_, ground_reflectance_;
   std::array<bool, 2> planes_{};
