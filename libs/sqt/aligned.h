@@ -66,6 +66,10 @@ struct AlignedData {
   AlignedTotals totals;
 };
 
+// Angles of the totals that go with views (rad, ascending, 0 to less than pi/2): six steps between two views; near the
+// horizon, which cuts lobes within their width of it, steps of at most 0.15 of the angle that is left.
+std::vector<double> total_angles(const std::vector<double>& views);
+
 // The data on a pyramid of cells, asked once; coded many times at different qualities.
 class AlignedSource {
  public:

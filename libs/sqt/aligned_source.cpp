@@ -282,20 +282,6 @@ void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::
 
 namespace {
 
-// Six steps between views; near the horizon, which cuts lobes within their width of it, steps of at most 0.15 of the
-// angle that is left.
-std::vector<double> angles_of_totals(const std::vector<double>& views) {
-  std::vector<double> theta{views[0]};
-  for (size_t v = 1; v < views.size(); ++v) {
-    const double step = (views[v] - views[v - 1]) / 6;
-    while (theta.back() < views[v]) {
-      const double here = std::min(step, 0.15 * (kPi / 2 - theta.back())), next = theta.back() + here;
-      theta.push_back(next > views[v] - 0.3 * here ? views[v] : next);
-    }
-  }
-  return theta;
-}
-
 // Half vectors, unless the function sends at least twice as much back to the viewer as to the mirror direction.
 LobeFrame detect_frame(const Function& function) {
   std::vector<double> back(function.info().wavelength_um.size()), mirror(back.size());
@@ -314,6 +300,18 @@ LobeFrame detect_frame(const Function& function) {
 }
 
 }  // namespace
+
+std::vector<double> total_angles(const std::vector<double>& views) {
+  std::vector<double> theta{views[0]};
+  for (size_t v = 1; v < views.size(); ++v) {
+    const double step = (views[v] - views[v - 1]) / 6;
+    while (theta.back() < views[v]) {
+      const double here = std::min(step, 0.15 * (kPi / 2 - theta.back())), next = theta.back() + here;
+      theta.push_back(next > views[v] - 0.3 * here ? views[v] : next);
+    }
+  }
+  return theta;
+}
 
 AlignedSource::AlignedSource(const Function& function, const Options& options,
                              const std::function<void(double)>& progress)
@@ -338,7 +336,7 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;
   std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
-  m.totals.theta = angles_of_totals(layout.theta);
+  m.totals.theta = total_angles(layout.theta);
 
   // A first look at order 4 gives the whole (mean total) and the floor below which values count as dark.
   const Region region{layout.upper_only, layout.half_stored};

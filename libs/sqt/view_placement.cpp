@@ -92,6 +92,8 @@ std::vector<double> place_views(const Function& function, LobeFrame frame, size_
     nodes.push_back(step * (static_cast<double>(j) + std::clamp(t, 0.0, 1.0)));
   }
   nodes.back() = last;
+  // Whole units of 1e-7 rad (0.02 arc seconds), so that seven digits say all.
+  for (double& theta : nodes) theta = std::round(1e7 * theta) / 1e7;
   return nodes;
 }
 
