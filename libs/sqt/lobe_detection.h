@@ -25,7 +25,7 @@ double change_with_view(const Function& function, LobeFrame frame);
 LobeFrame detect_frame(const Function& function);
 
 // View azimuths, uniform over the circle, for which interpolation between them errs by about `allowed` (log2 units,
-// mean weighted by f |cos|); an even number from 4 to 32.
+// mean weighted by f |cos|); an even number from 16 to 32.
 size_t count_azimuths(const Function& function, LobeFrame frame, double allowed);
 
 }  // namespace suite::sqt
