@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 
@@ -53,17 +55,19 @@ SceneNeeds needs_of(const Simulation& sim) {
     for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
     for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
   }
+  needs.later_from = uint64_t{64} << 20;
   return needs;
 }
 
 // All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim) {
+Scene load_scenes(const Simulation& sim, std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
   for (const SimulationScene& s : sim.scenes) {
     LoadReport loaded;
     Scene scene = read_scene(
         s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
     note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
+    if (loaded.later) later.push_back(loaded.later);
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
   }
   if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
@@ -88,6 +92,16 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
   std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n", order.state_changes,
               human_count(forecast_paths(sim.sensors, options)).c_str(), human_bytes(forecast_bytes(sim.sensors, options)).c_str());
   return 0;
+}
+
+// A capture that could never be held is refused before anything is computed.
+void check_memory(const Simulation& sim, const JobOptions& options) {
+  const double needed = forecast_bytes(sim.sensors, options),
+               there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (needed > there)
+    throw Error(Where{sim.path, 0, 0, {}, -1},
+                strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(), human_bytes(there).c_str()),
+                "fewer columns or rows, or fewer lines_per_capture");
 }
 
 void tell(const JobReport& r) {
@@ -129,14 +143,17 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
   if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
+  check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  const auto scene = std::make_shared<Scene>(load_scenes(sim));
+  std::vector<std::shared_ptr<const LaterReads>> later;
+  const auto scene = std::make_shared<Scene>(load_scenes(sim, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
@@ -156,6 +173,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
   tell(report);
+  for (const auto& reads : later) note(reads->text());
   write_log(o.output + "/render.json", report, options);
   for (const auto& sensor : sim.sensors)
     for (const TextFile& log : sensor->logs()) writer->write_text(log);

@@ -51,14 +51,26 @@ PoseFields fields_of(const Params& node) {
     return node.number(name);
   };
   f.text = [node](const char* name) { return node.text(name); };
-  f.error = [node](std::string what, std::string hint) { return node.error(std::move(what), std::move(hint)); };
+  f.error = [node](std::string what, std::string hint) {
+    const std::vector<std::string> known{"position_m", "east_m",    "north_m",      "up_m",     "ecef_x_m",
+                                         "ecef_y_m",   "ecef_z_m",  "latitude_deg", "height_m", "longitude_deg",
+                                         "utm_zone",   "easting_m", "northing_m"};
+    for (const std::string& key : node.keys())
+      if (const std::string near = nearest_name(key, known); !near.empty() && !node.has(near))
+        hint = "is '" + key + "' meant to be '" + near + "'?";
+    return node.error(std::move(what), std::move(hint));
+  };
   return f;
 }
 
 TrackPtr make_track(const Params& node, const MotionContext& context, int depth);
 
 std::string path_of(const Params& file, const MotionContext& context) {
-  return context.resolve ? context.resolve(file) : file.as_path();
+  if (context.resolve) return context.resolve(file);
+  const std::string path = file.as_path();
+  if (!file_exists(path))
+    throw file.error("there is no file '" + path + "'", "relative names start at this file's folder");
+  return path;
 }
 
 TrackPtr make_keyframes(const Params& node, const MotionContext& context) {

@@ -4,6 +4,7 @@
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
+#include "radiometry/truth/truth.h"
 
 namespace suite {
 
@@ -20,6 +21,18 @@ void read_output(const Params& p, OutputSpec& out) {
   if (const auto preview = p.find("preview")) {
     for (const Params& band : preview->items()) out.preview.push_back(band.as_text());
     if (out.preview.size() != 1 && out.preview.size() != 3) throw preview->error(strf("a preview has one band or three, found %zu", out.preview.size()));
+  }
+}
+
+// Truth that nobody collects, or that needs a scene on the Earth which is not on it.
+void check_truth(const Params& sensor, const SensorContext& context) {
+  const auto list = sensor.find("truth");
+  if (!list) return;
+  for (const Params& item : list->items()) {
+    const std::string name = item.as_text();
+    find_truth(name, item.where());
+    if ((name == "ecef" || name == "geodetic") && !context.frame())
+      throw item.error("the truth '" + name + "' needs a scene with an origin on the Earth", "give the scene an origin");
   }
 }
 
@@ -48,6 +61,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   std::set<std::string> names;
   const Params sensors = root.at("sensors");
   for (const Params& p : sensors.items()) {
+    check_truth(p, context);
     sim.sensors.push_back(make_sensor(p, context));
     if (!names.insert(sim.sensors.back()->name()).second) throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'", "give each its own `name`: it names the output files");
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/files.h"
 #include "formats/curve/curve.h"
 #include "formats/raster/raster.h"
 #include "formats/sqt/sqt.h"
@@ -10,6 +11,15 @@
 #include "radiometry/sources/solar_spectrum.h"
 
 namespace suite {
+
+namespace {
+// A file that a value names, which must be there.
+std::string file_of(const Params& p) {
+  const std::string path = p.as_path();
+  if (!file_exists(path)) throw p.error("there is no file '" + path + "'", "relative names start at this file's folder");
+  return path;
+}
+}  // namespace
 
 Curve read_curve_value(const Params& p) {
   auto outside_of = [](const Params& map) {
@@ -23,11 +33,11 @@ Curve read_curve_value(const Params& p) {
     options.outside = outside_of(p);
     options.column = static_cast<int>(p.integer("column", 0, 10000, 0));
     options.scale = p.number("scale", 1);
-    return read_curve(p.at("file").as_path(), options);
+    return read_curve(file_of(p.at("file")), options);
   }
   const std::string text = p.as_text();
   const bool number = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  return number ? Curve::constant(p.as_number()) : read_curve(p.as_path(), {});
+  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), {});
 }
 
 namespace {

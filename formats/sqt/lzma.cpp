@@ -15,9 +15,9 @@ std::vector<std::byte> lzma_compress(std::span<const std::byte> raw) {
   lzma_filter filters[] = {{LZMA_FILTER_LZMA2, &options}, {LZMA_VLI_UNKNOWN, nullptr}};
   std::vector<std::byte> out(lzma_stream_buffer_bound(raw.size()));
   size_t size = 0;
-  const lzma_ret result = lzma_stream_buffer_encode(
-      filters, LZMA_CHECK_NONE, nullptr, reinterpret_cast<const uint8_t*>(raw.data()), raw.size(),
-      reinterpret_cast<uint8_t*>(out.data()), &size, out.size());
+  const lzma_ret result =
+      lzma_stream_buffer_encode(filters, LZMA_CHECK_NONE, nullptr, reinterpret_cast<const uint8_t*>(raw.data()),
+                                raw.size(), reinterpret_cast<uint8_t*>(out.data()), &size, out.size());
   if (result == LZMA_MEM_ERROR) throw std::bad_alloc();
   SUITE_CHECK_EQ(static_cast<int>(result), static_cast<int>(LZMA_OK));
   out.resize(size);

@@ -6,6 +6,7 @@
 #include "math/sampling.h"
 #include "optics/scatter_model.h"
 #include "radiometry/medium_stack.h"
+#include "surface/optics.h"
 
 namespace suite {
 
@@ -23,6 +24,7 @@ struct LivePath {
   MediumStack bodies;                    // that the next segment starts in
   bool scattered = false;                // the last event was a scattering in a medium, at:
   Vec3 place;
+  const BakedMaterial* receiver = nullptr;  // that the path starts at
   uint32_t flights = 0;      // through media so far
   uint32_t scatterings = 0;  // inside media so far
 };

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "radiometry/receiver.h"
 #include "radiometry/volume_paths.h"
 
 namespace suite {
@@ -17,8 +18,13 @@ constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 
 PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options)
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
+  paper_ = options.method == Method::paper;
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (paper_) std::fill_n(knot_probability_, knots_, 0.0), knot_probability_[0] = 1, options_.roulette_after = kMaxNodes;
+  asks_disks_ = options.explicit_sources && !paper_;
+  asks_around_ = asks_disks_ && (environment.lamps || (environment.sky && environment.sky->tabulated()));
+  if (environment.lamps && !paper_) lamp_draws_ = static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
   if (!optics.media().empty()) {
     volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
     transmission_.resize(optics.state().size());
@@ -43,12 +49,16 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
-  path = Path{};
-  path.ray = ray.ray;
+  path.begin(ray.ray, ray.weight);
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
-  path.weight = ray.weight;
+  if (ray.receiver != SensorRay::Receiver::none) {
+    path.received = true;
+    BakedMaterial& receiver = receivers_[ray.receiver == SensorRay::Receiver::sphere];
+    if (!receiver.model) receiver = bake_receiver(ray.receiver, optics_.state());
+    live.receiver = &receiver;
+  }
   if (volume_) volume_->start(live, ray.ray.time, probing_);
-  if (knots_ > 1) {
+  if (knots_ > 1 && !paper_) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
   }
@@ -60,6 +70,7 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   statistics.trace.cycles += std::exchange(probing_.cycles, 0);
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
+    if (depth == 0) set_receivers_aside(wave);
     wave.rays.clear();
     for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
@@ -72,16 +83,22 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     }
     wave.active.resize(kept);
     statistics.nodes += kept;
+    if (depth == 0)
+      for (const uint32_t p : received_) receive(wave, p), wave.active.push_back(p);
 
     // Ask the explicit sources at every node, then see which of them are visible.
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (options_.explicit_sources) ask_sources(wave, p);
+      if (asks_disks_) ask_disks(wave, p);
+      else if (options_.explicit_sources) ask_one(wave, p);
     }
+    const size_t parallel = paper_ ? 0 : wave.rays.size();
+    if (asks_around_)
+      for (const uint32_t p : wave.active) ask_around(wave, p);
     wave.blocked.resize(wave.rays.size());
     if (volume_) volume_->look(wave, live_, statistics);
-    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    else see(wave, parallel, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
@@ -98,6 +115,17 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   }
 }
 
+// Which sources are visible. Rays towards the same far disk run alongside each other where paths have just started, the
+// others (from `parallel` on) do not.
+void PathGenerator::see(Wave& wave, size_t parallel, bool first, TraceStatistics& statistics) const {
+  const std::span<const Ray> rays = wave.rays;
+  const std::span<const double> distance = wave.distance;
+  const std::span<uint8_t> blocked = wave.blocked;
+  const Tracer& tracer = surface_.tracer();
+  if (parallel) tracer.occluded(rays.first(parallel), distance.first(parallel), blocked.first(parallel), first, statistics);
+  if (parallel < rays.size()) tracer.occluded(rays.subspan(parallel), distance.subspan(parallel), blocked.subspan(parallel), false, statistics);
+}
+
 // The next node of a path, without its surface.
 Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   Path& path = wave.path(p);
@@ -112,6 +140,32 @@ Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   node.lights = 0;
   node.glow = nullptr;
   return node;
+}
+
+// Paths that start at a receiver have no ray to trace for their first node.
+void PathGenerator::set_receivers_aside(Wave& wave) {
+  received_.clear();
+  std::erase_if(wave.active, [&](uint32_t p) {
+    if (wave.path(p).received) received_.push_back(p);
+    return wave.path(p).received;
+  });
+}
+
+// The first node of a path that starts at a receiver.
+void PathGenerator::receive(Wave& wave, uint32_t p) {
+  Live& live = live_[p];
+  if (volume_) volume_->open(wave, p);
+  Hit hit;
+  hit.position = live.origin;
+  hit.normal = live.direction;
+  hit.time = wave.path(p).ray.time;
+  Node& node = add_node(wave, p, hit);
+  node.out = hit.normal;
+  node.at = Interaction{};
+  node.at.position = hit.position;
+  node.at.geometric_normal = hit.normal;
+  node.at.frame = Frame::around(hit.normal);
+  node.at.baked = live.receiver;
 }
 
 // False when the path ends at the node because nothing scatters.

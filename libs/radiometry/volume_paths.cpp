@@ -44,7 +44,6 @@ std::array<double, 4> VolumePaths::numbers(const LivePath& live, uint32_t block)
   return u;
 }
 
-// A new segment behind the last node: everything that arrives passes, nothing is gathered yet.
 void VolumePaths::open(Wave& wave, uint32_t p) {
   const std::span<float> through = wave.through(p, wave.path(p).size), gathered = wave.gathered(p, wave.path(p).size);
   std::fill(through.begin(), through.end(), 1.0f);
@@ -116,7 +115,7 @@ bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
                                                 wave.through(p, path.size), wave.gathered(p, path.size));
   if (arrival.scattered) {
     live.length += arrival.distance;
-    if (path.size == 0) path.scattered_first = true;
+    if (path.size == path.first_met()) path.scattered_first = true;
     remember(wave, slot, live.origin + live.direction * arrival.distance);
     return true;
   }

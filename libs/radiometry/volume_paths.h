@@ -29,6 +29,8 @@ class VolumePaths {
   // Takes the paths of wave.active, whose next hits wave.hits tells, on to surfaces that are nodes or out of the scene,
   // and fills the segment behind their last node. Paths that end in a medium leave both lists.
   void travel(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics);
+  // Starts the segment behind the path's last node: everything that arrives passes, nothing is gathered yet.
+  static void open(Wave& wave, uint32_t p);
   // A path goes on through a surface to the other side.
   void cross(LivePath& live, const Node& node) const {
     bodies_.cross(live.bodies, node.hit, node.at.material, node.in);
@@ -55,7 +57,6 @@ class VolumePaths {
     const float* spectrum;
   };
   std::array<double, 4> numbers(const LivePath& live, uint32_t block) const;
-  static void open(Wave& wave, uint32_t p);
   bool step(Wave& wave, size_t slot, LivePath& live, bool& moves);
   void remember(Wave& wave, size_t slot, Vec3 place);
   void light_events(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics);

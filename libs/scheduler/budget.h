@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "radiometry/pipeline.h"
 
@@ -20,6 +21,19 @@ inline constexpr uint32_t kDefaultPilot = 32, kDefaultMost = 4096;
 
 // What a capture is to reach under a budget. A target for a capture of fixed count starts from kDefaultPilot paths and
 // may use up to kDefaultMost unless the budget says otherwise.
-Convergence goal_of(const Capture& capture, const Budget& budget);
+Convergence goal_of(const Convergence& asked, const Budget& budget);
+inline Convergence goal_of(const Capture& capture, const Budget& budget) {
+  return goal_of(capture.convergence, budget);
+}
+
+// What the problems of a capture are to reach: one goal for all, or each its own.
+struct Goals {
+  Convergence all;               // least minimum, largest maximum and least target of those that are met
+  std::vector<Convergence> own;  // one a problem; empty = `all` holds for each
+  // The goal of one problem; its maximum is never more than all.max_paths, which a time budget may lower.
+  Convergence of(size_t problem) const;
+};
+// Error: a problem that may take no path, or more at least than at most.
+Goals goals_of(const Sensor& sensor, const Capture& capture, const Budget& budget);
 
 }  // namespace suite

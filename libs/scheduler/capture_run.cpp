@@ -89,10 +89,21 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
   return paths;
 }
 
+std::vector<uint32_t> most_of(const CaptureWork& work) {
+  std::vector<uint32_t> paths(work.capture.problems());
+  for (size_t i = 0; i < paths.size(); ++i) paths[i] = work.goals.of(i).max_paths;
+  return paths;
+}
+std::vector<uint32_t> pilot_of(const CaptureWork& work) {
+  std::vector<uint32_t> paths(work.capture.problems());
+  for (size_t i = 0; i < paths.size(); ++i) paths[i] = work.goals.of(i).min_paths;
+  return paths;
+}
+
 // Runs a capture whose counts are known from the start: each block gets its sums, runs, and is done with.
 void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
   const std::vector<Block> blocks = blocks_of(work.capture);
-  const std::vector<uint32_t> to(work.capture.problems(), work.goal.max_paths);
+  const std::vector<uint32_t> to = most_of(work);
   std::mutex mutex;
   std::vector<std::unique_ptr<Accumulators>> idle;
   parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
@@ -101,7 +112,7 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
       const std::lock_guard lock(mutex);
       if (!idle.empty()) sums = std::move(idle.back()), idle.pop_back();
     }
-    if (!sums) sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values, Accumulators::scrambles_for(work.goal.max_paths), truth_slots);
+    if (!sums) sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
     for (size_t b = begin; b < end; ++b) {
       const Block& block = blocks[b];
       RunStatistics mine;
@@ -121,30 +132,30 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
 }  // namespace
 
 void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
-  const bool target = work.goal.relative_error > 0, alone = target && !has_neighbours(work.capture);
+  const bool target = work.goals.all.relative_error > 0, alone = target && !has_neighbours(work.capture);
   const bool piloted = target || work.after_pilot;
   if (!piloted && !work.store) return run_streamed(work, values, truth_slots, result, statistics);
 
   const size_t problems = work.capture.problems();
-  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goal.max_paths), truth_slots);
+  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
   std::vector<double> needs;
   if (work.store) work.store->load(work.id, sums, needs);
   if (piloted && needs.empty()) {
     const Clock::time_point start = Clock::now();
-    const std::vector<uint32_t> pilot(problems, std::min(work.goal.min_paths, work.goal.max_paths));
+    const std::vector<uint32_t> pilot = pilot_of(work);
     double paths = 0;
     if (alone) {
       Accumulators thrown(problems, values, sums.scrambles(), truth_slots);
       paths = run_stage(work, work.id + kPilotStream, pilot, thrown, statistics, false);
-      needs = own_needs_of(thrown, work.judged, work.goal.absolute_floor);
+      needs = own_needs_of(thrown, work.judged, work.goals);
     } else {
       paths = run_stage(work, work.id, pilot, sums, statistics, true);
-      needs = target ? needs_of(work.capture, sums, work.judged, work.goal.absolute_floor) : std::vector<double>(problems, 0.0);
+      needs = target ? needs_of(work.capture, sums, work.judged, work.goals) : std::vector<double>(problems, 0.0);
     }
     if (work.store) work.store->save_needs(work.id, needs);
     if (work.after_pilot) work.after_pilot(work, needs, paths, seconds_since(start));
   }
-  const std::vector<uint32_t> plan = piloted ? paths_for(needs, work.goal) : std::vector<uint32_t>(problems, work.goal.max_paths);
+  const std::vector<uint32_t> plan = piloted ? paths_for(needs, work.goals) : most_of(work);
   run_stage(work, work.id, plan, sums, statistics, true);
   parallel_for(0, problems, 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) result.take(i, sums, i);

@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "radiometry/pipeline.h"
 #include "scheduler/budget.h"
-#include "scheduler/result.h"
+#include "scheduler/plan.h"
 #include "scheduler/result.h"
 #include "scheduler/state_store.h"
 
@@ -18,12 +18,12 @@ struct CaptureWork {
   const Sensor& sensor;
   const Capture& capture;
   uint64_t id = 0;  // of the capture in the job: part of the key of its sample points
-  Convergence goal;
-  std::vector<size_t> judged;   // bands whose error decides
+  Goals goals;
+  std::vector<JudgedBand> judged;  // bands whose error decides
   StateStore* store = nullptr;  // null = nothing is kept
   Progress* progress = nullptr;
   // Called once the pilot is finished, with the needs (all 0 without a target) and the seconds that the pilot took for
-  // `paths` new paths; may lower goal.max_paths (a time budget). Empty = nothing does.
+  // `paths` new paths; may lower goals.all.max_paths (a time budget). Empty = nothing does.
   std::function<void(CaptureWork&, std::span<const double> needs, double paths, double seconds)> after_pilot;
 };
 

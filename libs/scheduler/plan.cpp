@@ -26,7 +26,8 @@ double need(double variance, double mean, double floor) {
 }
 
 // Pools one band over each problem's neighbours and keeps the larger need.
-void pool_band(const Capture& capture, const std::vector<Moments>& of, double floor, std::vector<double>& needs) {
+void pool_band(const Capture& capture, const std::vector<Moments>& of, double weight, const Goals& goals,
+               std::vector<double>& needs) {
   constexpr long reach = 2;
   const long columns = capture.columns, rows = capture.rows;
   for (long r = 0; r < rows; ++r)
@@ -40,8 +41,9 @@ void pool_band(const Capture& capture, const std::vector<Moments>& of, double fl
           mean += of[static_cast<size_t>(y * columns + x)].mean;
           ++n;
         }
-      double& here = needs[static_cast<size_t>(r * columns + k)];
-      here = std::max(here, need(variance / n, mean / n, floor));
+      const size_t problem = static_cast<size_t>(r * columns + k);
+      needs[problem] =
+          std::max(needs[problem], weight * need(variance / n, mean / n, goals.of(problem).absolute_floor));
     }
 }
 
@@ -49,31 +51,33 @@ void pool_band(const Capture& capture, const std::vector<Moments>& of, double fl
 
 bool has_neighbours(const Capture& capture) { return capture.neighbours && capture.problems() >= 2; }
 
-std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const size_t> judged,
-                             double absolute_floor) {
+std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const JudgedBand> judged,
+                             const Goals& goals) {
   std::vector<double> needs(capture.problems(), 0.0);
   std::vector<Moments> of(capture.problems());
-  for (const size_t band : judged) {
-    for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, band);
-    pool_band(capture, of, absolute_floor, needs);
+  for (const JudgedBand& judge : judged) {
+    for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, judge.band);
+    pool_band(capture, of, judge.weight, goals, needs);
   }
   return needs;
 }
 
-std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const size_t> judged, double absolute_floor) {
+std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const JudgedBand> judged, const Goals& goals) {
   std::vector<double> needs(pilot.problems(), 0.0);
-  for (const size_t band : judged)
+  for (const JudgedBand& judge : judged)
     for (size_t i = 0; i < needs.size(); ++i) {
-      const Moments m = moments_of(pilot, i, band);
-      needs[i] = std::max(needs[i], need(m.variance, m.mean, absolute_floor));
+      const Moments m = moments_of(pilot, i, judge.band);
+      needs[i] = std::max(needs[i], judge.weight * need(m.variance, m.mean, goals.of(i).absolute_floor));
     }
   return needs;
 }
 
-std::vector<uint32_t> paths_for(std::span<const double> needs, const Convergence& goal) {
-  std::vector<uint32_t> plan(needs.size(), goal.max_paths);
-  if (!(goal.relative_error > 0)) return plan;
+std::vector<uint32_t> paths_for(std::span<const double> needs, const Goals& goals) {
+  std::vector<uint32_t> plan(needs.size());
   for (size_t i = 0; i < plan.size(); ++i) {
+    const Convergence goal = goals.of(i);
+    plan[i] = goal.max_paths;
+    if (!(goal.relative_error > 0)) continue;
     const double wanted = std::ceil(std::min(needs[i] / (goal.relative_error * goal.relative_error), 1e12) / 4) * 4;
     plan[i] = static_cast<uint32_t>(
         std::clamp(wanted, static_cast<double>(goal.min_paths), static_cast<double>(goal.max_paths)));
@@ -81,17 +85,17 @@ std::vector<uint32_t> paths_for(std::span<const double> needs, const Convergence
   return plan;
 }
 
-uint32_t cap_for_total(std::span<const double> needs, const Convergence& goal, double total) {
-  uint32_t low = goal.min_paths, high = goal.max_paths;
+uint32_t cap_for_total(std::span<const double> needs, const Goals& goals, double total) {
+  uint32_t low = goals.all.min_paths, high = goals.all.max_paths;
+  Goals tried = goals;
   while (low < high) {
-    Convergence tried = goal;
-    tried.max_paths = low + (high - low + 1) / 2;
+    tried.all.max_paths = low + (high - low + 1) / 2;
     double sum = 0;
     for (const uint32_t n : paths_for(needs, tried)) sum += n;
     if (sum <= total)
-      low = tried.max_paths;
+      low = tried.all.max_paths;
     else
-      high = tried.max_paths - 1;
+      high = tried.all.max_paths - 1;
   }
   return low;
 }

@@ -154,7 +154,7 @@ class Job {
       }
       all[item.id] = {capture.columns, capture.rows,
                       sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
-                      Accumulators::scrambles_for(goal_of(capture, budget()).max_paths), known->second};
+                      Accumulators::scrambles_for(goals_of(sensor, capture, budget()).all.max_paths), known->second};
     }
     return all;
   }
@@ -187,14 +187,13 @@ class Job {
     const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
                             kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
-    CaptureWork work{pipeline,          sensor,         capture,         item.id, goal_of(capture, budget()),
-                     judged_bands(kit), options_.store, progress_.get(), {}};
+    CaptureWork work{pipeline,          sensor,         capture,         item.id, goals_of(sensor, capture, budget()),
+                     judged_bands(capture, kit), options_.store, progress_.get(), {}};
     if (options_.budget.seconds > 0 && !cap_)
       work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
         fix_cap(w, needs, paths, seconds);
       };
-    if (work.after_pilot && work.goal.relative_error == 0)
-      work.goal.min_paths = std::min(kDefaultPilot, work.goal.max_paths);
+    if (work.after_pilot) shorten_pilots(work.goals);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
     ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
@@ -218,11 +217,31 @@ class Job {
     sensors_[item.sensor]->accept(std::move(result));
   }
 
-  std::vector<size_t> judged_bands(const StateKit& kit) const {
-    if (!options_.budget.all_bands) return {kit.reference_band};
-    std::vector<size_t> all(kit.projection.bands());
-    for (size_t b = 0; b < all.size(); ++b) all[b] = b;
-    return all;
+  // The bands that decide, and how much stricter than theirs the strictest target is.
+  std::vector<JudgedBand> judged_bands(const Capture& capture, const StateKit& kit) const {
+    const std::vector<double>& targets = capture.band_targets;
+    if (targets.empty() && !options_.budget.all_bands) return {{kit.reference_band}};
+    std::vector<JudgedBand> judged;
+    for (size_t b = 0; b < kit.projection.bands(); ++b) {
+      const double target = b < targets.size() ? targets[b] : 0;
+      if (options_.budget.all_bands)
+        judged.push_back({b});
+      else if (target > 0)
+        judged.push_back({b, std::pow(capture.convergence.relative_error / target, 2)});
+    }
+    return judged;
+  }
+
+  // With a time budget, fixed counts too begin with a pilot.
+  static void shorten_pilots(Goals& goals) {
+    auto shorten = [](Convergence& goal) {
+      if (goal.relative_error == 0) goal.min_paths = std::min(kDefaultPilot, goal.max_paths);
+    };
+    shorten(goals.all);
+    for (Convergence& goal : goals.own) {
+      shorten(goal);
+      goals.all.min_paths = std::min(goals.all.min_paths, goal.min_paths);
+    }
   }
 
   // Turns the time that is left into a maximum of paths, the same for all captures, so that the run can be repeated.
@@ -232,13 +251,12 @@ class Job {
     // Each capture gets its share of what can be traced in the time that is left, counting the pilot that this one has.
     const double total = here / total_problems_ * (std::max(0.0, left) * rate + paths);
     cap_ =
-        cap_for_total(needs, work.goal, work.goal.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
-    work.goal.max_paths = report_.time_cap = cap_;
+        cap_for_total(needs, work.goals, work.goals.all.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
+    work.goals.all.max_paths = report_.time_cap = cap_;
     if (options_.store) options_.store->save_cap(cap_);
   }
 
   void judge(const Item& item, const CaptureWork& work, const StateKit& kit, const CaptureResult& r, CaptureLog& log) {
-    const Convergence& goal = work.goal;
     const size_t values = r.values_per_problem();
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
@@ -246,9 +264,10 @@ class Job {
       if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
         errors.add(r.standard_error[i * values + kit.reference_band] / mean);
       double worst = 0;
-      for (const size_t b : work.judged) {
+      const Convergence goal = work.goals.of(i);
+      for (const auto [b, weight] : work.judged) {
         const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
-        if (scale > 0) worst = std::max(worst, r.standard_error[i * values + b] / scale);
+        if (scale > 0) worst = std::max(worst, std::sqrt(weight) * r.standard_error[i * values + b] / scale);
       }
       if (worst > report_.worst.relative_error)
         report_.worst = {sensors_[item.sensor]->name(), work.capture.name,
@@ -258,7 +277,7 @@ class Job {
       with_target_ += 1;
       at_target_ += worst <= goal.relative_error ? 1 : 0;
       at_maximum_ += r.paths[i] >= goal.max_paths ? 1 : 0;
-      target_ = goal.relative_error;
+      target_ = std::max(target_, goal.relative_error);
     }
     log.median_relative_error = errors.median();
     errors_.merge(errors);
@@ -318,8 +337,12 @@ double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   for (const auto& s : sensors)
     for (const Task& t : s->tasks())
       for (const Capture& c : t.captures) {
-        const Convergence goal = goal_of(c, options.budget);
-        sum += static_cast<double>(c.problems()) * (goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
+        const Goals goals = goals_of(*s, c, options.budget);
+        auto least = [](const Convergence& goal) {
+          return static_cast<double>(goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
+        };
+        if (goals.own.empty()) sum += static_cast<double>(c.problems()) * least(goals.all);
+        for (const Convergence& goal : goals.own) sum += least(goal);
       }
   return sum;
 }
@@ -329,7 +352,7 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   for (const auto& s : sensors)
     for (const Task& t : s->tasks())
       for (const Capture& c : t.captures) {
-        const double scrambles = Accumulators::scrambles_for(goal_of(c, options.budget).max_paths),
+        const double scrambles = Accumulators::scrambles_for(goals_of(*s, c, options.budget).all.max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
         most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
       }

@@ -132,7 +132,7 @@ class PluginSensor final : public Sensor {
                                     static_cast<uint32_t>(r.u.size()),
                                     static_cast<uint32_t>(r.spectral.size()),
                                     r.spectral.data()};
-    suite_ray out{sizeof(suite_ray), 0, {0, 0, 0}, {0, 0, 0}, r.capture.window.begin, 1};
+    suite_ray out{sizeof(suite_ray), 0, {0, 0, 0}, {0, 0, 0}, r.capture.window.begin, 1, SUITE_RECEIVER_NONE, 0};
     bool good = false;
     try {
       good = sensor_.ray(sensor_.self, &request, &out) == 0;
@@ -142,12 +142,29 @@ class PluginSensor final : public Sensor {
         direction{out.direction[0], out.direction[1], out.direction[2]};
     const double len = length(direction);
     good = good && finite(origin) && len > 0 && std::isfinite(len) && std::isfinite(out.weight) && out.weight >= 0 &&
-           std::isfinite(out.time_s);
+           std::isfinite(out.time_s) && out.receiver <= SUITE_RECEIVER_SPHERE;
     // A ray that is none: harmless, and with a weight that makes its sample count as failed.
     if (!good) return {{{}, {0, 0, 1}, r.capture.window.begin}, std::numeric_limits<double>::quiet_NaN(), false};
     return {{origin, direction / len, std::clamp(out.time_s, r.capture.window.begin, r.capture.window.end)},
             out.weight,
-            out.weighted != 0};
+            out.weighted != 0,
+            static_cast<SensorRay::Receiver>(out.receiver)};
+  }
+
+  Convergence convergence(const Capture& capture, size_t problem) const override {
+    const auto [task, index] = place_of(capture);
+    const Convergence& c = capture.convergence;
+    suite_convergence own{sizeof(suite_convergence), c.min_paths,      c.max_paths, 0,
+                          c.relative_error,          c.absolute_floor};
+    int failed = 1;
+    try {
+      failed = sensor_.convergence(sensor_.self, numbers_[task][index], problem, &own);
+    } catch (...) {
+    }
+    if (failed)
+      throw Error(strf("the plug-in '%s' failed when it was asked what problem %zu of capture %u may take",
+                       kind_.c_str(), problem, numbers_[task][index]));
+    return {own.min_paths, own.max_paths, own.relative_error, own.absolute_floor};
   }
 
   void accept(CaptureResult&& r) override {
@@ -215,6 +232,7 @@ class PluginSensor final : public Sensor {
       capture.columns = from.columns, capture.rows = from.rows, capture.state = from.state;
       capture.convergence = {from.min_paths, from.max_paths, from.relative_error, 0};
       capture.neighbours = !from.no_neighbours;
+      capture.own_convergence = sensor_.convergence != nullptr;
       tasks_[from.task].captures.push_back(std::move(capture));
       numbers_[from.task].push_back(c);
       // Captures of different sizes or bands are different images.

@@ -31,6 +31,10 @@ struct Capture {
   uint32_t columns = 0, rows = 0;  // problems = columns * rows, row-major
   size_t state = 0;                // index into Sensor::states()
   Convergence convergence;
+  // Target for the relative standard error of each band, 0 = its error does not matter. Empty: the target is
+  // convergence.relative_error at the reference wavelength. convergence.relative_error is the least of those that matter.
+  std::vector<double> band_targets;
+  bool own_convergence = false;  // Sensor::convergence says for each problem what it may take
   bool neighbours = true;  // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
   // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
@@ -68,6 +72,10 @@ struct SensorRay {
   // These weights are independent of the path that follows, so they multiply its own balance-heuristic weights; a
   // sensor keeps them bounded by drawing from the mixture over the wavelengths of the state.
   bool spectral = false;
+  // Rays that collect light over many directions instead of looking into one. plane: at ray.origin, facing
+  // ray.direction; the sample is irradiance / pi. sphere: flux through a small sphere / (4 pi). The core chooses where
+  // to look and asks Sun, Moon, sky and lamps as it does at surfaces; the receiver counts as a node of the path.
+  enum class Receiver : uint8_t { none, plane, sphere } receiver = Receiver::none;
 };
 
 // What a path can be turned into. radiance: all of it. single: what was scattered or emitted once, at the
@@ -116,6 +124,9 @@ class Sensor {
   virtual std::span<const Channel> channels() const;
   // The truth to collect for each problem: names of rows of the table in radiometry/truth.
   virtual std::span<const std::string> truth() const;
+  // What a problem of a capture with own_convergence may take, instead of what the capture says for all. Asked before
+  // the job starts, from one thread; at least one path.
+  virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }
   // Called once per capture before its rays are asked for, from one thread.
   virtual void begin(const Capture&) {}
   // The ray of a sample. Called from many threads; does not throw.

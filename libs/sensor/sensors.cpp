@@ -102,4 +102,27 @@ Convergence read_convergence(const Params& params) {
   return c;
 }
 
+std::vector<double> read_band_targets(const Params& params, std::span<const Band> bands, Convergence& convergence) {
+  const auto paths = params.find("paths");
+  const auto list = paths && paths->kind() == Params::Kind::map ? paths->find("bands") : std::nullopt;
+  if (!list) return {};
+  if (list->kind() != Params::Kind::map || list->size() == 0)
+    throw list->error("targets of bands are names with relative errors", "bands: {red: 0.01}");
+  if (paths->has("relative_error"))
+    throw paths->at("relative_error").error("there are targets for bands already", "leave relative_error out");
+  std::vector<double> targets;
+  std::vector<std::string> names;
+  double least = 1;
+  for (const Band& band : bands) {
+    names.push_back(band.name);
+    targets.push_back(list->has(band.name) ? list->number_in(band.name, 1e-9, 1, "(fraction)") : 0);
+    if (targets.back() > 0) least = std::min(least, targets.back());
+  }
+  for (const std::string& key : list->keys())
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      throw Error(list->where(key), "there is no band '" + key + "'", name_hint(key, names));
+  convergence.relative_error = least;
+  return targets;
+}
+
 }  // namespace suite

@@ -89,7 +89,8 @@ class LeafIntegral {
       const Dir d = grid.direction[k];
       const double cosine = map.cosine(d);
       const bool counts = !layout_.upper_only || cosine > 0;
-      weight_[k] = counts ? static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0)) : 0;
+      weight_[k] =
+          counts ? static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0)) : 0;
       any |= counts;
     }
     if (!any) return;
@@ -100,8 +101,7 @@ class LeafIntegral {
       const float v = view.w0 * a[0] + view.w1 * b[0], gx = view.w0 * a[1] + view.w1 * b[1],
                   gy = view.w0 * a[2] + view.w1 * b[2];
       float sum = 0;
-      for (size_t k = 0; k < points; ++k)
-        sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
+      for (size_t k = 0; k < points; ++k) sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
       integral[c] += static_cast<double>(sum * mean_exp2(gx * inverse_side) * mean_exp2(gy * inverse_side)) * area /
                      static_cast<double>(points);
     }

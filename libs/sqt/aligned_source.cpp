@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "math/sampling.h"
 #include "sqt/lobe_detection.h"
 #include "sqt/source_totals.h"
 #include "sqt/view_placement.h"
@@ -57,7 +58,7 @@ class Surveyor {
   }
 
  private:
-  // Averages over the children (all four count equally; see complete_family).
+  // Averages over the children (all four count equally; see complete_values).
   void gather(CellId id, Pyramid& into, Cellful& cell) const {
     const size_t views = maps_.size(), channels = layout_.channels;
     const Cellful* child[4] = {};
@@ -75,7 +76,7 @@ class Surveyor {
         float f[4] = {};
         for (uint32_t k = 0; k < 4; ++k)
           if (present & (1u << k)) f[k] = child[k]->value[v * channels + c];
-        complete_family(present, f);
+        complete_values(present, f);
         cell.value[v * channels + c] = 0.25f * (f[0] + f[1] + f[2] + f[3]);
       }
     }
@@ -221,7 +222,7 @@ void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Shee
       float r[4] = {};
       for (uint32_t k = 0; k < 4; ++k)
         if (present & (1u << k)) r[k] = sheet.data.value(child[k])[j] - predicted[k * width + j];
-      complete_family(present, r);
+      complete_differences(present, r);
       details[j] = 0.25f * (-r[0] + r[1] - r[2] + r[3]);
       details[width + j] = 0.25f * (-r[0] - r[1] + r[2] + r[3]);
       details[2 * width + j] = 0.25f * (r[0] - r[1] - r[2] + r[3]);
@@ -249,6 +250,30 @@ void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::
               from < nt ? rows[r * width + (from * np + p) * channels + c] : 0.0f;
     }
 }
+
+namespace {
+
+// Cosine-weighted relative l1 between a function and the mean of its two mirror images.
+double cost_of_folding(const Function& function) {
+  const size_t channels = function.info().wavelength_um.size();
+  std::vector<double> left(channels), right(channels);
+  double difference = 0, sum = 0;
+  const SampleStream points(11, 0, 0);
+  for (uint32_t i = 0; i < 4096; ++i) {
+    const auto u = points.draw(i, 0);
+    const Dir out = dir_from_angles(80 * kDegree * u[2], 0), in = dir_from_angles(std::acos(1 - u[0]), 2 * kPi * u[1]);
+    function.value(out, in, left);
+    function.value(out, {in.x, -in.y, in.z}, right);
+    for (size_t c = 0; c < channels; ++c) {
+      if (!std::isfinite(left[c]) || !std::isfinite(right[c])) continue;
+      difference += 0.5 * std::fabs(left[c] - right[c]) * in.z;
+      sum += 0.5 * (left[c] + right[c]) * in.z;
+    }
+  }
+  return sum > 0 ? difference / sum : 0;
+}
+
+}  // namespace
 
 std::vector<double> total_angles(const std::vector<double>& views) {
   std::vector<double> theta{views[0]};
@@ -278,9 +303,11 @@ AlignedSource::AlignedSource(const Function& function, const Options& asked,
                  : surface                                ? detect_frame(function)
                  : m.function.quantity == Quantity::phase ? LobeFrame::forward
                                                           : LobeFrame::direct;
-  layout.half_stored = m.function.isotropic && m.function.bilateral;
+  layout.half_stored = m.function.isotropic && m.function.bilateral &&
+                       (options.fold_error >= 1 || cost_of_folding(function) <= options.fold_error);
   layout.sheets = surface && m.function.domain == Domain::sphere ? 2 : 1;
-  layout.theta = surface ? place_views(function, layout.frame, options.views, 89.9 * kDegree, options.view_error)
+  layout.theta = surface ? place_views(function, layout.frame, options.views, options.most_views, 89.9 * kDegree,
+                                       options.view_error)
                          : std::vector<double>{0};
   layout.phi_count = !surface || m.function.isotropic ? 1
                      : options.azimuths               ? options.azimuths

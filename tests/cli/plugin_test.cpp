@@ -60,6 +60,19 @@ TEST_F(Plugin, Renders) {
   EXPECT_NEAR(truth.read_all()[1], 1000, 1e-6);
 }
 
+TEST_F(Plugin, SaysHowManyPathsEachProblemMayTake) {
+  const CommandResult r =
+      render("{kind: grid_camera, name: grid, pixels: 8, paths: 4, first_paths: 40}", "grid_camera", "picky");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.out, HasSubstr("40 paths in the first pixel, 4 in the last"));
+}
+
+TEST_F(Plugin, MayCollectOverAHemisphere) {
+  const CommandResult r = render("{kind: irradiance_meter, name: meter}", "irradiance_meter", "meter");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NEAR(EnviImage(*folder_ / "meter/meter.img").read_all().at(0), 3.14159265, 1e-6);  // pi times the sky's
+}
+
 TEST_F(Plugin, UsersMistakesAreLocated) {
   CommandResult r = render("{kind: grid_camera, pixles: 8}", "grid_camera", "typo");
   EXPECT_EQ(r.code, 1);
@@ -101,10 +114,10 @@ TEST_F(Plugin, BadRaysAndExceptionsAreContained) {
     for (size_t i = 1; i < image.size(); i += 2)
       EXPECT_NEAR(image[i], 0.5, 1e-6);  // the good pixels are as they should be
   }
-  for (const std::string trouble : {"make", "accept", "task"}) {
+  for (const std::string trouble : {"make", "accept", "task", "goal", "no_goal"}) {
     const CommandResult r = render("{kind: troublemaker, trouble: " + trouble + "}", "troublemaker", trouble);
     EXPECT_EQ(r.code, 1) << trouble;
-    EXPECT_THAT(r.err, HasSubstr("plug-in 'troublemaker'"));
+    EXPECT_THAT(r.err, HasSubstr(trouble == "goal" ? "asks for 16 to 0 paths" : "plug-in 'troublemaker'"));
   }
 }
 

@@ -15,6 +15,9 @@ class GridCamera final : public suite_sdk::Sensor {
     tasks.push_back({sizeof(suite_task), "look", 0, 0});
     add_capture(0, state, size_, size_, 0, 0, static_cast<uint32_t>(keys.number("paths", 16)));
     truth = {"material", "range"};
+    // The first pixel may have a number of paths of its own.
+    first_paths_ = static_cast<uint32_t>(keys.number("first_paths", 0));
+    own_convergence = first_paths_ > 0;
   }
   void ray(const suite_ray_request& request, suite_ray& ray) const override {
     const double column = static_cast<double>(request.problem % size_) + request.u[0],
@@ -24,14 +27,20 @@ class GridCamera final : public suite_sdk::Sensor {
     ray.origin[2] = height_;
     ray.direction[2] = -1;
   }
+  void convergence(uint32_t, uint64_t problem, suite_convergence& c) const override {
+    if (problem == 0) c.min_paths = c.max_paths = first_paths_;
+  }
   void accept(const suite_result& result) override {
     double sum = 0;
     for (uint32_t i = 0; i < result.columns * result.rows * result.bands; ++i) sum += result.radiance[i];
-    std::printf("grid_camera: mean radiance %.6f\n", sum / (result.columns * result.rows * result.bands));
+    std::printf("grid_camera: mean radiance %.6f, %u paths in the first pixel, %u in the last\n",
+                sum / (result.columns * result.rows * result.bands), result.paths[0],
+                result.paths[result.columns * result.rows - 1]);
   }
 
  private:
   unsigned size_ = 0;
+  uint32_t first_paths_ = 0;
   double gsd_ = 0, height_ = 0;
 };
 

@@ -73,10 +73,10 @@ Accumulators pilot_of(size_t problems, double mean, double d, uint32_t paths) {
 TEST(Plan, a_problem_does_not_look_at_itself) {
   const Capture c = capture_of(5, 5);
   Accumulators pilot = pilot_of(25, 1, 0.1, 32);
-  const std::vector<size_t> band{0};
-  const std::vector<double> before = needs_of(c, pilot, band, 0);
+  const std::vector<JudgedBand> band{{0}};
+  const std::vector<double> before = needs_of(c, pilot, band, {});
   for (int s = 0; s < 4; ++s) pilot.sums(12, s)[0] *= s == 0 ? 50 : 1;  // a firefly in the middle
-  const std::vector<double> after = needs_of(c, pilot, band, 0);
+  const std::vector<double> after = needs_of(c, pilot, band, {});
   EXPECT_EQ(after[12], before[12]);
   EXPECT_GT(after[11], 2 * before[11]);
 }
@@ -84,26 +84,26 @@ TEST(Plan, a_problem_does_not_look_at_itself) {
 TEST(Plan, counts_follow_from_variance_target_and_limits) {
   // Four scramble means 1 -+ 0.1: variance of the mean = 4 * 0.01 / 3 / 4, of one path 32 times that.
   const double variance = 32 * 0.04 / 12;
-  const std::vector<size_t> band{0};
-  const std::vector<double> needs = needs_of(capture_of(3, 3), pilot_of(9, 1, 0.1, 32), band, 0);
+  const std::vector<JudgedBand> band{{0}};
+  const std::vector<double> needs = needs_of(capture_of(3, 3), pilot_of(9, 1, 0.1, 32), band, {});
   for (const double n : needs) EXPECT_NEAR(n, variance, 1e-12);
   Convergence goal{32, 4096, 0.01, 0};
-  EXPECT_EQ(paths_for(needs, goal)[4], static_cast<uint32_t>(std::ceil(variance / 1e-4 / 4) * 4));
+  EXPECT_EQ(paths_for(needs, {goal, {}})[4], static_cast<uint32_t>(std::ceil(variance / 1e-4 / 4) * 4));
   goal.max_paths = 100;
-  EXPECT_EQ(paths_for(needs, goal)[4], 100u);
+  EXPECT_EQ(paths_for(needs, {goal, {}})[4], 100u);
   goal.relative_error = 0.5;
-  EXPECT_EQ(paths_for(needs, goal)[4], 32u);
+  EXPECT_EQ(paths_for(needs, {goal, {}})[4], 32u);
   goal = {32, 4096, 0.01, 0};
-  EXPECT_EQ(cap_for_total(needs, goal, 9 * 200), 200u);  // all nine want more than that, and 201 each does not fit
-  EXPECT_EQ(cap_for_total(needs, goal, 1), goal.min_paths);
+  EXPECT_EQ(cap_for_total(needs, {goal, {}}, 9 * 200), 200u);  // all nine want more than that, and 201 each does not fit
+  EXPECT_EQ(cap_for_total(needs, {goal, {}}, 1), goal.min_paths);
 }
 
 TEST(Plan, dark_problems_take_the_maximum_unless_a_floor_says_how_dark_is_dark) {
   Accumulators pilot = pilot_of(9, 1e-9, 0.5, 32);
-  const std::vector<size_t> band{0};
+  const std::vector<JudgedBand> band{{0}};
   const Convergence goal{32, 4096, 0.01, 0};
-  EXPECT_GT(paths_for(needs_of(capture_of(3, 3), pilot, band, 0), goal)[4], 1000u);
-  EXPECT_EQ(paths_for(needs_of(capture_of(3, 3), pilot, band, 1e-3), goal)[4], 32u);
+  EXPECT_GT(paths_for(needs_of(capture_of(3, 3), pilot, band, {}), {goal, {}})[4], 1000u);
+  EXPECT_EQ(paths_for(needs_of(capture_of(3, 3), pilot, band, Goals{{64, 64, 0, 1e-3}, {}}), {goal, {}})[4], 32u);
 }
 
 TEST(Goal, budget_over_capture) {

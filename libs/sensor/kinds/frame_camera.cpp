@@ -45,6 +45,7 @@ class FrameCamera final : public Sensor {
     capture.name = name_;
     capture.window = read_window(p);
     capture.convergence = read_convergence(p);
+    capture.band_targets = read_band_targets(p, bands_, capture.convergence);
     tasks_.push_back({name_, capture.window, {capture}});
   }
 

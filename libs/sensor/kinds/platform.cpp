@@ -40,6 +40,14 @@ class Platform final : public Sensor {
   std::span<const std::string> truth() const override { return spec_.truth; }
   int numbers() const override { return wide_ ? 8 : 4; }
 
+  Convergence convergence(const Capture& capture, size_t problem) const override {
+    const Segment& s = spec_.segments[capture.state];
+    const FocalArray& array = spec_.arrays[s.array];
+    const bool whisk = array.readout.kind == Readout::Kind::whisk;
+    const uint32_t column = whisk ? 0 : s.first_column + static_cast<uint32_t>(problem % capture.columns);
+    return place_of(array, column, 0, 0.5, 0.5).chip->convergence.value_or(capture.convergence);
+  }
+
   void begin(const Capture& capture) override {
     const Segment& s = spec_.segments[capture.state];
     const Instrument& instrument = spec_.instruments[spec_.arrays[s.array].instrument];

@@ -38,6 +38,7 @@ struct Chip {
   uint32_t columns = 0, rows = 0;
   Vec2 offset;                // m in the focal plane, right and down, of its centre
   double gain = 1;            // relative response
+  std::optional<Convergence> convergence;  // instead of the array's
   uint32_t first_column = 0;  // in the array's image
 };
 
@@ -48,7 +49,6 @@ struct FocalArray {
   std::vector<Chip> chips;
   uint32_t columns = 0, rows = 0;  // of detectors, over all chips
   Readout readout;
-  Convergence convergence;
   uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
   size_t instrument = 0;
@@ -62,6 +62,8 @@ struct Segment {
   uint32_t first_column = 0, columns = 0;  // of the array's image
   std::vector<Band> bands;                 // as listed, then those that count photons when there is a detector
   size_t radiance_bands = 0;
+  Convergence convergence;                 // of its chips without one of their own
+  std::vector<double> band_targets;        // of the radiance bands; empty = the reference decides
   std::vector<double> electrons;  // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;
 };

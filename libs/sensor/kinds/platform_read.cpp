@@ -57,7 +57,8 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     return o ? pair_of(*o, "offset_mm") : Vec2{};
   }();
   auto add = [&](uint32_t columns, uint32_t rows, Vec2 at, double gain, std::optional<Params> bands) {
-    array.chips.push_back({columns, rows, {(shift.x + at.x) * 1e-3, -(shift.y + at.y) * 1e-3}, gain, array.columns});
+    array.chips.push_back(
+        {columns, rows, {(shift.x + at.x) * 1e-3, -(shift.y + at.y) * 1e-3}, gain, {}, array.columns});
     array.columns += columns;
     array.rows = rows;
     own_bands.push_back(std::move(bands));
@@ -73,9 +74,11 @@ void read_chips(const Params& p, FocalArray& array, std::vector<std::optional<Pa
     add(columns, rows, {}, 1, std::nullopt);
     return;
   }
-  for (const Params& chip : chips->items())
+  for (const Params& chip : chips->items()) {
     add(static_cast<uint32_t>(chip.integer("columns", 1, 1000000)), rows, pair_of(chip.at("offset_mm"), "offset_mm"),
         chip.number_in("gain", 1e-6, 1e6, "(relative response)", 1), chip.find("bands"));
+    if (chip.has("paths")) array.chips.back().convergence = read_convergence(chip);
+  }
   if (array.chips.empty()) throw chips->error("an array has at least one chip");
   if (array.readout.kind == Readout::Kind::whisk && array.columns != 1)
     throw chips->error("a whisk read-out has one column of detectors");
@@ -92,6 +95,8 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   if (array.readout.kind == Readout::Kind::whisk) s.columns = array.readout.samples;
   s.bands = read_bands(bands, context);
   s.radiance_bands = s.bands.size();
+  s.convergence = read_convergence(p);
+  s.band_targets = read_band_targets(p, s.bands, s.convergence);
   if (!array.segments.empty() && s.radiance_bands != spec.segments[array.segments[0]].radiance_bands)
     throw bands.error("the chips of an array have the same number of bands");
   spec.states.push_back(read_state(p, s.bands));
@@ -110,6 +115,27 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
                    lens.obscuration, spec.states.back());
   array.segments.push_back(spec.segments.size());
   spec.segments.push_back(std::move(s));
+}
+
+// Chips are beside each other, and bad pixels in the image.
+void check_parts(const FocalArray& array, const Params& p) {
+  auto apart = [&](double a, double b, uint32_t m, uint32_t n, double pitch) {
+    return std::fabs(a - b) >= 0.5 * (m + n) * pitch * (1 - 1e-9);
+  };
+  for (size_t i = 0; i < array.chips.size(); ++i)
+    for (size_t j = 0; j < i; ++j) {
+      const Chip &a = array.chips[i], &b = array.chips[j];
+      if (!apart(a.offset.x, b.offset.x, a.columns, b.columns, array.pitch.x) &&
+          !apart(a.offset.y, b.offset.y, a.rows, b.rows, array.pitch.y))
+        throw p.at("chips")[i].error(strf("chip %zu overlaps chip %zu in the focal plane", i + 1, j + 1),
+                                     "give it another offset_mm, or an array of its own");
+    }
+  for (size_t i = 0; array.detector && i < array.detector->bad.size(); ++i)
+    if (array.detector->bad[i][0] >= array.columns || array.detector->bad[i][1] >= array.rows)
+      throw p.at("detector")
+          .at("bad_pixels")[i]
+          .error(strf("there is no detector [%u, %u]", array.detector->bad[i][0], array.detector->bad[i][1]),
+                 strf("columns 0 to %u, rows 0 to %u", array.columns - 1, array.rows - 1));
 }
 
 // Every detector must see through the lens.
@@ -145,11 +171,11 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   read_chips(p, array, own_bands);
   if (static_cast<double>(array.image_columns()) * array.rows > 4e9)
     throw p.error("an array of more than 4e9 detectors");
-  array.convergence = read_convergence(p);
   array.time_bins = static_cast<uint32_t>(p.integer("time_bins", 1, 10000, 1));
   if (array.time_bins > 1 && array.readout.kind != Readout::Kind::global)
     throw p.at("time_bins").error("time bins need a global read-out");
   array.detector = read_detector(p, context);
+  check_parts(array, p);
   const Lens& lens = spec.instruments[instrument].lens;
   if (array.detector && !(lens.aperture > 0))
     throw p.at("detector")
@@ -190,10 +216,12 @@ void read_instrument(const Params& p, const std::vector<Attachment>& carrier, Pl
   }
   if (const auto trigger = p.find("trigger")) {
     if (instrument.clock_rate > 0) throw trigger->error("an instrument follows a clock or triggers");
-    if (const auto times = trigger->find("times_s"))
+    if (const auto times = trigger->find("times_s")) {
       instrument.triggers = times->as_numbers();
-    else
+      if (instrument.triggers.empty()) throw times->error("no times: nothing would ever be taken");
+    } else {
       instrument.trigger_distance = trigger->number_in("distance_m", 1e-6, 1e9, "m");
+    }
   }
   spec.instruments.push_back(std::move(instrument));
   const Params list = p.at("arrays");
@@ -246,6 +274,10 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
   }
   spec.truth = read_truth(params);
   read_carrier(params, {}, spec, context, seed, 0);
+  for (const std::string& key : spec.instruments.empty() ? params.keys() : std::vector<std::string>{})
+    if (const std::string near = nearest_name(key, std::vector<std::string>{"attachments", "instruments"});
+        !near.empty() && !params.has(near))
+      throw Error(params.where(key), "unknown key '" + key + "'", "did you mean '" + near + "'?");
   if (spec.instruments.empty()) throw params.error("a platform carries at least one instrument", "instruments: [...]");
   // Names of images: the platform's alone while there is only one.
   size_t cameras = 0;

@@ -57,7 +57,10 @@ void add_event(PlatformSpec& spec, Task& task, std::vector<PlatformSpec::Part>& 
     c.columns = spec.segments[s].columns;
     c.rows = rows;
     c.state = s;
-    c.convergence = array.convergence;
+    c.convergence = spec.segments[s].convergence;
+    c.band_targets = spec.segments[s].band_targets;
+    for (size_t chip = 0; chip < spec.segments[s].chips; ++chip)
+      c.own_convergence = c.own_convergence || array.chips[spec.segments[s].first_chip + chip].convergence.has_value();
     if (array.time_bins > 1) c.bin_by = Capture::BinBy::time, c.bins = array.time_bins;
     task.captures.push_back(std::move(c));
     parts.push_back({array_number, s, event});
@@ -140,6 +143,11 @@ void plan_captures(PlatformSpec& spec, const Params& params, const SensorContext
     spec.parts.push_back(std::move(parts));
   }
   if (spec.tasks.empty()) throw list.error("a platform has at least one task", "tasks: [{start: 0, stop: 1}]");
+  for (size_t a = 0; a < spec.arrays.size(); ++a)
+    if (event[a] == 0)
+      throw list.error(
+          "the instrument '" + spec.instruments[spec.arrays[a].instrument].name + "' takes nothing in any of the tasks",
+          "its clock's offset or its triggers lie outside them");
 }
 
 }  // namespace suite

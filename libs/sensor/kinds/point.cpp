@@ -39,16 +39,14 @@ class PointCollectors final : public SimpleSensor {
   SensorRay ray(const RayRequest& r) const override {
     const Collector& c = collectors_[r.problem];
     SensorRay out{{c.position, c.frame.z, moment(r.u[2])}};
-    // The estimator of each integral over directions: radiance over the density of its direction, times its cosine.
-    if (c.kind == Collector::Kind::irradiance)
-      out.ray.direction = c.frame.to_world(cosine_hemisphere({r.u[0], r.u[1]})), out.weight = kPi;
-    if (c.kind == Collector::Kind::actinic) out.ray.direction = uniform_sphere({r.u[0], r.u[1]}), out.weight = 4 * kPi;
+    if (c.kind == Collector::Kind::irradiance) out.receiver = SensorRay::Receiver::plane, out.weight = kPi;
+    if (c.kind == Collector::Kind::actinic) out.receiver = SensorRay::Receiver::sphere, out.weight = 4 * kPi;
     return out;
   }
 
  private:
   void finish(Delivery& d) const override {
-    std::string text = "# a collimated sun is not met by chance and adds nothing to irradiance and actinic flux here\n";
+    std::string text = "# irradiance and actinic flux hold direct and diffuse light; a radiance that looks at the sun its disk\n";
     text += "name,quantity,unit,band,wavelength_um,value,standard_error\n";
     static constexpr const char* kNames[][2] = {
         {"irradiance", "W/(m2 um)"}, {"radiance", "W/(m2 sr um)"}, {"actinic_flux", "W/(m2 um)"}};

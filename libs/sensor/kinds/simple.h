@@ -16,6 +16,7 @@ class SimpleSensor : public Sensor {
     capture_.name = name_;
     capture_.window = read_window(p);
     capture_.convergence = read_convergence(p);
+    capture_.band_targets = read_band_targets(p, bands_, capture_.convergence);
   }
   std::string name() const override { return name_; }
   std::span<const SpectralState> states() const override { return states_; }

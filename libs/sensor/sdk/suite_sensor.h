@@ -17,7 +17,8 @@
 extern "C" {
 #endif
 
-/* Raised when a plug-in built with an older header cannot work any more. */
+/* Raised when a plug-in built with an older header cannot work any more. Fields that came later say since when; a plug-in
+ * that was built without them goes on working. */
 #define SUITE_SENSOR_ABI 1u
 
 enum suite_band_shape {
@@ -70,13 +71,32 @@ typedef struct suite_ray_request {
   float* weights; /* one per bin, to be filled when suite_ray.weighted is set */
 } suite_ray_request;
 
+/* What a sample collects: the radiance along its ray, or the light of many directions at the ray's origin. The host then
+ * chooses where to look and asks Sun, Moon, sky and lamps there, as it does at surfaces. */
+enum suite_receiver {
+  SUITE_RECEIVER_NONE = 0,
+  SUITE_RECEIVER_PLANE = 1, /* facing `direction`: the sample is irradiance / pi */
+  SUITE_RECEIVER_SPHERE = 2 /* the sample is the flux through a small sphere's cross-section / (4 pi) */
+};
+
 typedef struct suite_ray {
   uint32_t size;
   uint32_t weighted;              /* 1: weights were filled, see the request */
   double origin[3], direction[3]; /* ENU; the direction need not be a unit vector, but finite and not 0 */
   double time_s;
   double weight; /* pupil weight; 0 = contributes nothing */
+  uint32_t receiver; /* suite_receiver; since 1.1 */
+  uint32_t reserved;
 } suite_ray;
+
+/* What one problem may take; see suite_sensor.convergence. */
+typedef struct suite_convergence {
+  uint32_t size;
+  uint32_t min_paths, max_paths; /* at least 1; equal = a fixed number */
+  uint32_t reserved;
+  double relative_error; /* target of the standard error at the reference wavelength; 0 = none, max_paths are taken */
+  double absolute_floor; /* radiance below which the error is judged absolutely */
+} suite_convergence;
 
 typedef struct suite_result {
   uint32_t size;
@@ -115,6 +135,9 @@ typedef struct suite_sensor {
   /* Called from one thread, once per capture, in any order. Returns 0 or anything else for a failure. */
   int (*accept)(void* self, const suite_result* result);
   void (*destroy)(void* self);
+  /* May be NULL. Called before rendering, from one thread, for every problem: comes in filled with what the capture says
+   * for all of them. Returns 0 or anything else for a failure. Since 1.1. */
+  int (*convergence)(void* self, uint32_t capture, uint64_t problem, suite_convergence* convergence);
 } suite_sensor;
 
 typedef struct suite_sensor_plugin {
@@ -178,12 +201,15 @@ class Sensor {
   virtual ~Sensor() = default;
   virtual void ray(const suite_ray_request& request, suite_ray& ray) const = 0;
   virtual void accept(const suite_result&) {}
+  /* Asked for every problem when own_convergence is set. */
+  virtual void convergence(uint32_t /*capture*/, uint64_t /*problem*/, suite_convergence&) const {}
 
   std::vector<suite_state> states;
   std::vector<suite_task> tasks;
   std::vector<suite_capture> captures;
   std::vector<const char*> truth;
   uint32_t numbers = 4;
+  bool own_convergence = false;
 
  protected:
   static suite_band gaussian(const char* name, double center_um, double fwhm_um) {
@@ -235,6 +261,15 @@ int make(const suite_host* host, suite_sensor* out) noexcept {
         return 1;
       }
     };
+    if (sensor->own_convergence)
+      out->convergence = [](void* self, uint32_t capture, uint64_t problem, suite_convergence* c) noexcept {
+        try {
+          static_cast<const Sensor*>(self)->convergence(capture, problem, *c);
+          return 0;
+        } catch (...) {
+          return 1;
+        }
+      };
     out->destroy = [](void* self) noexcept { delete static_cast<Sensor*>(self); };
     return 0;
   } catch (const std::exception& e) {
