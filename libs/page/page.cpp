@@ -1,4 +1,4 @@
-#include "study/page.h"
+#include "page/page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -161,7 +161,7 @@ std::string html_of(const Page& page) {
   return h + "</body></html>\n";
 }
 
-Page page_of_csv(std::string_view csv, const std::string& title, const std::string& x,
+Page page_of_csv(std::string_view csv, const std::string& title, const std::vector<std::string>& x,
                  const std::vector<std::string>& y, const std::string& group, const std::string& file) {
   Page page;
   page.title = title;
@@ -194,16 +194,16 @@ Page page_of_csv(std::string_view csv, const std::string& title, const std::stri
       throw Error(Where{file, 0, 0, {}, -1}, "there is no column '" + name + "'", name_hint(name, table.columns));
     return static_cast<size_t>(found - table.columns.begin());
   };
-  const size_t cx = column(x);
-  for (const std::string& name : y) {
-    const size_t cy = column(name);
+  for (size_t i = 0; i < x.size() * y.size(); ++i) {
+    const std::string &along = x[i / y.size()], &name = y[i % y.size()];
+    const size_t cx = column(along), cy = column(name);
     std::map<std::string, PlotSeries> series;
     for (const auto& row : table.rows) {
       PlotSeries& s = series[group.empty() ? name : row[column(group)]];
       s.x.push_back(std::strtod(row[cx].c_str(), nullptr));
       s.y.push_back(std::strtod(row[cy].c_str(), nullptr));
     }
-    Plot plot{name + " against " + x, x, name, true, true, {}};
+    Plot plot{name + " against " + along, along, name, true, true, {}};
     for (auto& [key, s] : series) s.name = key, plot.series.push_back(std::move(s));
     page.plots.push_back(std::move(plot));
   }

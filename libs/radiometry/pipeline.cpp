@@ -19,6 +19,9 @@ void RunStatistics::merge(const RunStatistics& o) {
   trace.rays += o.trace.rays;
   trace.cycles += o.trace.cycles;
   cycles += o.cycles;
+  sensor_cycles += o.sensor_cycles;
+  path_cycles += o.path_cycles;
+  shade_cycles += o.shade_cycles;
 }
 
 Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
@@ -205,6 +208,7 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
 
   for (uint32_t sample = first; sample < last; ++sample) {
     const auto [scramble, index] = deal(sample);
+    const uint64_t asked = __rdtsc();
     wave.active.clear();
     for (size_t i = 0; i < width; ++i) {
       if (sample < next[i] || sample >= end[i]) continue;
@@ -214,7 +218,11 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       workspace->weighted[i] = ray.spectral;
       generator.start(wave, i, ray, stream, index);
     }
+    const uint64_t started = __rdtsc();
     generator.complete(wave, statistics);
+    const uint64_t completed = __rdtsc();
+    statistics.sensor_cycles += started - asked;
+    statistics.path_cycles += completed - started;
 
     for (size_t i = 0; i < width; ++i) {
       if (sample < next[i] || sample >= end[i]) continue;
@@ -256,6 +264,7 @@ void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t captur
       sums.truncated(slot) += static_cast<float>(wave.path(i).truncated);
       truth_.add(wave, i, sums.truth(slot));
     }
+    statistics.shade_cycles += __rdtsc() - completed;
   }
   statistics.cycles += __rdtsc() - start;
   const std::lock_guard lock(mutex_);
