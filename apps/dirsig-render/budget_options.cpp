@@ -75,9 +75,17 @@ Budget budget_of(const RenderOptions& o) {
 }
 
 StopRule stop_rule_of(const RenderOptions& o) {
+  // The paper's estimator comes with the paper's rule, unless another is asked for.
+  if (o.stop.empty()) return method_of(o) == Method::paper ? StopRule::change : StopRule::plan;
   if (o.stop == "plan") return StopRule::plan;
   if (o.stop == "change") return StopRule::change;
   throw UsageError("--stop is 'plan' or 'change', found '" + o.stop + "'");
+}
+
+Method method_of(const RenderOptions& o) {
+  if (o.method == "standard") return Method::standard;
+  if (o.method == "paper") return Method::paper;
+  throw UsageError("--method is 'standard' or 'paper', found '" + o.method + "'");
 }
 
 }  // namespace suite

@@ -8,5 +8,6 @@ namespace suite {
 // UsageError for anything that cannot be meant. "64" and "32,1024" paths; "1%" or "0.01"; "90s", "10min", "2h".
 Budget budget_of(const RenderOptions& options);
 StopRule stop_rule_of(const RenderOptions& options);
+Method method_of(const RenderOptions& options);
 
 }  // namespace suite

@@ -36,6 +36,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--target-bands", o.target_bands, "whose error decides: the band at the reference wavelength, or all", "reference|all");
   cli.option("--time", o.time, "time for the whole run, s, min or h; turned into a number of paths after the first pilot, and printed", "10min");
   cli.option("--stop", o.stop, "'plan' (unbiased) or 'change', the rule of the DIRSIG5 paper, for comparison", "plan|change");
+  cli.option("--method", o.method, "'standard', or 'paper': the estimator of the DIRSIG5 paper as written, with its rule of stopping, for comparison", "standard|paper");
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
   cli.option("--more", o.more, "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");

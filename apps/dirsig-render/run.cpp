@@ -56,11 +56,12 @@ SceneNeeds needs_of(const Simulation& sim) {
     for (const SpectralState& s : sensor->states()) needs.windows_um.push_back({s.low_um, s.high_um});
     for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
   }
+  needs.later_from = uint64_t{64} << 20;
   return needs;
 }
 
 // All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim, bool all) {
+Scene load_scenes(const Simulation& sim, bool all, std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
   const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim);
   for (const SimulationScene& s : sim.scenes) {
@@ -70,6 +71,7 @@ Scene load_scenes(const Simulation& sim, bool all) {
         s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs, &loaded);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     note("of " + s.path + strf(", loaded in %.3f s:\n", seconds) + loaded.text() + "(--explain FEATURE says why)");
+    if (loaded.later) later.push_back(loaded.later);
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
   }
   if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
@@ -145,6 +147,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
   options.pipeline.stop = stop_rule_of(o);
+  options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
   if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
@@ -153,7 +156,8 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all));
+  std::vector<std::shared_ptr<const LaterReads>> later;
+  const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
@@ -173,6 +177,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.store = store.get();
   const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
   tell(report);
+  for (const auto& reads : later) note(reads->text());
   write_log(o.output + "/render.json", report, options);
   for (const auto& sensor : sim.sensors)
     for (const TextFile& log : sensor->logs()) writer->write_text(log);

@@ -24,6 +24,11 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.flag("--strict", o.strict, "warnings refuse the scene too");
   cli.flag("--repair", o.repair,
            "weld positions, drop triangles without area and duplicates, make the winding consistent; each is told");
+  cli.option(
+      "--compress", o.compress,
+      "pack the prepared scene, which then loads more slowly: none (as without), deflate[:1-9] (6), or one of these "
+      "for a dataset or group, e.g. /geometry/normals=deflate:9 (repeatable)",
+      "[DATASET=]HOW");
   cli.flag("--no-crossing-check", o.quick, "do not look for triangles that cross each other");
   cli.flag("--force", o.force, "prepare again even when inputs, options and version are unchanged");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");

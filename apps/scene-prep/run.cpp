@@ -49,6 +49,7 @@ std::string canonical_arguments(const ScenePrepOptions& o) {
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
   if (o.repair) text += " --repair";
+  for (const std::string& how : o.compress) text += " --compress " + how;
   return text;
 }
 
@@ -101,7 +102,18 @@ class Steps {
   std::string csv_;
 };
 
+Compression compression_of(const ScenePrepOptions& o) {
+  Compression compression;
+  try {
+    for (const std::string& how : o.compress) compression.add(how);
+  } catch (const Error& e) {
+    throw UsageError("--compress: " + e.message() + "; " + e.hint());
+  }
+  return compression;
+}
+
 int prepare(const ScenePrepOptions& o) {
+  const Compression compression = compression_of(o);
   if (up_to_date(o)) {
     note(o.output + " is up to date: inputs, options and version are unchanged (--force prepares it again)");
     return 0;
@@ -121,7 +133,7 @@ int prepare(const ScenePrepOptions& o) {
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (report.ok() && !o.output.empty()) {
-    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output);
+    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output, compression);
     steps.done("write");
   }
   if (!o.report.empty() && o.report != "-") steps.write(o, report);
@@ -139,7 +151,9 @@ void print_summary(const ScenePrepOptions& o, const Scene& scene, const LoadRepo
   const Provenance p = read_provenance(o.input);
   std::printf("%s", summary_text(scene).c_str());
   for (const LoadRow& row : stored.rows)
-    if (row.stored) std::printf("%-13s %s, loaded when needed (--explain '%s')\n", "stored", (row.feature + " " + human_bytes(static_cast<double>(row.stored))).c_str(), row.feature.c_str());
+    if (row.stored)
+      std::printf("%-13s %s, loaded when needed (--explain '%s')\n", "stored",
+                  (row.feature + " " + human_bytes(static_cast<double>(row.stored))).c_str(), row.feature.c_str());
   std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
               p.inputs.size(), p.input_sha256.c_str());
 }
@@ -154,7 +168,11 @@ Ray parse_ray(const std::string& text) {
 
 // Questions about a scene that has been prepared.
 int inspect(const ScenePrepOptions& o) {
-  if (!o.output.empty()) throw UsageError("--output goes with a scene text, not with questions about a prepared scene");
+  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || o.strict || o.repair ||
+      o.quick || o.force)
+    throw UsageError(
+        "--output, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
+        "scene text, not with questions about a prepared scene");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
   LoadReport stored;
   const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));

@@ -44,6 +44,9 @@ Id native<double>() {
 namespace {
 
 constexpr size_t kMaxText = 1 << 20;
+constexpr size_t kChunkBytes = 512 << 10;  // packed in one piece: fits the library's cache, large enough to pack well
+constexpr size_t kSmall = 4096;            // below this packing gains nothing
+constexpr hsize_t kBestRatio = 1040;       // deflate packs no better
 
 // The library prints its error stack unless told not to.
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -94,7 +97,8 @@ void Writer::fail(const std::string& what) const {
   throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what, "is the disk full?");
 }
 
-Writer::Writer(const std::string& temporary, const std::string& path) : path_(path) {
+Writer::Writer(const std::string& temporary, const std::string& path, PackLevel level)
+    : path_(path), level_(std::move(level)) {
   silence();
   const Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(create, false);
@@ -118,9 +122,18 @@ Handle Writer::make(const std::string& name, hid_t type, size_t count, size_t wi
   make_groups(name);
   const Handle create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(create, false);
-  H5Pset_alloc_time(create, H5D_ALLOC_TIME_EARLY);
-  H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
   const hsize_t dims[2] = {count / width, width};
+  const size_t row = width * H5Tget_size(type);
+  if (const int level = level_ ? level_(name) : 0; level > 0 && dims[0] * row >= kSmall) {
+    const hsize_t chunk[2] = {std::clamp<hsize_t>(kChunkBytes / row, 1, dims[0]), width};
+    H5Pset_chunk(create, width == 1 ? 1 : 2, chunk);
+    H5Pset_shuffle(create);
+    H5Pset_deflate(create, static_cast<unsigned>(level));
+    H5Pset_fill_time(create, H5D_FILL_TIME_ALLOC);  // what the last chunk holds beyond the end would be chance
+  } else {
+    H5Pset_alloc_time(create, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
+  }
   const Handle space(H5Screate_simple(width == 1 ? 1 : 2, dims, nullptr), H5Sclose);
   Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, create, H5P_DEFAULT), H5Dclose);
   if (dataset < 0 || !put_text(dataset, "units", units)) fail("dataset '" + name + "'");
@@ -177,9 +190,7 @@ void Writer::close() {
 
 // --- Reader ---------------------------------------------------------------------------------------------------------
 
-void Reader::fail(const std::string& what) const {
-  throw Error(Where{path_, 0, 0, {}, -1}, what, hint_);
-}
+void Reader::fail(const std::string& what) const { throw Error(Where{path_, 0, 0, {}, -1}, what, hint_); }
 
 Reader::Reader(const std::string& path, std::string hint) : path_(path), hint_(std::move(hint)) {
   silence();
@@ -195,6 +206,23 @@ Reader::Reader(const std::string& path, std::string hint) : path_(path), hint_(s
   if (file_ < 0) fail("is a damaged HDF5 file");
 }
 
+namespace {
+// Shuffle and deflate in pieces of a size that is safe to ask memory for.
+bool known_packing(hid_t create, int rank, size_t value_bytes) {
+  hsize_t chunk[2] = {1, 1};
+  if (H5Pget_chunk(create, rank, chunk) != rank || chunk[0] == 0 || chunk[1] == 0 || chunk[0] > 1 << 30 ||
+      chunk[1] > 1 << 30 || chunk[0] * chunk[1] * value_bytes > (hsize_t{64} << 20) || H5Pget_nfilters(create) != 2)
+    return false;
+  constexpr H5Z_filter_t known[2] = {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE};
+  for (unsigned k = 0; k < 2; ++k) {
+    unsigned flags = 0, config = 0;
+    size_t values = 0;
+    if (H5Pget_filter2(create, k, &flags, &values, nullptr, 0, nullptr, &config) != known[k]) return false;
+  }
+  return true;
+}
+}  // namespace
+
 bool Reader::has(const std::string& name) const {
   // Every link on the way must exist, or the library reports an error.
   for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1))
@@ -204,7 +232,7 @@ bool Reader::has(const std::string& name) const {
 
 Reader::Opened Reader::open(const std::string& name, hid_t type, const char* units, size_t width, long long rows) {
   if (!has(name)) fail("dataset '" + name + "' is missing");
-  Opened d{Handle(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose), 0};
+  Opened d{Handle(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose), 0, false};
   if (d.dataset < 0) fail("dataset '" + name + "' cannot be opened");
   std::string unit;
   if (!get_text(d.dataset, "units", unit)) fail("dataset '" + name + "' has no units");
@@ -222,9 +250,12 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
          strf("' has %llu rows, %lld are declared", static_cast<unsigned long long>(dims[0]), rows));
   // What is declared must be there before memory is asked for.
   const hsize_t bytes = dims[0] * width * H5Tget_size(stored);
-  if (H5Pget_layout(create) == H5D_CHUNKED || H5Pget_external_count(create) > 0)
+  d.packed = H5Pget_layout(create) == H5D_CHUNKED;
+  if (H5Pget_external_count(create) > 0 || (d.packed && !known_packing(create, rank, H5Tget_size(stored))))
     fail("dataset '" + name + "' has another layout");
-  if (H5Dget_storage_size(d.dataset) != bytes || bytes > file_size(path_)) fail("dataset '" + name + "' is not whole");
+  const hsize_t there = H5Dget_storage_size(d.dataset), limit = file_size(path_);
+  if (d.packed ? there > limit || bytes / kBestRatio > there : there != bytes || bytes > limit)
+    fail("dataset '" + name + "' is not whole");
   d.count = dims[0] * width;
   return d;
 }
@@ -244,7 +275,8 @@ void Reader::read(const std::string& name, const Opened& d, hid_t type, void* ou
   if (status < 0) fail("dataset '" + name + "' cannot be read");
 }
 
-void Reader::read_strided(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t blocks, size_t stride, size_t run) {
+void Reader::read_strided(const std::string& name, const Opened& d, hid_t type, void* out, size_t first, size_t blocks,
+                          size_t stride, size_t run) {
   if (!blocks || !run) return;
   SUITE_CHECK(run <= stride && first + (blocks - 1) * stride + run <= d.count);
   note_read(name);
@@ -257,6 +289,7 @@ void Reader::read_strided(const std::string& name, const Opened& d, hid_t type, 
 
 uint64_t Reader::file_offset(const std::string& name, const Opened& d) const {
   if (d.count == 0) return 0;
+  if (d.packed) fail("dataset '" + name + "' is packed");
   const haddr_t at = H5Dget_offset(d.dataset);
   if (at == HADDR_UNDEF || at > file_size(path_) || H5Dget_storage_size(d.dataset) > file_size(path_) - at)
     fail("dataset '" + name + "' is not whole");

@@ -1,8 +1,9 @@
-// A thin, checked skin over the HDF5 C API for the formats that are HDF5 files: typed columns with units, handles that close
-// themselves.
+// A thin, checked skin over the HDF5 C API for the formats that are HDF5 files: typed columns with units, handles that
+// close themselves.
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
@@ -35,14 +36,20 @@ class Handle {
   int (*close_)(Id) = nullptr;
 };
 
-// The type that values of T have in files: little-endian; uint8_t, std::byte, uint16_t, uint32_t, uint64_t, float, double.
+// The type that values of T have in files: little-endian; uint8_t, std::byte, uint16_t, uint32_t, uint64_t, float,
+// double.
 template <class T>
 Id native();
+
+// How hard the values of a dataset are packed: 0 as they are, else deflate 1 (fast) to 9 after a shuffle of their
+// bytes.
+using PackLevel = std::function<int(const std::string& dataset)>;
 
 // Writes to a new file. Groups are made on the way. Every dataset gets `units` ("1" for pure numbers, "" for names).
 class Writer {
  public:
-  Writer(const std::string& temporary, const std::string& path_for_messages);
+  // level: null = nothing is packed. Datasets below 4 KiB never are.
+  Writer(const std::string& temporary, const std::string& path_for_messages, PackLevel level = {});
   // data: rows x width values; width 1 makes a one-dimensional dataset.
   template <class T>
   void put(const std::string& name, std::span<const T> data, const char* units, size_t width = 1) {
@@ -79,6 +86,7 @@ class Writer {
   Handle make(const std::string& name, Id type, size_t count, size_t width, const char* units);
   [[noreturn]] void fail(const std::string& what) const;
   std::string path_;
+  PackLevel level_;
   Handle file_;
 };
 
@@ -98,16 +106,19 @@ class Reader {
   std::vector<std::string> get_names(const std::string& name, long long rows = -1);
   struct Opened {
     Handle dataset;
-    size_t count = 0;  // values
+    size_t count = 0;     // values
+    bool packed = false;  // not found in the file as they are
   };
   Opened open(const std::string& name, Id type, const char* units, size_t width, long long rows);
   void read(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t count);
   // `blocks` runs of `run` values, the first at `first`, each `stride` values behind the one before.
-  void read_strided(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t blocks, size_t stride, size_t run);
+  void read_strided(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t blocks,
+                    size_t stride, size_t run);
   // Datasets of which some value was read, here or by who says so.
   const std::set<std::string>& names_read() const { return names_read_; }
   void note_read(const std::string& name) { names_read_.insert(name); }
-  // Where the values of a dataset start in the file, for reading past the library (which knows one thread only).
+  // Where the values of a dataset start in the file, for reading past the library (which knows one thread only). Error
+  // for a packed one.
   uint64_t file_offset(const std::string& name, const Opened& d) const;
   bool has(const std::string& name) const;
   std::string text(const std::string& attribute) const;

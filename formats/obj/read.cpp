@@ -80,7 +80,20 @@ class Collector {
       line_end_ = stop;
       counted_ = std::min(original_.size(), stop + (original_.substr(stop, 2) == "\r\n" ? 2 : 1));
       ++line_;
+      smoothing_statement(original_.substr(line_start_, line_end_ - line_start_));
     }
+  }
+  // The loader hands out no `s` statements.
+  void smoothing_statement(std::string_view line) {
+    const size_t at = line.find_first_not_of(" \t");
+    if (at == std::string_view::npos || line[at] != 's' || at + 1 >= line.size() ||
+        (line[at + 1] != ' ' && line[at + 1] != '\t'))
+      return;
+    const size_t value = line.find_first_not_of(" \t", at + 1);
+    uint32_t group = 0;  // "off", 0, and what is no number
+    if (value != std::string_view::npos) std::from_chars(line.data() + value, line.data() + line.size(), group);
+    smoothing_ = group;
+    any_smoothing_ = any_smoothing_ || group;
   }
   Where here() {
     sync_line();
@@ -111,6 +124,8 @@ class Collector {
   std::vector<Corner> corners_;
   std::vector<Vec3> ring_;
   size_t without_normal_ = 0, without_uv_ = 0;
+  uint32_t smoothing_ = 0;
+  bool any_smoothing_ = false;
   SourceMesh mesh_;
 };
 
@@ -205,6 +220,7 @@ void Collector::face(const tinyobj::index_t* corner, int count) {
       without_uv_ += corners_[k].vt == kNone;
     }
     mesh_.lines.push_back(line_);
+    if (any_smoothing_) mesh_.smoothing.resize(mesh_.lines.size() - 1, 0), mesh_.smoothing.push_back(smoothing_);
   }
   if (!clean) add("SP206", strf("polygon of %d corners", count));
 }
@@ -246,20 +262,13 @@ SourceMesh Collector::finish() {
         mesh_.uvs[2 * k] = uvs_[shared_[k].vt][0], mesh_.uvs[2 * k + 1] = uvs_[shared_[k].vt][1];
   }
   if (any_normal) {
-    std::vector<uint32_t> facet(n, oct_encode({0, 0, 1}));
-    for (size_t t = 0; t + 2 < corners; t += 3) {
-      const Vec3 a = mesh_.positions[mesh_.indices[t]], b = mesh_.positions[mesh_.indices[t + 1]],
-                 c = mesh_.positions[mesh_.indices[t + 2]];
-      const Vec3 f = cross(b - a, c - a);
-      if (length(f) > 0)
-        for (int k = 0; k < 3; ++k) facet[mesh_.indices[t + k]] = oct_encode(normalized(f));
-    }
-    mesh_.normals = std::move(facet);
+    mesh_.normals.assign(n, kNoNormal);
     for (size_t k = 0; k < n; ++k)
       if (shared_[k].vn != kNone)
         if (const Vec3 v = normals_[shared_[k].vn]; length(v) > 0 && std::isfinite(length(v)))
           mesh_.normals[k] = oct_encode(normalized(v));
   }
+  if (without_normal_ == 0) mesh_.smoothing.clear();  // nothing is left for the groups to decide
   unlisted_statements();
   return std::move(mesh_);
 }

@@ -11,7 +11,7 @@ namespace suite {
 
 namespace h5 {
 inline constexpr const char* kFormat = "suite.scene";
-inline constexpr const char* kVersionText = "2";
+inline constexpr const char* kVersionText = "3";
 inline constexpr int kConstantCurve = 255;  // in place of an Outside rule
 }  // namespace h5
 
@@ -88,7 +88,7 @@ std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
 void write_media(h5::Writer& w, const Scene& scene);
 void read_media(h5::Reader& r, Scene& scene);
 void write_tracks(h5::Writer& w, const Scene& scene);
-void read_tracks(h5::Reader& r, Scene& scene);
+void read_tracks(h5::Reader& r, Scene& scene, Loading& loading);
 
 void write_property_maps(h5::Writer& w, const Scene& scene);
 void read_property_maps(h5::Reader& r, Scene& scene, Loading& loading);

@@ -22,7 +22,8 @@ bool anisotropic(const ModelSpec& m) {
 
 bool Loading::sees(double low_um, double high_um) const {
   const auto overlaps = [&](const auto& w) { return low_um <= w[1] && high_um >= w[0]; };
-  return needs.windows_um.empty() || needs.temperatures || std::any_of(needs.windows_um.begin(), needs.windows_um.end(), overlaps);
+  return needs.windows_um.empty() || needs.temperatures ||
+         std::any_of(needs.windows_um.begin(), needs.windows_um.end(), overlaps);
 }
 
 bool Loading::glows(double kelvin) const {
@@ -30,7 +31,8 @@ bool Loading::glows(double kelvin) const {
   const auto shows = [&](const auto& w) {
     return planck_radiance(w[1], kelvin) > kDark || planck_radiance(w[0], kelvin) > kDark;
   };
-  return needs.windows_um.empty() || needs.temperatures || std::any_of(needs.windows_um.begin(), needs.windows_um.end(), shows);
+  return needs.windows_um.empty() || needs.temperatures ||
+         std::any_of(needs.windows_um.begin(), needs.windows_um.end(), shows);
 }
 
 std::pair<size_t, size_t> Loading::channels(const std::vector<double>& um) const {

@@ -45,7 +45,8 @@ void read_phases(h5::Reader& r, std::vector<Medium>& media) {
       if (m >= media.size()) r.fail("'" + table + "' names a medium that is not there");
     return owner;
   };
-  const auto number_of = rows("/volume_media/numbers"), text_of = rows("/volume_media/texts"), curve_of = rows("/volume_media/phase_curves");
+  const auto number_of = rows("/volume_media/numbers"), text_of = rows("/volume_media/texts"),
+             curve_of = rows("/volume_media/phase_curves");
   const auto count = [](const auto& v) { return static_cast<long long>(v.size()); };
   const std::vector<std::string> number_name = r.get_names("/volume_media/numbers/name", count(number_of)),
                                  text_name = r.get_names("/volume_media/texts/name", count(text_of)),

@@ -12,7 +12,15 @@ struct Feature {
   const char *name, *text;
 };
 constexpr Feature kFeatures[] = {
-    {"geometry", "Vertices, triangles, normals and exact surfaces. Always read."},
+    {"geometry",
+     "Vertices, triangles, normals and exact surfaces. dirsig-render reads 64 MiB of them and less at once; of larger "
+     "scenes the arrays of a mesh are read when a ray first comes to the tile where it stands (or at the start, when "
+     "the "
+     "mesh is a lamp), from the prepared scene, which has to stay in its place until the end. Packed datasets are "
+     "always read at once."},
+    {"tracks",
+     "Motions: keyframes, spins, orbits and what they are composed of. All are read whenever something moves: the pose "
+     "at one time may depend on keys far from it, and every window has to be covered. What is at rest has none."},
     {"texture coordinates",
      "Two floats a vertex. Needed by maps placed by UV (class, property and opacity maps) and by models that prefer a "
      "direction along the "
@@ -36,7 +44,8 @@ constexpr Feature kFeatures[] = {
 
 uint64_t LoadReport::left_out() const {
   uint64_t sum = 0;
-  for (const LoadRow& r : rows) sum += r.stored - std::min(r.stored, r.read);
+  for (const LoadRow& r : rows)
+    if (!later || r.feature != "geometry") sum += r.stored - std::min(r.stored, r.read);
   return sum;
 }
 
@@ -44,12 +53,20 @@ std::string LoadReport::text() const {
   std::string out;
   for (const LoadRow& r : rows) {
     if (r.stored == 0) continue;
-    const char* verdict = r.read == 0 ? "left out" : r.read < r.stored ? "in part" : "read";
+    const char* verdict = later && r.feature == "geometry" ? "later"
+                          : r.read == 0                    ? "left out"
+                          : r.read < r.stored              ? "in part"
+                                                           : "read";
     out += strf("%-20s %-9s %10s of %10s  %s\n", r.feature.c_str(), verdict,
                 human_bytes(static_cast<double>(r.read)).c_str(), human_bytes(static_cast<double>(r.stored)).c_str(),
                 r.why.c_str());
   }
   return out + strf("left out in all      %s\n", human_bytes(static_cast<double>(left_out())).c_str());
+}
+
+std::string LaterReads::text() const {
+  return strf("geometry: %zu of %zu meshes were read (%s of %s)", meshes_read.load(), meshes,
+              human_bytes(static_cast<double>(read.load())).c_str(), human_bytes(static_cast<double>(stored)).c_str());
 }
 
 std::string explain_feature(const std::string& feature) {

@@ -1,7 +1,9 @@
 // What a simulation needs of a prepared scene, and what a load read and left out.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,16 @@ namespace suite {
 struct SceneNeeds {
   std::vector<std::array<double, 2>> windows_um;  // wavelengths that some sensor sees; empty = all
   bool temperatures = false;                      // wanted for themselves (truth), whether they glow or not
+  uint64_t later_from = UINT64_MAX;  // bytes: arrays of larger geometry are read mesh by mesh when asked for
+};
+
+// What has been read since of the arrays that were left for later; several threads count.
+struct LaterReads {
+  size_t meshes = 0;    // that were left
+  uint64_t stored = 0;  // bytes of their arrays
+  std::atomic<size_t> meshes_read{0};
+  std::atomic<uint64_t> read{0};
+  std::string text() const;  // one line
 };
 
 // Parts of a scene that a simulation may do without.
@@ -23,6 +35,7 @@ struct LoadRow {
 struct LoadReport {
   std::vector<LoadRow> rows;
   std::vector<std::string> datasets;  // names of those of which something was read
+  std::shared_ptr<LaterReads> later;  // null: nothing was left for later
   uint64_t left_out() const;          // bytes
   std::string text() const;           // a table, one line a feature that the scene has, and the sum
 };

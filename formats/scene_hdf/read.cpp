@@ -7,6 +7,7 @@
 #include "formats/scene_hdf/internal.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
+#include "scene/curvature.h"
 #include "scene/primitives.h"
 
 namespace suite {
@@ -16,14 +17,16 @@ namespace {
 using h5::Reader;
 
 // One of the large arrays, read past the HDF5 library by several threads: contiguous and little-endian, as this machine
-// is.
+// is. A packed one is read by the library, which knows one thread only.
 template <class T>
 class Stored {
  public:
   Stored(Reader& r, const std::string& name, const char* units) : name_(name) {
-    const Reader::Opened d = r.open(name, h5::native<T>(), units, 1, -1);
-    count_ = d.count;
-    offset_ = r.file_offset(name, d);
+    opened_ = r.open(name, h5::native<T>(), units, 1, -1);
+    count_ = opened_.count;
+    if (opened_.packed) return;
+    offset_ = r.file_offset(name, opened_);
+    opened_.dataset = h5::Handle();  // not needed, and it would keep the file open
   }
   // Sets aside the next n values; where they start.
   uint64_t take(Reader& r, uint64_t n) {
@@ -35,14 +38,21 @@ class Stored {
     if (at_ != count_) r.fail("dataset '" + name_ + "' is longer than its table says");
   }
   const std::string& name() const { return name_; }
-  std::vector<T> values(const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
+  bool packed() const { return opened_.packed; }
+  // r: for a packed one.
+  std::vector<T> values(Reader* r, const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
     std::vector<T> out(n + pad);
+    if (opened_.packed) {
+      r->read(name_, opened_, h5::native<T>(), out.data(), first, n);
+      return out;
+    }
     file.read_at(offset_ + first * sizeof(T), std::as_writable_bytes(std::span(out.data(), n)));
     return out;
   }
 
  private:
   std::string name_;
+  Reader::Opened opened_;
   uint64_t count_ = 0, offset_ = 0, at_ = 0;
 };
 
@@ -51,42 +61,96 @@ struct MeshRows {
   std::vector<double> origin;
   std::vector<uint64_t> vertices, triangles;
   std::vector<uint8_t> normals, uvs;
+  std::vector<double> boxes;  // low xyz, high xyz
+  Box3 box(size_t k) const {
+    const double* b = &boxes[6 * k];
+    return {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+  }
 };
 
-// The big arrays of all meshes, several meshes at a time.
-void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, const std::vector<bool>& with_uvs,
-                      Loading& loading, std::vector<Mesh>& meshes) {
-  Stored<float> p(r, "/geometry/positions", "m"), uv(r, "/geometry/uvs", "1");
-  Stored<uint32_t> i(r, "/geometry/indices", "1"), nrm(r, "/geometry/normals", "1");
+// Where the arrays of all meshes are; outlives the HDF5 library's view of the file when they are read later.
+struct MeshArrays {
+  MeshArrays(Reader& r, const std::string& file)
+      : path(file),
+        raw(file),
+        p(r, "/geometry/positions", "m"),
+        uv(r, "/geometry/uvs", "1"),
+        i(r, "/geometry/indices", "1"),
+        nrm(r, "/geometry/normals", "1") {}
   struct Start {
     uint64_t p, i, n, uv;
+    uint64_t vertices, triangles;
+    bool normals, uvs;  // read them
+    uint64_t bytes() const {
+      return 12 * vertices + 12 * triangles + (normals ? 4 : 0) * vertices + (uvs ? 8 : 0) * vertices;
+    }
   };
-  std::vector<Start> starts;
-  for (size_t k = 0; k < meshes.size(); ++k) {
-    const uint64_t v = rows.vertices[k];
-    if (v > kNone || rows.triangles[k] > kNone) r.fail("mesh '" + rows.names[k] + "' is too large");
-    starts.push_back({p.take(r, 3 * v), i.take(r, 3 * rows.triangles[k]), nrm.take(r, rows.normals[k] ? v : 0),
-                      uv.take(r, rows.uvs[k] ? 2 * v : 0)});
+  void fill(Reader* r, const Start& s, const Mesh& mesh) const {
+    mesh.indices = i.values(r, raw, s.i, 3 * s.triangles);
+    if (s.normals) mesh.normals = nrm.values(r, raw, s.n, s.vertices);
+    if (s.uvs) mesh.uvs = uv.values(r, raw, s.uv, 2 * s.vertices);
+    mesh.positions = p.values(r, raw, s.p, 3 * s.vertices, s.vertices ? 1 : 0);
   }
-  p.finish(r), uv.finish(r), i.finish(r), nrm.finish(r);
+  bool packed() const { return p.packed() || uv.packed() || i.packed() || nrm.packed(); }
+
+  std::string path;
+  RandomAccessFile raw;
+  Stored<float> p, uv;
+  Stored<uint32_t> i, nrm;
+  std::vector<Start> starts;
+};
+
+// Lets every mesh fetch its own arrays.
+void leave_for_later(const std::shared_ptr<const MeshArrays>& arrays, const MeshRows& rows, Loading& loading,
+                     std::vector<Mesh>& meshes) {
+  const auto later = std::make_shared<LaterReads>();
+  for (size_t k = 0; k < meshes.size(); ++k) {
+    const MeshArrays::Start& start = arrays->starts[k];
+    if (start.vertices == 0 && start.triangles == 0) continue;
+    auto stored = std::make_shared<StoredArrays>();
+    stored->vertices = start.vertices, stored->triangles = start.triangles;
+    stored->box = rows.box(k);
+    stored->fill = [arrays, k, later](const Mesh& mesh) {
+      arrays->fill(nullptr, arrays->starts[k], mesh);
+      check_arrays(mesh, arrays->path);
+      ++later->meshes_read;
+      later->read += arrays->starts[k].bytes();
+    };
+    meshes[k].stored = std::move(stored);
+    ++later->meshes;
+    later->stored += start.bytes();
+  }
+  loading.row("geometry").why = "each mesh when a ray first comes to its tile";
+  loading.report.later = later;
+}
+
+// The big arrays of all meshes, several meshes at a time, or each when it is asked for.
+void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, const std::vector<bool>& with_uvs,
+                      Loading& loading, std::vector<Mesh>& meshes) {
+  const auto arrays = std::make_shared<MeshArrays>(r, path);
   LoadRow &geometry = loading.row("geometry"), &textures = loading.row("texture coordinates");
   for (size_t k = 0; k < meshes.size(); ++k) {
-    geometry.stored += 12 * rows.vertices[k] + 12 * rows.triangles[k] + (rows.normals[k] ? 4 * rows.vertices[k] : 0);
-    if (rows.uvs[k]) textures.stored += 8 * rows.vertices[k], textures.read += with_uvs[k] ? 8 * rows.vertices[k] : 0;
+    const uint64_t v = rows.vertices[k], t = rows.triangles[k];
+    if (v > kNone || t > kNone) r.fail("mesh '" + rows.names[k] + "' is too large");
+    arrays->starts.push_back({arrays->p.take(r, 3 * v), arrays->i.take(r, 3 * t),
+                              arrays->nrm.take(r, rows.normals[k] ? v : 0), arrays->uv.take(r, rows.uvs[k] ? 2 * v : 0),
+                              v, t, rows.normals[k] != 0, rows.uvs[k] && with_uvs[k]});
+    geometry.stored += 12 * v + 12 * t + (rows.normals[k] ? 4 * v : 0);
+    if (rows.uvs[k]) textures.stored += 8 * v, textures.read += with_uvs[k] ? 8 * v : 0;
   }
+  arrays->p.finish(r), arrays->uv.finish(r), arrays->i.finish(r), arrays->nrm.finish(r);
+  if (geometry.stored >= loading.needs.later_from && !arrays->packed())
+    return leave_for_later(arrays, rows, loading, meshes);
   geometry.read = geometry.stored;
-  for (const std::string* name : {&p.name(), &i.name(), &nrm.name()}) r.note_read(*name);
-  if (textures.read) r.note_read(uv.name());
-  const RandomAccessFile file(path);
-  parallel_for(0, meshes.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t k = begin; k < end; ++k) {
-      const uint64_t v = rows.vertices[k];
-      meshes[k].positions = p.values(file, starts[k].p, 3 * v, v ? 1 : 0);
-      meshes[k].indices = i.values(file, starts[k].i, 3 * rows.triangles[k]);
-      if (rows.normals[k]) meshes[k].normals = nrm.values(file, starts[k].n, v);
-      if (rows.uvs[k] && with_uvs[k]) meshes[k].uvs = uv.values(file, starts[k].uv, 2 * v);
-    }
-  });
+  for (const std::string* name : {&arrays->p.name(), &arrays->i.name(), &arrays->nrm.name()}) r.note_read(*name);
+  if (textures.read) r.note_read(arrays->uv.name());
+  const auto read = [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) arrays->fill(&r, arrays->starts[k], meshes[k]);
+  };
+  if (arrays->packed())
+    read(0, meshes.size());
+  else
+    parallel_for(0, meshes.size(), 1, read);
 }
 
 // After everything else: what the materials are decides what is read of the meshes.
@@ -100,6 +164,7 @@ void read_meshes(Reader& r, const std::string& path, Scene& scene, Loading& load
   rows.triangles = r.get<uint64_t>("/meshes/triangles", "1", 1, n);
   rows.normals = r.get<uint8_t>("/meshes/has_normals", "1", 1, n);
   rows.uvs = r.get<uint8_t>("/meshes/has_uvs", "1", 1, n);
+  rows.boxes = r.get<double>("/meshes/box", "m", 6, n);
   const auto parts = r.get<uint32_t>("/meshes/parts", "1", 1, n);
   const std::vector<std::string> part_name = r.get_names("/parts/name");
   const auto part_rows = static_cast<long long>(part_name.size());
@@ -112,6 +177,10 @@ void read_meshes(Reader& r, const std::string& path, Scene& scene, Loading& load
     m.name = rows.names[k];
     m.origin = {rows.origin[3 * k], rows.origin[3 * k + 1], rows.origin[3 * k + 2]};
     if (!finite(m.origin)) r.fail("mesh '" + m.name + "' has an origin that is not finite");
+    const Box3 box = rows.box(k);
+    if (rows.vertices[k] && !(finite(box.low) && finite(box.high) && box.low.x <= box.high.x &&
+                              box.low.y <= box.high.y && box.low.z <= box.high.z))
+      r.fail("mesh '" + m.name + "' has no sound box");
     if (parts[k] > part_name.size() - part) r.fail("mesh '" + m.name + "' declares more parts than there are");
     uint32_t first = 0;
     for (uint32_t q = 0; q < parts[k]; ++q, ++part) {
@@ -144,7 +213,8 @@ void read_hierarchy(Reader& r, Scene& s) {
   const auto what = r.get<uint8_t>("/placements/kind", "1", 1, rows);
   const auto target = r.get<uint32_t>("/placements/target", "1", 1, rows),
              override_ = r.get<uint32_t>("/placements/material", "1", 1, rows);
-  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows), track = r.get<uint32_t>("/placements/track", "1", 1, rows);
+  const auto tag = r.get<uint32_t>("/placements/tag", "1", 1, rows),
+             track = r.get<uint32_t>("/placements/track", "1", 1, rows);
   size_t at = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
     if (placements[g] > target.size() - at) r.fail("group '" + groups[g] + "' declares more placements than there are");
@@ -304,6 +374,10 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
   const auto box = r.numbers("bounds_m", 6), origin = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
   s.bounds = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
   s.origin = {origin[0], origin[1], origin[2], origin[3] != 0};
+  const std::string curvature = r.text("curvature");
+  s.curved = curvature == "wgs84";
+  if (!s.curved && curvature != "flat") r.fail("has an unknown curvature '" + curvature + "'");
+  if (s.curved && !s.origin.given) r.fail("is curved and has no origin");
   try {
     read_materials(r, s.materials);
     read_maps(r, s);
@@ -311,8 +385,9 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
     read_temperatures(r, s, loading);
     s.epoch = r.text("epoch_utc");
     read_hierarchy(r, s);
-    read_tracks(r, s);
+    read_tracks(r, s, loading);
     read_media(r, s);
+    set_flat_plane(s);
     resolve(s, path, decode);
     drop_unseen(s, loading);
     read_meshes(r, path, s, loading);

@@ -27,6 +27,13 @@ void write_meshes(Writer& w, const std::vector<Mesh>& meshes) {
     parts.insert(parts.end(), m.parts.begin(), m.parts.end());
   }
   w.put("/meshes/origin", origin, "m", 3);
+  std::vector<double> boxes;
+  for (const Mesh& m : meshes)
+    if (const Box3 b = mesh_box(m); b.empty())
+      boxes.insert(boxes.end(), 6, 0.0);
+    else
+      boxes.insert(boxes.end(), {b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z});
+  w.put("/meshes/box", boxes, "m", 6);
   w.put("/meshes/vertices", pick(meshes, [](const Mesh& m) { return uint64_t{m.vertex_count()}; }), "1");
   w.put("/meshes/triangles", pick(meshes, [](const Mesh& m) { return uint64_t{m.triangle_count()}; }), "1");
   w.put("/meshes/has_normals", pick(meshes, [](const Mesh& m) { return uint8_t{!m.normals.empty()}; }), "1");
@@ -150,10 +157,15 @@ void write_maps(Writer& w, const Scene& s) {
 
 }  // namespace
 
-void write_scene(const Scene& s, const Provenance& provenance, const std::string& path) {
+void write_scene(const Scene& s, const Provenance& provenance, const std::string& path,
+                 const Compression& compression) {
   AtomicFile file(path);
+  std::vector<std::string> names;
   {
-    Writer w(file.temporary(), path);
+    Writer w(file.temporary(), path, [&](const std::string& name) {
+      names.push_back(name);
+      return compression.of_dataset(name);
+    });
     w.attribute("format", h5::kFormat);
     w.attribute("version", h5::kVersionText);
     w.attribute("name", s.name);
@@ -168,6 +180,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     const double origin[4] = {s.origin.latitude_deg, s.origin.longitude_deg, s.origin.ellipsoid_height_m,
                               s.origin.given ? 1.0 : 0.0};
     w.attribute("origin_latitude_deg_longitude_deg_height_m_given", origin);
+    w.attribute("curvature", s.curved ? "wgs84" : "flat");
     write_meshes(w, s.meshes);
     w.attribute("epoch_utc", s.epoch);
     write_hierarchy(w, s);
@@ -181,6 +194,7 @@ void write_scene(const Scene& s, const Provenance& provenance, const std::string
     w.put_names("/inputs/sha256", pick(provenance.inputs, [](const InputFile& f) { return f.sha256; }));
     w.close();
   }
+  compression.check_names(names);
   file.commit();
 }
 

@@ -40,6 +40,10 @@ void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {
     for (const std::string& name : materials->keys()) g.materials[name] = reference(materials->at(name));
   constexpr NormalRule rules[] = {NormalRule::file, NormalRule::facet, NormalRule::smooth};
   if (const auto normals = p.find("normals")) g.normals = rules[normals->as_choice({"file", "facet", "smooth"})];
+  if (const auto crease = p.find("crease_deg")) {
+    if (g.normals != NormalRule::smooth) throw crease->error("'crease_deg' goes with 'normals: smooth'");
+    g.crease_rad = p.number_in("crease_deg", 0, 180, "degrees") * kPi / 180;
+  }
   const double unit = p.number_in("unit_m", 1e-9, 1e9, "m", 1);
   g.to_local = scaling({unit, unit, unit});
   // y up, z towards the viewer (the usual modelling tools) becomes z up, -y towards the viewer.
@@ -126,6 +130,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
     const GeoReference ref = read_georeference(path);
     if (!no_data) no_data = ref.no_data;
+    g.terrain.georeferenced = true;
     g.terrain.place = georeferenced_grid(ref, separation, draft_.origin, Where{path, 0, 0, {}, -1});
   }
   read_heights(path, no_data, g.terrain);

@@ -49,6 +49,18 @@ std::string Reader::input(const Params& p) {
   return path;
 }
 
+// none, wgs84, or {tolerance_m}.
+void Reader::read_curvature(const Params& p, const Params& root) {
+  double tolerance = 0.01;
+  if (p.kind() == Params::Kind::map)
+    tolerance = p.number_in("tolerance_m", 1e-6, 1e3, "m");
+  else if (p.as_choice({"none", "wgs84"}) == 0)
+    return;
+  if (!root.has("origin")) throw p.error("'curvature' needs the scene's 'origin'");
+  draft_.curvature_m = tolerance;
+  draft_.curvature_where = p.where();
+}
+
 void Reader::run(const Params& root) {
   root.integer("scene", 1, 1);
   draft_.name = root.text("name", "");
@@ -61,6 +73,7 @@ void Reader::run(const Params& root) {
       draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
       draft_.origin.given = true;
     });
+  if (const auto c = root.find("curvature")) item("SP001", *c, [&] { read_curvature(*c, root); });
   if (const auto e = root.find("epoch"))
     item("SP001", *e, [&] {
       try {

@@ -22,6 +22,7 @@ class Reader {
   void run(const Params& root);
 
  private:
+  void read_curvature(const Params& p, const Params& root);
   // materials.cpp
   void read_curves(const Params& list);
   void read_material(const std::string& id, const Params& p);

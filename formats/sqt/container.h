@@ -9,13 +9,13 @@ namespace suite::sqt_file {
 
 inline constexpr char kMagic[8] = {'S', 'Q', 'T', 'b', 'u', 'n', 'd', '\n'};
 inline constexpr size_t kFixed = 48;  // magic 8, version u32, header length u32, payload length u64, raw length u64,
-                                      // coding u32, reserved u32, checksum u64
+                                      // coding u32, expanded header length u32, checksum u64
 enum Coding : uint32_t { plain = 0, lzma = 1 };
 
 // CRC-64/XZ (ECMA-182 polynomial, reflected) continued from `crc` (0 to begin).
 uint64_t crc64(std::span<const std::byte> bytes, uint64_t crc = 0);
 
-// LZMA2 in an .xz-less raw LZMA-alone stream, preset 9 extreme.
+// An .xz stream without check, preset 9 extreme, its dictionary no larger than the data.
 std::vector<std::byte> lzma_compress(std::span<const std::byte> raw);
 // Error when the stream is damaged or does not give exactly raw_size bytes; memory grows with what really comes out.
 std::vector<std::byte> lzma_expand(std::span<const std::byte> packed, size_t raw_size);

@@ -53,7 +53,7 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   layout.theta = angles_of(l.at("theta"));
   layout.phi_count = static_cast<size_t>(l.integer("phi_count", 1, 10000));
   layout.channels = d.function.wavelength_um.size();
-  d.totals.theta = angles_of(t.at("theta"));
+  d.totals.theta = t.find("theta") ? angles_of(t.at("theta")) : sqt::total_angles(layout.theta);
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();
   if (t.boolean("delta", false))
@@ -132,12 +132,12 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   SqtFile file;
   const auto version = reader.get<uint32_t>(), header_size = reader.get<uint32_t>();
   const auto payload_size = reader.get<uint64_t>(), raw_size = reader.get<uint64_t>();
-  const auto coding = reader.get<uint32_t>(), reserved = reader.get<uint32_t>();
+  const auto coding = reader.get<uint32_t>(), text_size = reader.get<uint32_t>();
   const auto checksum = reader.get<uint64_t>();
   if (!reader.ok()) throw fail(bytes.size(), "the file ends within its first 48 bytes");
   if (version != kSqtVersion)
     throw fail(8, strf("SQT version %u", version), strf("this program reads version %d", kSqtVersion));
-  if (header_size > kMaxHeader || raw_size > kMaxRaw || coding > 1 || reserved != 0)
+  if (header_size > kMaxHeader || text_size > kMaxHeader || raw_size > kMaxRaw || coding > 1)
     throw fail(12, "implausible sizes in the SQT header");
   if (header_size > reader.left() || payload_size != reader.left() - header_size)
     throw fail(bytes.size(),
@@ -149,10 +149,11 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   crc = sqt_file::crc64(header_bytes, crc);
   crc = sqt_file::crc64(payload, crc);
   if (crc != checksum) throw fail(sqt_file::kFixed - 8, "checksum mismatch: the file is damaged");
-  file.header.assign(reinterpret_cast<const char*>(header_bytes.data()), header_bytes.size());
   file.version = static_cast<int>(version);
   file.bytes = bytes.size();
   try {
+    const std::vector<std::byte> text = sqt_file::lzma_expand(header_bytes, text_size);
+    file.header.assign(reinterpret_cast<const char*>(text.data()), text.size());
     const Params header = Params::parse_text(file.header, file_name);
     std::vector<std::byte> expanded;
     std::span<const std::byte> raw = payload;

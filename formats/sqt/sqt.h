@@ -1,4 +1,4 @@
-// .sqt: a fitted scattering function in one file (FORMAT.md). Header in JSON, payload compressed, checksum over both.
+// .sqt: a fitted scattering function in one file (FORMAT.md). JSON header and payload compressed, checksum over both.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace suite {
 
-inline constexpr int kSqtVersion = 1;
+inline constexpr int kSqtVersion = 2;
 
 // Where a fit came from; all of it goes into the header.
 struct SqtProvenance {
@@ -31,7 +31,7 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
 std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance& provenance,
                                 const std::vector<sqt::ErrorFigures>& errors);
 
-// The error figures under their published keys.
+// The error figures under their published keys, to six digits.
 Json error_json(const sqt::ErrorFigures& e);
 
 struct SqtFile {

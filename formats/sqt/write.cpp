@@ -1,5 +1,4 @@
-#include <array>
-
+#include "base/error.h"
 #include "formats/sqt/container.h"
 #include "formats/sqt/sqt.h"
 
@@ -58,21 +57,21 @@ Json head(const char* method, const sqt::Function::Info& function, const SqtProv
 std::vector<std::byte> frame(const Json& header, std::span<const std::byte> payload, size_t raw_size,
                              sqt_file::Coding coding) {
   const std::string text = header.text(0);
+  const std::vector<std::byte> packed = sqt_file::lzma_compress(std::as_bytes(std::span(text)));
   std::vector<std::byte> out(sizeof sqt_file::kMagic);
   std::memcpy(out.data(), sqt_file::kMagic, sizeof sqt_file::kMagic);
   put<uint32_t>(out, kSqtVersion);
-  put<uint32_t>(out, static_cast<uint32_t>(text.size()));
+  put<uint32_t>(out, static_cast<uint32_t>(packed.size()));
   put<uint64_t>(out, payload.size());
   put<uint64_t>(out, raw_size);
   put<uint32_t>(out, coding);
-  put<uint32_t>(out, 0);
+  put<uint32_t>(out, static_cast<uint32_t>(text.size()));
   // The checksum covers everything else: the fixed part before it, the header, the payload.
-  const auto bytes = std::as_bytes(std::span(text));
   uint64_t crc = sqt_file::crc64(out);
-  crc = sqt_file::crc64(bytes, crc);
+  crc = sqt_file::crc64(packed, crc);
   crc = sqt_file::crc64(payload, crc);
   put<uint64_t>(out, crc);
-  out.insert(out.end(), bytes.begin(), bytes.end());
+  out.insert(out.end(), packed.begin(), packed.end());
   out.insert(out.end(), payload.begin(), payload.end());
   return out;
 }
@@ -81,15 +80,16 @@ std::vector<std::byte> frame(const Json& header, std::span<const std::byte> payl
 
 Json error_json(const sqt::ErrorFigures& e) {
   Json j = Json::object();
-  j.set("l1", e.l1);
-  j.set("cos_rmse", e.cos_rmse);
-  j.set("rmse", e.rmse);
-  j.set("peak_ratio_20", e.peak_ratio_20);
-  j.set("peak_ratio_45", e.peak_ratio_45);
-  j.set("peak_ratio_70", e.peak_ratio_70);
-  j.set("total_error", e.total_error);
-  j.set("reciprocity_error", e.reciprocity_error);
-  j.set("max_weight", e.max_weight);
+  auto set = [&j](const char* key, double value) { j.set(key, std::stod(strf("%.6g", value))); };
+  set("l1", e.l1);
+  set("cos_rmse", e.cos_rmse);
+  set("rmse", e.rmse);
+  set("peak_ratio_20", e.peak_ratio_20);
+  set("peak_ratio_45", e.peak_ratio_45);
+  set("peak_ratio_70", e.peak_ratio_70);
+  set("total_error", e.total_error);
+  set("reciprocity_error", e.reciprocity_error);
+  set("max_weight", e.max_weight);
   return j;
 }
 
@@ -112,7 +112,7 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   layout.set("phi_count", l.phi_count);
   header.set("layout", std::move(layout));
   Json totals = Json::object();
-  totals.set("theta", numbers(t.theta));
+  if (t.theta != sqt::total_angles(l.theta)) totals.set("theta", numbers(t.theta));
   totals.set("phi_count", t.phi_count);
   totals.set("wavelength_um", numbers(t.magnitude_um));
   constexpr const char* kDirac[] = {"none", "mirror", "retro", "through"};

@@ -1,5 +1,7 @@
 #include "math/sampling.h"
 
+#include <cstring>
+
 namespace suite {
 
 namespace {
@@ -33,9 +35,16 @@ constexpr std::array<std::array<uint32_t, 32>, 4> direction_numbers() {
 }
 constexpr auto kDirections = direction_numbers();
 
-// XOR of the direction numbers of the set bits, four bits at a time: 8 look-ups instead of up to 32 branches.
+constexpr uint32_t reversed(uint32_t x) {
+  uint32_t r = 0;
+  for (int i = 0; i < 32; ++i) r |= ((x >> i) & 1u) << (31 - i);
+  return r;
+}
+
+// XOR of the direction numbers of the set bits, four bits at a time: 8 look-ups instead of up to 32 branches. Scrambling
+// works on numbers with their bits in reverse order, so index and value of the table are kept that way.
 struct Nibbles {
-  uint32_t value[8][16][4];
+  alignas(16) uint32_t value[8][16][4];
 };
 constexpr Nibbles nibble_table() {
   Nibbles t{};
@@ -44,28 +53,54 @@ constexpr Nibbles nibble_table() {
       for (int d = 0; d < 4; ++d) {
         uint32_t x = 0;
         for (int k = 0; k < 4; ++k)
-          if ((bits >> k) & 1) x ^= kDirections[d][4 * n + k];
-        t.value[n][bits][d] = x;
+          if ((bits >> k) & 1) x ^= kDirections[d][31 - (4 * n + k)];
+        t.value[n][bits][d] = reversed(x);
       }
   return t;
 }
 constexpr Nibbles kNibbles = nibble_table();
 
-constexpr uint32_t reverse_bits(uint32_t x) {
-  x = __builtin_bswap32(x);
+// Both maps below take one number, or four at once in a vector of the compiler's.
+using Four = uint32_t __attribute__((vector_size(16)));
+
+template <class T>
+constexpr T reverse_bits(T x) {
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
   x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
   x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
 // Laine-Karras style permutation: each output bit depends on lower input bits only. Constants: Vegdahl 2021.
-constexpr uint32_t laine_karras(uint32_t x, uint32_t seed) {
+template <class T>
+constexpr T laine_karras(T x, T seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
   return x;
+}
+
+// The four coordinates of a point; both index and coordinates in reversed bits.
+inline Four reversed_point(uint32_t reversed_index) {
+  Four x{};
+  for (int n = 0; n < 8; ++n) {
+    Four row;
+    std::memcpy(&row, kNibbles.value[n][(reversed_index >> (4 * n)) & 15], sizeof row);
+    x ^= row;
+  }
+  return x;
+}
+
+// 32-bit fractions as doubles, exactly; the processor converts signed numbers only.
+std::array<double, 4> units(Four bits) {
+  const auto shifted = reinterpret_cast<int32_t __attribute__((vector_size(16)))>(bits ^ 0x80000000u);
+  const auto u = __builtin_convertvector(shifted, double __attribute__((vector_size(32)))) * 0x1p-32 + 0.5;
+  std::array<double, 4> values;
+  std::memcpy(values.data(), &u, sizeof u);
+  return values;
 }
 
 }  // namespace
@@ -75,24 +110,17 @@ uint32_t owen_scramble(uint32_t value, uint32_t seed) { return reverse_bits(lain
 uint32_t sobol4(uint32_t index, int dimension) { return sobol4(index)[dimension]; }
 
 std::array<uint32_t, 4> sobol4(uint32_t index) {
-  std::array<uint32_t, 4> x{};
-  for (int n = 0; index; ++n, index >>= 4) {
-    const uint32_t* row = kNibbles.value[n][index & 15];
-    for (int d = 0; d < 4; ++d) x[d] ^= row[d];
-  }
-  return x;
+  const Four point = reverse_bits(reversed_point(reverse_bits(index)));
+  return {point[0], point[1], point[2], point[3]};
 }
 
 std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const {
   // A nested shuffle of the sample index decorrelates the blocks and keeps every power-of-two prefix stratified.
-  const uint64_t key = hash_of(key_, block);
-  const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(sample), static_cast<uint32_t>(key)));
-  const std::array<uint32_t, 4> point = sobol4(shuffled);
+  const uint64_t key = mix64(mixed_key_ ^ block);  // hash_of(key_, block)
+  const uint32_t shuffled = laine_karras(reverse_bits(sample), static_cast<uint32_t>(key));
   const uint64_t a = mix64(key), b = mix64(key ^ 0x5bd1e995ull);
-  const std::array<uint32_t, 4> seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b), static_cast<uint32_t>(b >> 32)};
-  std::array<double, 4> u;
-  for (int d = 0; d < 4; ++d) u[d] = unit_double(reverse_bits(laine_karras(reverse_bits(point[d]), seeds[d])));
-  return u;
+  const Four seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b), static_cast<uint32_t>(b >> 32)};
+  return units(reverse_bits(laine_karras(reversed_point(shuffled), seeds)));
 }
 
 }  // namespace suite

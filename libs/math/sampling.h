@@ -39,7 +39,10 @@ uint32_t owen_scramble(uint32_t value, uint32_t seed);
 class SampleStream {
  public:
   SampleStream(uint64_t seed, uint64_t capture, uint64_t problem, uint32_t scramble = 0)
-      : key_(hash_of(hash_of(seed, capture), problem, scramble)) {}
+      : SampleStream(problem_key(seed, capture, problem), scramble) {}
+  // The same, from what all scrambles of a problem have in common.
+  SampleStream(uint64_t problem_key, uint32_t scramble) : key_(mix64(problem_key ^ scramble)), mixed_key_(mix64(key_)) {}
+  static uint64_t problem_key(uint64_t seed, uint64_t capture, uint64_t problem) { return hash_of(hash_of(seed, capture), problem); }
   std::array<double, 4> draw(uint32_t sample, uint32_t block) const;
   // A number that is not stratified (hashed), for choices that must not use up a low-discrepancy dimension.
   double hashed(uint32_t sample, uint32_t purpose) const {
@@ -48,7 +51,7 @@ class SampleStream {
   uint64_t key() const { return key_; }
 
  private:
-  uint64_t key_;
+  uint64_t key_, mixed_key_;
 };
 
 // Independent random numbers behind the same interface as a stream of bits; for tests and reference estimators.

@@ -80,7 +80,8 @@ class Checker {
   }
   void against_winding(uint32_t t, Vec3 n) {
     for (size_t k = 0; k < 3; ++k)
-      if (dot(oct_decode(mesh_.normals[mesh_.indices[3 * size_t{t} + k]]), n) < 0)
+      if (const uint32_t code = mesh_.normals[mesh_.indices[3 * size_t{t} + k]];
+          code != kNoNormal && dot(oct_decode(code), n) < 0)
         return add("SP311", where(t), "a vertex normal points to the other side");
   }
 

@@ -45,11 +45,13 @@ size_t keep(SourceMesh& mesh, const std::vector<bool>& kept) {
     if (!kept[t]) continue;
     for (size_t k = 0; k < 3; ++k) mesh.indices[3 * out + k] = mesh.indices[3 * t + k];
     if (!mesh.lines.empty()) mesh.lines[out] = mesh.lines[t];
+    if (!mesh.smoothing.empty()) mesh.smoothing[out] = mesh.smoothing[t];
     ++out;
   }
   const size_t dropped = kept.size() - out;
   mesh.indices.resize(3 * out);
   if (!mesh.lines.empty()) mesh.lines.resize(out);
+  if (!mesh.smoothing.empty()) mesh.smoothing.resize(out);
   mesh.runs = std::move(runs);
   return dropped;
 }

@@ -60,7 +60,9 @@ struct Axis {
       for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (const double m : {1.0, 2.0, 5.0})
           if ((dense || m == 1) && decade * m >= low && decade * m <= high) t.push_back(decade * m);
-    } else {
+    }
+    if (t.size() < 2) {  // also of a logarithmic axis over less than a decade
+      t.clear();
       const double raw = (high - low) / 5, unit = std::pow(10, std::floor(std::log10(raw)));
       const double step = unit * (raw / unit < 1.5 ? 1 : raw / unit < 3.5 ? 2 : raw / unit < 7.5 ? 5 : 10);
       for (double v = std::ceil(low / step) * step; v <= high; v += step)

@@ -11,8 +11,10 @@
 
 namespace suite {
 
-// The explicit sources that a node may ask, one sample each.
-enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_slots };
+// The explicit sources that a node may ask, one sample a slot.
+// Of the lamps, the first node may ask several.
+inline constexpr int kLampDraws = 4;
+enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_slots = light_lamp + kLampDraws };
 
 // Light that a node receives straight from an explicit source.
 struct ExplicitLight {
@@ -67,6 +69,17 @@ struct Path {
   bool received = false;         // node 0 is the sensor's own receiver (receiver.h), no surface
   bool scattered_first = false;  // a medium scattered it before it met anything
   int first_met() const { return received ? 1 : 0; }  // number of the node of the first surface
+
+  // Member by member: a temporary would be cleared and copied for every path.
+  void begin(const Ray& from, double sensor_weight) {
+    ray = from;
+    weight = sensor_weight;
+    knot = size = 0;
+    end = PathEnd::absorbed;
+    escape_factor = 1;
+    sun_factor = moon_factor = sky_factor = truncated = 0;
+    received = scattered_first = false;
+  }
 };
 
 }  // namespace suite

@@ -18,8 +18,13 @@ constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 
 PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options)
     : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
+  paper_ = options.method == Method::paper;
   // The reference keeps at least half of the paths.
   for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (paper_) std::fill_n(knot_probability_, knots_, 0.0), knot_probability_[0] = 1, options_.roulette_after = kMaxNodes;
+  asks_disks_ = options.explicit_sources && !paper_;
+  asks_around_ = asks_disks_ && (environment.lamps || (environment.sky && environment.sky->tabulated()));
+  if (environment.lamps && !paper_) lamp_draws_ = static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
   if (!optics.media().empty()) {
     volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
     transmission_.resize(optics.state().size());
@@ -44,10 +49,8 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   std::fill_n(live.relative, knots_, 1.0);
   std::fill_n(live.throughput, knots_, 1.0);
   Path& path = wave.path(p);
-  path = Path{};
-  path.ray = ray.ray;
+  path.begin(ray.ray, ray.weight);
   path.ray.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
-  path.weight = ray.weight;
   if (ray.receiver != SensorRay::Receiver::none) {
     path.received = true;
     BakedMaterial& receiver = receivers_[ray.receiver == SensorRay::Receiver::sphere];
@@ -55,7 +58,7 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
     live.receiver = &receiver;
   }
   if (volume_) volume_->start(live, ray.ray.time, probing_);
-  if (knots_ > 1) {
+  if (knots_ > 1 && !paper_) {
     const double u = stream.hashed(sample, kKnotPurpose);
     if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
   }
@@ -87,11 +90,15 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (options_.explicit_sources) ask_sources(wave, p);
+      if (asks_disks_) ask_disks(wave, p);
+      else if (options_.explicit_sources) ask_one(wave, p);
     }
+    const size_t parallel = paper_ ? 0 : wave.rays.size();
+    if (asks_around_)
+      for (const uint32_t p : wave.active) ask_around(wave, p);
     wave.blocked.resize(wave.rays.size());
     if (volume_) volume_->look(wave, live_, statistics);
-    else surface_.tracer().occluded(wave.rays, wave.distance, wave.blocked, depth == 0, statistics.trace);
+    else see(wave, parallel, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
@@ -106,6 +113,17 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
       if (go_on(wave, p)) wave.active[kept++] = p;
     wave.active.resize(kept);
   }
+}
+
+// Which sources are visible. Rays towards the same far disk run alongside each other where paths have just started, the
+// others (from `parallel` on) do not.
+void PathGenerator::see(Wave& wave, size_t parallel, bool first, TraceStatistics& statistics) const {
+  const std::span<const Ray> rays = wave.rays;
+  const std::span<const double> distance = wave.distance;
+  const std::span<uint8_t> blocked = wave.blocked;
+  const Tracer& tracer = surface_.tracer();
+  if (parallel) tracer.occluded(rays.first(parallel), distance.first(parallel), blocked.first(parallel), first, statistics);
+  if (parallel < rays.size()) tracer.occluded(rays.subspan(parallel), distance.subspan(parallel), blocked.subspan(parallel), false, statistics);
 }
 
 // The next node of a path, without its surface.

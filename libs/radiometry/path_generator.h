@@ -15,6 +15,11 @@
 
 namespace suite {
 
+// With Method::paper the knots have probability 1 and 0, nothing is shared, and each node asks one source (pipeline.h).
+//
+// Several lamps asked at one node are strata of one choice: each stands for 1 / draws of it, so the density p_s of the
+// formulas above is draws times that of one draw.
+//
 // Dimensions of the sample streams: block 0 is the sensor's, 1 + n is node n's continuation and its sample of the sun,
 // kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp (three
 // numbers), kMoonBlock + n of the moon.
@@ -44,9 +49,15 @@ class PathGenerator {
   bool scatters(Path& path, const Node& node) const;
   // Sources (path_sources.cpp).
   void escape(Path& path, const Live& live) const;
-  void ask_sources(Wave& wave, uint32_t p);
+  void ask_disks(Wave& wave, uint32_t p);
+  void ask_around(Wave& wave, uint32_t p);
+  void see(Wave& wave, size_t parallel, bool first, TraceStatistics& statistics) const;
   void ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance, const Vec3* end);
   void ask_lamps(Wave& wave, uint32_t p);
+  void ask_one(Wave& wave, uint32_t p);
+  void ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LampSample>& lamp);
+  // Lamps that node n asks.
+  int lamp_draws(int n) const { return n == 0 ? lamp_draws_ : 1; }
   void meet_glow(Wave& wave, uint32_t p);
   // ray: of wave.rays, which found the source in sight.
   void add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray);
@@ -57,6 +68,9 @@ class PathGenerator {
   const Environment& environment_;
   PipelineOptions options_;
   size_t knots_;
+  bool paper_;        // Method::paper
+  bool asks_disks_, asks_around_;  // explicit sources: far disks and others
+  int lamp_draws_ = 1;
   double knot_probability_[kMaxKnots];
   std::vector<size_t> knot_bins_;
   std::vector<Live> live_;

@@ -28,11 +28,11 @@ void PathGenerator::escape(Path& path, const Live& live) const {
   path.escape_factor = 1 / live.shares;
   const bool by_chance = live.last_density > 0 && options_.explicit_sources;
   auto factor = [&](double density) {
-    return by_chance && density > 0 ? 1 / (live.shares + live.shares_before * density / live.last_density)
-                                    : path.escape_factor;
+    if (!by_chance || !(density > 0)) return path.escape_factor;
+    return paper_ ? 0 : 1 / (live.shares + live.shares_before * density / live.last_density);
   };
   if (environment_.sky)
-    path.sky_factor = factor(environment_.sky->tabulated() ? environment_.sky->density(live.direction) : 0);
+    path.sky_factor = factor(environment_.sky->tabulated() && !paper_ ? environment_.sky->density(live.direction) : 0);
   if (environment_.sun && environment_.sun->contains(live.direction))
     path.sun_factor = factor(environment_.sun->density());
   if (environment_.moon && environment_.moon->contains(live.direction))
@@ -62,25 +62,29 @@ void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLigh
   wave.light.push_back(slot);
 }
 
-void PathGenerator::ask_sources(Wave& wave, uint32_t p) {
+// Sun and Moon.
+void PathGenerator::ask_disks(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
-  auto ask_far = [&](uint8_t slot, const DirectionSample& drawn, double relative, const float* spectrum) {
-    if (relative > 0)
-      ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar,
-          nullptr);
+  auto ask_disk = [&](uint8_t slot, const Sun& disk, Vec2 u) {
+    const DirectionSample drawn = disk.sample(u);
+    ask(wave, p, slot, {drawn.direction, drawn.density, 1, disk.spectrum(), nullptr, 0}, kFar, nullptr);
   };
-  if (environment_.sun)
-    ask_far(light_sun, environment_.sun->sample({live.u[2], live.u[3]}), 1, environment_.sun->spectrum());
-  const auto block = static_cast<uint32_t>(wave.path(p).size - 1);
-  if (environment_.moon) {
-    const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + block);
-    ask_far(light_moon, environment_.moon->sample({v[0], v[1]}), 1, environment_.moon->spectrum());
-  }
+  if (environment_.sun) ask_disk(light_sun, *environment_.sun, {live.u[2], live.u[3]});
+  if (!environment_.moon) return;
+  const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + static_cast<uint32_t>(wave.path(p).size - 1));
+  ask_disk(light_moon, *environment_.moon, {v[0], v[1]});
+}
+
+// Sky and lamps.
+void PathGenerator::ask_around(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
   if (environment_.sky && environment_.sky->tabulated()) {
-    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + block);
+    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + static_cast<uint32_t>(wave.path(p).size - 1));
     const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
     const float* spectrum = environment_.sky->spectrum();
-    ask_far(light_sky, drawn, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum);
+    const double relative = spectrum ? environment_.sky->relative(drawn.direction) : 1;
+    if (relative > 0)
+      ask(wave, p, light_sky, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar, nullptr);
   }
   if (environment_.lamps) ask_lamps(wave, p);
 }
@@ -89,11 +93,45 @@ void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
   const int n = wave.path(p).size - 1;
   const std::array<double, 4> v = live.stream.draw(live.sample, kLampBlock + static_cast<uint32_t>(n));
-  const auto lamp = environment_.lamps->sample(receiver_of(wave.node(p, n)), v[0], {v[1], v[2]});
-  if (lamp)
-    ask(wave, p, light_lamp,
-        {lamp->direction, lamp->density, static_cast<float>(lamp->scale), lamp->spectrum, nullptr, 0, lamp->distance},
-        lamp->distance, &lamp->end);
+  const LightReceiver at = receiver_of(wave.node(p, n));
+  const int draws = lamp_draws(n);
+  // Strata of the choice; the place on each lamp is the first one's, turned round.
+  const auto turned = [](double u, int k) { return u + k * (1.0 / kLampDraws) - (u + k * (1.0 / kLampDraws) >= 1); };
+  for (int k = 0; k < draws; ++k) {
+    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)});
+    if (!lamp) continue;
+    if (lamp->density > 0)
+      lamp->density *= draws;
+    else
+      lamp->scale /= draws;
+    ask_lamp(wave, p, k, lamp);
+  }
+}
+
+void PathGenerator::ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LampSample>& lamp) {
+  if (!lamp) return;
+  ask(wave, p, static_cast<uint8_t>(light_lamp + draw),
+      {lamp->direction, lamp->density, static_cast<float>(lamp->scale), lamp->spectrum, nullptr, 0, lamp->distance},
+      lamp->distance, &lamp->end);
+}
+
+// Method::paper: one of all sources, each as likely as the others.
+void PathGenerator::ask_one(Wave& wave, uint32_t p) {
+  const Live& live = live_[p];
+  const int n = wave.path(p).size - 1;
+  const Sun* disks[2] = {environment_.sun.get(), environment_.moon.get()};
+  const size_t lamps = environment_.lamps ? environment_.lamps->size() : 0;
+  const size_t sources = (disks[0] != nullptr) + (disks[1] != nullptr) + lamps;
+  if (sources == 0) return;
+  const std::array<double, 4> v = live.stream.draw(live.sample, kLampBlock + static_cast<uint32_t>(n));
+  size_t chosen = std::min(sources - 1, static_cast<size_t>(v[0] * static_cast<double>(sources)));
+  if (chosen < lamps)
+    return ask_lamp(wave, p, 0, environment_.lamps->sample_one(static_cast<uint32_t>(chosen), 1.0 / static_cast<double>(sources), wave.node(p, n).at.position, {v[1], v[2]}));
+  chosen -= lamps;
+  const uint8_t slot = chosen == 0 && disks[0] ? light_sun : light_moon;
+  const Sun& disk = slot == light_sun ? *disks[0] : *disks[1];
+  const DirectionSample drawn = disk.sample({v[1], v[2]});
+  ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(sources), disk.spectrum(), nullptr, 0}, kFar, nullptr);
 }
 
 // A surface met by chance may glow; what an explicit sample of it brings is shared with it.
@@ -106,10 +144,15 @@ void PathGenerator::meet_glow(Wave& wave, uint32_t p) {
   if (!node.glow) return;
   node.glow_factor = node.spectral_factor;
   if ((n == 0 && !live.scattered) || !options_.explicit_sources || !(live.last_density > 0)) return;
+  if (paper_) {
+    if (environment_.lamps->draws(node.hit)) node.glow = nullptr;
+    return;
+  }
   const LightReceiver from = live.scattered ? LightReceiver{live.place, {}, true} : receiver_of(wave.node(p, n - 1));
   // Boundaries of media may have been passed on the way.
   const double distance = volume_ ? length(node.hit.position - from.position) : node.hit.distance;
-  const double density = environment_.lamps->density(from, node.hit, distance, cosine);
+  const int draws = live.scattered ? 1 : lamp_draws(n - 1);
+  const double density = draws * environment_.lamps->density(from, node.hit, distance, cosine);
   if (density > 0) node.glow_factor = 1 / (live.shares + live.shares_before * density / live.last_density);
 }
 
@@ -129,7 +172,7 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
     float pdf[kMaxKnots];
     model.pdf(out, in, {pdf, knots_});
     denominator = live.shares * light.density;
-    for (size_t k = 0; k < knots_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+    for (size_t k = 0; k < knots_ && !paper_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
   const Atmosphere* air = environment_.atmosphere.get();

@@ -118,12 +118,28 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
     : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
   if (!optics.media().empty() && environment.atmosphere)
     throw Error("layers of air and media in the scene cannot be combined", "let a clear sky stand for the air, or leave the media out");
+  if (options_.method == Method::paper && !optics.media().empty())
+    throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
+  if (options_.lamp_draws < 1 || options_.lamp_draws > kLampDraws) throw Error(strf("%d lamps a node are not between 1 and %d", options_.lamp_draws, kLampDraws));
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
+
+namespace {
+
+// A path of a wave: which problem of the block it belongs to, and which of its samples it is.
+struct Lane {
+  uint32_t place, sample;
+};
+// Neighbours in a wave are samples of one problem as far as possible: their rays run so close together that a packet of
+// eight costs the ray tracer little more than one.
+constexpr uint32_t kTogether = 8, kWaveWidth = 64;
+
+}  // namespace
 
 struct Pipeline::Workspace {
   Wave wave;
   PathGenerator generator;
+  std::vector<Lane> lanes;        // of the wave that is being filled or run
   std::vector<float> weights;     // [path][bin], of rays that weigh wavelengths
   std::vector<uint8_t> weighted;  // [path]
   std::vector<float> single;      // [bin]
@@ -131,20 +147,20 @@ struct Pipeline::Workspace {
 
 Pipeline::~Pipeline() = default;
 
-std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(size_t width) const {
+std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
   {
     const std::lock_guard lock(mutex_);
-    for (auto& w : idle_)
-      if (w->wave.width() >= width) {
-        std::swap(w, idle_.back());
-        auto found = std::move(idle_.back());
-        idle_.pop_back();
-        return found;
-      }
+    if (!idle_.empty()) {
+      std::unique_ptr<Workspace> found = std::move(idle_.back());
+      idle_.pop_back();
+      return found;
+    }
   }
-  return std::unique_ptr<Workspace>(new Workspace{Wave(width, options_.max_nodes, state_.size(), !optics_.media().empty()),
+  return std::unique_ptr<Workspace>(new Workspace{Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
                                                   PathGenerator(surface_, optics_, environment_, options_),
-                                                  std::vector<float>(width * state_.size()), std::vector<uint8_t>(width),
+                                                  {},
+                                                  std::vector<float>(kWaveWidth * state_.size()),
+                                                  std::vector<uint8_t>(kWaveWidth),
                                                   std::vector<float>(state_.size())});
 }
 
@@ -183,89 +199,141 @@ size_t bin_of(const Capture& capture, const Path& path) {
 
 }  // namespace
 
+// The problems of one block while they run.
+class Pipeline::BlockRun {
+ public:
+  BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
+           std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics, Workspace& workspace)
+      : pipeline_(pipeline), sensor_(sensor), capture_(capture), block_(block), sums_(sums), slots_(slots),
+        statistics_(statistics), workspace_(workspace), single_(sensor.channels().size() > 1) {
+    const size_t width = size_t{block.columns} * block.rows;
+    for (uint32_t i = 0; i < width; ++i) {
+      next_.push_back(sums.paths(slot_of(i)));
+      end_.push_back(to[problem_of(i)]);
+      keys_.push_back(SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i)));
+    }
+  }
+
+  // Every problem takes its samples in order; a few of one problem run together, those of the next beside them.
+  void run() {
+    const auto width = static_cast<uint32_t>(next_.size());
+    const uint32_t first = *std::min_element(next_.begin(), next_.end()), last = *std::max_element(end_.begin(), end_.end());
+    // A rule that looks at every sample must not be given many at a time.
+    const uint32_t together = pipeline_.options_.stop == StopRule::change ? 1 : std::max(kTogether, kWaveWidth / width);
+    for (uint32_t group = first; group < last; group += together)
+      for (uint32_t i = 0; i < width; ++i)
+        for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
+          workspace_.lanes.push_back({i, sample});
+          if (workspace_.lanes.size() == kWaveWidth) run_wave();
+        }
+    if (!workspace_.lanes.empty()) run_wave();
+  }
+
+ private:
+  size_t problem_of(size_t i) const { return (size_t{block_.row} + i / block_.columns) * capture_.columns + block_.column + i % block_.columns; }
+  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
+  double reference_sum(size_t slot) const {
+    double sum = 0;
+    for (int s = 0; s < sums_.scrambles(); ++s) sum += sums_.sums(slot, s)[pipeline_.reference_band_];
+    return sum;
+  }
+
+  void run_wave() {
+    Wave& wave = workspace_.wave;
+    const size_t bins = pipeline_.state_.size();
+    const uint64_t asked = __rdtsc();
+    wave.active.clear();
+    for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
+      const auto [place, sample] = workspace_.lanes[p];
+      const auto [scramble, index] = deal(sample);
+      // Independent numbers: every sample is the first of a sequence of its own.
+      const bool independent = pipeline_.options_.method == Method::paper;
+      const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
+      const uint32_t number = independent ? 0 : index;
+      const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {&workspace_.weights[p * bins], bins});
+      workspace_.weighted[p] = ray.spectral;
+      workspace_.generator.start(wave, p, ray, stream, number);
+    }
+    const uint64_t started = __rdtsc();
+    workspace_.generator.complete(wave, statistics_);
+    const uint64_t completed = __rdtsc();
+    statistics_.sensor_cycles += started - asked;
+    statistics_.path_cycles += completed - started;
+    for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
+      const auto [place, sample] = workspace_.lanes[p];
+      if (sample < end_[place]) accumulate(p, place, sample);
+    }
+    statistics_.shade_cycles += __rdtsc() - completed;
+    workspace_.lanes.clear();
+  }
+
+  // The radiance of path p, in the wave's second scratch spectrum, and of single scattering where that is asked for.
+  std::span<float> radiance_of(size_t p) {
+    Wave& wave = workspace_.wave;
+    const std::span<float> radiance = wave.scratch2();
+    process_path(wave, p, pipeline_.environment_, radiance);
+    if (single_) process_single(wave, p, pipeline_.environment_, radiance, workspace_.single);
+    const bool timed = capture_.bin_by == Capture::BinBy::time;
+    if (!workspace_.weighted[p] && !timed) return radiance;
+    const float* weights = workspace_.weighted[p] ? &workspace_.weights[p * radiance.size()] : nullptr;
+    for (size_t k = 0; k < radiance.size(); ++k) {
+      const float factor = (weights ? weights[k] : 1.0f) * (timed ? static_cast<float>(capture_.bins) : 1.0f);
+      radiance[k] *= factor;
+      if (single_) workspace_.single[k] *= factor;
+    }
+    return radiance;
+  }
+
+  void accumulate(size_t p, size_t place, uint32_t sample) {
+    const size_t slot = slot_of(place), bands = pipeline_.projection_.bands(), reference = pipeline_.reference_band_;
+    const Path& path = workspace_.wave.path(p);
+    const std::span<float> radiance = radiance_of(p);
+    // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
+    unsigned good = 1;
+    for (const float L : radiance) good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
+    ++statistics_.paths;
+    statistics_.truncated += path.truncated;
+    sums_.set_paths(slot, sample + 1);
+    if (!good) {
+      ++statistics_.failures;
+      ++sums_.failures(slot);
+      return;
+    }
+    double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
+    const bool watched = pipeline_.options_.stop == StopRule::change;
+    const double before = target[reference], sum_before = watched ? reference_sum(slot) : 0;
+    if (const size_t bin = bin_of(capture_, path); bin < capture_.bins) {
+      pipeline_.projection_.add(radiance, {target + bin * bands, bands});
+      if (single_) pipeline_.projection_.add(workspace_.single, {target + (capture_.bins + bin) * bands, bands});
+    }
+    if (watched && sample >= pipeline_.options_.change_after) {
+      const double mean = reference_sum(slot) / (sample + 1.0);
+      if (std::fabs(mean - sum_before / sample) <= pipeline_.options_.change * mean) end_[place] = 0;
+    }
+    sums_.largest(slot) = std::max(sums_.largest(slot), static_cast<float>(target[reference] - before));
+    sums_.truncated(slot) += static_cast<float>(path.truncated);
+    pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+  }
+
+  const Pipeline& pipeline_;
+  const Sensor& sensor_;
+  const Capture& capture_;
+  const Block block_;
+  Accumulators& sums_;
+  const Slots slots_;
+  RunStatistics& statistics_;
+  Workspace& workspace_;
+  const bool single_;
+  std::vector<uint32_t> next_, end_;  // samples of each problem
+  std::vector<uint64_t> keys_;        // of its sample streams
+};
+
 void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
                    std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const {
   const FlushDenormals flush;
   const uint64_t start = __rdtsc();
-  const size_t width = size_t{block.columns} * block.rows, bands = projection_.bands();
-  std::unique_ptr<Workspace> workspace = borrow(width);
-  Wave& wave = workspace->wave;
-  PathGenerator& generator = workspace->generator;
-  const bool single = sensor.channels().size() > 1;
-  auto problem_of = [&](size_t i) {
-    return (size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns;
-  };
-  auto slot_of = [&](size_t i) { return slots == Slots::by_place ? i : problem_of(i); };
-  const bool stop_on_change = options_.stop == StopRule::change;
-  auto sum_of = [&](size_t slot) {
-    double sum = 0;
-    for (int s = 0; s < sums.scrambles(); ++s) sum += sums.sums(slot, s)[reference_band_];
-    return sum;
-  };
-  std::vector<uint32_t> next(width), end(width);
-  for (size_t i = 0; i < width; ++i) next[i] = sums.paths(slot_of(i)), end[i] = to[problem_of(i)];
-  const uint32_t first = *std::min_element(next.begin(), next.end()), last = *std::max_element(end.begin(), end.end());
-
-  for (uint32_t sample = first; sample < last; ++sample) {
-    const auto [scramble, index] = deal(sample);
-    const uint64_t asked = __rdtsc();
-    wave.active.clear();
-    for (size_t i = 0; i < width; ++i) {
-      if (sample < next[i] || sample >= end[i]) continue;
-      const size_t problem = problem_of(i);
-      const SampleStream stream(options_.seed, capture_id, problem, scramble);
-      const SensorRay ray = ask_ray(sensor, capture, problem, stream, index, {&workspace->weights[i * state_.size()], state_.size()});
-      workspace->weighted[i] = ray.spectral;
-      generator.start(wave, i, ray, stream, index);
-    }
-    const uint64_t started = __rdtsc();
-    generator.complete(wave, statistics);
-    const uint64_t completed = __rdtsc();
-    statistics.sensor_cycles += started - asked;
-    statistics.path_cycles += completed - started;
-
-    for (size_t i = 0; i < width; ++i) {
-      if (sample < next[i] || sample >= end[i]) continue;
-      const size_t slot = slot_of(i);
-      const std::span<float> radiance = wave.scratch2();
-      process_path(wave, i, environment_, radiance);
-      if (single) process_single(wave, i, environment_, radiance, workspace->single);
-      const bool timed = capture.bin_by == Capture::BinBy::time;
-      if (workspace->weighted[i] || timed) {
-        const float* weights = workspace->weighted[i] ? &workspace->weights[i * state_.size()] : nullptr;
-        for (size_t k = 0; k < radiance.size(); ++k) {
-          const float factor = (weights ? weights[k] : 1.0f) * (timed ? static_cast<float>(capture.bins) : 1.0f);
-          radiance[k] *= factor;
-          if (single) workspace->single[k] *= factor;
-        }
-      }
-      // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-      unsigned good = 1;
-      for (const float L : radiance) good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
-      ++statistics.paths;
-      statistics.truncated += wave.path(i).truncated;
-      sums.set_paths(slot, sample + 1);
-      if (!good) {
-        ++statistics.failures;
-        ++sums.failures(slot);
-        continue;
-      }
-      double* const target = sums.sums(slot, static_cast<int>(scramble));
-      const double before = target[reference_band_], sum_before = stop_on_change ? sum_of(slot) : 0;
-      if (const size_t bin = bin_of(capture, wave.path(i)); bin < capture.bins) {
-        projection_.add(radiance, {target + bin * bands, bands});
-        if (single) projection_.add(workspace->single, {target + (capture.bins + bin) * bands, bands});
-      }
-      if (stop_on_change && sample >= options_.change_after) {
-        const double mean = sum_of(slot) / (sample + 1.0);
-        if (std::fabs(mean - sum_before / sample) <= options_.change * mean) end[i] = 0;
-      }
-      sums.largest(slot) = std::max(sums.largest(slot), static_cast<float>(target[reference_band_] - before));
-      sums.truncated(slot) += static_cast<float>(wave.path(i).truncated);
-      truth_.add(wave, i, sums.truth(slot));
-    }
-    statistics.shade_cycles += __rdtsc() - completed;
-  }
+  std::unique_ptr<Workspace> workspace = borrow();
+  BlockRun(*this, sensor, capture, capture_id, block, to, sums, slots, statistics, *workspace).run();
   statistics.cycles += __rdtsc() - start;
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(workspace));

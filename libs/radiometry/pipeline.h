@@ -1,5 +1,5 @@
-// The radiometry pipeline (paper, section IV-A): as wide as a block of problems, each pass takes one ray of each problem,
-// constructs its path, and turns the path into radiance, which is added to the problem's accumulators.
+// The radiometry pipeline (paper, section IV-A): each pass takes a few rays of each of a few neighbouring problems,
+// constructs their paths, and turns the paths into radiance, which is added to the problems' accumulators.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "radiometry/path.h"
 #include "radiometry/sources/environment.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
@@ -24,12 +25,25 @@ enum class StopRule : uint8_t {
            // It looks at the samples that it keeps and is biased low where rare events carry the light.
 };
 
+// How light is estimated.
+enum class Method : uint8_t {
+  standard,  // path_generator.h: every kind of source at every node, shared with the continuations (multiple importance
+             // sampling), directions drawn at several wavelengths, low-discrepancy numbers, Russian roulette
+  paper,     // Goodenough & Brown, sections III-C-2 and IV-A as written, for comparison: independent random numbers;
+             // one explicit source a node out of sun, moon and all lamps, divided by its probability (the paper leaves
+             // that open: here all have the same, and no lamp is left out for being far); what is asked explicitly does
+             // not count when a continuation meets it; the sky is met by continuations only; directions are drawn at
+             // the reference wavelength; paths end at max_nodes. Not for media. Its rule of stopping is StopRule::change.
+};
+
 struct PipelineOptions {
   uint64_t seed = 1;
   int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
   uint32_t max_scatterings = 10000;  // consecutive scattering events of a path inside media, beside the nodes
   int roulette_after = 3;        // nodes before paths may end by chance
   bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
+  Method method = Method::standard;
+  int lamp_draws = kLampDraws;   // 1..kLampDraws: lamps asked at the first node of a path, where there are as many
   StopRule stop = StopRule::plan;
   uint32_t change_after = 20;    // StopRule::change: samples before the first test
   double change = 1e-3;          // StopRule::change: relative change that counts as convergence
@@ -146,7 +160,8 @@ class Pipeline {
   PipelineOptions options_;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;
-  std::unique_ptr<Workspace> borrow(size_t width) const;
+  class BlockRun;
+  std::unique_ptr<Workspace> borrow() const;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };

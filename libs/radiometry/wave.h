@@ -12,18 +12,19 @@ namespace suite {
 
 class Wave {
  public:
-  // width: problems in a block; bins: of the spectral state.
+  // width: paths that run together; bins: of the spectral state.
   // media: paths travel through media; segments then carry spectra.
   Wave(size_t width, int max_nodes, size_t bins, bool media = false);
 
   size_t width() const { return paths_.size(); }
   size_t bins() const { return bins_; }
   Path& path(size_t p) { return paths_[p]; }
-  Node& node(size_t p, int n) { return nodes_[p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)]; }
+  // Nodes of one depth stand side by side, as the stages of a pass visit them.
+  Node& node(size_t p, int n) { return nodes_[place(p, n)]; }
   // w of the continuation at a node, where the model does not keep it; aligned to 32 bytes, padded to whole vectors.
-  std::span<float> bounce(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n))), bins_}; }
+  std::span<float> bounce(size_t p, int n) { return {at(2 * place(p, n)), bins_}; }
   // Radiance that explicit sources send along the path from this node.
-  std::span<float> direct(size_t p, int n) { return {at(2 * (p * static_cast<size_t>(max_nodes_) + static_cast<size_t>(n)) + 1), bins_}; }
+  std::span<float> direct(size_t p, int n) { return {at(2 * place(p, n) + 1), bins_}; }
   // With media, segment n is all that lies between node n - 1 (the sensor for 0) and node n (or the end of the path),
   // however often the path was scattered there: what arrives from its far end is multiplied by `through`, then `gathered`
   // is added, light that was emitted and scattered into the path on the way.
@@ -47,6 +48,7 @@ class Wave {
   struct Free {
     void operator()(float* p) const { std::free(p); }
   };
+  size_t place(size_t p, int n) const { return static_cast<size_t>(n) * paths_.size() + p; }
   size_t segment(size_t p, int n) const { return p * static_cast<size_t>(max_nodes_ + 1) + static_cast<size_t>(n); }
   float* at(size_t i) { return spectra_.get() + i * stride_; }
   size_t bins_, stride_;

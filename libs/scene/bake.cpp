@@ -2,223 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <set>
 
 #include "motion/track.h"
+#include "scene/baker.h"
+#include "scene/curvature.h"
 
 namespace suite {
 
-namespace {
-
-template <class Table, class Name>
-std::vector<std::string> names_of(const Table& table, Name name) {
-  std::vector<std::string> names;
-  for (const auto& row : table) names.push_back(name(row));
-  return names;
-}
-
-class Baker {
- public:
-  Baker(const Draft& draft, Report& report) : draft_(draft), report_(report) {}
-
-  Scene run() {
-    scene_.name = draft_.name;
-    scene_.description = draft_.description;
-    scene_.author = draft_.author;
-    scene_.origin = draft_.origin;
-    scene_.files = draft_.files;
-    materials();
-    bake_media(draft_, report_, scene_);
-    class_maps();
-    property_maps();
-    geometry();
-    groups();
-    unused();
-    scene_.epoch = draft_.epoch;
-    const TimeSpan times = time_window();
-    if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_, times.begin, times.end);
-    return std::move(scene_);
-  }
-
- private:
-  // What a geometry became: the targets a placement of it places.
-  struct Built {
-    TargetKind kind;
-    uint32_t first, count;
-    const TerrainGrid* terrain = nullptr;
-  };
-
-  void add(const char* code, const Where& where, const std::string& message) {
-    report_.add(code, draft_.file, {where, message});
-  }
-
-  uint32_t material_id(const Reference& ref) {
-    if (const auto found = material_ids_.find(ref.name); found != material_ids_.end()) {
-      used_materials_.insert(ref.name);
-      return found->second;
-    }
-    const auto known = names_of(draft_.materials, [](const DraftMaterial& m) { return m.material.id; });
-    add("SP102", ref.where, "unknown material '" + ref.name + "'; " + name_hint(ref.name, known));
-    return kNone;
-  }
-
-  void materials();
-  void check_coverage(const DraftMaterial& m);
-  void class_maps();
-  void property_maps();
-  void check_parts(const PropertyMap& map, const Where& where);
-  void geometry();
-  Built build_mesh(const DraftGeometry& g);
-  Built build_terrain(const DraftGeometry& g);
-  Built build_primitive(const DraftGeometry& g);
-  void groups();
-  std::vector<size_t> group_order();
-  std::optional<Built> target(const Reference& ref);
-  std::vector<Affine3> transforms(const DraftPlacement& p);
-  bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
-  void place(const DraftPlacement& p, Group& group, bool world);
-  TimeSpan time_window();
-  void unused();
-
-  const Draft& draft_;
-  Report& report_;
-  Scene scene_;
-  std::map<std::string, uint32_t> material_ids_, map_ids_, tag_ids_, group_ids_;
-  std::map<std::string, Built> built_;
-  std::vector<std::unique_ptr<TerrainGrid>> terrains_;
-  std::vector<Where> motion_where_;  // of scene_.tracks
-  std::set<std::string> used_materials_, used_maps_, used_targets_;
-};
-
-void Baker::check_coverage(const DraftMaterial& m) {
-  const auto check = [&](const std::string& what, const Curve& curve) {
-    for (const SpectralWindow& w : draft_.windows)
-      if (!curve.covers(w.low_um, w.high_um))
-        add("SP104", m.where,
-            strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
-                 what.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
-  };
-  for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
-  for (const DraftPropertyMap& map : draft_.property_maps)
-    for (const Reference& r : m.property_maps)
-      if (r.name == map.map.name)
-        for (const Curve& curve : map.map.family) check("a curve of map '" + r.name + "'", curve);
-}
-
-void Baker::materials() {
-  for (const DraftMaterial& m : draft_.materials) {
-    material_ids_[m.material.id] = static_cast<uint32_t>(scene_.materials.size());
-    scene_.materials.push_back(m.material);
-    if (m.temperature) scene_.temperatures.push_back({material_ids_[m.material.id], *m.temperature});
-    if (m.has_model) check_coverage(m);
-    // The sum over both sides' shares must stay below 1 wherever either curve has a knot.
-    const auto& curves = m.material.surface.curves;
-    const auto rho = curves.find("reflectance"), tau = curves.find("transmittance");
-    if (rho == curves.end() || tau == curves.end()) continue;
-    for (const Curve* c : {&rho->second, &tau->second})
-      for (const double w : c->wavelength_um())
-        if (rho->second.covers(w, w) && tau->second.covers(w, w) && rho->second.at(w) + tau->second.at(w) > 1 + 1e-9) {
-          add("SP105", m.where,
-              strf("material '%s': reflectance %g + transmittance %g at %g um", m.material.id.c_str(),
-                   rho->second.at(w), tau->second.at(w), w));
-          goto next;
-        }
-  next:;
-  }
-}
-
-void Baker::class_maps() {
-  for (const DraftClassMap& d : draft_.class_maps) {
-    ClassMap map = d.map;
-    map_ids_[map.name] = static_cast<uint32_t>(scene_.class_maps.size());
-    // Renumber the raster's values to 0, 1, ... in the order of the values.
-    std::map<uint16_t, uint16_t> index;
-    for (const auto& [value, ref] : d.materials) {
-      index[value] = static_cast<uint16_t>(map.materials.size());
-      map.materials.push_back(material_id(ref));
-    }
-    std::map<uint16_t, size_t> missing;
-    for (uint16_t& c : map.classes) {
-      const auto found = index.find(c);
-      if (found == index.end())
-        ++missing[c];
-      else
-        c = found->second;
-    }
-    for (const auto& [value, count] : missing)
-      report_.add("SP502", map.name, {d.where, strf("class %u (%zu pixels) has no material", value, count)}, count);
-    scene_.class_maps.push_back(std::move(map));
-  }
-  for (size_t m = 0; m < draft_.materials.size(); ++m) {
-    const DraftMaterial& d = draft_.materials[m];
-    if (!d.map.given()) continue;
-    const auto found = map_ids_.find(d.map.name);
-    if (found == map_ids_.end()) {
-      const auto known = names_of(draft_.class_maps, [](const DraftClassMap& c) { return c.map.name; });
-      add("SP501", d.map.where, "unknown map '" + d.map.name + "'; " + name_hint(d.map.name, known));
-      continue;
-    }
-    used_maps_.insert(d.map.name);
-    const ClassMap& map = scene_.class_maps[found->second];
-    scene_.map_bindings.push_back({static_cast<uint32_t>(m), found->second});
-    for (const uint32_t id : map.materials)
-      if (id == m || (id != kNone && draft_.materials[id].map.given()))
-        add("SP501", d.map.where,
-            "map '" + d.map.name + "' leads to material '" + draft_.materials[id].material.id +
-                "', which a map decides again");
-    if (!d.has_model && !map.materials.empty() && map.materials.front() != kNone)
-      scene_.materials[m].surface = draft_.materials[map.materials.front()].material.surface;
-  }
-}
-
-// A mixture puts whole materials side by side, which cannot be mixtures or bend the surface themselves.
-void Baker::check_parts(const PropertyMap& map, const Where& where) {
-  for (const uint32_t id : map.materials) {
-    if (id == kNone) continue;
-    const DraftMaterial& part = draft_.materials[id];
-    bool fits = part.has_model && !part.map.given();
-    for (const Reference& r : part.property_maps)
-      for (const DraftPropertyMap& m : draft_.property_maps)
-        if (m.map.name == r.name && (m.map.kind == MapKind::mixture || m.map.kind >= MapKind::bump)) fits = false;
-    if (!fits)
-      add("SP501", where,
-          "material '" + part.material.id + "' cannot be part of mixture '" + map.name +
-              "': a part has a model and at most curve index, texture, cube and temperature maps");
-  }
-}
-
-void Baker::property_maps() {
-  std::map<std::string, uint32_t> ids;
-  for (const DraftPropertyMap& d : draft_.property_maps) {
-    PropertyMap map = d.map;
-    for (const Reference& r : d.materials) map.materials.push_back(material_id(r));
-    ids[map.name] = static_cast<uint32_t>(scene_.property_maps.size());
-    scene_.property_maps.push_back(std::move(map));
-  }
-  for (size_t m = 0; m < draft_.materials.size(); ++m) {
-    std::set<MapKind> kinds;
-    for (const Reference& r : draft_.materials[m].property_maps) {
-      const auto found = ids.find(r.name);
-      if (found == ids.end()) {
-        add("SP501", r.where,
-            "unknown map '" + r.name + "'; " +
-                name_hint(r.name, names_of(draft_.property_maps, [](const auto& p) { return p.map.name; })));
-        continue;
-      }
-      used_maps_.insert(r.name);
-      const PropertyMap& map = scene_.property_maps[found->second];
-      check_parts(map, r.where);
-      if (!kinds.insert(map.kind).second)
-        add("SP501", r.where,
-            "material '" + draft_.materials[m].material.id + "' has two maps of the kind of '" + r.name + "'");
-      if (!map.parameter.empty() && !scene_.materials[m].surface.curves.count(map.parameter))
-        add("SP501", r.where,
-            "the model of material '" + draft_.materials[m].material.id + "' has no curve '" + map.parameter +
-                "' for map '" + r.name + "'");
-      scene_.property_bindings.push_back({static_cast<uint32_t>(m), found->second});
-    }
-  }
+Scene Baker::run() {
+  scene_.name = draft_.name;
+  scene_.description = draft_.description;
+  scene_.author = draft_.author;
+  scene_.origin = draft_.origin;
+  scene_.files = draft_.files;
+  materials();
+  bake_media(draft_, report_, scene_);
+  class_maps();
+  property_maps();
+  geometry();
+  groups();
+  unused();
+  if (draft_.curvature_m && report_.count(Severity::error) == 0) curve();
+  scene_.epoch = draft_.epoch;
+  const TimeSpan times = time_window();
+  if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_, times.begin, times.end);
+  return std::move(scene_);
 }
 
 Baker::Built Baker::build_mesh(const DraftGeometry& g) {
@@ -241,15 +49,43 @@ Baker::Built Baker::build_mesh(const DraftGeometry& g) {
     }
   }
   if (g.material.given()) material_id(g.material);  // even when every face has a better one, the name must exist
-  Mesh mesh = make_mesh(g.mesh, g.to_local, g.normals, ids);
+  Mesh mesh = make_mesh(g.mesh, g.to_local, g.normals, ids, g.crease_rad);
   mesh.name = g.name;
   scene_.meshes.push_back(std::move(mesh));
   return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size() - 1), 1, nullptr};
 }
 
+// A scene that is to be curved is put together on the flat plane; a georeferenced terrain is laid there first.
+SourceTerrain Baker::on_plane(const SourceTerrain& terrain) const {
+  if (!draft_.curvature_m || !terrain.georeferenced) return terrain;
+  SourceTerrain flat = terrain;
+  const GeodeticOrigin& o = draft_.origin;
+  flat.place = [place = terrain.place, frame = SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m})](
+                   double column, double row, double height) { return frame.flattened(place(column, row, height)); };
+  return flat;
+}
+
+void Baker::curve() {
+  const Where& where = draft_.curvature_where;
+  Curved done;
+  try {
+    done = curve_scene(scene_, *draft_.curvature_m);
+  } catch (const Error& e) {
+    return add("SP404", where, e.message() + "; " + e.hint());
+  }
+  for (const std::string& name : done.rigid)
+    add("SP408", where, name + " is too large for the curvature and only turned with it");
+  for (const auto& [name, count] : done.long_edges)
+    report_.add("SP409", draft_.file,
+                {where, strf("mesh '%s': %zu triangles have edges that leave the surface by more than %g m",
+                             name.c_str(), count, *draft_.curvature_m)},
+                count);
+  if (done.moving) add("SP410", where, strf("%zu moving placements", done.moving));
+}
+
 Baker::Built Baker::build_terrain(const DraftGeometry& g) {
   try {
-    terrains_.push_back(std::make_unique<TerrainGrid>(g.terrain));
+    terrains_.push_back(std::make_unique<TerrainGrid>(on_plane(g.terrain)));
   } catch (const Error& e) {  // a sample that lies nowhere on Earth
     add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
     return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr};
@@ -409,7 +245,9 @@ TimeSpan Baker::time_window() {
           strf("the motion of %s is known from %.9g to %.9g s, 'times_s' is %.9g to %.9g s",
                scene_.tracks[k].name.c_str(), c.begin, c.end, draft_.times->begin, draft_.times->end));
     else if (!(common.begin <= common.end))
-      return add("SP407", motion_where_[k], "the motion of " + scene_.tracks[k].name + " has no time in common with the others"), TimeSpan{};
+      return add("SP407", motion_where_[k],
+                 "the motion of " + scene_.tracks[k].name + " has no time in common with the others"),
+             TimeSpan{};
   }
   if (draft_.times) return {draft_.times->begin, draft_.times->end};
   if (!std::isfinite(common.begin)) common.begin = std::min(0.0, common.end);
@@ -444,8 +282,6 @@ void Baker::unused() {
     if (!used_targets_.count(draft_.groups[g].name))
       add("SP403", draft_.groups[g].where, "group '" + draft_.groups[g].name + "' is never placed");
 }
-
-}  // namespace
 
 Scene bake_scene(const Draft& draft, Report& report) { return Baker(draft, report).run(); }
 

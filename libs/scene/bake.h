@@ -18,8 +18,12 @@ void bake_media(const Draft& draft, Report& report, Scene& scene);
 
 // Triangles with their origin: the centre of the extent rounded to whole metres (or to a 1024th of the extent when that
 // is smaller), vertices in float relative to it; unused positions are dropped; normals by the rule. materials: of each
-// run.
-Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials);
+// run. crease_rad (0 to pi): facets that bend by more keep an edge between them where normals are made.
+Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials,
+               double crease_rad = kPi);
+
+// The origin that make_mesh chooses for vertices in a box.
+Vec3 mesh_origin(const Box3& box);
 
 // A terrain in scene ENU: the grid of a raster, its triangles and its surface.
 class TerrainGrid {

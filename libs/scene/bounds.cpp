@@ -9,6 +9,7 @@
 namespace suite {
 
 Box3 mesh_box(const Mesh& m) {
+  if (m.stored) return m.stored->box;
   // In float first: the extremes are found faster and are exact.
   const size_t n = m.vertex_count();
   if (n == 0) return {};
@@ -64,7 +65,8 @@ Box3 scene_bounds(const Scene& s, double begin, double end) {
   Box3 all = groups.empty() ? Box3{} : groups.front();
   for (const Volume& v : s.volumes) {
     const VoxelGrid& g = s.grids[v.grid];
-    all.grow(transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}}, v.to_world * g.to_local));
+    all.grow(transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}},
+                         v.to_world * g.to_local));
   }
   return all;
 }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "motion/track.h"
+#include "scene/curvature.h"
 
 namespace suite {
 
@@ -81,8 +82,10 @@ class Combiner {
   // Media, grids and volumes follow their scene's placement.
   void media(ScenePart& part, const Affine3& place) {
     Scene& s = part.scene;
-    if (part.motion && !s.volumes.empty()) throw Error("scene '" + part.name + "' has volumes and moves", "volumes stand still");
-    if (s.ambient != kNone && all_.ambient != kNone) throw Error("two scenes have an ambient medium", "one may fill what no body fills");
+    if (part.motion && !s.volumes.empty())
+      throw Error("scene '" + part.name + "' has volumes and moves", "volumes stand still");
+    if (s.ambient != kNone && all_.ambient != kNone)
+      throw Error("two scenes have an ambient medium", "one may fill what no body fills");
     const uint32_t first = move_behind(all_.media, s.media);
     shift(s.ambient, first);
     if (s.ambient != kNone) all_.ambient = s.ambient;
@@ -116,10 +119,17 @@ class Combiner {
       const Vec3 p{corner & 1 ? b.low.x : b.high.x, corner & 2 ? b.low.y : b.high.y, corner & 4 ? b.low.z : b.high.z};
       off = std::max(off, length(rest.point(p) - p));
     }
+    std::shared_ptr<const FlatPlane> plane;
     const auto move = [&](const std::string& name, Projection projection, Drape& d) {
       if (projection != Projection::drape) return;
       if (part.motion)
         throw Error("map '" + name + "' is draped over scene '" + part.name + "', which moves", "project it by UV");
+      if (d.plane) {  // asks on a plane of its own, wherever that has come to lie
+        if (!plane)
+          plane = std::make_shared<const FlatPlane>(FlatPlane{d.plane->frame, d.plane->to_scene * place.inverse()});
+        d.plane = plane;
+        return;
+      }
       if (off > 0.1 * std::min(std::fabs(d.gsd_x), std::fabs(d.gsd_y)))
         throw Error(strf("map '%s' of scene '%s' would be off by %.3g m, because draped maps cannot turn with a scene",
                          name.c_str(), part.name.c_str(), off),

@@ -20,6 +20,9 @@ struct Reference {
   bool given() const { return !name.empty(); }
 };
 
+// In place of a normal that is missing; oct_encode never gives it.
+inline constexpr uint32_t kNoNormal = 0x80008000u;
+
 // Triangles as read from a file, in double, before they get an origin.
 struct SourceMesh {
   struct Run {                    // consecutive triangles of one group and one material name
@@ -28,12 +31,13 @@ struct SourceMesh {
     int line = 0;  // where the run starts in the file
   };
   std::string file;
-  std::vector<Vec3> positions;    // m
-  std::vector<uint32_t> normals;  // octahedral, one per position, or empty
-  std::vector<float> uvs;         // two per position, or empty
-  std::vector<uint32_t> indices;  // three per triangle
-  std::vector<int> lines;         // source line of each triangle, or empty
-  std::vector<Run> runs;          // ascending
+  std::vector<Vec3> positions;      // m
+  std::vector<uint32_t> normals;    // octahedral, one per position (kNoNormal: has none), or empty
+  std::vector<float> uvs;           // two per position, or empty
+  std::vector<uint32_t> indices;    // three per triangle
+  std::vector<int> lines;           // source line of each triangle, or empty
+  std::vector<uint32_t> smoothing;  // group of each triangle, 0 = flat where there is no normal; or empty: all flat
+  std::vector<Run> runs;            // ascending
 };
 
 // Heights on a grid, as a raster gives them. Samples are at pixel centres.
@@ -42,8 +46,10 @@ struct SourceTerrain {
   std::vector<float> heights;  // m, row-major, first row first; NaN = no data
   // Scene ENU position of the sample in column i, row j (both may be fractional) with the height given.
   std::function<Vec3(double column, double row, double height)> place;
+  bool georeferenced = false;  // place() knows the Earth's curvature already
 };
 
+// file: the file's own, those that are missing by its smoothing groups; facet: none; smooth: all made anew.
 enum class NormalRule { file, facet, smooth };
 
 struct DraftGeometry {
@@ -57,7 +63,8 @@ struct DraftGeometry {
   Reference material;                          // of everything without a better one
   std::map<std::string, Reference> materials;  // `usemtl` name -> material id
   NormalRule normals = NormalRule::file;
-  double tile_m = 0;  // largest extent of one terrain tile
+  double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
+  double tile_m = 0;        // largest extent of one terrain tile
 };
 
 struct DraftPlacement {
@@ -66,7 +73,7 @@ struct DraftPlacement {
   Affine3 to_parent;
   std::vector<Affine3> rows;  // of an instance table or a scatter; each before to_parent
   bool table = false;
-  std::optional<ScatterRule> scatter;  // over the surface `on`
+  std::optional<ScatterRule> scatter;   // over the surface `on`
   std::shared_ptr<const Track> motion;  // null: at rest
   Where motion_where;
 };
@@ -81,7 +88,7 @@ struct DraftMaterial {
   Where where;
   Material material;
   Reference inside, outside;  // media
-  Reference map;  // a class map that decides instead
+  Reference map;              // a class map that decides instead
   bool has_model = false;
   std::optional<TemperatureSpec> temperature;
   std::vector<Reference> property_maps;
@@ -134,9 +141,11 @@ struct TimeWindowSpec {
 
 struct Draft {
   std::string file, name, description, author;
-  std::string epoch;                    // UTC of second 0, or empty
+  std::string epoch;  // UTC of second 0, or empty
   std::optional<TimeWindowSpec> times;
   GeodeticOrigin origin;
+  std::optional<double> curvature_m;    // the scene is flat and to be laid onto the ellipsoid this exactly, m
+  Where curvature_where;
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;
   std::vector<DraftClassMap> class_maps;

@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "scene/bake.h"
+#include "scene/vertex_normals.h"
 
 namespace suite {
 
-namespace {
-
-Vec3 choose_origin(const Box3& box) {
+Vec3 mesh_origin(const Box3& box) {
   // Whole metres keep round coordinates round; tiny objects need a finer step to stay near zero.
   const Vec3 size = box.size();
   const double extent = std::max({size.x, size.y, size.z});
@@ -19,71 +18,41 @@ Vec3 choose_origin(const Box3& box) {
   return {std::round(c.x / s) * s, std::round(c.y / s) * s, std::round(c.z / s) * s};
 }
 
-// Angle-weighted vertex normals over corners that share a position bit for bit.
-std::vector<uint32_t> smooth_normals(const std::vector<Vec3>& p, const std::vector<uint32_t>& indices) {
-  std::vector<uint32_t> order(p.size());
-  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto less = [&](uint32_t a, uint32_t b) {
-    return std::tie(p[a].x, p[a].y, p[a].z, a) < std::tie(p[b].x, p[b].y, p[b].z, b);
-  };
-  std::sort(order.begin(), order.end(), less);
-  std::vector<uint32_t> first(p.size());
-  for (size_t k = 0; k < order.size(); ++k)
-    first[order[k]] = k && p[order[k]] == p[order[k - 1]] ? first[order[k - 1]] : order[k];
-  std::vector<Vec3> sum(p.size());
-  for (size_t t = 0; t + 2 < indices.size(); t += 3) {
-    const uint32_t v[3] = {indices[t], indices[t + 1], indices[t + 2]};
-    const Vec3 n = cross(p[v[1]] - p[v[0]], p[v[2]] - p[v[0]]);
-    const double len = length(n);
-    if (!(len > 0)) continue;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 a = p[v[(k + 1) % 3]] - p[v[k]], b = p[v[(k + 2) % 3]] - p[v[k]];
-      sum[first[v[k]]] += n * (std::atan2(length(cross(a, b)), dot(a, b)) / len);
-    }
-  }
-  std::vector<uint32_t> normals(p.size());
-  for (size_t i = 0; i < p.size(); ++i) {
-    const double len = length(sum[first[i]]);
-    normals[i] = oct_encode(len > 0 ? sum[first[i]] / len : Vec3{0, 0, 1});
-  }
-  return normals;
-}
-
-}  // namespace
-
-Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule,
-               std::span<const uint32_t> materials) {
+Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rule, std::span<const uint32_t> materials,
+               double crease_rad) {
   SUITE_CHECK_EQ(source.runs.size(), materials.size());
   Mesh mesh;
   mesh.name = source.file;
+  const bool missing = !source.smoothing.empty() || std::count(source.normals.begin(), source.normals.end(), kNoNormal);
+  const bool made = rule == NormalRule::smooth || (rule == NormalRule::file && missing);
+  const VertexNormals normals = made ? vertex_normals(source, rule == NormalRule::smooth, crease_rad) : VertexNormals{};
+  const std::vector<uint32_t>& indices = made ? normals.indices : source.indices;
+  const auto vertex = [&](uint32_t v) { return made ? normals.from[v] : v; };  // of the source
   // Number the used positions in the order of their first use; a mirrored frame turns the winding.
   const bool mirrored = to_local.determinant() < 0;
-  std::vector<uint32_t> new_id(source.positions.size(), kNone), old_id;
-  mesh.indices.resize(source.indices.size());
-  for (size_t k = 0; k < source.indices.size(); ++k) {
-    const uint32_t old = source.indices[k];
+  std::vector<uint32_t> new_id(made ? normals.from.size() : source.positions.size(), kNone), old_id;
+  mesh.indices.resize(indices.size());
+  for (size_t k = 0; k < indices.size(); ++k) {
+    const uint32_t old = indices[k];
     if (new_id[old] == kNone) new_id[old] = static_cast<uint32_t>(old_id.size()), old_id.push_back(old);
     mesh.indices[mirrored && k % 3 ? k - k % 3 + 3 - k % 3 : k] = new_id[old];
   }
   std::vector<Vec3> points(old_id.size());
   Box3 box;
-  for (size_t i = 0; i < old_id.size(); ++i) box.grow(points[i] = to_local.point(source.positions[old_id[i]]));
-  mesh.origin = points.empty() ? Vec3{} : choose_origin(box);
+  for (size_t i = 0; i < old_id.size(); ++i) box.grow(points[i] = to_local.point(source.positions[vertex(old_id[i])]));
+  mesh.origin = points.empty() ? Vec3{} : mesh_origin(box);
   mesh.positions.reserve(3 * points.size() + 1);
   for (const Vec3& p : points)
     for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k] - mesh.origin[k]));
   if (!points.empty()) mesh.positions.push_back(0);
-  if (rule == NormalRule::smooth) {
-    mesh.normals = smooth_normals(points, mesh.indices);
-  } else if (rule == NormalRule::file && !source.normals.empty()) {
+  if (made || (rule == NormalRule::file && !source.normals.empty()))
     for (const uint32_t old : old_id) {
-      const Vec3 n = to_local.normal(oct_decode(source.normals[old]));
+      const Vec3 n = to_local.normal(made ? normals.normals[old] : oct_decode(source.normals[old]));
       mesh.normals.push_back(oct_encode(normalized(mirrored ? -n : n)));
     }
-  }
   if (!source.uvs.empty())
     for (const uint32_t old : old_id)
-      for (int k = 0; k < 2; ++k) mesh.uvs.push_back(source.uvs[2 * size_t{old} + k]);
+      for (int k = 0; k < 2; ++k) mesh.uvs.push_back(source.uvs[2 * size_t{vertex(old)} + k]);
   const auto triangles = static_cast<uint32_t>(source.indices.size() / 3);
   for (size_t r = 0; r < source.runs.size(); ++r) {
     const SourceMesh::Run& run = source.runs[r];

@@ -41,7 +41,9 @@ void check_transform(const Affine3& t, const std::string& file, const std::strin
     if (!std::isfinite(a)) bad(file, what + "the transform is not finite");
   if (!finite(t.b) || t.determinant() == 0) bad(file, what + "the transform is not finite or flattens its target");
 }
-void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
+}  // namespace
+
+void check_arrays(const Mesh& m, const std::string& file) {
   const std::string name = "mesh '" + m.name + "': ";
   if (m.positions.size() % 3 != 1 && !m.positions.empty())
     bad(file, name + "positions are not 3 floats a vertex and a pad");
@@ -55,6 +57,33 @@ void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
   if (!m.indices.empty() && largest >= n) bad(file, name + strf("vertex index %u of %zu", largest, n));
   for (const float p : m.positions) faulty |= (std::bit_cast<uint32_t>(p) & 0x7f800000u) == 0x7f800000u;
   if (faulty) bad(file, name + "a coordinate is not finite");
+  if (!m.stored) return;
+  Mesh here;
+  here.origin = m.origin, here.positions = std::move(m.positions);
+  const Box3 box = mesh_box(here), said = m.stored->box;
+  m.positions = std::move(here.positions);
+  if (m.indices.size() != 3 * m.stored->triangles ||
+      (m.positions.empty() ? 0 : m.positions.size() / 3) != m.stored->vertices ||
+      !(box.low == said.low && box.high == said.high))
+    bad(file, name + "it is not as large as was said of it");
+}
+
+void Mesh::require() const {
+  if (!stored) return;
+  const std::lock_guard lock(stored->turn);
+  if (!positions.empty() || !indices.empty() || !stored->vertices) return;
+  try {
+    stored->fill(*this);
+  } catch (...) {  // whoever asks again must be told again
+    positions.clear(), indices.clear(), normals.clear(), uvs.clear();
+    throw;
+  }
+}
+
+namespace {
+void check_mesh(const Mesh& m, size_t materials, const std::string& file) {
+  if (!m.stored) check_arrays(m, file);
+  const std::string name = "mesh '" + m.name + "': ";
   size_t next = 0;
   for (const Part& p : m.parts) {
     if (p.first_triangle != next) bad(file, name + "parts do not cover the triangles in order");
@@ -100,7 +129,8 @@ namespace {
 void check_grid(const VoxelGrid& g, size_t media, const std::string& file) {
   const std::string name = "voxel grid '" + g.name + "': ";
   const size_t n = g.size();
-  if (n == 0 || g.density.size() != n || (!g.kind.empty() && g.kind.size() != n) || (!g.temperature.empty() && g.temperature.size() != n))
+  if (n == 0 || g.density.size() != n || (!g.kind.empty() && g.kind.size() != n) ||
+      (!g.temperature.empty() && g.temperature.size() != n))
     bad(file, name + "size and data disagree");
   if (g.media.empty()) bad(file, name + "has no medium");
   for (const uint32_t m : g.media)
@@ -116,7 +146,8 @@ void check_grid(const VoxelGrid& g, size_t media, const std::string& file) {
 void check_media(const Scene& s, const std::string& file) {
   for (const Material& m : s.materials)
     for (const uint32_t medium : {m.inside, m.outside})
-      if (medium != Material::kNoMedium && medium >= s.media.size()) bad(file, "material '" + m.id + "' names a medium that is not there");
+      if (medium != Material::kNoMedium && medium >= s.media.size())
+        bad(file, "material '" + m.id + "' names a medium that is not there");
   if (s.ambient != kNone && s.ambient >= s.media.size()) bad(file, "the ambient medium is not there");
   for (const VoxelGrid& g : s.grids) check_grid(g, s.media.size(), file);
   for (const Volume& v : s.volumes) {
@@ -127,7 +158,8 @@ void check_media(const Scene& s, const std::string& file) {
 }  // namespace
 
 bool uses_media(const Scene& s) {
-  return s.ambient != kNone || !s.volumes.empty() || std::any_of(s.materials.begin(), s.materials.end(), [](const Material& m) { return m.bounds_medium(); });
+  return s.ambient != kNone || !s.volumes.empty() ||
+         std::any_of(s.materials.begin(), s.materials.end(), [](const Material& m) { return m.bounds_medium(); });
 }
 
 void check_scene(const Scene& s, const std::string& file) {

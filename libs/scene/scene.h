@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +18,9 @@
 
 namespace suite {
 
-class Track;  // motion/track.h
+class Track;       // motion/track.h
+struct FlatPlane;  // scene/curvature.h
+struct Mesh;
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
@@ -27,18 +31,32 @@ struct Part {
   uint32_t material = kNone;            // index into Scene::materials
 };
 
+// What is known of a mesh whose arrays are still in a file, and how to get them.
+struct StoredArrays {
+  size_t vertices = 0, triangles = 0;
+  Box3 box;                             // local, mesh origin included
+  std::function<void(const Mesh&)> fill;  // Error when the file is damaged
+  std::mutex turn;
+};
+
 // Base geometry, in local metres. Vertices are float relative to a double origin, so that georeferenced coordinates
 // lose nothing. Arrays are laid out for the ray tracer to share: positions has 3 floats a vertex and one pad float.
+// The arrays may come later: they are empty until require() has been called, and never change after. That a const mesh
+// fills itself is what `mutable` stands for here.
 struct Mesh {
   std::string name;
-  Vec3 origin;                          // local frame position of (0, 0, 0) of the floats
-  std::vector<float> positions;         // 3 * vertex_count + 1
-  std::vector<uint32_t> indices;        // 3 * triangle_count
-  std::vector<uint32_t> normals;        // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
-  std::vector<float> uvs;               // 2 per vertex; empty = none
-  std::vector<Part> parts;              // cover all triangles, ascending
-  size_t vertex_count() const { return positions.empty() ? 0 : (positions.size() - 1) / 3; }
-  size_t triangle_count() const { return indices.size() / 3; }
+  Vec3 origin;                               // local frame position of (0, 0, 0) of the floats
+  mutable std::vector<float> positions;      // 3 * vertex_count + 1
+  mutable std::vector<uint32_t> indices;     // 3 * triangle_count
+  mutable std::vector<uint32_t> normals;     // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
+  mutable std::vector<float> uvs;            // 2 per vertex; empty = none
+  std::vector<Part> parts;                   // cover all triangles, ascending
+  std::shared_ptr<StoredArrays> stored = nullptr;  // null: the arrays are here
+  size_t vertex_count() const { return stored ? stored->vertices : positions.empty() ? 0 : (positions.size() - 1) / 3; }
+  size_t triangle_count() const { return stored ? stored->triangles : indices.size() / 3; }
+  // Reads the arrays if they are not here yet; from any thread. Whoever touches them first calls it: the ray tracer
+  // before it builds over them, and those who come before any ray. Error when the file is damaged.
+  void require() const;
 };
 
 // What a placement puts somewhere.
@@ -82,6 +100,7 @@ struct Drape {
   double origin_x = 0, origin_y = 0;    // m, scene ENU
   double gsd_x = 1, gsd_y = 1;          // m
   enum class Extend : uint8_t { clamp, repeat, none } extend = Extend::clamp;
+  std::shared_ptr<const FlatPlane> plane = nullptr;  // the flat plane that the map lies on; null: scene ENU itself
 };
 enum class Projection : uint8_t { drape, uv };
 
@@ -166,6 +185,7 @@ struct GeodeticOrigin {
 struct Scene {
   std::string name, description, author;
   GeodeticOrigin origin;
+  bool curved = false;                  // laid from a flat plane onto the ellipsoid (curvature.h); drapes are on the plane
   std::vector<Mesh> meshes;
   std::vector<Primitive> primitives;
   std::vector<Group> groups;            // [0] = root
@@ -188,6 +208,9 @@ struct Scene {
 
 // Does a ray anywhere in the scene have to ask what it travels through?
 bool uses_media(const Scene& scene);
+
+// Error, naming the mesh, unless its arrays fit each other and, where they were stored, what was said of them.
+void check_arrays(const Mesh& mesh, const std::string& file);
 
 // Checks every index and size of a scene that was read from a file; Error naming the table otherwise.
 void check_scene(const Scene& scene, const std::string& file);

@@ -60,6 +60,7 @@ std::string summary_text(const Scene& s) {
   if (s.origin.given)
     out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg,
                 s.origin.ellipsoid_height_m);
+  if (s.curved) out += "curvature     laid onto WGS84; draped maps lie on the flat plane\n";
   if (!s.bounds.empty())
     out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x,
                 s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);

@@ -66,6 +66,10 @@ struct AlignedData {
   AlignedTotals totals;
 };
 
+// Angles of the totals that go with views (rad, ascending, 0 to less than pi/2): six steps between two views; near the
+// horizon, which cuts lobes within their width of it, steps of at most 0.15 of the angle that is left.
+std::vector<double> total_angles(const std::vector<double>& views);
+
 // The data on a pyramid of cells, asked once; coded many times at different qualities.
 class AlignedSource {
  public:
@@ -74,6 +78,8 @@ class AlignedSource {
         frame;  // none: retro when twice as much returns to the viewer as goes to the mirror direction, else half
     size_t views = 0;           // 0: as many as view_error asks for
     double view_error = 0.015;  // interpolation error allowed between views, log2 units
+    size_t most_views = 25;     // whatever view_error asks
+    double fold_error = 1;      // bilateral data are stored once when that costs at most this cosine-weighted l1
     int base_order = 6;         // every cell of this order is asked
     int max_order = 10;         // further only where it matters
     double detail = 2e-6;       // share of the whole a cell's variation must have to be divided further

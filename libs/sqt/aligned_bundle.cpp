@@ -87,8 +87,10 @@ class AlignedBundle final : public Bundle {
     const AlignedTables::Sheet& sheet = tables_.sheets()[s];
     Dir d = direction_fast(point_in(sheet.tree.cell(drawn.leaf - sheet.first), u));
     if (layout_.half_stored && drawn.within >= 0.5) d.y = -d.y;
-    const Dir in = map(up, s).incident(d);
-    if (layout_.upper_only && (s == 0 ? in.z <= 0 : in.z >= 0)) return std::nullopt;
+    const LobeMap lobe = map(up, s);
+    if (layout_.upper_only && lobe.cosine(d) <= 0) return std::nullopt;
+    const Dir in = lobe.incident(d);
+    if (layout_.upper_only && (s == 0 ? in.z <= 0 : in.z >= 0)) return std::nullopt;  // rounding
     return back(out, in);
   }
   double pdf(Dir out, Dir in, size_t channel) const override {

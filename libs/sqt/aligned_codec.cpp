@@ -167,7 +167,7 @@ int BlockModel::code_magnitude(Coder& coder, int magnitude, Magnitude& contexts)
   }
   const uint32_t rest = static_cast<uint32_t>(magnitude - 15) + 1;
   int bits = 0;
-  while (bits < 15 && coder.bit(contexts[static_cast<size_t>(14 + std::min(bits, 5))], (rest >> (bits + 1)) != 0))
+  while (bits < 20 && coder.bit(contexts[static_cast<size_t>(14 + std::min(bits, 5))], (rest >> (bits + 1)) != 0))
     ++bits;
   uint32_t value = 1;
   for (int b = bits - 1; b >= 0; --b) value = (value << 1) | (coder.even_bit((rest >> b) & 1) ? 1u : 0u);
@@ -175,15 +175,15 @@ int BlockModel::code_magnitude(Coder& coder, int magnitude, Magnitude& contexts)
 }
 
 template <class Coder>
-void BlockModel::code(Coder& coder, std::span<int16_t> block, size_t details, std::span<const int16_t> parent,
+void BlockModel::code(Coder& coder, std::span<int32_t> block, size_t details, std::span<const int32_t> parent,
                       int order) {
   const size_t width = views_ * channels_;
-  auto magnitude_at = [](std::span<const int16_t> s, size_t i) { return s.empty() ? 0 : std::abs(int{s[i]}); };
+  auto magnitude_at = [](std::span<const int32_t> s, size_t i) { return s.empty() ? 0 : std::abs(s[i]); };
   const int depth = std::min(3, order / 2);
   int busy_before = 0;
   for (size_t d = 0; d < details; ++d)
     for (size_t c = 0; c < channels_; ++c) {
-      int16_t* row = &block[d * width + c * views_];
+      int32_t* row = &block[d * width + c * views_];
       const size_t base = d * width + c * views_;
       // Is there anything in this row?
       int parent_any = 0;
@@ -195,7 +195,7 @@ void BlockModel::code(Coder& coder, std::span<int16_t> block, size_t details, st
       const size_t any_context = static_cast<size_t>(
           ((depth * 3 + channel_class(c)) * 4 + std::min(3, parent_any)) * 3 + std::min(2, busy_before));
       if (!coder.bit(any_[any_context], end > 0)) {
-        std::fill_n(row, views_, int16_t{0});
+        std::fill_n(row, views_, int32_t{0});
         busy_before = std::max(0, busy_before - (c + 1 == channels_ ? 1 : 0));
         continue;
       }
@@ -217,9 +217,9 @@ void BlockModel::code(Coder& coder, std::span<int16_t> block, size_t details, st
             code_magnitude(coder, std::abs(known),
                            magnitude_[where * kNeighbour + static_cast<size_t>(bucket((above + beside + 1) / 2))]);
         const bool negative = coder.even_bit(known < 0);
-        row[k] = static_cast<int16_t>(negative ? -m : m);
+        row[k] = static_cast<int32_t>(negative ? -m : m);
         if (k + 1 < views_ && coder.bit(last_[where * 3 + static_cast<size_t>(bucket(above))], k + 1 == end)) {
-          std::fill(row + k + 1, row + views_, int16_t{0});
+          std::fill(row + k + 1, row + views_, int32_t{0});
           break;
         }
       }
@@ -236,12 +236,12 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
   if (!targets) lattice.reserve(std::min(max_nodes, (size_t{1} << 23) / width));
   BlockModel model(layout, transform);
   std::vector<float> predicted(width, 0.0f), difference(3 * width), coefficient(3 * width), change(3 * width);
-  std::vector<int16_t> levels(3 * width);
-  std::vector<int16_t> blocks;                           // of divided nodes, one after the other
+  std::vector<int32_t> levels(3 * width);
+  std::vector<int32_t> blocks;                           // of divided nodes, one after the other
   std::vector<int32_t> block_above(lattice.size(), -1);  // index of the parent's block
 
   // Quantises (encoder) or not (decoder), codes, and reconstructs `count` rows of differences.
-  auto convey = [&](size_t count, float step, std::span<const int16_t> parent, int order) {
+  auto convey = [&](size_t count, float step, std::span<const int32_t> parent, int order) {
     if (targets)
       for (size_t d = 0; d < count; ++d) {
         transform.forward({&difference[d * width], width}, {&coefficient[d * width], width});
@@ -275,12 +275,12 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
     for (size_t i = begin; i < end; ++i) {
       const CellId id = lattice.node(i).id;
       if (id.order() >= kMaxOrder) continue;
-      const std::span<const int16_t> parent =
+      const std::span<const int32_t> parent =
           block_above[i] >= 0
-              ? std::span<const int16_t>(&blocks[static_cast<size_t>(block_above[i]) * 3 * width], 3 * width)
-              : std::span<const int16_t>{};
+              ? std::span<const int32_t>(&blocks[static_cast<size_t>(block_above[i]) * 3 * width], 3 * width)
+              : std::span<const int32_t>{};
       bool busy = false;
-      for (const int16_t l : parent) busy |= std::abs(int{l}) > 1;
+      for (const int32_t l : parent) busy |= std::abs(int{l}) > 1;
       const int around = lattice.divided_around(i);
       if (!model.code_split(coder, targets ? targets->split(i) : false, id.order(), around, busy)) continue;
       if (lattice.size() + 4 > max_nodes) throw Error("SQT payload is damaged: more nodes than allowed");

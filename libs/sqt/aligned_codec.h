@@ -50,7 +50,7 @@ class BlockModel {
   // block: `details` (1 for roots, 3 otherwise) x channel frequency x view frequency quantised levels; parent: the
   // block of the node above, or empty.
   template <class Coder>
-  void code(Coder& coder, std::span<int16_t> block, size_t details, std::span<const int16_t> parent, int order);
+  void code(Coder& coder, std::span<int32_t> block, size_t details, std::span<const int32_t> parent, int order);
   template <class Coder>
   bool code_split(Coder& coder, bool split, int order, int divided_around, bool parent_busy);
 
@@ -82,16 +82,18 @@ Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform,
                    Targets* targets, size_t max_nodes);
 
 // Quantises x (in steps): nearest, with a dead zone that saves more bits than it costs accuracy.
-inline int16_t quantise(float x) {
+inline int32_t quantise(float x) {
+  constexpr float kMost = 1 << 20;
   const float a = x < 0 ? -x : x;
-  const int n = static_cast<int>(a + 0.36f);
-  const int bounded = n > 30000 ? 30000 : n;
-  return static_cast<int16_t>(x < 0 ? -bounded : bounded);
+  const int32_t n = static_cast<int32_t>((a < kMost ? a : kMost) + 0.36f);
+  return x < 0 ? -n : n;
 }
 
-// Children that the region does not hold, in terms of those it does: the mirror image on the symmetry plane, else the
-// mean of the others. present: bit k set when child k exists; v: the four children's numbers, filled in place.
-inline void complete_family(unsigned present, float (&v)[4]) {
+// Children that are not known, in terms of those that are: the mirror image across the symmetry plane, else `rest` of
+// the sum and the number of those known. present: bit k set when child k is known; v: the four children's numbers,
+// filled in place.
+template <class Rest>
+void complete(unsigned present, float (&v)[4], Rest rest) {
   if (present == 15) return;
   if (!(present & 2) && (present & 4)) v[1] = v[2], present |= 2;
   if (!(present & 4) && (present & 2)) v[2] = v[1], present |= 4;
@@ -100,7 +102,16 @@ inline void complete_family(unsigned present, float (&v)[4]) {
   for (int k = 0; k < 4; ++k)
     if (present & (1u << k)) sum += v[k], ++n;
   for (int k = 0; k < 4; ++k)
-    if (!(present & (1u << k))) v[k] = n ? sum / static_cast<float>(n) : 0;
+    if (!(present & (1u << k))) v[k] = n ? rest(sum, n) : 0;
+}
+// Values: the unknown ones are the mean of the others, which is the parent's.
+inline void complete_values(unsigned present, float (&v)[4]) {
+  complete(present, v, [](float sum, int n) { return sum / static_cast<float>(n); });
+}
+// Differences from a prediction: three details cannot move a family's mean, so those that nobody will look at take up
+// what keeps it where it is and the known ones exact.
+inline void complete_differences(unsigned present, float (&v)[4]) {
+  complete(present, v, [](float sum, int n) { return -sum / static_cast<float>(4 - n); });
 }
 
 }  // namespace suite::sqt

@@ -1,5 +1,6 @@
 // The scale that gives the decoded trees of the aligned method the totals of the data; see aligned.h.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -9,65 +10,141 @@
 
 namespace suite::sqt {
 
+namespace {
+
+constexpr size_t kStride = AlignedSheet::kStride;
+
+// Points of a leaf on a square grid, and where they are in it.
+struct LeafGrid {
+  int side = 0;
+  std::vector<Dir> direction;
+  std::vector<float> dx, dy;
+  void fill(CellId id, int n) {
+    side = n;
+    direction.clear(), dx.clear(), dy.clear();
+    for (int k = 0; k < n * n; ++k) {
+      const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
+      direction.push_back(direction_in(id, {ux, uy}));
+      dx.push_back(static_cast<float>(ux - 0.5)), dy.push_back(static_cast<float>(uy - 0.5));
+    }
+  }
+};
+
+// One view of the totals: its map on either sheet, and the slices it lies between.
+struct TotalView {
+  LobeMap map[2];
+  size_t low, high;
+  float w0, w1;
+};
+
+std::vector<TotalView> total_views(const AlignedLayout& layout, const AlignedTotals& totals) {
+  const ThetaGrid grid(layout.theta);
+  std::vector<TotalView> views;
+  for (const double theta : totals.theta)
+    for (size_t j = 0; j < totals.phi_count; ++j) {  // same azimuths in both grids
+      const double phi = 2 * kPi * static_cast<double>(j) / static_cast<double>(totals.phi_count);
+      const Dir out = dir_from_angles(theta, phi);
+      const ThetaGrid::At at = grid.locate(theta);
+      const size_t next = std::min(at.low + 1, grid.size() - 1);
+      const float w1 = static_cast<float>(at.t);
+      views.push_back({{{layout.frame, out, false}, {layout.frame, out, true}},
+                       at.low * layout.phi_count + j,
+                       next * layout.phi_count + j,
+                       1 - w1,
+                       w1});
+    }
+  return views;
+}
+
+// Adds a leaf's share of the integral of f |cos| to every view: integral[view][channel].
+class LeafIntegral {
+ public:
+  LeafIntegral(const AlignedLayout& layout, const std::vector<TotalView>& views) : layout_(layout), views_(views) {}
+
+  void add(CellId id, size_t sheet, const float* leaf, std::vector<double>& integral) {
+    const double width = std::sqrt(cell_solid_angle(id.order()));
+    const int usual = id.order() >= 7 ? 1 : id.order() == 6 ? 2 : 1 << std::max(2, 7 - id.order());
+    const Dir center = center_of(id);
+    for (LeafGrid& g : grids_) g.side = 0;
+    for (size_t t = 0; t < views_.size(); ++t) {
+      const LobeMap& map = views_[t].map[sheet];
+      // Near the horizon the cosine changes within a leaf, and what lies below does not count: look more closely.
+      const double above = layout_.cosine_weighted ? map.cosine(center) : 1;
+      if (layout_.upper_only && above < -2 * width) continue;
+      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
+      LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
+      if (!grid.side) grid.fill(id, closer * usual);
+      const double copies = layout_.half_stored && mirrored(id) != id ? 2 : 1;
+      add(grid, cell_solid_angle(id.order()) * copies, views_[t], map, leaf, &integral[t * layout_.channels]);
+    }
+  }
+
+ private:
+  void add(const LeafGrid& grid, double area, const TotalView& view, const LobeMap& map, const float* leaf,
+           double* integral) {
+    const size_t channels = layout_.channels, points = grid.direction.size();
+    weight_.resize(points);
+    bool any = false;
+    for (size_t k = 0; k < points; ++k) {
+      const Dir d = grid.direction[k];
+      const double cosine = map.cosine(d);
+      const bool counts = !layout_.upper_only || cosine > 0;
+      weight_[k] =
+          counts ? static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0)) : 0;
+      any |= counts;
+    }
+    if (!any) return;
+    const float inverse_side = 1.0f / static_cast<float>(grid.side);
+    for (size_t c = 0; c < channels; ++c) {
+      const float* a = leaf + (view.low * channels + c) * kStride;
+      const float* b = leaf + (view.high * channels + c) * kStride;
+      const float v = view.w0 * a[0] + view.w1 * b[0], gx = view.w0 * a[1] + view.w1 * b[1],
+                  gy = view.w0 * a[2] + view.w1 * b[2];
+      float sum = 0;
+      for (size_t k = 0; k < points; ++k) sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
+      integral[c] += static_cast<double>(sum * mean_exp2(gx * inverse_side) * mean_exp2(gy * inverse_side)) * area /
+                     static_cast<double>(points);
+    }
+  }
+  const AlignedLayout& layout_;
+  const std::vector<TotalView>& views_;
+  std::array<LeafGrid, 4> grids_;
+  std::vector<float> weight_;
+};
+
+}  // namespace
+
 std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<AlignedSheet>& sheets,
                              const AlignedTotals& totals, const std::vector<double>& wavelength_um) {
-  const size_t channels = layout.channels, count = totals.theta.size() * totals.phi_count;
-  const ThetaGrid grid(layout.theta);
-  std::vector<float> scale(count * channels, 0.0f);
-  parallel_for(0, count, 1, [&](size_t begin, size_t end) {
-    std::vector<float> sum(channels);
-    for (size_t t = begin; t < end; ++t) {
-      const double phi = 2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count);
-      const double theta = totals.theta[t / totals.phi_count];
-      const ThetaGrid::At at = grid.locate(theta);
-      const size_t next = std::min(at.low + 1, grid.size() - 1),
-                   j = t % totals.phi_count;  // same azimuths in both grids
-      const size_t low_view = at.low * layout.phi_count + j, high_view = next * layout.phi_count + j;
-      const float w1 = static_cast<float>(at.t), w0 = 1 - w1;
-      std::vector<double> integral(channels, 0.0);
-      for (size_t s = 0; s < sheets.size(); ++s) {
-        const LobeMap map(layout.frame, dir_from_angles(theta, phi), s == 1);
-        for (size_t i = 0; i < sheets[s].leaves.size(); ++i) {
-          const CellId id = sheets[s].leaves[i];
-          // Near the horizon the cosine changes within a leaf, and what lies below does not count: look more closely.
-          const double width = std::sqrt(cell_solid_angle(id.order()));
-          const double above = layout.cosine_weighted ? map.cosine(direction_in(id, {0.5, 0.5})) : 1;
-          if (layout.upper_only && above < -2 * width) continue;
-          const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
-          const int usual = id.order() >= 7 ? 1 : id.order() == 6 ? 2 : 1 << std::max(2, 7 - id.order());
-          const int side = closer * usual;
-          const double area =
-              cell_solid_angle(id.order()) / (side * side) * (layout.half_stored && mirrored(id) != id ? 2 : 1);
-          const float* leaf = &sheets[s].plane[i * layout.width() * AlignedSheet::kStride];
-          const float inverse_side = 1.0f / static_cast<float>(side);
-          for (int k = 0; k < side * side; ++k) {
-            const double ux = (k % side + 0.5) / side, uy = (k / side + 0.5) / side;
-            const Dir d = direction_in(id, {ux, uy});
-            const double cosine = map.cosine(d);
-            if (layout.upper_only && !(cosine > 0)) continue;
-            const double weight = area * map.stretch(d) * (layout.cosine_weighted ? std::fabs(cosine) : 1.0);
-            const float dx = static_cast<float>(ux - 0.5), dy = static_cast<float>(uy - 0.5);
-            for (size_t c = 0; c < channels; ++c) {
-              const float* a = leaf + (low_view * channels + c) * AlignedSheet::kStride;
-              const float* b = leaf + (high_view * channels + c) * AlignedSheet::kStride;
-              const float gx = w0 * a[1] + w1 * b[1], gy = w0 * a[2] + w1 * b[2];
-              integral[c] += weight * portable_exp2(w0 * a[0] + w1 * b[0] + dx * gx + dy * gy) *
-                             mean_exp2(gx * inverse_side) * mean_exp2(gy * inverse_side);
-            }
-          }
-        }
+  const size_t channels = layout.channels;
+  const std::vector<TotalView> views = total_views(layout, totals);
+  std::vector<double> integral(views.size() * channels, 0.0);
+  constexpr size_t kBlock = 64;  // leaves; sums over blocks are added in order, so threads do not matter
+  for (size_t s = 0; s < sheets.size(); ++s) {
+    const AlignedSheet& sheet = sheets[s];
+    const size_t blocks = (sheet.leaves.size() + kBlock - 1) / kBlock;
+    std::vector<std::vector<double>> partial(blocks);
+    parallel_for(0, blocks, 1, [&](size_t begin, size_t end) {
+      LeafIntegral leaf_integral(layout, views);
+      for (size_t b = begin; b < end; ++b) {
+        partial[b].assign(integral.size(), 0.0);
+        for (size_t i = b * kBlock; i < std::min(sheet.leaves.size(), (b + 1) * kBlock); ++i)
+          leaf_integral.add(sheet.leaves[i], s, &sheet.plane[i * layout.width() * kStride], partial[b]);
       }
-      for (size_t c = 0; c < channels; ++c) {
-        const size_t k = static_cast<size_t>(
-            std::lower_bound(totals.magnitude_um.begin(), totals.magnitude_um.end(), wavelength_um[c]) -
-            totals.magnitude_um.begin());
-        const double W = totals.magnitudes[t * totals.magnitude_um.size() + k];
-        scale[t * channels + c] = W > 0 && integral[c] > 0
-                                      ? static_cast<float>(std::clamp(std::log2(W / integral[c]), -100.0, 100.0))
-                                      : -100.0f;
-      }
+    });
+    for (const std::vector<double>& part : partial)
+      for (size_t j = 0; j < part.size(); ++j) integral[j] += part[j];
+  }
+  std::vector<float> scale(integral.size());
+  for (size_t t = 0; t < views.size(); ++t)
+    for (size_t c = 0; c < channels; ++c) {
+      const size_t k = static_cast<size_t>(
+          std::lower_bound(totals.magnitude_um.begin(), totals.magnitude_um.end(), wavelength_um[c]) -
+          totals.magnitude_um.begin());
+      const double W = totals.magnitudes[t * totals.magnitude_um.size() + k], I = integral[t * channels + c];
+      scale[t * channels + c] =
+          W > 0 && I > 0 ? static_cast<float>(std::clamp(std::log2(W / I), -100.0, 100.0)) : -100.0f;
     }
-  });
   return scale;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "math/sampling.h"
 #include "sqt/view_placement.h"
 
 namespace suite::sqt {
@@ -53,7 +54,7 @@ class Surveyor {
   }
 
  private:
-  // Averages over the children (all four count equally; see complete_family).
+  // Averages over the children (all four count equally; see complete_values).
   void gather(CellId id, Pyramid& into, Cellful& cell) const {
     const size_t views = maps_.size(), channels = layout_.channels;
     const Cellful* child[4] = {};
@@ -71,7 +72,7 @@ class Surveyor {
         float f[4] = {};
         for (uint32_t k = 0; k < 4; ++k)
           if (present & (1u << k)) f[k] = child[k]->value[v * channels + c];
-        complete_family(present, f);
+        complete_values(present, f);
         cell.value[v * channels + c] = 0.25f * (f[0] + f[1] + f[2] + f[3]);
       }
     }
@@ -251,7 +252,7 @@ void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Shee
       float r[4] = {};
       for (uint32_t k = 0; k < 4; ++k)
         if (present & (1u << k)) r[k] = sheet.data.value(child[k])[j] - predicted[k * width + j];
-      complete_family(present, r);
+      complete_differences(present, r);
       details[j] = 0.25f * (-r[0] + r[1] - r[2] + r[3]);
       details[width + j] = 0.25f * (-r[0] - r[1] + r[2] + r[3]);
       details[2 * width + j] = 0.25f * (r[0] - r[1] - r[2] + r[3]);
@@ -282,18 +283,24 @@ void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::
 
 namespace {
 
-// Six steps between views; near the horizon, which cuts lobes within their width of it, steps of at most 0.15 of the
-// angle that is left.
-std::vector<double> angles_of_totals(const std::vector<double>& views) {
-  std::vector<double> theta{views[0]};
-  for (size_t v = 1; v < views.size(); ++v) {
-    const double step = (views[v] - views[v - 1]) / 6;
-    while (theta.back() < views[v]) {
-      const double here = std::min(step, 0.15 * (kPi / 2 - theta.back())), next = theta.back() + here;
-      theta.push_back(next > views[v] - 0.3 * here ? views[v] : next);
+// Cosine-weighted relative l1 between a function and the mean of its two mirror images.
+double cost_of_folding(const Function& function) {
+  const size_t channels = function.info().wavelength_um.size();
+  std::vector<double> left(channels), right(channels);
+  double difference = 0, sum = 0;
+  const SampleStream points(11, 0, 0);
+  for (uint32_t i = 0; i < 4096; ++i) {
+    const auto u = points.draw(i, 0);
+    const Dir out = dir_from_angles(80 * kDegree * u[2], 0), in = dir_from_angles(std::acos(1 - u[0]), 2 * kPi * u[1]);
+    function.value(out, in, left);
+    function.value(out, {in.x, -in.y, in.z}, right);
+    for (size_t c = 0; c < channels; ++c) {
+      if (!std::isfinite(left[c]) || !std::isfinite(right[c])) continue;
+      difference += 0.5 * std::fabs(left[c] - right[c]) * in.z;
+      sum += 0.5 * (left[c] + right[c]) * in.z;
     }
   }
-  return theta;
+  return sum > 0 ? difference / sum : 0;
 }
 
 // Half vectors, unless the function sends at least twice as much back to the viewer as to the mirror direction.
@@ -315,6 +322,18 @@ LobeFrame detect_frame(const Function& function) {
 
 }  // namespace
 
+std::vector<double> total_angles(const std::vector<double>& views) {
+  std::vector<double> theta{views[0]};
+  for (size_t v = 1; v < views.size(); ++v) {
+    const double step = (views[v] - views[v - 1]) / 6;
+    while (theta.back() < views[v]) {
+      const double here = std::min(step, 0.15 * (kPi / 2 - theta.back())), next = theta.back() + here;
+      theta.push_back(next > views[v] - 0.3 * here ? views[v] : next);
+    }
+  }
+  return theta;
+}
+
 AlignedSource::AlignedSource(const Function& function, const Options& options,
                              const std::function<void(double)>& progress)
     : impl_(new Impl) {
@@ -330,15 +349,17 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
                  : surface                                ? detect_frame(function)
                  : m.function.quantity == Quantity::phase ? LobeFrame::forward
                                                           : LobeFrame::direct;
-  layout.half_stored = m.function.isotropic && m.function.bilateral;
+  layout.half_stored = m.function.isotropic && m.function.bilateral &&
+                       (options.fold_error >= 1 || cost_of_folding(function) <= options.fold_error);
   layout.sheets = surface && m.function.domain == Domain::sphere ? 2 : 1;
-  layout.theta = surface ? place_views(function, layout.frame, options.views, 89.9 * kDegree, options.view_error)
+  layout.theta = surface ? place_views(function, layout.frame, options.views, options.most_views, 89.9 * kDegree,
+                                       options.view_error)
                          : std::vector<double>{0};
   layout.phi_count = surface && !m.function.isotropic ? 16 : 1;
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;
   std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
-  m.totals.theta = angles_of_totals(layout.theta);
+  m.totals.theta = total_angles(layout.theta);
 
   // A first look at order 4 gives the whole (mean total) and the floor below which values count as dark.
   const Region region{layout.upper_only, layout.half_stored};

@@ -82,7 +82,7 @@ class LeafWeights {
       for (size_t v = 0; v < weight.size(); ++v) {
         const float along = dx * x_[v] + dy * y_[v] + dz * z_[v];
         const float stretch = reflects ? 4 * std::fabs(along) : 1;
-        const float cosine = reflects ? 2 * along * dz - z_[v] : dz;
+        const float cosine = reflects ? 2 * (dz > 0 ? along : std::max(along, 0.0f)) * dz - z_[v] : dz;
         const float seen = layout_.upper_only ? cosine : std::fabs(cosine);
         const float counted = layout_.cosine_weighted ? (seen > kHorizonFloor ? seen : kHorizonFloor) : 1;
         weight[v] += layout_.upper_only && cosine < -reach ? 0 : share * stretch * counted;

@@ -1,14 +1,13 @@
 #include "sqt/fit.h"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace suite::sqt {
 
 namespace {
 
-constexpr double kFinest = 0.004, kCoarsest = 8;  // qualities searched
-constexpr int kSteps = 11;                        // bisections of log quality: to 0.4 %
+constexpr double kFinest = 0.001, kCoarsest = 16;  // qualities searched
 
 struct Trial {
   AlignedFit fit;
@@ -23,54 +22,106 @@ Trial attempt(const AlignedSource& source, const Reference& reference, double qu
 
 size_t bytes_of(const AlignedFit& fit) { return fit.sheets_bytes.size() + fit.totals_bytes.size(); }
 
+// The largest x of [first, last] whose excess is not positive, where the excess grows with x; to 1 %, and closer to 0
+// from below than half a percent is close enough. Brackets by steps of 1.1 from a guess, then the Illinois variant of
+// regula falsi (Dowell & Jarratt, BIT 11, 1971). `first` when even its excess is positive.
+double last_within(double first, double last, double guess, const std::function<double(double)>& excess) {
+  struct End {
+    double x, excess;
+  };
+  auto at = [&](double x) { return End{x, excess(x)}; };
+  End low = at(std::clamp(guess, first, last)), high = low;
+  while (low.excess > 0 && low.x > first) high = low, low = at(std::max(first, low.x - 1.1));
+  while (high.excess <= 0 && high.x < last) low = high, high = at(std::min(last, high.x + 1.1));
+  if (low.excess > 0) return first;
+  if (high.excess <= 0) return last;
+  double low_weight = low.excess, high_weight = high.excess;
+  for (int i = 0; i < 12 && high.x - low.x > 0.01 && low.excess < -0.005; ++i) {
+    const double t = std::clamp(low_weight / (low_weight - high_weight), 0.05, 0.95);
+    const End mid = at(low.x + t * (high.x - low.x));
+    if (mid.excess <= 0)
+      low = mid, low_weight = mid.excess, high_weight *= 0.5;
+    else
+      high = mid, high_weight = mid.excess, low_weight *= 0.5;
+  }
+  return low.x;
+}
+
 }  // namespace
 
-FitResult fit_to(const AlignedSource& source, const Reference& reference, const FitTarget& target,
-                 const std::function<void(double)>& progress) {
-  auto report = [&] {
-    if (progress) progress(1.0 / (2 * kSteps + 2));
-  };
+AlignedSource::Options suited(AlignedSource::Options options, double l1) {
+  options.view_error = std::clamp(0.5 * l1, 0.001, 0.03);
+  options.most_views = l1 < 0.01 ? 64 : 25;
+  options.detail = 2e-6 * std::min(1.0, l1 / 0.01);
+  options.fold_error = 0.25 * l1;
+  return options;
+}
+
+namespace {
+
+// The best a source can do for a target.
+FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& reference, const FitTarget& target,
+                   const std::function<size_t(const AlignedSource&)>& container,
+                   const std::function<void(double)>& progress) {
   FitResult result;
-  auto take = [&](Trial t) {
+  result.source = std::move(owned);
+  const AlignedSource& source = *result.source;
+  // The number of steps is not known beforehand: every step takes a sixth of what is left.
+  double left = 1;
+  auto step = [&] {
+    progress(left / 6);
+    left *= 5.0 / 6;
+  };
+  auto take = [&](double quality) {
+    Trial t = attempt(source, reference, quality);
     result.fit = std::move(t.fit);
     result.l1 = t.l1;
   };
+  const size_t around = target.max_bytes ? container(source) : 0;
   if (target.max_l1 <= 0 && target.max_bytes == 0) {
-    take(attempt(source, reference, kDefaultQuality));
-    return result;
+    take(kDefaultQuality);
+  } else {
+    const double finest = std::log(kFinest), coarsest = std::log(kCoarsest);
+    double fits = finest,
+           keeps = coarsest;  // log of the finest quality that fits, of the coarsest that keeps the error
+    if (target.max_bytes)
+      fits = -last_within(-coarsest, -finest, -std::log(kDefaultQuality), [&](double x) {
+        step();
+        return std::log(static_cast<double>(bytes_of(encode_aligned(source, std::exp(-x))) + around) /
+                        static_cast<double>(target.max_bytes));
+      });
+    if (target.max_l1 > 0)
+      keeps = last_within(finest, coarsest, std::log(5 * target.max_l1), [&](double x) {
+        step();
+        return std::log(attempt(source, reference, std::exp(x)).l1 / target.max_l1);
+      });
+    take(std::exp(target.max_l1 > 0 ? std::max(keeps, fits) : fits));  // the error decides as long as it fits
   }
-  // The finest quality that fits the size.
-  double finest = kFinest;
-  const size_t room = target.max_bytes > target.overhead ? target.max_bytes - target.overhead : 0;
-  if (target.max_bytes) {
-    auto fits = [&](double quality) {
-      return encode_sheets(source, quality).size() + 1500 + source.totals().magnitudes.size() / 2 <= room;
-    };
-    double low = std::log(kFinest), high = std::log(kCoarsest);
-    if (fits(kFinest)) {
-      high = low;
-    } else {
-      for (int i = 0; i < kSteps; ++i, report()) (fits(std::exp(0.5 * (low + high))) ? high : low) = 0.5 * (low + high);
-    }
-    finest = std::exp(high);
-    take(attempt(source, reference, finest));
-    result.bytes_met = bytes_of(result.fit) <= room;
-    if (target.max_l1 <= 0) return result;
-  }
-  // The coarsest quality that keeps the error.
-  Trial best = attempt(source, reference, finest);
-  result.error_met = best.l1 <= target.max_l1;
-  if (result.error_met) {
-    double low = std::log(finest), high = std::log(kCoarsest);
-    for (int i = 0; i < kSteps; ++i, report()) {
-      Trial t = attempt(source, reference, std::exp(0.5 * (low + high)));
-      const bool kept = t.l1 <= target.max_l1;
-      (kept ? low : high) = 0.5 * (low + high);
-      if (kept && bytes_of(t.fit) <= bytes_of(best.fit)) best = std::move(t);
-    }
-  }
-  take(std::move(best));
+  result.error_met = target.max_l1 <= 0 || result.l1 <= target.max_l1;
+  result.bytes_met = !target.max_bytes || bytes_of(result.fit) + around <= target.max_bytes;
+  progress(left);
   return result;
+}
+
+}  // namespace
+
+FitResult fit_to(const Function& function, const Reference& reference, const AlignedSource::Options& options,
+                 const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,
+                 const std::function<void(double)>& progress) {
+  auto part = [&](double share) {
+    return [&progress, share](double fraction) {
+      if (progress) progress(share * fraction);
+    };
+  };
+  auto fit = [&](const AlignedSource::Options& o, double share) {
+    return fit_from(std::make_unique<AlignedSource>(function, o, part(0.5 * share)), reference, target, container,
+                    part(0.5 * share));
+  };
+  if (target.max_l1 > 0) return fit(suited(options, target.max_l1), 1);
+  if (!target.max_bytes) return fit(options, 1);
+  FitResult plain = fit(options, 0.5);
+  FitResult other = fit(suited(options, plain.l1), 0.5);
+  return other.bytes_met >= plain.bytes_met && other.l1 < plain.l1 ? std::move(other) : std::move(plain);
 }
 
 }  // namespace suite::sqt

@@ -12,20 +12,28 @@ inline constexpr double kDefaultQuality = 0.08;  // log2 units
 
 struct FitTarget {
   double max_l1 = 0;     // cosine-weighted relative L1 over all channels; 0 = none
-  size_t max_bytes = 0;  // of trees and totals together with `overhead`; 0 = none
-  size_t overhead = 0;   // bytes the container adds
+  size_t max_bytes = 0;  // of the whole file; 0 = none
 };
 
 struct FitResult {
+  std::unique_ptr<AlignedSource> source;
   AlignedFit fit;
   double l1 = 0;
   bool error_met = true, bytes_met = true;
 };
 
-// No target: the default quality. max_l1: the smallest file found whose l1 keeps it. max_bytes: the best that fits.
+// Options under which a source can keep an error: views dense enough that interpolating between them costs a part of it
+// only, cells asked as finely as it needs, and both mirror images of bilateral data kept when their noise differs by
+// more.
+AlignedSource::Options suited(AlignedSource::Options options, double l1);
+
+// No target: the default quality. max_l1: the smallest file found whose l1 keeps it, from a source suited to it.
+// max_bytes: the best that fits, from the better of a source of `options` and one suited to the error reached with it.
 // Both: the smallest file that keeps the error, if it also keeps the size; else the best that fits, error_met = false.
-// A promise that cannot be kept gives the nearest result and the flag. progress(fraction) may be null.
-FitResult fit_to(const AlignedSource& source, const Reference& reference, const FitTarget& target,
+// A promise that cannot be kept gives the nearest result and the flag.
+// container: bytes a file takes beside trees and totals. progress(fraction) may be null.
+FitResult fit_to(const Function& function, const Reference& reference, const AlignedSource::Options& options,
+                 const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,
                  const std::function<void(double)>& progress = {});
 
 }  // namespace suite::sqt

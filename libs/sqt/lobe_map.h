@@ -11,6 +11,7 @@
 // Based on: S. Rusinkiewicz, "A new change of variables for efficient BRDF representation", EGWR 1998 (half vector);
 // the Jacobian is Torrance & Sparrow's 4 cos (JOSA 57, 1967).
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "math/vec.h"
@@ -40,8 +41,13 @@ class LobeMap {
   }
   // Solid angle of incident directions per solid angle of the divided sphere.
   double stretch(Dir d) const { return reflects() ? 4 * std::fabs(dot(d, out_)) : 1.0; }
-  // Cosine of the incident direction (positive on this sheet's side) for surfaces.
-  double cosine(Dir d) const { return reflects() ? 2 * dot(d, out_) * d.z - out_.z : d.z; }
+  // Cosine of the incident direction (positive on this sheet's side) for surfaces. Half vectors lie above the horizon:
+  // below it d and -d name the same incident direction, so such a d stands for nothing (cosine at most 0).
+  double cosine(Dir d) const {
+    if (!reflects()) return d.z;
+    const double along = dot(d, out_);
+    return 2 * (d.z > 0 ? along : std::max(along, 0.0)) * d.z - out_.z;
+  }
 
  private:
   LobeFrame frame_;

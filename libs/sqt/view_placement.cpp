@@ -48,7 +48,8 @@ Look look(const Function& function, LobeFrame frame, double theta) {
 
 }  // namespace
 
-std::vector<double> place_views(const Function& function, LobeFrame frame, size_t count, double last, double allowed) {
+std::vector<double> place_views(const Function& function, LobeFrame frame, size_t count, size_t most, double last,
+                                double allowed) {
   std::vector<Look> looks(kDense);
   const double step = last / (kDense - 1);
   parallel_for(0, kDense, 1, [&](size_t begin, size_t end) {
@@ -82,7 +83,8 @@ std::vector<double> place_views(const Function& function, LobeFrame frame, size_
   }
   if (!count)
     count = static_cast<size_t>(
-        std::clamp(std::ceil(std::sqrt(std::pow(cumulative.back(), 3) / (8 * allowed * weights))) + 1, 9.0, 25.0));
+        std::clamp(std::ceil(std::sqrt(std::pow(cumulative.back(), 3) / (8 * allowed * weights))) + 1, 9.0,
+                   static_cast<double>(std::max<size_t>(most, 9))));
   std::vector<double> nodes;
   size_t j = 0;
   for (size_t n = 0; n < count; ++n) {
@@ -92,6 +94,8 @@ std::vector<double> place_views(const Function& function, LobeFrame frame, size_
     nodes.push_back(step * (static_cast<double>(j) + std::clamp(t, 0.0, 1.0)));
   }
   nodes.back() = last;
+  // Whole units of 1e-7 rad (0.02 arc seconds), so that seven digits say all.
+  for (double& theta : nodes) theta = std::round(1e7 * theta) / 1e7;
   return nodes;
 }
 

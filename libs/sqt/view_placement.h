@@ -12,7 +12,8 @@
 namespace suite::sqt {
 
 // Ascending polar angles from 0 to `last`, rad. count = 0: as many as an interpolation error of `allowed` (mean over
-// directions, log2 units, weighed by their share of the scattered power) asks for, between 9 and 25.
-std::vector<double> place_views(const Function& function, LobeFrame frame, size_t count, double last, double allowed);
+// directions, log2 units, weighed by their share of the scattered power) asks for, between 9 and `most`.
+std::vector<double> place_views(const Function& function, LobeFrame frame, size_t count, size_t most, double last,
+                                double allowed);
 
 }  // namespace suite::sqt

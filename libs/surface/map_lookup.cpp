@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/curvature.h"
+
 namespace suite {
 
 namespace {
@@ -55,7 +57,8 @@ float first_channel(const PropertyMap& map, const Taps& taps) {
 
 Vec2 pixel_of(Projection projection, const Drape& drape, uint32_t width, uint32_t height, const MapPlace& place) {
   if (projection == Projection::uv) return {place.uv.x * width, (1 - place.uv.y) * height};
-  return {(place.position.x - drape.origin_x) / drape.gsd_x, (drape.origin_y - place.position.y) / drape.gsd_y};
+  const Vec3 p = drape.plane ? drape.plane->point(place.position) : place.position;
+  return {(p.x - drape.origin_x) / drape.gsd_x, (drape.origin_y - p.y) / drape.gsd_y};
 }
 
 long extended(double position, uint32_t size, Drape::Extend rule) {

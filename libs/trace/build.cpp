@@ -16,6 +16,7 @@ namespace {
 // Shares the scene's arrays with Embree; the pad float behind the vertices allows its 16-byte loads.
 // holes: hits are put to the filter. object: whose geometry it is, for one that no instances share.
 void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint32_t object = kNone) {
+  mesh.require();
   RTCGeometry g = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, 12,
                              mesh.vertex_count());
@@ -80,9 +81,13 @@ void Tile::build(const World& world) {
       if (const uint32_t m = world.flat.objects[i].mesh; m != kNone) meshes.push_back(m);
   std::sort(meshes.begin(), meshes.end());
   meshes.erase(std::unique(meshes.begin(), meshes.end()), meshes.end());
-  parallel_for(0, meshes.size(), 1, [&](size_t b, size_t e) {
+  parallel_for(0, meshes.size() + direct.size(), 1, [&](size_t b, size_t e) {
     const FlushDenormals flush_too;
-    for (size_t i = b; i < e; ++i) world.mesh_scene(meshes[i]);
+    for (size_t i = b; i < e; ++i)
+      if (i < meshes.size())
+        world.mesh_scene(meshes[i]);
+      else
+        world.scene->meshes[world.flat.objects[direct[i - meshes.size()]].mesh].require();
   });
   handle.scene = new_scene();
   for (uint32_t id = 0; id < direct.size(); ++id)

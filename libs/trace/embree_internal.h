@@ -219,6 +219,7 @@ class PacketTracer {
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
   TraceContext context(const Packet& packet) const;
+  void prefetch(const Tile& tile, const Packet& packet, const RTCRayHit8& rh, uint32_t* object_of) const;
   void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v,
               Hit& hit) const;
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;

@@ -38,6 +38,28 @@ void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int*
   }
 }
 
+// Finds the objects that were hit. Triangles met far apart are not in the caches: all are sent for before the first is
+// waited for.
+void PacketTracer::prefetch(const Tile& tile, const Packet& packet, const RTCRayHit8& rh, uint32_t* object_of) const {
+  const uint32_t* corners[kWidth];
+  for (uint32_t i = 0; i < packet.size; ++i) {
+    corners[i] = nullptr;
+    const uint32_t id = rh.hit.geomID[i];
+    if (id == RTC_INVALID_GEOMETRY_ID) continue;
+    const size_t lone = tile.direct.size();
+    object_of[i] = id < lone ? tile.direct[id] : tile.sets[id - lone]->objects[rh.hit.instID[0][i]];
+    const uint32_t mesh = world_.flat.objects[object_of[i]].mesh;
+    if (mesh == kNone) continue;
+    corners[i] = &world_.scene->meshes[mesh].indices[3 * size_t{rh.hit.primID[i]}];
+    __builtin_prefetch(corners[i]);
+  }
+  for (uint32_t i = 0; i < packet.size; ++i) {
+    if (!corners[i]) continue;
+    const Mesh& mesh = world_.scene->meshes[world_.flat.objects[object_of[i]].mesh];
+    for (int c = 0; c < 3; ++c) __builtin_prefetch(&mesh.positions[3 * size_t{corners[i][c]}]);
+  }
+}
+
 void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits) {
   TraceContext c = context(packet);
   alignas(32) RTCRayHit8 rh;
@@ -47,12 +69,14 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit
   const uint64_t start = __rdtsc();
   rtcIntersect8(valid, tile.handle.scene, &c, &rh);
   statistics_.cycles += __rdtsc() - start;
+  uint32_t object_of[kWidth];
+  prefetch(tile, packet, rh, object_of);
   for (uint32_t i = 0; i < packet.size; ++i) {
     const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
     if (id == RTC_INVALID_GEOMETRY_ID) continue;
     reach_[r] = packet.advance[i] + double{rh.ray.tfar[i]};
     const bool direct = id < tile.direct.size();
-    const uint32_t object = direct ? tile.direct[id] : tile.sets[id - tile.direct.size()]->objects[rh.hit.instID[0][i]];
+    const uint32_t object = object_of[i];
     if (world_.flat.objects[object].mesh != kNone)
       finish(tile, direct, rays_[r], object, rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
     else

@@ -2,8 +2,8 @@
 // material: bytes at equal error, error at equal bytes. Every material twice: as it is, and tabulated in the MERL
 // layout.
 //   build/release/bench/sqt_compare FILE.bsdf ... [--direct]
-// The best point of the paper's curve is the one of least l1; ties go to fewer bytes. "At equal l1" searches the
-// aligned quality whose l1 does not exceed it; "at equal bytes" the one that needs no more bytes.
+// Every point of the paper's curve is answered by what sqt-fit does when asked for its error or for its bytes; headers
+// without provenance on both sides.
 #include <sys/resource.h>
 
 #include <chrono>
@@ -39,48 +39,41 @@ std::vector<Point> paper_curve(const sqt::Function& function, const sqt::Referen
   return curve;
 }
 
-std::vector<Point> aligned_curve(const sqt::AlignedSource& source, const sqt::Reference& reference) {
-  std::vector<Point> curve;
-  for (double quality = 0.005; quality < 6; quality *= 1.5) {
-    const sqt::AlignedFit fit = sqt::encode_aligned(source, quality);
-    const sqt::Reference::Brief e = reference.brief(*sqt::make_bundle(fit.data));
-    curve.push_back({quality, pack_sqt(fit, {}, {}).size(), e.l1, e.cos_rmse});
-  }
-  return curve;
+// The aligned method held to a target, as sqt-fit does it.
+Point aligned(const sqt::Function& function, const sqt::Reference& reference, const sqt::FitTarget& target) {
+  const sqt::FitResult r = sqt::fit_to(function, reference, {}, target, [](const sqt::AlignedSource& source) {
+    const sqt::AlignedFit first = sqt::encode_aligned(source, 1.0);
+    return pack_sqt(first, {}, {}).size() - first.sheets_bytes.size() - first.totals_bytes.size();
+  });
+  const sqt::Reference::Brief e = reference.brief(*sqt::make_bundle(r.fit.data));
+  return {r.fit.data.layout.quality, r.error_met && r.bytes_met ? pack_sqt(r.fit, {}, {}).size() : 0, e.l1, e.cos_rmse};
 }
 
 void compare(const char* kind, const std::string& name, const sqt::Function& function) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
   const sqt::Reference reference(function, 150000);
-  const sqt::AlignedSource source(function, {});
-  const sqt::FitResult plain = sqt::fit_to(source, reference, {});
+  const Point plain = aligned(function, reference, {});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double busy = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const sqt::ErrorFigures e = reference.measure(*sqt::make_bundle(plain.fit.data)).back();
   std::printf(
-      "%s %s\n  aligned at default quality: %zu bytes  l1 %.2f %%  cos_rmse %.2f %%  total_error %.2f %%  max_weight "
-      "%.1f  fit %.1f s (cpu %.1f s), peak %.0f MiB so far\n",
-      kind, name.c_str(), pack_sqt(plain.fit, {}, {}).size(), 100 * e.l1, 100 * e.cos_rmse, 100 * e.total_error,
-      e.max_weight, seconds, busy, static_cast<double>(usage.ru_maxrss) / 1024);
-  const std::vector<Point> aligned = aligned_curve(source, reference);
+      "%s %s\n  aligned at default quality: %zu bytes  l1 %.2f %%  cos_rmse %.2f %%  fit %.1f s (cpu %.1f s), peak "
+      "%.0f MiB so far\n",
+      kind, name.c_str(), plain.bytes, 100 * plain.l1, 100 * plain.cos_rmse, seconds, busy,
+      static_cast<double>(usage.ru_maxrss) / 1024);
   std::printf("  %-34s | %-30s | %s\n", "paper: threshold bytes l1 cos_rmse", "aligned at equal l1: bytes ratio",
               "aligned at equal bytes: l1 ratio, cos_rmse ratio");
   for (const Point& p : paper_curve(function, reference)) {
-    const Point *small = nullptr, *good = nullptr;  // smallest that is as good; best that is as small
-    for (const Point& a : aligned) {
-      if (a.l1 <= p.l1 && (!small || a.bytes < small->bytes)) small = &a;
-      if (a.bytes <= p.bytes && (!good || a.l1 < good->l1)) good = &a;
-    }
     std::printf("  %5.2f %9zu %6.2f %% %6.2f %%   | ", p.knob, p.bytes, 100 * p.l1, 100 * p.cos_rmse);
-    if (small)
-      std::printf("%9zu  1/%-18.1f | ", small->bytes, static_cast<double>(p.bytes) / static_cast<double>(small->bytes));
+    const Point small = aligned(function, reference, {p.l1, 0}), good = aligned(function, reference, {0, p.bytes});
+    if (small.bytes)
+      std::printf("%9zu  1/%-18.1f | ", small.bytes, static_cast<double>(p.bytes) / static_cast<double>(small.bytes));
     else
       std::printf("%-30s | ", "not reached");
-    if (good)
-      std::printf("%6.2f %%  1/%.1f  1/%.1f\n", 100 * good->l1, p.l1 / good->l1, p.cos_rmse / good->cos_rmse);
+    if (good.bytes)
+      std::printf("%6.2f %%  1/%.1f  1/%.1f\n", 100 * good.l1, p.l1 / good.l1, p.cos_rmse / good.cos_rmse);
     else
       std::printf("none so small\n");
     std::fflush(stdout);

@@ -62,6 +62,7 @@ class TerrainCamera final : public Sensor {
     state_ = make_state(bands_, 0.01);
     Capture c;
     c.columns = c.rows = edge;
+    pixel_ = 2 * 0.57735026918962576 / edge;
     c.convergence.min_paths = c.convergence.max_paths = paths;
     tasks_.push_back({"terrain", {}, {c}});
     forward_ = normalized(-position_);
@@ -74,10 +75,11 @@ class TerrainCamera final : public Sensor {
   std::span<const Task> tasks() const override { return tasks_; }
   SensorRay ray(const RayRequest& request) const override {
     const auto& [c, problem, u, spectral] = request;
-    const double half = 0.57735026918962576, edge = c.columns;  // tan 30 degrees
-    const double x = (2 * (static_cast<double>(problem % c.columns) + u[0]) / edge - 1) * half;
-    const double y = (2 * (static_cast<double>(problem / c.columns) + u[1]) / edge - 1) * half;
-    return {{position_, normalized(forward_ + right_ * x + down_ * y), 0}, 1};
+    const auto n = static_cast<uint32_t>(problem);
+    const double half = 0.57735026918962576, step = pixel_;  // tan 30 degrees
+    const double x = (n % c.columns + u[0]) * step - half, y = (n / c.columns + u[1]) * step - half;
+    const Vec3 d = forward_ + right_ * x + down_ * y;
+    return {{position_, d * (1 / length(d)), 0}, 1};
   }
   void accept(CaptureResult&& r) override { result = std::move(r); }
   CaptureResult result;
@@ -86,6 +88,7 @@ class TerrainCamera final : public Sensor {
   std::vector<Band> bands_;
   SpectralState state_;
   std::vector<Task> tasks_;
+  double pixel_ = 0;  // width at distance 1
   Vec3 position_{0, -600, 500}, forward_, right_, down_;
 };
 

@@ -86,6 +86,21 @@ TEST_F(FuzzScene, PreparedScene) {
              as_file("s.h5", [](const std::string& path) { check_scene(read_scene(path), path); }), 2);
 }
 
+TEST_F(FuzzScene, PackedScene) {
+  Report report(scene_issues());
+  write_file(folder_ / "s.yaml", kText);
+  Scene scene = bake_scene(read_scene_text(folder_ / "s.yaml", {}, report), report);
+  ASSERT_TRUE(report.ok()) << report.text();
+  std::vector<std::byte> content(9000);
+  for (size_t k = 0; k < content.size(); ++k) content[k] = std::byte(k * k >> 7 & 0xff);
+  scene.files.push_back({"data", content});
+  Compression all;
+  all.add("deflate");
+  write_scene(scene, {"g", "a", "h", {{"", "00"}}}, folder_ / "packed.h5", all);
+  test::fuzz(read_bytes(folder_ / "packed.h5"),
+             as_file("s.h5", [](const std::string& path) { check_scene(read_scene(path), path); }), 22, 3000);
+}
+
 TEST_F(FuzzScene, GeoTiff) {
   const auto read = [](const std::string& path) {
     read_raster(path, 1 << 22);

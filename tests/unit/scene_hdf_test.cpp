@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <thread>
+
 #include "base/files.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "support/message_of.h"
@@ -131,6 +134,140 @@ TEST_F(SceneHdf, SameSceneSameBytes) {
 
 // Two Lambert plates with texture coordinates, layers, a temperature and a long cube: a camera that sees 0.5 to 0.6 um
 // needs the geometry only.
+// A wavy sheet: large enough that its arrays are packed in several pieces.
+Scene large_scene() {
+  Scene s = small_scene();
+  Mesh& m = s.meshes[1];
+  m.positions.clear(), m.indices.clear();
+  constexpr uint32_t n = 300;
+  for (uint32_t j = 0; j < n; ++j)
+    for (uint32_t i = 0; i < n; ++i)
+      for (const float x : {float(i), float(j), std::sin(0.1f * float(i)) * std::cos(0.07f * float(j))})
+        m.positions.push_back(x);
+  m.positions.push_back(0);
+  for (uint32_t j = 0; j + 1 < n; ++j)
+    for (uint32_t i = 0; i + 1 < n; ++i)
+      for (const uint32_t v : {j * n + i, j * n + i + 1, (j + 1) * n + i}) m.indices.push_back(v);
+  m.parts = {{"", 0, static_cast<uint32_t>(m.triangle_count()), kNone}};
+  s.bounds = scene_bounds(s);
+  return s;
+}
+
+TEST_F(SceneHdf, PackedDatasetsHoldTheSameAndRepeat) {
+  const Scene s = large_scene();
+  const Provenance made{"gen 1", "args", "hash", {}};
+  const auto size_with = [&](std::initializer_list<const char*> how) {
+    Compression c;
+    for (const char* h : how) c.add(h);
+    const std::string path = folder_ / "packed.h5", again = folder_ / "again.h5";
+    write_scene(s, made, path, c);
+    write_scene(s, made, again, c);
+    EXPECT_EQ(read_bytes(path), read_bytes(again));
+    const Scene b = read_scene(path);
+    for (size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(b.meshes[k].positions, s.meshes[k].positions);
+      EXPECT_EQ(b.meshes[k].indices, s.meshes[k].indices);
+      EXPECT_EQ(b.meshes[k].normals, s.meshes[k].normals);
+    }
+    return file_size(path);
+  };
+  const size_t plain = size_with({}), none = size_with({"none"}), all = size_with({"deflate"}),
+               hard = size_with({"deflate:9"}), indices = size_with({"/geometry/indices=deflate:6"}),
+               but_indices = size_with({"deflate", "/geometry/indices=none"});
+  EXPECT_EQ(plain, none);
+  EXPECT_LE(hard, all);
+  EXPECT_LT(all, plain / 2);
+  EXPECT_LT(indices, plain);
+  EXPECT_LT(all, but_indices);
+  EXPECT_LT(but_indices, plain);
+  // indices + the rest = all, up to the library's bookkeeping
+  EXPECT_NEAR(double(plain) - double(all), 2 * double(plain) - double(indices) - double(but_indices), 4096.0);
+}
+
+// Arrays that wait are read once a mesh, when asked for, checked then, and are the same; from any thread.
+TEST_F(SceneHdf, ArraysAreReadWhenAskedFor) {
+  const Scene s = large_scene();
+  const std::string path = folder_ / "later.h5";
+  write_scene(s, {}, path);
+  SceneNeeds needs;
+  needs.later_from = 0;
+  LoadReport report;
+  const Scene b = read_scene(path, {}, needs, &report);
+  ASSERT_TRUE(report.later);
+  EXPECT_EQ(std::count(report.datasets.begin(), report.datasets.end(), "/geometry/positions"), 0);
+  EXPECT_EQ(report.later->meshes, 2u);
+  EXPECT_EQ(report.later->meshes_read, 0u);
+  EXPECT_THAT(report.text(), HasSubstr("geometry             later"));
+  EXPECT_TRUE(b.meshes[1].positions.empty());
+  EXPECT_EQ(b.meshes[1].vertex_count(), s.meshes[1].vertex_count());
+  EXPECT_EQ(b.meshes[1].triangle_count(), s.meshes[1].triangle_count());
+  EXPECT_EQ(mesh_box(b.meshes[1]).high, mesh_box(s.meshes[1]).high);
+  EXPECT_EQ(scene_bounds(b).low, scene_bounds(s).low);
+  EXPECT_EQ(report.later->meshes_read, 0u);
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k) threads.emplace_back([&] { b.meshes[1].require(); });
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(report.later->meshes_read, 1u);
+  EXPECT_EQ(report.later->read, 12 * (s.meshes[1].vertex_count() + s.meshes[1].triangle_count()));
+  EXPECT_EQ(b.meshes[1].positions, s.meshes[1].positions);
+  EXPECT_EQ(b.meshes[1].indices, s.meshes[1].indices);
+  EXPECT_TRUE(b.meshes[0].positions.empty());
+  b.meshes[0].require();
+  EXPECT_EQ(b.meshes[0].uvs, s.meshes[0].uvs);
+  // Less than the limit is read at once.
+  needs.later_from = uint64_t{1} << 30;
+  EXPECT_FALSE(read_scene(path, {}, needs).meshes[1].positions.empty());
+}
+
+TEST_F(SceneHdf, DamageIsFoundWhenArraysAreRead) {
+  const Scene s = large_scene();
+  const std::string path = folder_ / "later.h5";
+  write_scene(s, {}, path);
+  std::vector<std::byte> bytes = read_bytes(path);
+  // The x of vertices 299 and 599 of the sheet is 299, its largest; one of all is moved beyond the box.
+  const float largest = 299;
+  const auto* want = reinterpret_cast<const std::byte*>(&largest);
+  const auto at = std::search(bytes.begin(), bytes.end(), want, want + 4);
+  ASSERT_NE(at, bytes.end());
+  const float wrong = 2990;
+  std::copy_n(reinterpret_cast<const std::byte*>(&wrong), 4, at);
+  write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  SceneNeeds needs;
+  needs.later_from = 0;
+  const Scene b = read_scene(path, {}, needs);
+  EXPECT_THAT(message_of([&] { b.meshes[1].require(); }), HasSubstr("it is not as large as was said of it"));
+}
+
+TEST_F(SceneHdf, CompressionsAreCheckedAndDamageIsRefused) {
+  Compression c;
+  for (const char* wrong : {"zip", "deflate:0", "deflate:10", "/geometry=", "=deflate", "/=deflate", "deflate:", ""})
+    EXPECT_THAT(message_of([&] { c.add(wrong); }), HasSubstr("compression '")) << wrong;
+  c.add("/geometri=deflate");
+  EXPECT_THAT(message_of([&] { write_scene(large_scene(), {}, folder_ / "x.h5", c); }),
+              HasSubstr("no dataset '/geometri'"));
+  EXPECT_FALSE(file_exists(folder_ / "x.h5"));
+  Compression all;
+  all.add("deflate");
+  const std::string path = folder_ / "packed.h5";
+  write_scene(large_scene(), {}, path, all);
+  // Every byte of the packed pieces is under the checksum of its stream.
+  std::vector<std::byte> bytes = read_bytes(path);
+  size_t refused = 0, tried = 0;
+  for (size_t at = bytes.size() / 4; at < bytes.size() * 3 / 4; at += bytes.size() / 40) {
+    bytes[at] ^= std::byte{0x10};
+    write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    bytes[at] ^= std::byte{0x10};
+    ++tried;
+    try {
+      read_scene(path);
+    } catch (const Error& e) {
+      ++refused;
+      EXPECT_THAT(e.what(), HasSubstr("packed.h5"));
+    }
+  }
+  EXPECT_EQ(refused, tried);
+}
+
 TEST_F(SceneHdf, OnlyWhatIsNeededIsRead) {
   Scene s = small_scene();
   s.class_maps.clear(), s.map_bindings.clear(), s.property_maps.clear(), s.property_bindings.clear(), s.files.clear();

@@ -56,9 +56,7 @@ TEST(Totals, AgreeWithTheIntegralOfEval) {
         }
       std::printf("%-16s roughness %-6g worst relative error of total %.1e at %g deg\n", row.name.c_str(),
                   spec.numbers.count("roughness") ? spec.numbers["roughness"] : 0.0, worst, worst_deg);
-      // Known defect: a fitted bundle misses the bound of 1e-3 at 89.9 degrees, by up to 1.3e-3 in this example.
-      const double bound = row.name == "sqt" && std::fabs(worst_deg) > 89.5 ? 2e-3 : 1e-3;
-      EXPECT_LT(worst, bound) << row.name << " at " << worst_deg << " deg";
+      EXPECT_LT(worst, 1e-3) << row.name << " at " << worst_deg << " deg";
     }
 }
 

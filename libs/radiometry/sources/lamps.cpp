@@ -212,6 +212,7 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
       const uint32_t spec = carried(part.material);
       if (spec == kNone) continue;
       std::vector<uint32_t>& map = shape_of_triangle[o];
+      mesh.require();
       map.resize(mesh.triangle_count(), kNone);
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
         map[t] = add_surface(shape_of(mesh, t, place), spec, o, tracer);
@@ -253,28 +254,37 @@ std::optional<LampSample> Lamps::sample(const LightReceiver& at, double choice, 
   if (!core_->tree) return std::nullopt;
   const auto chosen = core_->tree->sample(at, choice);
   if (!chosen) return std::nullopt;
-  const LampShape& s = core_->shapes[chosen->light];
+  return sample_one(chosen->light, chosen->probability, at.position, u);
+}
+
+std::optional<LampSample> Lamps::sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
+  const LampShape& s = core_->shapes[lamp];
   LampSample r;
   r.spectrum = core_->spectra[s.spec].data();
   if (s.kind == Kind::point) {
-    const Vec3 to = s.origin - at.position;
+    const Vec3 to = s.origin - from;
     r.distance = length(to);
     if (!(r.distance > 0)) return std::nullopt;
     r.direction = to / r.distance;
     r.end = s.origin;
     r.scale = relative_intensity(core_->specs[s.spec], core_->frames[s.spec].to_local(-r.direction)) /
-              (r.distance * r.distance * chosen->probability);
+              (r.distance * r.distance * probability);
     if (!(r.scale > 0)) return std::nullopt;
     return r;
   }
-  const auto point = draw(s, at.position, u);
+  const auto point = draw(s, from, u);
   if (!point) return std::nullopt;
   r.direction = point->direction;
   r.distance = point->distance;
-  r.density = point->density * chosen->probability;
+  r.density = point->density * probability;
   r.scale = 1;
   r.end = point->position + point->normal * double{point->cosine > 0 ? s.step : -s.step};
   return r;
+}
+
+bool Lamps::draws(const Hit& hit) const {
+  const auto of_object = core_->shape_of_triangle.find(hit.object);
+  return of_object != core_->shape_of_triangle.end() && of_object->second[hit.triangle] != kNone;
 }
 
 double Lamps::density(const LightReceiver& at, const Hit& hit, double distance, double cosine) const {

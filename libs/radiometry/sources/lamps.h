@@ -68,6 +68,10 @@ class Lamps {
 
   // u: choice, then two numbers for the place on the lamp.
   std::optional<LampSample> sample(const LightReceiver& at, double choice, Vec2 u) const;
+  // A point on one lamp (0..size() - 1) that was chosen with a probability.
+  std::optional<LampSample> sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
+  // Whether sample() may draw the surface that a ray met.
+  bool draws(const Hit& hit) const;
   // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
   const float* glow(uint32_t material, bool front) const;
   // Density, 1/sr, with which sample() draws the direction from `at` towards the point `hit` of a glowing surface,

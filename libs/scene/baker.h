@@ -1,0 +1,69 @@
+// What turns a Draft into a Scene, step by step; internal to bake.cpp and bake_materials.cpp.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "motion/time_span.h"
+#include "scene/bake.h"
+
+namespace suite {
+
+template <class Table, class Name>
+std::vector<std::string> names_of(const Table& table, Name name) {
+  std::vector<std::string> names;
+  for (const auto& row : table) names.push_back(name(row));
+  return names;
+}
+
+class Baker {
+ public:
+  Baker(const Draft& draft, Report& report) : draft_(draft), report_(report) {}
+
+  Scene run();
+
+ private:
+  // What a geometry became: the targets a placement of it places.
+  struct Built {
+    TargetKind kind;
+    uint32_t first, count;
+    const TerrainGrid* terrain = nullptr;
+  };
+
+  void add(const char* code, const Where& where, const std::string& message) {
+    report_.add(code, draft_.file, {where, message});
+  }
+
+  uint32_t material_id(const Reference& ref);
+  void materials();
+  void check_coverage(const DraftMaterial& m);
+  void class_maps();
+  void property_maps();
+  void check_parts(const PropertyMap& map, const Where& where);
+  void geometry();
+  Built build_mesh(const DraftGeometry& g);
+  SourceTerrain on_plane(const SourceTerrain& terrain) const;
+  void curve();
+  Built build_terrain(const DraftGeometry& g);
+  Built build_primitive(const DraftGeometry& g);
+  void groups();
+  std::vector<size_t> group_order();
+  std::optional<Built> target(const Reference& ref);
+  std::vector<Affine3> transforms(const DraftPlacement& p);
+  bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
+  void place(const DraftPlacement& p, Group& group, bool world);
+  TimeSpan time_window();
+  void unused();
+
+  const Draft& draft_;
+  Report& report_;
+  Scene scene_;
+  std::map<std::string, uint32_t> material_ids_, map_ids_, tag_ids_, group_ids_;
+  std::map<std::string, Built> built_;
+  std::vector<std::unique_ptr<TerrainGrid>> terrains_;
+  std::vector<Where> motion_where_;  // of scene_.tracks
+  std::set<std::string> used_materials_, used_maps_, used_targets_;
+};
+
+}  // namespace suite
