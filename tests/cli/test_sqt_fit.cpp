@@ -42,7 +42,7 @@ TEST(SqtFitCli, KeepsASize) {
 
 TEST(SqtFitCli, DrawsErrorAgainstSizeAndSeconds) {
   const TempFolder folder;
-  const CommandResult r = run_command(kFit + kWard + "-q --views 9 --order 6 --curve " + (folder / "c.csv"));
+  const CommandResult r = run_command(kFit + kWard + "-q --curve " + (folder / "c.csv"));
   ASSERT_EQ(r.code, 0) << r.err;
   const std::string csv = read_text(folder / "c.csv"), page = read_text(folder / "c.html");
   EXPECT_EQ(csv.rfind("method,knob,bytes,leaves,seconds,l1,cos_rmse,rmse\n", 0), 0u);
