@@ -326,17 +326,23 @@ void read_maps(Reader& r, Scene& s) {
 void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> bundles;
   const Where where{path, 0, 0, {}, -1};
-  for (Medium& m : s.media) check_medium(m, where);
+  const auto load = [&](ModelSpec& spec, const std::string& whose) {
+    const auto file = spec.texts.find("file");
+    if (file == spec.texts.end()) return;
+    const auto found =
+        std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
+    if (found == s.files.end())
+      throw Error(where, whose + " names a file that is not in the scene", "prepare the scene again");
+    if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
+    if (decode) spec.bundle = bundles[found->name];
+  };
+  for (Medium& m : s.media) {
+    load(m.phase, "medium '" + m.id + "'");
+    check_medium(m, where);
+  }
   for (Material& m : s.materials) {
     if (m.surface.model.empty()) continue;
-    if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
-      const auto found =
-          std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
-      if (found == s.files.end())
-        throw Error(where, "material '" + m.id + "' names a file that is not in the scene", "prepare the scene again");
-      if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
-      if (decode) m.surface.bundle = bundles[found->name];
-    }
+    load(m.surface, "material '" + m.id + "'");
     check_model(m.surface, where);
   }
 }

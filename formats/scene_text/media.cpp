@@ -54,7 +54,7 @@ void Reader::read_phase(const Params& p, ModelSpec& spec) {
     else if (parameter.kind == ModelParameter::Kind::curve)
       spec.curves[parameter.name] = read_curve_value(*value);
     else
-      spec.texts[parameter.name] = value->as_text();
+      spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
   }
   check_phase(spec, model.where());
 }
@@ -167,7 +167,9 @@ void Reader::read_grid(const std::string& name, const Params& p) {
 }
 
 void Reader::read_volume(const Params& p) {
-  draft_.volumes.push_back({p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{})});
+  DraftVolume v{p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{}), nullptr, {}};
+  if (const auto motion = p.find("motion")) v.motion = read_motion(*motion, true), v.motion_where = motion->where();
+  draft_.volumes.push_back(std::move(v));
 }
 
 void Reader::read_voxel_geometry(const Params& p, DraftGeometry& g) {

@@ -16,7 +16,7 @@ Scene Baker::run() {
   scene_.origin = draft_.origin;
   scene_.files = draft_.files;
   materials();
-  bake_media(draft_, report_, scene_);
+  bake_media(draft_, report_, scene_, motion_where_);
   class_maps();
   property_maps();
   geometry();

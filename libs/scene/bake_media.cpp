@@ -10,7 +10,8 @@ namespace {
 
 class MediaBaker {
  public:
-  MediaBaker(const Draft& draft, Report& report, Scene& scene) : draft_(draft), report_(report), scene_(scene) {}
+  MediaBaker(const Draft& draft, Report& report, Scene& scene, std::vector<Where>& motion_where)
+      : draft_(draft), report_(report), scene_(scene), motion_where_(motion_where) {}
 
   void run() {
     for (const DraftMedium& m : draft_.media) {
@@ -101,7 +102,13 @@ class MediaBaker {
       bool sound = v.to_world.determinant() != 0 && finite(v.to_world.b);
       for (const double a : v.to_world.a) sound = sound && std::isfinite(a);
       if (!sound) add("SP404", v.where, "the transform of '" + v.grid.name + "' flattens or is not finite");
-      for (const uint32_t row : found->second) scene_.volumes.push_back({row, v.to_world});
+      uint32_t track = kNone;
+      if (v.motion) {
+        track = static_cast<uint32_t>(scene_.tracks.size());
+        scene_.tracks.push_back({strf("volume '%s' (line %d)", v.grid.name.c_str(), v.motion_where.line), v.motion});
+        motion_where_.push_back(v.motion_where);
+      }
+      for (const uint32_t row : found->second) scene_.volumes.push_back({row, v.to_world, track});
     }
     for (const DraftGrid& d : draft_.grids)
       if (!placed.count(d.grid.name)) add("SP603", d.where, "voxel grid '" + d.grid.name + "' is in no volume");
@@ -110,12 +117,15 @@ class MediaBaker {
   const Draft& draft_;
   Report& report_;
   Scene& scene_;
+  std::vector<Where>& motion_where_;
   std::map<std::string, uint32_t> ids_;
   std::set<std::string> used_;
 };
 
 }  // namespace
 
-void bake_media(const Draft& draft, Report& report, Scene& scene) { MediaBaker(draft, report, scene).run(); }
+void bake_media(const Draft& draft, Report& report, Scene& scene, std::vector<Where>& motion_where) {
+  MediaBaker(draft, report, scene, motion_where).run();
+}
 
 }  // namespace suite

@@ -124,6 +124,8 @@ struct DraftVolume {
   Where where;
   Reference grid;
   Affine3 to_world;
+  std::shared_ptr<const Track> motion;  // null: at rest
+  Where motion_where;
 };
 
 struct SpectralWindow {

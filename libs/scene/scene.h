@@ -161,7 +161,8 @@ struct VoxelGrid {
 // A grid of media somewhere: it adds to whatever else is there, be it another grid, a body or the ambient medium.
 struct Volume {
   uint32_t grid = kNone;
-  Affine3 to_world;                     // the grid's own frame -> ENU
+  Affine3 to_world;                     // the grid's own frame -> ENU, or the axes of the moving body
+  uint32_t track = kNone;               // index into Scene::tracks; kNone = at rest
 };
 // A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
 struct TemperatureBinding {

@@ -36,6 +36,11 @@ TEST_F(ScenePrep, WritesSummarisesAndRepeats) {
   EXPECT_THAT(r.out, HasSubstr("[SP103] x1"));
   EXPECT_THAT(r.out, HasSubstr("verdict: accepted (0 errors, 1 warnings)"));
   EXPECT_THAT(read_text(folder_ / "r.json"), HasSubstr("\"code\": \"SP103\""));
+  // What the steps took, as a page that needs nothing else.
+  const std::string page = read_text(folder_ / "r.html");
+  for (const char* part : {"<svg", "<td>read</td>", "<td>check</td>", "<td>bake</td>", "<td>write</td>", "SP103"})
+    EXPECT_THAT(page, HasSubstr(part));
+  EXPECT_EQ(page.find("src="), std::string::npos);
   // The library once put the time of the second into every group.
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   EXPECT_EQ(run("good.yaml -o b.h5").code, 0);
