@@ -69,11 +69,12 @@ void ResultBuilder::flag_unlike_neighbours() {
   CaptureResult& r = result_;
   const long columns = r.columns, rows = r.rows;
   const size_t values = r.values_per_problem();
-  const auto variance = [&](long x, long y) {  // of one path
-    const size_t i = static_cast<size_t>(y * columns + x);
+  std::vector<double> variances(r.problems());  // of one path
+  for (size_t i = 0; i < variances.size(); ++i) {
     const double error = r.standard_error[i * values + reference_band_];
-    return std::isfinite(error) ? error * error * r.paths[i] : 0;
-  };
+    variances[i] = std::isfinite(error) ? error * error * r.paths[i] : 0;
+  }
+  const auto variance = [&](long x, long y) { return variances[static_cast<size_t>(y * columns + x)]; };
   for (long y = 0; y < rows; ++y)
     for (long x = 0; x < columns; ++x) {
       double sum = 0;

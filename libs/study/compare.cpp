@@ -30,14 +30,19 @@ void append(StudyImage& image, const std::string& sensor, std::span<const Band> 
 
 namespace {
 
-// Quantiles of Student's distribution for 1..100 degrees of freedom; beyond that the last.
+// Quantiles of Student's distribution for 1..100 degrees of freedom, beyond that the last; between whole numbers linear in
+// 1 / degrees, in which they hardly bend.
 double quantile_95(double degrees) {
   static const std::vector<double> table = [] {
     std::vector<double> t;
     for (int n = 1; n <= 100; ++n) t.push_back(student_t_quantile(0.95, n));
     return t;
   }();
-  return table[static_cast<size_t>(std::clamp(std::floor(degrees), 1.0, 100.0)) - 1];
+  degrees = std::clamp(degrees, 1.0, 100.0);
+  const double low = std::min(std::floor(degrees), 99.0);
+  const double share = (1 / low - 1 / degrees) / (1 / low - 1 / (low + 1));
+  const auto i = static_cast<size_t>(low) - 1;
+  return table[i] + share * (table[i + 1] - table[i]);
 }
 
 Comparison compare_series(const StudyImage::Series& run, const StudyImage::Series& reference, const StudyImage& image,

@@ -55,6 +55,19 @@ TEST(Study, WritesItsResultsAndGoesOn) {
   EXPECT_EQ(run_command(command + "4,8 --stop change").code, 1);
 }
 
+TEST(Method, ThePapersBringsItsRuleOfStopping) {
+  const TempFolder folder;
+  const std::string command = kBin + "dirsig-render " + prepared(folder, "smooth") + " -o " + (folder / "out");
+  const CommandResult paper = run_command(command + " --method paper");
+  EXPECT_EQ(paper.code, 0) << paper.err;
+  EXPECT_NE((paper.out + paper.err).find("one more path changed its mean"), std::string::npos) << paper.out << paper.err;
+  const CommandResult planned = run_command(command + " --method paper --stop plan");
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_EQ((planned.out + planned.err).find("one more path changed its mean"), std::string::npos);
+  EXPECT_EQ(run_command(command + " --method papr").code, 2);
+  EXPECT_EQ(run_command(command + " --method paper --stop plan --state").code, 2);
+}
+
 TEST(Study, RefusesWhatItCannotStudy) {
   const TempFolder folder;
   const std::string sim = prepared(folder, "smooth");

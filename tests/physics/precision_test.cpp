@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdio>
 
 #include "math/sampling.h"
 #include "tests/support/radiometry_kit.h"
@@ -83,7 +84,8 @@ TEST_P(Precision, NothingMissedNothingFalselyShadowed) {
   // Double itself cannot say where a line of sight from far away is to better than this.
   const double double_limit = 4 * DBL_EPSILON * (s.distance + length(s.centre));
   EXPECT_LE(p99, 2 * ulp + double_limit);
-  RecordProperty("hit_error_p99_in_ulp", std::to_string(p99 / ulp));
+  std::printf("%zu rays: %zu missed, %ld falsely shadowed, hit error p99 %.2f ulp of the half size\n", count, missed,
+              static_cast<long>(std::count(blocked.begin(), blocked.end(), 1)), p99 / ulp);
 }
 
 constexpr double kEarth = 6.378e6;
