@@ -347,11 +347,17 @@ void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   }
 }
 
+void check_kind(const Reader& r) {
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  if (const std::string version = r.text("version"); version != h5::kVersionText)
+    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+}
+
 }  // namespace
 
 Provenance read_provenance(const std::string& path) {
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  check_kind(r);
   Provenance p{r.text("generator"), r.text("arguments"), r.text("input_sha256"), {}};
   const std::vector<std::string> names = r.get_names("/inputs/name");
   const std::vector<std::string> hashes = r.get_names("/inputs/sha256", static_cast<long long>(names.size()));
@@ -361,7 +367,7 @@ Provenance read_provenance(const std::string& path) {
 
 SceneOrigin read_scene_origin(const std::string& path) {
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  check_kind(r);
   const auto o = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
   return {{o[0], o[1], o[2], o[3] != 0}, r.text("epoch_utc")};
 }
@@ -370,9 +376,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
   Loading loading;
   loading.needs = needs;
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
-  if (const std::string version = r.text("version"); version != h5::kVersionText)
-    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+  check_kind(r);
   Scene s;
   s.name = r.text("name");
   s.description = r.text("description");

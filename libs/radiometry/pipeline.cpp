@@ -20,6 +20,9 @@ void RunStatistics::merge(const RunStatistics& o) {
   trace.rays += o.trace.rays;
   trace.cycles += o.trace.cycles;
   cycles += o.cycles;
+  sensor_cycles += o.sensor_cycles;
+  path_cycles += o.path_cycles;
+  shade_cycles += o.shade_cycles;
 }
 
 Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
@@ -241,6 +244,7 @@ class Pipeline::BlockRun {
   void run_wave() {
     Wave& wave = workspace_.wave;
     const size_t bins = pipeline_.state_.size();
+    const uint64_t asked = __rdtsc();
     wave.active.clear();
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
@@ -253,13 +257,18 @@ class Pipeline::BlockRun {
       workspace_.weighted[p] = ray.spectral;
       workspace_.generator.start(wave, p, ray, stream, number);
     }
+    const uint64_t started = __rdtsc();
     workspace_.generator.complete(wave, statistics_);
+    const uint64_t completed = __rdtsc();
+    statistics_.sensor_cycles += started - asked;
+    statistics_.path_cycles += completed - started;
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
       if (sample >= end_[place]) continue;
       if (capture_.bin_by == Capture::BinBy::sun) accumulate_suns(p, place, sample);
       else accumulate(p, place, sample);
     }
+    statistics_.shade_cycles += __rdtsc() - completed;
     workspace_.lanes.clear();
   }
 

@@ -58,10 +58,27 @@ class MediaBaker {
                    name.c_str(), curve->low_um(), curve->high_um(), w.low_um, w.high_um));
   }
 
+  // Media that share cells are grids on top of each other: coefficients add up, each with its phase function.
+  void shared_grid(const DraftGrid& d, std::vector<uint32_t>& rows) {
+    for (size_t m = 0; m < d.media.size(); ++m) {
+      VoxelGrid g = d.grid;
+      g.name += " (" + d.media[m].name + ")";
+      g.media = {medium(d.media[m])};
+      for (size_t i = 0; i < g.density.size(); ++i) g.density[i] = std::min(g.density[i] * d.shares[m][i], 3e38f);
+      rows.push_back(static_cast<uint32_t>(scene_.grids.size()));
+      scene_.grids.push_back(std::move(g));
+    }
+  }
+
   void grids() {
-    std::map<std::string, uint32_t> rows;
+    std::map<std::string, std::vector<uint32_t>> rows;
     std::vector<std::string> names;
     for (const DraftGrid& d : draft_.grids) {
+      if (!d.shares.empty()) {
+        names.push_back(d.grid.name);
+        shared_grid(d, rows[d.grid.name]);
+        continue;
+      }
       VoxelGrid g = d.grid;
       for (const Reference& r : d.media) g.media.push_back(medium(r));
       for (const uint8_t k : g.kind)
@@ -70,7 +87,7 @@ class MediaBaker {
               strf("grid '%s' has a voxel of medium %u, %zu media are listed", g.name.c_str(), k, g.media.size()));
           break;
         }
-      rows[g.name] = static_cast<uint32_t>(scene_.grids.size());
+      rows[g.name] = {static_cast<uint32_t>(scene_.grids.size())};
       names.push_back(g.name);
       scene_.grids.push_back(std::move(g));
     }
@@ -85,13 +102,13 @@ class MediaBaker {
       bool sound = v.to_world.determinant() != 0 && finite(v.to_world.b);
       for (const double a : v.to_world.a) sound = sound && std::isfinite(a);
       if (!sound) add("SP404", v.where, "the transform of '" + v.grid.name + "' flattens or is not finite");
-      Volume made{found->second, v.to_world, kNone};
+      uint32_t track = kNone;
       if (v.motion) {
-        made.track = static_cast<uint32_t>(scene_.tracks.size());
+        track = static_cast<uint32_t>(scene_.tracks.size());
         scene_.tracks.push_back({strf("volume '%s' (line %d)", v.grid.name.c_str(), v.motion_where.line), v.motion});
         motion_where_.push_back(v.motion_where);
       }
-      scene_.volumes.push_back(made);
+      for (const uint32_t row : found->second) scene_.volumes.push_back({row, v.to_world, track});
     }
     for (const DraftGrid& d : draft_.grids)
       if (!placed.count(d.grid.name)) add("SP603", d.where, "voxel grid '" + d.grid.name + "' is in no volume");

@@ -220,7 +220,9 @@ class Job {
     ++report_.captures;
     report_.problems += capture.problems();
     report_.log.push_back(std::move(log));
+    const Clock::time_point handed = Clock::now();
     sensors_[item.sensor]->accept(std::move(result));
+    report_.deliver_seconds += seconds_since(handed);
   }
 
   // The bands that decide, and how much stricter than theirs the strictest target is.

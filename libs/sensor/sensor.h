@@ -103,7 +103,7 @@ struct CaptureResult {
   size_t values_per_problem() const { return channels * bins * bands; }
 };
 enum QualityFlag : uint8_t {
-  quality_heavy_tail = 1,  // a few samples dominate: the interval may not cover
+  quality_heavy_tail = 1,  // rare events: a few samples dominate, or neighbours saw what this one did not
   quality_failures = 2,    // NaN or negative samples were rejected
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
 };

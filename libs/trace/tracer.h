@@ -72,7 +72,8 @@ class Tracer {
   // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
-  // Error: a motion that does not cover the window; moving things in a periodic scene.
+  // Surfaces without bounds are not repeated but met by the whole ray.
+  // Error: a motion that does not cover the window; moving things, or a plane that is not level, in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
                   std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
@@ -108,6 +109,7 @@ class Tracer {
   friend class TracerCache;
   Tracer(std::shared_ptr<const World> world, TimeSpan window);
   void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& statistics) const;
+  void nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& statistics) const;
   void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
   std::unique_ptr<MovingPart> moving_;                 // null when nothing moves
