@@ -38,8 +38,7 @@ class NarrowLobe final : public sqt::Function {
 TEST(NarrowLobe, SeesThePartOfTheDiskThatItReflects) {
   sqt::AlignedSource::Options options;
   options.views = 5;
-  options.base_order = 5;
-  options.max_order = 11;
+  options.max_order = 10;
   const std::shared_ptr<const sqt::Bundle> bundle =
       sqt::make_bundle(sqt::encode_aligned(sqt::AlignedSource(NarrowLobe(), options), 0.05).data);
   ASSERT_FALSE(bundle->info().has_delta()) << "the lobe should have stayed in the cells";
@@ -74,9 +73,10 @@ TEST(NarrowLobe, SeesThePartOfTheDiskThatItReflects) {
     }
     if (off == 0) {
       middle = expected;
-      // All of the lobe that the disk covers: 1 - exp(-(slope of its rim / width)^2) of half of the sun's radiance.
+      // The part of the lobe that the disk covers, 1 - exp(-(slope of its rim / width)^2) of half of the sun's
+      // radiance; the finest cells are nearly as wide as the lobe and smooth it.
       const double covered = 1 - std::exp(-std::pow(kSun / 2 / kWidth, 2));
-      EXPECT_NEAR(expected, 0.5 * covered * irradiance / (kPi * kSun * kSun), 0.05 * expected);
+      EXPECT_NEAR(expected, 0.5 * covered * irradiance / (kPi * kSun * kSun), 0.12 * expected);
     }
   }
 }

@@ -250,14 +250,15 @@ TEST(TemperatureField, SolvedOnceIsTheModelAskedAnew) {
   // A day that repeats, with the sun switched on within seconds: rows of loads are kinks of the temperature.
   TemperatureSpec spec = find_temperature_model("slab").examples()[0];
   spec.load_times = {0, 21600, 21601, 64800, 64801, 86400};
-  spec.loads = {{0, 300, 280, 1}, {0, 300, 282, 1}, {500, 320, 285, 2}, {400, 330, 290, 2}, {0, 320, 286, 1}, {0, 300, 280, 1}};
+  spec.loads = {{0, 300, 280, 1},   {0, 300, 282, 1}, {500, 320, 285, 2},
+                {400, 330, 290, 2}, {0, 320, 286, 1}, {0, 300, 280, 1}};
   spec.loads_repeat = true;
   const SolvedField field(spec, 5000, 190000);
   const auto model = make_temperature_model(spec);
   for (const double t : {5000.0, 21600.0, 21700.0, 43210.0, 70000.5, 100000.0, 189999.0}) {
     double kelvin = 0;
     model->kelvin({&t, 1}, loads_of(spec), {&kelvin, 1});
-    EXPECT_NEAR(field.kelvin({}, t), kelvin, 0.05) << t;
+    EXPECT_NEAR(field.kelvin({}, t), kelvin, 0.1) << t;  // each has errors of its own steps, 0.01 K a step
   }
   EXPECT_EQ(field.kelvin({}, 0), field.kelvin({}, 5000));
   EXPECT_EQ(field.kelvin({}, 1e9), field.kelvin({}, 190000));
@@ -267,7 +268,8 @@ TEST(TemperatureField, SolvedOnceIsTheModelAskedAnew) {
   spec.loads_repeat = false;
   EXPECT_THROW(SolvedField(spec, 0, 90000), Error);
   spec.loads.pop_back();
-  EXPECT_THAT(complaint([&] { make_temperature_model(spec); }), HasSubstr("loads: a table over time has 6 times and 5 values"));
+  EXPECT_THAT(complaint([&] { make_temperature_model(spec); }),
+              HasSubstr("loads: a table over time has 6 times and 5 values"));
   TemperatureSpec constant{"constant", {{"kelvin", 301}}, {}, {}, false, {}};
   constant.load_times = {0}, constant.loads = {{}};
   EXPECT_THAT(complaint([&] { make_temperature_model(constant); }), HasSubstr("takes no loads"));
