@@ -60,9 +60,19 @@ void write_report(const ScenePrepOptions& o, const Report& report) {
     write_file(o.report, report.json());
 }
 
+// A program that is newer than the scene may make another one of it, whatever its version says.
+bool program_is_newer(const std::string& output) {
+  std::error_code fault;
+  const auto program = std::filesystem::last_write_time("/proc/self/exe", fault);
+  if (fault) return false;
+  const auto made = std::filesystem::last_write_time(output, fault);
+  return fault || program > made;
+}
+
 // The output was made by this version from the same inputs with the same options.
 bool up_to_date(const ScenePrepOptions& o) {
-  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
+  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output) || program_is_newer(o.output))
+    return false;
   try {
     const Provenance p = read_provenance(o.output);
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
@@ -137,7 +147,10 @@ int prepare(const ScenePrepOptions& o) {
     steps.done("write");
   }
   if (!o.report.empty() && o.report != "-") steps.write(o, report);
-  if (!report.ok()) return 1;
+  if (!report.ok()) {
+    if (!o.output.empty() && file_exists(o.output)) warn(o.output + " is left as it was: it does not hold this scene");
+    return 1;
+  }
   if (o.output.empty()) return 0;
   note(strf("wrote %s (%zu bytes)", o.output.c_str(), file_size(o.output)));
   return 0;
