@@ -19,6 +19,7 @@
 #include "output.h"
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
+#include "scheduler/features.h"
 #include "sensor/plugin.h"
 #include "study.h"
 
@@ -47,6 +48,20 @@ int list_models() {
     for (const ModelParameter& p : row.parameters) std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(), p.required ? "" : ", optional");
   }
   return 0;
+}
+
+// Features of the renderer, and those of what is loaded.
+std::string explain(const std::string& feature) {
+  if (const auto text = explain_use(feature)) return *text;
+  try {
+    return explain_feature(feature);
+  } catch (const Error& e) {
+    const std::vector<std::string> names = feature_names();
+    const std::string near = nearest_name(feature, names);
+    std::string all;
+    for (const std::string& name : names) all += ", " + name;
+    throw Error(e.message(), near.empty() ? e.hint() + all : "did you mean '" + near + "'?");
+  }
 }
 
 // What the sensors can see decides what is loaded.
@@ -127,7 +142,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_sources) return list_sources();
   if (o.list_truth) return list_truth();
   if (o.list_models) return list_models();
-  if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
+  if (!o.explain.empty()) return std::fputs(explain(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
 
@@ -162,6 +177,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+  note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
   for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output);

@@ -1,0 +1,98 @@
+#include "scheduler/features.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+
+namespace suite {
+
+namespace {
+
+struct Feature {
+  const char *name, *text;
+};
+constexpr Feature kFeatures[] = {
+    {"media",
+     "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface; one "
+     "null pointer is asked for a stage of a block of paths."},
+    {"motion", "Things that move. Without any, all time windows share one set of acceleration structures."},
+    {"SQT",
+     "Materials of measured or fitted scattering. Their trees are decoded when a material that geometry shows has "
+     "one."},
+    {"class maps", "Rasters that choose the material of a place."},
+    {"property maps",
+     "Rasters that vary a material: mixtures, textures, curves, cubes, temperatures, bumps, normals, holes. A "
+     "material without any costs a null pointer; one with some is put together at every hit."},
+    {"emission",
+     "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
+     "which it is when it shows in some spectral window (--explain temperatures)."},
+    {"sun", "A sample of the Sun at every node, with a visibility ray."},
+    {"moon", "A sample of the Moon at every node, with a visibility ray."},
+    {"sky", "Light from everywhere else. A uniform sky is met by chance alone; others are also sampled at every node."},
+    {"lamps", "Point, spot and glowing lamps: a light tree is built over them and one is sampled at every node."},
+    {"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
+    {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
+    {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
+    {"bands", "Spectral bins are carried only where a band of the state responds."},
+};
+
+FeatureUse count(const char* name, size_t n, const char* what, const char* none) {
+  return {name, n > 0, n > 0 ? strf("%zu %s", n, what) : none};
+}
+FeatureUse source(const char* name, bool there) {
+  return {name, there, there ? "given by the simulation" : "not in the simulation"};
+}
+
+}  // namespace
+
+std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
+                                    std::span<const std::unique_ptr<Sensor>> sensors) {
+  size_t fitted = 0, warm = scene.temperatures.size();
+  for (const Material& m : scene.materials) fitted += m.surface.bundle != nullptr, warm += m.temperature_k > 0;
+  std::set<std::string> truth;
+  size_t bands = 0, bins = 0, states = 0;
+  for (const auto& sensor : sensors) {
+    truth.insert(sensor->truth().begin(), sensor->truth().end());
+    for (size_t s = 0; s < sensor->states().size(); ++s)
+      bands += sensor->bands(s).size(), bins += sensor->states()[s].size(), ++states;
+  }
+  std::string names;
+  for (const std::string& t : truth) names += (names.empty() ? "" : ", ") + t;
+  return {count("media", scene.media.size(), "in the scene", "none in the scene"),
+          count("motion", scene.tracks.size(), "motions", "nothing moves"),
+          count("SQT", fitted, "materials", "no material is a fit"),
+          count("class maps", scene.class_maps.size(), "in the scene", "none in the scene"),
+          count("property maps", scene.property_maps.size(), "in the scene", "none in the scene"),
+          count("emission", warm, "temperatures", "no temperature shows in any window"),
+          source("sun", sources.sun.has_value()),
+          source("moon", sources.moon.has_value()),
+          source("sky", sources.sky || sources.clear),
+          count("lamps", sources.lamps.size(), "entries", "not in the simulation"),
+          source("atmosphere", sources.atmosphere.has_value()),
+          source("earth", sources.earth.has_value()),
+          {"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names},
+          {"bands", true, strf("%zu in %zu spectral states of %zu bins", bands, states, bins)}};
+}
+
+std::string text_of(const std::vector<FeatureUse>& features) {
+  std::string out;
+  for (const FeatureUse& f : features)
+    out += strf("%-20s %-9s %s\n", f.name.c_str(), f.used ? "used" : "left out", f.why.c_str());
+  return out;
+}
+
+std::optional<std::string> explain_use(const std::string& feature) {
+  const auto found =
+      std::find_if(std::begin(kFeatures), std::end(kFeatures), [&](const Feature& f) { return feature == f.name; });
+  if (found == std::end(kFeatures)) return std::nullopt;
+  return std::string(found->name) + ": " + found->text + "\n";
+}
+
+std::vector<std::string> feature_names() {
+  std::vector<std::string> names;
+  for (const Feature& f : kFeatures) names.push_back(f.name);
+  return names;
+}
+
+}  // namespace suite

@@ -1,0 +1,51 @@
+// What a simulation says it uses and leaves alone.
+#include "scheduler/features.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/radiometry_kit.h"
+
+namespace suite {
+namespace {
+
+TEST(Features, ALambertianSceneAtRestLeavesTheRestAlone) {
+  const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  SourceSpecs sources;
+  sources.sky = test::uniform_sky(1, false);
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>(1), test::one_band(), 4));
+  const std::vector<FeatureUse> uses = features_of(*scene, sources, sensors);
+  for (const FeatureUse& f : uses)
+    EXPECT_EQ(f.used, f.name == "sky" || f.name == "truth" || f.name == "bands") << f.name;
+  EXPECT_THAT(text_of(uses), testing::HasSubstr("media                left out  none in the scene\n"));
+}
+
+TEST(Features, WhatIsThereIsNamed) {
+  auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  scene->materials[0].temperature_k = 300;
+  scene->media.emplace_back();
+  SourceSpecs sources;
+  sources.moon.emplace();
+  sources.lamps.resize(3);
+  const std::vector<FeatureUse> uses = features_of(*scene, sources, {});
+  auto used = [&](const std::string& name) {
+    for (const FeatureUse& f : uses)
+      if (f.name == name) return f.used;
+    ADD_FAILURE() << name;
+    return false;
+  };
+  for (const char* name : {"media", "emission", "moon", "lamps"}) EXPECT_TRUE(used(name)) << name;
+  for (const char* name : {"sun", "sky", "truth", "motion"}) EXPECT_FALSE(used(name)) << name;
+}
+
+TEST(Features, EachIsExplained) {
+  const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  const std::vector<FeatureUse> uses = features_of(*scene, {}, {});
+  ASSERT_EQ(uses.size(), feature_names().size());
+  for (const FeatureUse& f : uses) EXPECT_GT(explain_use(f.name).value_or("").size(), f.name.size() + 20) << f.name;
+  EXPECT_FALSE(explain_use("mediums"));
+}
+
+}  // namespace
+}  // namespace suite
