@@ -18,9 +18,11 @@ class ResultBuilder {
   CaptureResult finish();
 
  private:
+  void flag_unlike_neighbours();
   void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
   CaptureResult result_;
   size_t reference_band_, correlated_every_;
+  bool neighbours_;              // problems beside each other look at neighbouring places
   const TruthPlan& truth_;
   // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands ride
   // on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.

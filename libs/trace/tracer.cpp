@@ -39,6 +39,7 @@ Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window) : world_(std
 Tracer::~Tracer() = default;
 const Scene& Tracer::scene() const { return *world_->scene; }
 std::span<const TracedObject> Tracer::objects() const { return world_->flat.objects; }
+const std::optional<Periodic>& Tracer::periodic() const { return world_->periodic; }
 size_t Tracer::triangles() const { return world_->triangles; }
 size_t Tracer::tiles() const { return world_->tiles.tiles.size() + (moving_ ? moving_->tiles.tiles.size() : 0); }
 size_t Tracer::tiles_built() const {
@@ -140,6 +141,11 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
   }
 }
 
+// Of a periodic scene surfaces without bounds are no part of the cell: they are met once, by the whole ray.
+static std::span<const uint32_t> unbounded_of(const World& world) {
+  return world.periodic ? std::span<const uint32_t>{} : world.unbounded;
+}
+
 // reach: how far each ray may go on entry, where it was stopped on return.
 void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
   for (Hit& hit : hits) hit.object = kNone;
@@ -154,7 +160,7 @@ void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach
       tracer.nearest(tile, packet, hits);
     });
   };
-  trace(world_->tiles, world_->unbounded, nullptr);
+  trace(world_->tiles, unbounded_of(*world_), nullptr);
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
 }
 
@@ -175,8 +181,24 @@ void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reac
       tracer.occluded(tile, packet, blocked);
     });
   };
-  trace(world_->tiles, world_->unbounded, nullptr);
+  trace(world_->tiles, unbounded_of(*world_), nullptr);
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
+}
+
+// What the walk through the cells did not hit, or hit behind it.
+void Tracer::nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& s) const {
+  const Periodic& cell = *world_->periodic;
+  std::vector<double> reach(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) reach[i] = hits[i].hit() ? hits[i].distance : INFINITY;
+  PacketTracer tracer(*world_, nullptr, rays, reach, false, s);
+  for (const uint32_t object : world_->unbounded)
+    for (uint32_t i = 0; i < rays.size(); ++i) {
+      tracer.unbounded(object, i, &hits[i]);
+      if (hits[i].object != object) continue;
+      Vec3& p = hits[i].position;
+      p.x -= std::floor((p.x - cell.low.x) / cell.size.x) * cell.size.x;
+      p.y -= std::floor((p.y - cell.low.y) / cell.size.y) * cell.size.y;
+    }
 }
 
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
@@ -200,6 +222,7 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool cohere
     }
     walk.advance();
   }
+  if (!world_->unbounded.empty()) nearest_unbounded(rays, hits, s);
 }
 
 void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
@@ -220,6 +243,14 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distanc
       if (found[i]) blocked[walk.owner(i)] = 1, walk.stop(i);
     walk.advance();
   }
+  if (world_->unbounded.empty()) return;
+  std::vector<double> whole(distance.begin(), distance.end());
+  PacketTracer tracer(*world_, nullptr, rays, whole, coherent, s);
+  for (const uint32_t object : world_->unbounded)
+    for (uint32_t i = 0; i < rays.size(); ++i) {
+      tracer.unbounded(object, i, nullptr);
+      blocked[i] |= static_cast<uint8_t>(whole[i] < distance[i]);
+    }
 }
 
 }  // namespace suite

@@ -72,7 +72,8 @@ class Tracer {
   // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
-  // Error: a motion that does not cover the window; moving things in a periodic scene.
+  // Surfaces without bounds are not repeated but met by the whole ray.
+  // Error: a motion that does not cover the window; moving things, or a plane that is not level, in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
                   std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
@@ -96,6 +97,7 @@ class Tracer {
   // From the object's local frame (mesh origin included) to ENU at the time, exact.
   Affine3 to_world(const TracedObject& object, double time) const;
   Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
+  const std::optional<Periodic>& periodic() const;
   const Box3& bounds() const { return bounds_; }       // ENU, all places that moving things have in the window
   size_t triangles() const;                            // instanced ones counted each time
   size_t tiles() const;
@@ -107,6 +109,7 @@ class Tracer {
   friend class TracerCache;
   Tracer(std::shared_ptr<const World> world, TimeSpan window);
   void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& statistics) const;
+  void nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& statistics) const;
   void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
   std::unique_ptr<MovingPart> moving_;                 // null when nothing moves

@@ -61,6 +61,43 @@ TEST(Periodic, SameHitsAsAGridOfCopies) {
   EXPECT_GT(hits, 2000);
 }
 
+// A plane without bounds under or over what repeats itself, or alone: no ray towards it is lost.
+TEST(Periodic, PlanesWithoutBoundsAreMet) {
+  for (const double height : {-7.0, 0.5, 20.0})
+    for (const bool alone : {true, false}) {
+      auto scene = scene_of({}, {material("ground", lambert(0.3)), material("ball", lambert(0.6))});
+      scene->primitives = {{"plane", PrimitiveKind::plane, {0, 0}, 0}, {"ball", PrimitiveKind::sphere, {1.5}, 1}};
+      for (uint32_t i = 0; i < (alone ? 1u : 2u); ++i) {
+        Placement p;
+        p.kind = TargetKind::primitive;
+        p.target = i;
+        p.to_parent = translation(i == 0 ? Vec3{0, 0, height} : Vec3{5, 5, 1});
+        scene->groups[0].placements.push_back(p);
+      }
+      const Tracer cell(scene, Periodic{{0, 0}, {10, 10}});
+      Pcg32 rng(5);
+      TraceStatistics statistics;
+      int met = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const double up = height > 4 ? 1 : -1;
+        const Ray ray{{10 * rng.uniform(), 10 * rng.uniform(), 4}, normalized(Vec3{rng.uniform() - 0.5, rng.uniform() - 0.5, up * (0.01 + 0.3 * rng.uniform())}), 0};
+        Hit hit;
+        cell.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+        ASSERT_TRUE(hit.hit()) << height << " " << i;
+        const double plane = (height - 4) / ray.direction.z, beyond = hit.distance + 1e-3, before = hit.distance - 1e-3;
+        EXPECT_LE(hit.distance, plane + 1e-6);
+        EXPECT_TRUE(hit.position.x >= 0 && hit.position.x <= 10 && hit.position.y >= 0 && hit.position.y <= 10);
+        met += std::fabs(hit.distance - plane) < 1e-6;
+        uint8_t near = 0, far = 0;
+        cell.occluded({&ray, 1}, {&before, 1}, {&near, 1}, false, statistics);
+        cell.occluded({&ray, 1}, {&beyond, 1}, {&far, 1}, false, statistics);
+        EXPECT_EQ(near, 0);
+        EXPECT_EQ(far, 1);
+      }
+      EXPECT_GT(met, alone ? 1999 : 100);
+    }
+}
+
 TEST(Periodic, WhiteCellReturnsWhatItGets) {
   // Everything reflects everything: under a uniform sky every view sees the sky's radiance (purist furnace).
   auto scene = spheres(0);
