@@ -87,7 +87,7 @@ class LeafIntegral {
   void add(const LeafPart& part, double copies, size_t sheet, const float* leaf, std::vector<double>& integral) {
     const int order = part.id.order();
     const double width = std::sqrt(cell_solid_angle(order));
-    const int usual = order >= 7 ? 1 : 2, closest = order >= 7 ? 4 : 6;
+    const int usual = order >= 7 ? 1 : order == 6 ? 2 : 4;
     const Dir center = center_of(part.id);
     for (LeafGrid& g : grids_) g.side = 0;
     for (size_t t = 0; t < views_.size(); ++t) {
@@ -95,7 +95,7 @@ class LeafIntegral {
       // Near the horizon the cosine changes within a part, and what lies below does not count: look more closely.
       const double above = layout_.cosine_weighted ? map.cosine(center) : 1;
       if (layout_.upper_only && above < -2 * width) continue;
-      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, closest);
+      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
       LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
       if (!grid.side) grid.fill(part, closer * usual);
       add(grid, part.width, cell_solid_angle(order) * copies, views_[t], map, leaf, &integral[t * layout_.channels]);
@@ -129,7 +129,7 @@ class LeafIntegral {
   }
   const AlignedLayout& layout_;
   const std::vector<TotalView>& views_;
-  std::array<LeafGrid, 6> grids_;
+  std::array<LeafGrid, 4> grids_;
   std::vector<float> weight_;
 };
 

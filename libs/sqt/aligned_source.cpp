@@ -132,23 +132,39 @@ class Surveyor {
   std::vector<double> view_weight_;
 };
 
-// Roots of which nothing is known take the mean of the others.
+// Whether any view looks at a root from above the horizon.
+bool seen(const AlignedLayout& layout, CellId root) {
+  for (const double theta : layout.theta)
+    for (size_t j = 0; j < layout.phi_count; ++j) {
+      const LobeMap map(
+          layout.frame,
+          dir_from_angles(theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(layout.phi_count)), false);
+      for (uint32_t k = 0; k < 64; ++k)
+        if (!layout.upper_only || map.cosine(center_of(CellId::of(root.order() + 3, (root.index() << 6) + k))) > 0.02)
+          return true;
+    }
+  return false;
+}
+
+// Roots that are seen but of which nothing is known take the mean of the others. (Those below the horizon are
+// nobody's.)
 void level_unknown_roots(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet) {
   const size_t views = layout.views(), roots = sheet.data.size();
   std::vector<float> mean(layout.width(), 0.0f);
   std::vector<size_t> unknown;
+  size_t known = 0;
   for (size_t i = 0; i < roots; ++i) {
     const auto first = sheet.valid.begin() + static_cast<ptrdiff_t>(i * views);
     if (std::find(first, first + static_cast<ptrdiff_t>(views), 1) == first + static_cast<ptrdiff_t>(views)) {
-      unknown.push_back(i);
+      if (seen(layout, sheet.data.node(i).id)) unknown.push_back(i);
       continue;
     }
+    ++known;
     for (size_t j = 0; j < mean.size(); ++j) mean[j] += sheet.data.value(i)[j];
   }
-  if (unknown.empty() || unknown.size() == roots) return;
+  if (!known) return;
   for (const size_t i : unknown)
-    for (size_t j = 0; j < mean.size(); ++j)
-      sheet.data.value(i)[j] = mean[j] / static_cast<float>(roots - unknown.size());
+    for (size_t j = 0; j < mean.size(); ++j) sheet.data.value(i)[j] = mean[j] / static_cast<float>(known);
 }
 
 // The pyramid in the lattice's order, with slopes.

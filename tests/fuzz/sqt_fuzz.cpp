@@ -36,6 +36,19 @@ TEST(FuzzSqt, Aligned) {
 TEST(FuzzSqt, AlignedBehindTheChecksum) {
   test::fuzz(pack_sqt(test::small_fit(test::glossy(), 0.5), {}, {}), resealed, 2, 20000, 4, kWords);
 }
+// Cut off at every byte, with the checksum of what is left.
+TEST(FuzzSqt, EveryTruncationIsRefused) {
+  const std::vector<std::byte> whole = pack_sqt(test::small_fit(test::glossy(), 1), {}, {});
+  for (size_t n = 0; n < whole.size(); ++n) {
+    const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    for (const auto& read : {parse_and_ask, resealed}) try {
+        read(cut);
+        FAIL() << n << " of " << whole.size() << " bytes were accepted";
+      } catch (const Error& e) {
+        ASSERT_EQ(e.where().file, "x.sqt") << n;
+      }
+  }
+}
 TEST(FuzzSqt, PaperBehindTheChecksum) {
   test::fuzz(pack_sqt(test::small_paper(test::glossy()), {}, {}), resealed, 3, 20000, 4, kWords);
 }
