@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "base/files.h"
 #include "base/json.h"
 #include "base/parallel.h"
@@ -23,6 +25,10 @@ Json json_of(const RunStatistics& s) {
   j.set("nodes", s.nodes);
   j.set("rays", s.trace.rays);
   j.set("share_in_ray_tracer", s.cycles ? static_cast<double>(s.trace.cycles) / static_cast<double>(s.cycles) : 0.0);
+  auto share = [&](uint64_t part) { return s.cycles ? static_cast<double>(part) / static_cast<double>(s.cycles) : 0.0; };
+  j.set("share_in_sampling", share(s.path_cycles - std::min(s.path_cycles, s.trace.cycles)));
+  j.set("share_in_shading", share(s.shade_cycles));
+  j.set("share_in_sensor", share(s.sensor_cycles));
   j.set("rejected_samples", s.failures);
   j.set("truncated", s.paths ? s.truncated / static_cast<double>(s.paths) : 0.0);
   return j;
@@ -39,6 +45,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("seed", options.pipeline.seed);
   j.set("seconds", r.seconds);
   j.set("build_seconds", r.build_seconds);
+  j.set("deliver_seconds", r.deliver_seconds);
   j.set("peak_bytes", peak_bytes());
   j.set("tracer_builds", r.tracer_builds);
   j.set("optics_bakes", r.optics_bakes);

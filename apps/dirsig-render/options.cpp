@@ -47,6 +47,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
+  cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");

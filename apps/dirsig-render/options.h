@@ -15,7 +15,7 @@ struct RenderOptions {
   long long study_seeds = 4;
   double target_floor = -1;
   long long seed = -1, more = -1;
-  bool state = false, resume = false;
+  bool state = false, resume = false, load_all = false;
   bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -60,13 +61,16 @@ SceneNeeds needs_of(const Simulation& sim) {
 }
 
 // All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim, std::vector<std::shared_ptr<const LaterReads>>& later) {
+Scene load_scenes(const Simulation& sim, bool all, std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
+  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim);
   for (const SimulationScene& s : sim.scenes) {
     LoadReport loaded;
+    const auto begun = std::chrono::steady_clock::now();
     Scene scene = read_scene(
-        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs_of(sim), &loaded);
-    note("of " + s.path + ":\n" + loaded.text() + "(--explain FEATURE says why)");
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs, &loaded);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    note("of " + s.path + strf(", loaded in %.3f s:\n", seconds) + loaded.text() + "(--explain FEATURE says why)");
     if (loaded.later) later.push_back(loaded.later);
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
   }
@@ -153,7 +157,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
 
   // Everything that can be refused is refused before rendering starts.
   std::vector<std::shared_ptr<const LaterReads>> later;
-  const auto scene = std::make_shared<Scene>(load_scenes(sim, later));
+  const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())

@@ -97,6 +97,7 @@ StudyOutput run_once(const std::shared_ptr<const Scene>& scene, const Simulation
   uint32_t most = 0;
   for (const uint32_t n : out.image.paths) most = std::max(most, n);
   out.image.degrees = Accumulators::scrambles_for(most) - 1;
+  out.file_seconds = out.report.deliver_seconds;
   out.peak_bytes = peak_bytes();
   return out;
 }

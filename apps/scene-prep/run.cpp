@@ -1,5 +1,8 @@
 #include "run.h"
 
+#include <sys/resource.h>
+
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -13,6 +16,7 @@
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/scene_text.h"
 #include "mesh/check.h"
+#include "page/page.h"
 #include "optics/models.h"
 #include "scene/bake.h"
 #include "scene/issues.h"
@@ -56,9 +60,19 @@ void write_report(const ScenePrepOptions& o, const Report& report) {
     write_file(o.report, report.json());
 }
 
+// A program that is newer than the scene may make another one of it, whatever its version says.
+bool program_is_newer(const std::string& output) {
+  std::error_code fault;
+  const auto program = std::filesystem::last_write_time("/proc/self/exe", fault);
+  if (fault) return false;
+  const auto made = std::filesystem::last_write_time(output, fault);
+  return fault || program > made;
+}
+
 // The output was made by this version from the same inputs with the same options.
 bool up_to_date(const ScenePrepOptions& o) {
-  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output)) return false;
+  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output) || program_is_newer(o.output))
+    return false;
   try {
     const Provenance p = read_provenance(o.output);
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
@@ -67,6 +81,36 @@ bool up_to_date(const ScenePrepOptions& o) {
     return false;  // whatever stands there is replaced
   }
 }
+
+// What each step of the preparation took, as a page beside the report: memory against seconds, and what was found.
+class Steps {
+ public:
+  void done(const char* step) {
+    struct rusage use {};
+    ::getrusage(RUSAGE_SELF, &use);
+    const double bytes = 1024.0 * static_cast<double>(use.ru_maxrss);
+    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    csv_ += strf("%s,%.6f,%.6f,%.0f\n", step, now - before_, now, bytes);
+    before_ = now;
+  }
+  void write(const ScenePrepOptions& o, const Report& report) const {
+    std::string head = "# " + command_line() + "\n";
+    const std::string text = report.text();
+    for (size_t at = 0, end; at < text.size(); at = end + 1) {
+      end = std::min(text.find('\n', at), text.size());
+      head += "# " + text.substr(at, end - at) + "\n";
+    }
+    const std::string page = std::filesystem::path(o.report).replace_extension(".html").string();
+    write_file(page, html_of(page_of_csv(head + "step,seconds,seconds_in_all,peak_bytes\n" + csv_,
+                                         "Preparation of " + o.input + ": memory against seconds", {"seconds_in_all"},
+                                         {"peak_bytes"}, "", o.report)));
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double before_ = 0;
+  std::string csv_;
+};
 
 Compression compression_of(const ScenePrepOptions& o) {
   Compression compression;
@@ -84,19 +128,30 @@ int prepare(const ScenePrepOptions& o) {
     note(o.output + " is up to date: inputs, options and version are unchanged (--force prepares it again)");
     return 0;
   }
+  Steps steps;
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
   Draft draft = read_scene_text(o.input, {o.search}, report);
+  steps.done("read");
   MeshCheck check;
   check.self_intersections = !o.quick;
   check_draft_meshes(draft, check, o.repair, report);
+  steps.done("check");
   const Scene scene = bake_scene(draft, report);
+  steps.done("bake");
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
-  if (!report.ok()) return 1;
+  if (report.ok() && !o.output.empty()) {
+    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output, compression);
+    steps.done("write");
+  }
+  if (!o.report.empty() && o.report != "-") steps.write(o, report);
+  if (!report.ok()) {
+    if (!o.output.empty() && file_exists(o.output)) warn(o.output + " is left as it was: it does not hold this scene");
+    return 1;
+  }
   if (o.output.empty()) return 0;
-  write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output, compression);
   note(strf("wrote %s (%zu bytes)", o.output.c_str(), file_size(o.output)));
   return 0;
 }

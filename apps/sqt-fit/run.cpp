@@ -1,12 +1,14 @@
 #include "run.h"
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/progress.h"
 #include "input.h"
+#include "page/page.h"
 #include "sqt/fit.h"
 
 namespace suite {
@@ -35,6 +37,8 @@ void check_options(const SqtFitOptions& o) {
   if (o.input.empty() == o.model.empty()) throw UsageError("give one input file or --model");
   if (o.output.empty() && o.report.empty() && o.curve.empty())
     throw UsageError("give -o FILE.sqt (or --report, --curve)");
+  if (std::filesystem::path(o.curve).extension() == ".html")
+    throw UsageError("--curve names the table, FILE.csv; its page FILE.html stands beside it");
   if (o.method != "aligned" && o.method != "paper") throw UsageError("--method is 'aligned' or 'paper'");
   const bool paper = o.method == "paper";
   if (paper && (o.max_error != 0 || o.max_bytes != 0))
@@ -149,6 +153,12 @@ void write_curve(const SqtFitOptions& o, const FitInput& input, const sqt::Refer
   }
   progress.finish();
   write_file(o.curve, csv);
+  // The same as a page to look at, beside the table.
+  const std::string page = std::filesystem::path(o.curve).replace_extension(".html").string();
+  write_file(page, html_of(page_of_csv("# " + command_line() + "\n# " + input.provenance.input +
+                                           ": l1 and cos_rmse are relative, rmse is in 1/sr; seconds are of one fit\n" + csv,
+                                       "Error against size and seconds", {"bytes", "seconds"},
+                                       {"l1", "cos_rmse", "rmse"}, "method", o.curve)));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <istream>
 #include <limits>
+#include <map>
 
 #include "base/files.h"
 #include "formats/obj/polygon.h"
@@ -69,6 +70,7 @@ class Collector {
   struct Shared {  // output vertices of one position, a linked list
     uint32_t vt, vn, next;
   };
+  static constexpr int kLongestList = 64;  // more of one position are in `crowded_`
 
   // Moves on to the line the loader has just read; the lines before it are counted.
   void sync_line() {
@@ -119,6 +121,7 @@ class Collector {
   std::vector<uint32_t> heads_;      // first output vertex of each position
   std::vector<Shared> shared_;       // parallel to the output vertices
   std::vector<uint32_t> vertex_of_;  // output vertex -> position
+  std::map<std::array<uint32_t, 3>, uint32_t> crowded_;
   std::string group_, material_;
   bool new_run_ = true;
   std::vector<Corner> corners_;
@@ -170,13 +173,33 @@ bool Collector::resolve(int index, size_t count, const char* what, const char* c
 
 uint32_t Collector::output_vertex(const Corner& c) {
   if (heads_.size() < positions_.size()) heads_.resize(positions_.size(), kNone);
-  for (uint32_t k = heads_[c.v]; k != kNone; k = shared_[k].next)
+  int seen = 0;
+  for (uint32_t k = heads_[c.v]; k != kNone; k = shared_[k].next, ++seen)
     if (shared_[k].vt == c.vt && shared_[k].vn == c.vn) return k;
   const auto made = static_cast<uint32_t>(shared_.size());
+  const bool crowded = seen >= kLongestList;
+  if (crowded)
+    if (const auto [at, fresh] = crowded_.try_emplace({c.v, c.vt, c.vn}, made); !fresh) return at->second;
   shared_.push_back({c.vt, c.vn, heads_[c.v]});
   vertex_of_.push_back(c.v);
-  heads_[c.v] = made;
+  if (!crowded) heads_[c.v] = made;
   return made;
+}
+
+// A number that the loader would turn into another one.
+std::string_view too_large(std::string_view line) {
+  for (size_t at = line.find_first_of("0123456789"); at != std::string_view::npos;
+       at = line.find_first_of("0123456789", at)) {
+    const size_t stop = std::min(line.find_first_not_of("0123456789", at), line.size());
+    if (stop - at >= 10) {
+      uint64_t value = 0;
+      const auto [end, code] = std::from_chars(line.data() + at, line.data() + stop, value);
+      if (code != std::errc() || value > static_cast<uint64_t>(std::numeric_limits<int>::max()))
+        return line.substr(at, stop - at);
+    }
+    at = stop;
+  }
+  return {};
 }
 
 void Collector::face(const tinyobj::index_t* corner, int count) {
@@ -192,6 +215,10 @@ void Collector::face(const tinyobj::index_t* corner, int count) {
       add("SP201", "index 0");
       return;
     }
+  if (const std::string_view number = too_large(text); !number.empty()) {
+    add("SP201", "index " + std::string(number.substr(0, 40)));
+    return;
+  }
   corners_.clear();
   ring_.clear();
   for (int k = 0; k < count; ++k) {
@@ -279,7 +306,9 @@ Collector& self(void* user) { return *static_cast<Collector*>(user); }
 
 SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report) {
   if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
-    throw Error(Where{file, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "Wavefront OBJ is expected");
+    throw Error(Where{file, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "Wavefront OBJ is expected",
+                "SP003");
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // a mark that some editors put before UTF-8
   // The loader knows no continued lines: blank out the joints in a copy of equal length.
   std::string joined;
   std::string_view parsed = text;

@@ -129,6 +129,7 @@ void write_media(h5::Writer& w, const Scene& s) {
   }
   w.put("/volumes/grid", pick(s.volumes, [](const Volume& v) { return v.grid; }), "1");
   w.put("/volumes/to_world", place, "m", 12);
+  w.put("/volumes/track", pick(s.volumes, [](const Volume& v) { return v.track; }), "1");
 }
 
 void read_media(h5::Reader& r, Scene& s) {
@@ -157,7 +158,8 @@ void read_media(h5::Reader& r, Scene& s) {
   read_grids(r, s);
   const auto grid = r.get<uint32_t>("/volumes/grid", "1");
   const auto place = r.get<double>("/volumes/to_world", "m", 12, static_cast<long long>(grid.size()));
-  for (size_t k = 0; k < grid.size(); ++k) s.volumes.push_back({grid[k], transform_of(&place[12 * k])});
+  const auto track = r.get<uint32_t>("/volumes/track", "1", 1, static_cast<long long>(grid.size()));
+  for (size_t k = 0; k < grid.size(); ++k) s.volumes.push_back({grid[k], transform_of(&place[12 * k]), track[k]});
 }
 
 }  // namespace suite

@@ -19,7 +19,8 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
     size.insert(size.end(), {m.width, m.height, m.channels, static_cast<uint32_t>(m.materials.size()),
                              static_cast<uint32_t>(m.wavelength_um.size()), static_cast<uint32_t>(m.family.size())});
     rule.insert(rule.end(), {static_cast<uint8_t>(m.kind), static_cast<uint8_t>(m.projection),
-                             static_cast<uint8_t>(m.drape.extend), static_cast<uint8_t>(m.filter)});
+                             static_cast<uint8_t>(m.drape.extend), static_cast<uint8_t>(m.filter),
+                 static_cast<uint8_t>(m.outside)});
     drape.insert(drape.end(), {m.drape.origin_x, m.drape.origin_y, m.drape.gsd_x, m.drape.gsd_y});
     materials.insert(materials.end(), m.materials.begin(), m.materials.end());
     wavelength.insert(wavelength.end(), m.wavelength_um.begin(), m.wavelength_um.end());
@@ -29,7 +30,7 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
   w.put_names(kTable + "/name", pick(maps, [](const PropertyMap& m) { return m.name; }));
   w.put_names(kTable + "/parameter", pick(maps, [](const PropertyMap& m) { return m.parameter; }));
   w.put(kTable + "/size", size, "1", 6);
-  w.put(kTable + "/rule", rule, "1", 4);
+  w.put(kTable + "/rule", rule, "1", 5);
   w.put(kTable + "/drape", drape, "m", 4);
   w.put(kTable + "/materials", materials, "1");
   w.put(kTable + "/wavelength", wavelength, "um");
@@ -53,7 +54,7 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
   const auto n = static_cast<long long>(names.size());
   const std::vector<std::string> parameter = r.get_names(kTable + "/parameter", n);
   const auto size = r.get<uint32_t>(kTable + "/size", "1", 6, n);
-  const auto rule = r.get<uint8_t>(kTable + "/rule", "1", 4, n);
+  const auto rule = r.get<uint8_t>(kTable + "/rule", "1", 5, n);
   const auto drape = r.get<double>(kTable + "/drape", "m", 4, n);
   Stretch<uint32_t> materials(r, kTable + "/materials", "1");
   Stretch<double> wavelength(r, kTable + "/wavelength", "um");
@@ -67,13 +68,14 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
     m.name = names[k];
     m.parameter = parameter[k];
     const uint32_t* z = &size[6 * k];
-    const uint8_t* q = &rule[4 * k];
+    const uint8_t* q = &rule[5 * k];
     if (q[0] > static_cast<uint8_t>(MapKind::opacity) || q[1] > static_cast<uint8_t>(Projection::uv) ||
-        q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear))
+        q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear) || q[4] > static_cast<uint8_t>(Outside::zero))
       r.fail("map '" + m.name + "' has an unknown rule");
     m.width = z[0], m.height = z[1], m.channels = z[2];
     m.kind = static_cast<MapKind>(q[0]);
     m.filter = static_cast<PropertyMap::Filter>(q[3]);
+    m.outside = static_cast<Outside>(q[4]);
     m.projection = static_cast<Projection>(q[1]);
     m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3], static_cast<Drape::Extend>(q[2])};
     // Three 32 bit numbers can overflow 64 bits only beyond this.

@@ -326,26 +326,38 @@ void read_maps(Reader& r, Scene& s) {
 void resolve(Scene& s, const std::string& path, const BundleReader& decode) {
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> bundles;
   const Where where{path, 0, 0, {}, -1};
-  for (Medium& m : s.media) check_medium(m, where);
+  const auto load = [&](ModelSpec& spec, const std::string& whose) {
+    const auto file = spec.texts.find("file");
+    if (file == spec.texts.end()) return;
+    const auto found =
+        std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
+    if (found == s.files.end())
+      throw Error(where, whose + " names a file that is not in the scene", "prepare the scene again");
+    if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
+    if (decode) spec.bundle = bundles[found->name];
+  };
+  for (Medium& m : s.media) {
+    load(m.phase, "medium '" + m.id + "'");
+    check_medium(m, where);
+  }
   for (Material& m : s.materials) {
     if (m.surface.model.empty()) continue;
-    if (const auto file = m.surface.texts.find("file"); file != m.surface.texts.end()) {
-      const auto found =
-          std::find_if(s.files.begin(), s.files.end(), [&](const DataFile& f) { return f.name == file->second; });
-      if (found == s.files.end())
-        throw Error(where, "material '" + m.id + "' names a file that is not in the scene", "prepare the scene again");
-      if (decode && !bundles.count(found->name)) bundles[found->name] = decode(found->bytes, path + ":" + found->name);
-      if (decode) m.surface.bundle = bundles[found->name];
-    }
+    load(m.surface, "material '" + m.id + "'");
     check_model(m.surface, where);
   }
+}
+
+void check_kind(const Reader& r) {
+  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  if (const std::string version = r.text("version"); version != h5::kVersionText)
+    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
 }
 
 }  // namespace
 
 Provenance read_provenance(const std::string& path) {
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  check_kind(r);
   Provenance p{r.text("generator"), r.text("arguments"), r.text("input_sha256"), {}};
   const std::vector<std::string> names = r.get_names("/inputs/name");
   const std::vector<std::string> hashes = r.get_names("/inputs/sha256", static_cast<long long>(names.size()));
@@ -355,7 +367,7 @@ Provenance read_provenance(const std::string& path) {
 
 SceneOrigin read_scene_origin(const std::string& path) {
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
+  check_kind(r);
   const auto o = r.numbers("origin_latitude_deg_longitude_deg_height_m_given", 4);
   return {{o[0], o[1], o[2], o[3] != 0}, r.text("epoch_utc")};
 }
@@ -364,9 +376,7 @@ Scene read_scene(const std::string& path, const BundleReader& decode, const Scen
   Loading loading;
   loading.needs = needs;
   Reader r(path);
-  if (r.text("format") != h5::kFormat) r.fail("is not a prepared scene");
-  if (const std::string version = r.text("version"); version != h5::kVersionText)
-    r.fail("has version '" + version + "', this program reads " + h5::kVersionText);
+  check_kind(r);
   Scene s;
   s.name = r.text("name");
   s.description = r.text("description");

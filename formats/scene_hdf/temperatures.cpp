@@ -32,7 +32,8 @@ SlabLayer layer_of(const double* v) {
 void write_temperatures(h5::Writer& w, const Scene& s) {
   std::vector<uint32_t> size;
   std::vector<uint8_t> repeat;
-  std::vector<double> time, kelvin, layers, value;
+  std::vector<double> time, kelvin, layers, value, load_time, load;
+  std::vector<uint32_t> loads;
   std::vector<std::string> name;
   for (const TemperatureBinding& t : s.temperatures) {
     size.insert(size.end(),
@@ -42,6 +43,10 @@ void write_temperatures(h5::Writer& w, const Scene& s) {
     time.insert(time.end(), t.spec.times.begin(), t.spec.times.end());
     kelvin.insert(kelvin.end(), t.spec.kelvins.begin(), t.spec.kelvins.end());
     for (const SlabLayer& l : t.spec.layers) append(l, layers);
+    loads.insert(loads.end(), {static_cast<uint32_t>(t.spec.loads.size()), t.spec.loads_repeat});
+    load_time.insert(load_time.end(), t.spec.load_times.begin(), t.spec.load_times.end());
+    for (const SurfaceLoad& l : t.spec.loads)
+      load.insert(load.end(), {l.sun_absorbed, l.sky_irradiance, l.air_temperature, l.wind});
     for (const auto& [key, number] : t.spec.numbers) name.push_back(key), value.push_back(number);
   }
   w.put_names(kTable + "/model", pick(s.temperatures, [](const TemperatureBinding& t) { return t.spec.model; }));
@@ -50,6 +55,9 @@ void write_temperatures(h5::Writer& w, const Scene& s) {
   w.put(kTable + "/time", time, "s");
   w.put(kTable + "/kelvin", kelvin, "K");
   w.put(kTable + "/layers", layers, "SI", kLayer);
+  w.put(kTable + "/loads/rows", loads, "1", 2);
+  w.put(kTable + "/loads/time", load_time, "s");
+  w.put(kTable + "/loads/values", load, "SI", 4);
   w.put_names(kTable + "/numbers/name", name);
   w.put(kTable + "/numbers/value", value, "SI");
 }
@@ -61,6 +69,10 @@ void read_temperatures(h5::Reader& r, Scene& s, Loading& loading) {
   const auto repeat = r.get<uint8_t>(kTable + "/repeat", "1", 1, n);
   Stretch<double> time(r, kTable + "/time", "s"), kelvin(r, kTable + "/kelvin", "K");
   const auto layers = r.get<double>(kTable + "/layers", "SI", kLayer);
+  const auto rows = r.get<uint32_t>(kTable + "/loads/rows", "1", 2, n);
+  Stretch<double> load_time(r, kTable + "/loads/time", "s");
+  const auto load = r.get<double>(kTable + "/loads/values", "SI", 4);
+  size_t at_load = 0;
   const std::vector<std::string> name = r.get_names(kTable + "/numbers/name");
   const auto value = r.get<double>(kTable + "/numbers/value", "SI", 1, static_cast<long long>(name.size()));
   size_t layer = 0, number = 0;
@@ -75,12 +87,18 @@ void read_temperatures(h5::Reader& r, Scene& s, Loading& loading) {
       r.fail("a temperature declares more layers or numbers than there are");
     for (uint32_t i = 0; i < size[4 * k + 2]; ++i, ++layer) t.spec.layers.push_back(layer_of(&layers[kLayer * layer]));
     for (uint32_t i = 0; i < size[4 * k + 3]; ++i, ++number) t.spec.numbers[name[number]] = value[number];
+    t.spec.load_times = load_time.next(rows[2 * k]);
+    t.spec.loads_repeat = rows[2 * k + 1] != 0;
+    if (rows[2 * k] > load.size() / 4 - at_load) r.fail("a temperature declares more loads than there are");
+    for (uint32_t i = 0; i < rows[2 * k]; ++i, ++at_load)
+      t.spec.loads.push_back({load[4 * at_load], load[4 * at_load + 1], load[4 * at_load + 2], load[4 * at_load + 3]});
     if (!t.spec.model.empty()) make_temperature_model(t.spec);
     loading.row("layers").stored += 8 * kLayer * t.spec.layers.size();
-    loading.row("temperatures").stored += 16 * t.spec.times.size();
+    loading.row("temperatures").stored += 16 * t.spec.times.size() + 40 * t.spec.loads.size();
     s.temperatures.push_back(std::move(t));
   }
-  time.finish(), kelvin.finish();
+  time.finish(), kelvin.finish(), load_time.finish();
+  if (at_load * 4 != load.size()) r.fail("there are loads of no temperature");
   if (layer * kLayer != layers.size() || number != name.size()) r.fail("there are layers or numbers of no temperature");
 }
 

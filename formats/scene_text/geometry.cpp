@@ -14,6 +14,10 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   g.name = name;
   g.where = p.where();
   if (const auto material = p.find("material")) g.material = reference(*material);
+  // The name is known from here on, so that one wrong value does not bring a second error per placement of the object.
+  const size_t slot = draft_.geometry.size();
+  draft_.geometry.push_back(g);
+  draft_.geometry[slot].failed = true;
   std::vector<std::string> kinds{"obj", "terrain", "voxels"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
@@ -31,7 +35,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
     read_voxel_geometry(p, g);
   else
     read_primitive(p, g, kind);
-  draft_.geometry.push_back(std::move(g));
+  draft_.geometry[slot] = std::move(g);
 }
 
 void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {

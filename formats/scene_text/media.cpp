@@ -54,7 +54,7 @@ void Reader::read_phase(const Params& p, ModelSpec& spec) {
     else if (parameter.kind == ModelParameter::Kind::curve)
       spec.curves[parameter.name] = read_curve_value(*value);
     else
-      spec.texts[parameter.name] = value->as_text();
+      spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
   }
   check_phase(spec, model.where());
 }
@@ -121,19 +121,22 @@ std::optional<Curve> Reader::relative_index(const Params& p) {
 }
 
 VoxelData Reader::read_voxel_input(const Params& p) {
-  const std::string name = p.as_text();
   VoxelData data = read_voxels(input(p));
-  for (const std::string& raw : data.raw_files) {
-    const std::string beside = (std::filesystem::path(name).parent_path() / raw).string();
-    draft_.inputs.push_back({beside, sha256(read_bytes(resolve_path(input(p), raw), size_t{64} << 30))});
-  }
+  for (const std::string& raw : data.raw_files) companion(p, raw);
   return data;
+}
+
+// The grids of an OpenVDB file, or voxels as text.
+VoxelData Reader::read_any_voxels(const Params& p, const Params& file) {
+  const std::string name = file.as_text();
+  if (name.size() < 4 || name.compare(name.size() - 4, 4, ".vdb") != 0) return read_voxel_input(file);
+  return read_vdb(input(file), p.text("density_grid", "density"), p.text("temperature_grid", ""));
 }
 
 void Reader::read_grid(const std::string& name, const Params& p) {
   const size_t slot = draft_.grids.size();
-  draft_.grids.push_back({p.where(), {}, {}});
-  DraftGrid d{p.where(), {}, {}};
+  draft_.grids.push_back({p.where(), {}, {}, {}});
+  DraftGrid d{p.where(), {}, {}, {}};
   d.grid.name = name;
   draft_.grids[slot].grid.name = name;
   if (const auto medium = p.find("medium")) {
@@ -144,7 +147,7 @@ void Reader::read_grid(const std::string& name, const Params& p) {
   }
   if (d.media.empty() || d.media.size() > 256) throw p.error("a grid needs 1 to 256 media");
   const Params file = p.at("voxels");
-  VoxelData data = read_voxel_input(file);
+  VoxelData data = read_any_voxels(p, file);
   if (!data.material.empty()) throw file.error("these voxels have materials", "cells of materials are an object");
   d.grid.cells = data.cells;
   d.grid.to_local = data.to_local;
@@ -155,13 +158,18 @@ void Reader::read_grid(const std::string& name, const Params& p) {
       throw file.error(strf("a voxel is of medium %u, %zu media are listed", m, d.media.size()), "numbers start at 0");
     d.grid.kind.push_back(static_cast<uint8_t>(m));
   }
+  if (!data.shares.empty() && data.shares.size() != d.media.size())
+    throw file.error(strf("the voxels have shares of %zu media, %zu are listed", data.shares.size(), d.media.size()));
+  d.shares = std::move(data.shares);
   if (const double scale = p.number_in("density_scale", 0, 1e30, "", 1); scale != 1)
     for (float& v : d.grid.density) v = std::min(static_cast<float>(v * scale), 3e38f);
   draft_.grids[slot] = std::move(d);
 }
 
 void Reader::read_volume(const Params& p) {
-  draft_.volumes.push_back({p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{})});
+  DraftVolume v{p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{}), nullptr, {}};
+  if (const auto motion = p.find("motion")) v.motion = read_motion(*motion, true), v.motion_where = motion->where();
+  draft_.volumes.push_back(std::move(v));
 }
 
 void Reader::read_voxel_geometry(const Params& p, DraftGeometry& g) {

@@ -59,8 +59,12 @@ std::vector<Curve> Reader::read_family(const Params& p) {
 }
 
 void Reader::read_cube(const Params& p, PropertyMap& map) {
+  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
+  const auto outside = p.find("outside");
+  map.outside = outside ? rules[outside->as_choice({"error", "hold", "zero"})] : Outside::error;
   const Params file = p.at("file");
   const EnviImage cube(input(file));
+  header_input(file);
   const EnviHeader& h = cube.header();
   if (h.wavelength_um.empty())
     throw file.error("the cube has no wavelengths", "its header needs 'wavelength' and 'wavelength units'");

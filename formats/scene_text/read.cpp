@@ -1,5 +1,5 @@
-#include <algorithm>
-#include <set>
+#include <cstring>
+#include <filesystem>
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
@@ -7,6 +7,13 @@
 
 namespace suite {
 namespace {
+
+constexpr size_t kLargest = size_t{64} << 30;
+constexpr const char* kBrings = " -> ";  // in the name of an input that another one brings along
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
 
 // Beside the text, then in the search folders.
 std::string find_input(const std::string& text, const std::string& name, const SceneTextOptions& options) {
@@ -34,19 +41,30 @@ std::string Reader::input(const Params& p) {
   const std::string name = p.as_text(), path = find_input(draft_.file, name, options_);
   if (!hashes_.count(path)) {
     try {
-      hashes_[path] = sha256(read_bytes(path, size_t{64} << 30));
+      hashes_[path] = sha256(read_bytes(path, kLargest));
     } catch (const Error& e) {
       // Where it is named says more than where it was looked for.
       throw Error(p.where(), "file '" + name + "' " + e.message(), e.hint(), "SP003");
     }
     draft_.inputs.push_back({name, hashes_[path]});
-    // The header of a spectral library decides as much as its values.
-    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".sli") == 0)
-      for (const std::string& header : {name + ".hdr", name.substr(0, name.size() - 4) + ".hdr"})
-        if (const std::string at = find_input(draft_.file, header, options_); file_exists(at))
-          draft_.inputs.push_back({header, sha256(read_bytes(at))});
+    if (ends_with(path, ".sli") || ends_with(path, ".img")) header_input(p);
   }
   return path;
+}
+
+// The header of an ENVI image or library decides as much as its values; so would one that is found before it.
+void Reader::header_input(const Params& p) {
+  const std::string file = std::filesystem::path(p.as_text()).filename().string();
+  for (const std::string& header : {file + ".hdr", std::filesystem::path(file).stem().string() + ".hdr"})
+    companion(p, header);
+}
+
+void Reader::companion(const Params& p, const std::string& other) {
+  const std::string name = p.as_text() + kBrings + other,
+                    at = resolve_path(find_input(draft_.file, p.as_text(), options_), other);
+  for (const InputFile& known : draft_.inputs)
+    if (known.name == name) return;
+  draft_.inputs.push_back({name, file_exists(at) ? sha256(read_bytes(at, kLargest)) : ""});
 }
 
 // none, wgs84, or {tolerance_m}.
@@ -129,8 +147,11 @@ void Reader::run(const Params& root) {
 
 bool inputs_unchanged(const std::string& path, const SceneTextOptions& options, const std::vector<InputFile>& inputs) {
   for (const InputFile& f : inputs) {
-    const std::string at = f.name.empty() ? path : find_input(path, f.name, options);
-    if (!file_exists(at) || sha256(read_bytes(at, size_t{64} << 30)) != f.sha256) return false;
+    const size_t brings = f.name.find(kBrings);
+    std::string at = f.name.empty() ? path : find_input(path, f.name.substr(0, brings), options);
+    if (brings != std::string::npos) at = resolve_path(at, f.name.substr(brings + std::strlen(kBrings)));
+    const bool there = file_exists(at);
+    if (there != !f.sha256.empty() || (there && sha256(read_bytes(at, kLargest)) != f.sha256)) return false;
   }
   return !inputs.empty();
 }

@@ -37,6 +37,7 @@ class Reader {
   void read_grid(const std::string& name, const Params& p);
   void read_volume(const Params& p);
   void read_voxel_geometry(const Params& p, DraftGeometry& g);
+  VoxelData read_any_voxels(const Params& p, const Params& file);
   // The voxels that a value names, with their raw files among the inputs.
   VoxelData read_voxel_input(const Params& p);
   // temperatures.cpp
@@ -65,6 +66,9 @@ class Reader {
   void item(const char* code, const Params& p, const std::function<void()>& read);
   // The file a value names, looked for beside the text and in the search folders; hashed into the inputs.
   std::string input(const Params& p);
+  // A file that stands beside the one that p names and is read with it: hashed too, or noted as not being there.
+  void companion(const Params& p, const std::string& other);
+  void header_input(const Params& p);
   static Reference reference(const Params& p) { return {p.as_text(), p.where()}; }
 
   const SceneTextOptions& options_;

@@ -54,6 +54,18 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
       spec.kelvins.push_back(v[1]);
     }
   spec.repeat = p.boolean("repeat", false);
+  if (const auto loads = p.find("loads")) {
+    for (const Params& line : loads->at("table").items()) {
+      const std::vector<double> v = line.as_numbers();
+      if (v.size() < 3 || v.size() > 5)
+        throw line.error("a row of loads is [seconds, absorbed sunlight W/m2, sky W/m2, air K, wind m/s]",
+                        "air and wind may be left out");
+      spec.load_times.push_back(v[0]);
+      spec.loads.push_back({v[1], v[2], v.size() > 3 ? v[3] : 0, v.size() > 4 ? v[4] : 0});
+    }
+    if (spec.loads.empty()) throw loads->error("the table of loads is empty");
+    spec.loads_repeat = loads->boolean("repeat", false);
+  }
   for (const TemperatureParameter& parameter : row.parameters)
     if (const auto value = p.find(parameter.name)) spec.numbers[parameter.name] = value->as_number();
   // What the material says of itself holds unless the model says otherwise.

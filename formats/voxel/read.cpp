@@ -108,9 +108,15 @@ VoxelData read_voxels(const std::string& path) {
   if (const auto f = fields.find("medium")) data.medium = whole(*f, read_field(*f, total, data.raw_files), "medium");
   if (const auto f = fields.find("material"))
     data.material = whole(*f, read_field(*f, total, data.raw_files), "material");
+  if (const auto f = fields.find("shares"))
+    for (const Params& share : f->items()) {
+      data.shares.push_back(read_field(share, total, data.raw_files));
+      check_range(share, data.shares.back(), 0, 3e38, "share");
+    }
   root.reject_unread();
-  if (data.density.empty() && data.medium.empty() && data.material.empty())
-    throw fields.error("the grid holds nothing", "give 'density', 'medium' or 'material'");
+  if (!data.shares.empty() && !data.medium.empty()) throw fields.error("'medium' and 'shares' cannot be combined");
+  if (data.density.empty() && data.medium.empty() && data.material.empty() && data.shares.empty())
+    throw fields.error("the grid holds nothing", "give 'density', 'medium', 'shares' or 'material'");
   return data;
 }
 

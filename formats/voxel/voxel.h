@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -15,6 +16,7 @@ struct VoxelData {
   std::vector<float> density;      // per cell, x fastest; empty = not given
   std::vector<float> temperature;  // K, 0 = none
   std::vector<uint16_t> medium, material;
+  std::vector<std::vector<float>> shares;  // of each medium, per cell: what they add to density with; or empty
   std::vector<std::string> raw_files;  // as written
   size_t size() const { return size_t{cells[0]} * cells[1] * cells[2]; }
 };
@@ -22,5 +24,11 @@ struct VoxelData {
 // Error located in the text: unknown keys, sizes that do not match the files, negative or infinite values, whole
 // numbers that are none. Files are compared with the declared size before anything is allocated.
 VoxelData read_voxels(const std::string& path);
+
+// Fog volumes of an OpenVDB file: the float grid `density` over the box of its active voxels, and `temperature` (K; empty = none)
+// over the same cells. Error: not built with OpenVDB, no such grid, another type, a level set, different cells, more than 2^28
+// cells, values out of range.
+VoxelData read_vdb(const std::string& path, const std::string& density, const std::string& temperature);
+bool reads_vdb();  // was this built with OpenVDB?
 
 }  // namespace suite

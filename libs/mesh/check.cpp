@@ -23,7 +23,7 @@ class Checker {
     shapes();
     duplicates();
     edges();
-    if (options_.self_intersections) list("SP308", self_intersecting(mesh_.positions, corners_), "crosses another one");
+    if (options_.self_intersections) crossings();
     return std::move(findings_);
   }
 
@@ -42,6 +42,14 @@ class Checker {
   }
   void list(const char* code, const std::vector<uint32_t>& triangles, const std::string& message) {
     for (const uint32_t t : triangles) add(code, where(t), message);
+  }
+
+  void crossings() {
+    if (const auto found = self_intersecting(mesh_.positions, corners_))
+      list("SP308", *found, "crosses another one");
+    else
+      add("SP315", {mesh_.file, 0, 0, {}, -1},
+          strf("more than %zu pairs of triangles are close enough to cross", most_pairs(mesh_.indices.size() / 3)));
   }
 
   void extents() {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
@@ -53,12 +54,35 @@ class Soup {
 
 }  // namespace
 
-std::vector<uint32_t> self_intersecting(std::span<const Vec3> positions, std::span<const uint32_t> corners) {
+namespace {
+
+// Of triangles on the same three places only the first is looked at: the others have their own code.
+std::vector<bool> repetitions(std::span<const uint32_t> corners) {
+  std::vector<std::array<uint32_t, 4>> keys;
+  for (uint32_t t = 0; t < corners.size() / 3; ++t) {
+    std::array<uint32_t, 4> k{corners[3 * size_t{t}], corners[3 * size_t{t} + 1], corners[3 * size_t{t} + 2], t};
+    std::sort(k.begin(), k.begin() + 3);
+    keys.push_back(k);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<bool> repeats(keys.size());
+  for (size_t i = 1; i < keys.size(); ++i)
+    repeats[keys[i][3]] = std::equal(keys[i].begin(), keys[i].begin() + 3, keys[i - 1].begin());
+  return repeats;
+}
+
+struct GivenUp {};
+
+}  // namespace
+
+std::optional<std::vector<uint32_t>> self_intersecting(std::span<const Vec3> positions,
+                                                       std::span<const uint32_t> corners) {
   const Soup soup(positions, corners);
+  const std::vector<bool> repeats = repetitions(corners);
   std::vector<Box> boxes;
   boxes.reserve(corners.size() / 3);
   for (uint32_t t = 0; t < corners.size() / 3; ++t) {
-    if (soup.degenerate(t)) continue;
+    if (repeats[t] || soup.degenerate(t)) continue;
     double low[3], high[3];
     for (int k = 0; k < 3; ++k) {
       const double x[3] = {positions[soup.id(t, 0)][k], positions[soup.id(t, 1)][k], positions[soup.id(t, 2)][k]};
@@ -68,9 +92,15 @@ std::vector<uint32_t> self_intersecting(std::span<const Vec3> positions, std::sp
     boxes.emplace_back(low, high, t);
   }
   std::vector<uint32_t> found;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-    if (soup.cross(a.info(), b.info())) found.push_back(a.info()), found.push_back(b.info());
-  });
+  size_t left = most_pairs(boxes.size());
+  try {
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+      if (left-- == 0) throw GivenUp{};
+      if (soup.cross(a.info(), b.info())) found.push_back(a.info()), found.push_back(b.info());
+    });
+  } catch (const GivenUp&) {
+    return std::nullopt;  // which pairs came first is chance, so nothing is said of them
+  }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;

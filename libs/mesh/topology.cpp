@@ -73,6 +73,12 @@ size_t count_loops(std::span<const uint32_t> corners, size_t vertices) {
   return loops;
 }
 
+size_t most_faces_at_a_vertex(std::span<const uint32_t> corners, size_t vertices) {
+  std::vector<uint32_t> faces(vertices, 0);
+  for (const uint32_t v : corners) ++faces[v];
+  return faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
+}
+
 }  // namespace
 
 Topology topology(std::span<const uint32_t> corners, size_t vertices) {
@@ -111,7 +117,9 @@ Topology topology(std::span<const uint32_t> corners, size_t vertices) {
   }
   if (!result.non_manifold.empty() || !result.misoriented.empty()) return result;
   result.pinched = several_fans(corners, vertices, edges);
-  if (result.boundary_edges && result.pinched.empty()) result.boundary_loops = count_loops(corners, vertices);
+  // OpenMesh walks around a vertex for every face it gets there.
+  if (result.boundary_edges && result.pinched.empty() && most_faces_at_a_vertex(corners, vertices) <= 4096)
+    result.boundary_loops = count_loops(corners, vertices);
   return result;
 }
 

@@ -110,7 +110,7 @@ class PhaseModelFunction final : public sqt::Function {
   Info info_;
 };
 
-// A model, or else a phase function; the names do not overlap.
+// A model, or else a phase function: 'sqt', which is both, cannot be fitted anyway.
 bool is_phase(const std::string& name, const Where& where) {
   std::vector<std::string> known;
   for (const ModelRow& row : models()) known.push_back(row.name);

@@ -14,7 +14,7 @@ Dir scattered_direction(Dir out, double cos_scatter, double u) {
 }
 
 std::span<const PhaseRow> phases() {
-  static const std::vector<PhaseRow> table{hg_row(), double_hg_row(), rayleigh_row(), tabulated_row()};
+  static const std::vector<PhaseRow> table{hg_row(), double_hg_row(), rayleigh_row(), tabulated_row(), sqt_phase_row()};
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radiometry/many_suns.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/path_processor.h"
 #include "radiometry/wave.h"
@@ -19,6 +20,9 @@ void RunStatistics::merge(const RunStatistics& o) {
   trace.rays += o.trace.rays;
   trace.cycles += o.trace.cycles;
   cycles += o.cycles;
+  sensor_cycles += o.sensor_cycles;
+  path_cycles += o.path_cycles;
+  shade_cycles += o.shade_cycles;
 }
 
 Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
@@ -140,6 +144,7 @@ struct Pipeline::Workspace {
   std::vector<float> weights;     // [path][bin], of rays that weigh wavelengths
   std::vector<uint8_t> weighted;  // [path]
   std::vector<float> single;      // [bin]
+  ManySuns suns;
 };
 
 Pipeline::~Pipeline() = default;
@@ -158,7 +163,8 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
                                                   {},
                                                   std::vector<float>(kWaveWidth * state_.size()),
                                                   std::vector<uint8_t>(kWaveWidth),
-                                                  std::vector<float>(state_.size())});
+                                                  std::vector<float>(state_.size()),
+                                                  ManySuns(surface_)});
 }
 
 namespace {
@@ -238,6 +244,7 @@ class Pipeline::BlockRun {
   void run_wave() {
     Wave& wave = workspace_.wave;
     const size_t bins = pipeline_.state_.size();
+    const uint64_t asked = __rdtsc();
     wave.active.clear();
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
@@ -250,11 +257,18 @@ class Pipeline::BlockRun {
       workspace_.weighted[p] = ray.spectral;
       workspace_.generator.start(wave, p, ray, stream, number);
     }
+    const uint64_t started = __rdtsc();
     workspace_.generator.complete(wave, statistics_);
+    const uint64_t completed = __rdtsc();
+    statistics_.sensor_cycles += started - asked;
+    statistics_.path_cycles += completed - started;
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
-      if (sample < end_[place]) accumulate(p, place, sample);
+      if (sample >= end_[place]) continue;
+      if (capture_.bin_by == Capture::BinBy::sun) accumulate_suns(p, place, sample);
+      else accumulate(p, place, sample);
     }
+    statistics_.shade_cycles += __rdtsc() - completed;
     workspace_.lanes.clear();
   }
 
@@ -273,6 +287,18 @@ class Pipeline::BlockRun {
       if (single_) workspace_.single[k] *= factor;
     }
     return radiance;
+  }
+
+  void accumulate_suns(size_t p, size_t place, uint32_t sample) {
+    const size_t slot = slot_of(place);
+    double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
+    const bool good = workspace_.suns.add(workspace_.wave, p, capture_.suns, pipeline_.projection_, single_, {target, sums_.bands()}, statistics_.trace);
+    ++statistics_.paths;
+    statistics_.truncated += workspace_.wave.path(p).truncated;
+    sums_.set_paths(slot, sample + 1);
+    if (!good) ++statistics_.failures, ++sums_.failures(slot);
+    sums_.truncated(slot) += static_cast<float>(workspace_.wave.path(p).truncated);
+    pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
   }
 
   void accumulate(size_t p, size_t place, uint32_t sample) {

@@ -72,7 +72,10 @@ struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
   double truncated = 0;          // sum over paths of the throughput cut at max_nodes
   TraceStatistics trace;
-  uint64_t cycles = 0;           // all cycles spent in run(), all threads
+  uint64_t cycles = 0;           // all cycles spent in run(), all threads; of these:
+  uint64_t sensor_cycles = 0;    // asking the sensor for rays
+  uint64_t path_cycles = 0;      // building paths, the ray tracer (trace.cycles) included
+  uint64_t shade_cycles = 0;     // turning paths into radiance and truth, adding up
   void merge(const RunStatistics& o);
 };
 

@@ -16,7 +16,8 @@ Bodies::Bodies(const Surface& surface) : surface_(surface) {
     any_boundary_ = any_boundary_ || m.is_boundary();
   }
   for (const TracedObject& o : surface.tracer().objects()) {
-    unbounded_.push_back(o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty());
+    if (o.instance >= unbounded_.size()) unbounded_.resize(o.instance + 1, false);
+    unbounded_[o.instance] = o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty();
   }
 }
 
@@ -24,9 +25,9 @@ void Bodies::cross(MediumStack& stack, const Hit& hit, uint32_t material, Dir di
   if (material == kNone) return;
   const Rule& rule = rules_[material];
   const bool behind = dot(direction, hit.normal) < 0;
-  stack.leave(hit.object, !behind);
+  stack.leave(body(hit), !behind);
   const uint32_t medium = rule.medium[behind];
-  stack.enter(hit.object, behind, medium, priority(medium));
+  stack.enter(body(hit), behind, medium, priority(medium));
 }
 
 const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& statistics) {
@@ -45,7 +46,7 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
     const uint32_t material = surface_.material(hit);
     if (material != kNone && (rules_[material].medium[0] != kNone || rules_[material].medium[1] != kNone)) {
       const bool side = dot(ray.direction, hit.normal) > 0;  // the side that the ray comes from: behind the surface
-      if (rules_[material].medium[side] != kNone && !entered.holds(hit.object, side)) left.emplace_back(hit, material);
+      if (rules_[material].medium[side] != kNone && !entered.holds(body(hit), side)) left.emplace_back(hit, material);
       cross(entered, hit, material, ray.direction);
     }
     ray.origin = surface_.tracer().leave(hit, ray.direction);
@@ -53,13 +54,13 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
   for (size_t i = left.size(); i-- > 0;) {
     const bool side = dot(ray.direction, left[i].first.normal) > 0;
     const uint32_t medium = rules_[left[i].second].medium[side];
-    if (!around_.holds(left[i].first.object, side)) around_.enter(left[i].first.object, side, medium, priority(medium));
+    if (!around_.holds(body(left[i].first), side)) around_.enter(body(left[i].first), side, medium, priority(medium));
   }
   return around_;
 }
 
 void Bodies::leave_scene(MediumStack& stack) const {
-  if (!stack.empty()) stack.filter([&](uint32_t object) { return unbounded_[object]; });
+  if (!stack.empty()) stack.filter([&](uint32_t of) { return unbounded_[of]; });
 }
 
 }  // namespace suite

@@ -29,10 +29,12 @@ class Bodies {
     uint32_t medium[2] = {kNone, kNone};  // in front, behind
     bool boundary = false;
   };
+  // Copies of one object that a periodic scene puts at its sides are one body.
+  uint32_t body(const Hit& hit) const { return surface_.tracer().objects()[hit.object].instance; }
   int priority(uint32_t medium) const { return medium == kNone ? 0 : surface_.tracer().scene().media[medium].priority; }
   const Surface& surface_;
-  std::vector<Rule> rules_;  // per material
-  std::vector<bool> unbounded_;
+  std::vector<Rule> rules_;      // per material
+  std::vector<bool> unbounded_;  // per body
   bool any_ = false, any_boundary_ = false, asked_ = false;
   Vec3 place_;
   double time_ = 0;

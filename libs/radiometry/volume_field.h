@@ -1,6 +1,9 @@
 // What fills space along a ray: the medium that holds there and the voxel grids on top of it, as stretches of constant
 // contents. Everything in double.
 //
+// In a periodic scene the grids repeat themselves with it: the walk goes from cell to cell of the scene, each of which
+// holds what sticks out of the others, too. Grids that move stand where the ray's time finds them.
+//
 // Cells are constant, so optical depths along a ray are sums without an estimate in them, for all wavelengths at once:
 // one number a medium (its density integrated over the way). A coarse grid of blocks lets rays pass what is empty.
 // Based on: J. Amanatides & A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987, with plane
@@ -10,35 +13,47 @@
 #include <limits>
 #include <vector>
 
+#include "motion/track.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
+#include "trace/tracer.h"
 
 namespace suite {
 
 class VolumeField {
  public:
-  // Keeps a reference to the scene. Error: voxel temperatures that nothing can be computed for.
-  VolumeField(const Scene& scene, const SpectralState& state);
+  // Keeps a reference to the scene. Error: volumes that move in a periodic scene, or are more than 64 cells wide.
+  VolumeField(const Scene& scene, const SpectralState& state, const std::optional<Periodic>& periodic = std::nullopt);
 
   size_t media() const { return scene_.media.size(); }
   bool has_grids() const { return !placed_.empty(); }
 
   struct Placed {
     const VoxelGrid* grid;
-    Affine3 to_index;                 // ENU -> index space
-    std::vector<uint8_t> block_full;  // blocks of kBlock^3 cells that hold anything
+    Affine3 place;                 // index space -> ENU, or the moving body's axes
+    const Track* track = nullptr;  // null: at rest
+    Affine3 to_index;              // ENU -> index space, of what is at rest
     std::array<uint32_t, 3> blocks;
-    bool emits = false;  // some cell has a temperature of its own
+    std::shared_ptr<const std::vector<uint8_t>> block_full;  // blocks of kBlock^3 cells that hold anything
+    bool emits = false;                                      // some cell has a temperature of its own
+    Affine3 index_at(double time) const { return track ? (track->at(time).affine() * place).inverse() : to_index; }
   };
   static constexpr uint32_t kBlock = 8;
   std::span<const Placed> placed() const { return placed_; }
+  const std::optional<Periodic>& periodic() const { return periodic_; }
+  // Heights between which a periodic scene has grids, m.
+  double bottom() const { return bottom_; }
+  double top() const { return top_; }
 
   // Planck radiance (vacuum) of bin i at a voxel's temperature, kelvin in the range of the scene's voxels.
   // Interpolated between log-spaced temperatures, ln B linearly in 1/T; relative error below 1e-4.
   float blackbody(size_t bin, double kelvin) const;
 
  private:
+  void repeat_at_sides(const Placed& p);
   const Scene& scene_;
+  std::optional<Periodic> periodic_;
+  double bottom_ = 0, top_ = 0;
   std::vector<Placed> placed_;
   std::vector<double> table_kelvin_;
   std::vector<float> table_log_;  // [kelvin][bin]
@@ -57,7 +72,8 @@ struct Constituent {
 class FieldWalk {
  public:
   // From origin along a unit direction to `length` (infinity allowed). background: medium without cells, or kNone.
-  void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background);
+  // time: s, of the ray.
+  void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background, double time);
   // The next stretch that holds anything; false at the end.
   bool next();
   double begin() const { return begin_; }
@@ -76,7 +92,9 @@ class FieldWalk {
     uint32_t index = kNone;         // current cell; kNone = empty
     bool inside = false;
   };
-  static bool clip(Cursor& c, double length);
+  void add_cursors(Vec3 origin, double begin, double end);
+  void next_piece();
+  static bool clip(Cursor& c, double begin, double end);
   static double plane(const Cursor& c, int axis, int at);
   static void enter(Cursor& c);
   static void settle(Cursor& c, double at);  // finds how far the current cell or empty block reaches
@@ -85,6 +103,14 @@ class FieldWalk {
   std::vector<Constituent> contents_;
   uint32_t background_ = kNone;
   double begin_ = 0, end_ = 0, length_ = 0;
+  // The ray, and the piece of it that the cursors are for: all of it, or its way through one cell of a periodic scene.
+  const VolumeField* field_ = nullptr;
+  Vec3 origin_;
+  Dir direction_;
+  double time_ = 0, piece_end_ = 0;
+  double grids_begin_ = 0, grids_end_ = 0;  // of the ray between the heights that have grids
+  double cell_[2] = {};                     // of the periodic scene, whole numbers
+  uint32_t cells_ = 0;
 };
 
 }  // namespace suite

@@ -40,7 +40,7 @@ void Flights::pass_run() {
   run_.clear();
 }
 
-Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t background, Vec2 u,
+Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec2 u,
                               std::span<float> beta, std::span<float> gathered) {
   const size_t own = bins_of_knots_[static_cast<size_t>(knot)];
   std::fill(depth_.begin(), depth_.end(), 0.0);
@@ -48,7 +48,7 @@ Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t 
   normalise(live, beta);
   double left = -std::log1p(-u.x);
   Arrival arrival{false, length};
-  walk_.start(field_, live.origin, live.direction, length, background);
+  walk_.start(field_, live.origin, live.direction, length, background, time);
   while (!arrival.scattered && walk_.next()) {
     const std::vector<Constituent>& contents = walk_.contents();
     double way = walk_.end() - walk_.begin(), rate = 0;
@@ -171,8 +171,8 @@ void Flights::normalise(LivePath& live, std::span<float> beta) const {
   live.shares = 1;
 }
 
-void Flights::add_depths(Vec3 origin, Dir direction, double length, uint32_t background, std::span<double> depth) {
-  walk_.start(field_, origin, direction, length, background);
+void Flights::add_depths(const Ray& ray, double length, uint32_t background, std::span<double> depth) {
+  walk_.start(field_, ray.origin, ray.direction, length, background, ray.time);
   while (walk_.next())
     for (const Constituent& c : walk_.contents())
       depth[c.medium] += c.density * std::min(walk_.end() - walk_.begin(), kEndless);

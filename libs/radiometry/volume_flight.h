@@ -33,14 +33,14 @@ class Flights {
   };
   // Flies path `live` from its origin along its direction to at most `length` in `background`. beta: the path's weight
   // per bin since its last node, updated (without the scattering coefficient of the bin where it is scattered);
-  // gathered: receives emission. u: two numbers in [0, 1).
-  Arrival fly(LivePath& live, int knot, double length, uint32_t background, Vec2 u, std::span<float> beta,
+  // gathered: receives emission. u: two numbers in [0, 1). time: s, of the ray.
+  Arrival fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec2 u, std::span<float> beta,
               std::span<float> gathered);
   // Where the last flight was scattered.
   const std::vector<Constituent>& contents() const { return walk_.contents(); }
 
   // Adds each medium's density, integrated along a way, to depth[medium].
-  void add_depths(Vec3 origin, Dir direction, double length, uint32_t background, std::span<double> depth);
+  void add_depths(const Ray& ray, double length, uint32_t background, std::span<double> depth);
   // exp(-extinction) for such depths; false, and nothing written, when they are all 0.
   bool transmittance(std::span<const double> depth, std::span<float> transmission) const;
   // Divides everything that is relative to the path's density by A.

@@ -23,8 +23,7 @@ void VolumeLight::look(std::span<const Ray> rays, std::span<const double> distan
   for (size_t i = 0; i < rays.size(); ++i) {
     if (blocked[i]) continue;
     if (distance[i] == std::numeric_limits<double>::infinity()) body_rules_.leave_scene(bodies_at_[i]);
-    flights_.add_depths(rays[i].origin, rays[i].direction, distance[i], bodies_at_[i].medium(ambient_),
-                        {&depths_[i * media_], media_});
+    flights_.add_depths(rays[i], distance[i], bodies_at_[i].medium(ambient_), {&depths_[i * media_], media_});
   }
 }
 
@@ -51,8 +50,7 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
       }
       if (!hit.hit()) body_rules_.leave_scene(bodies_at_[r]);
       const double way = met ? hit.distance : left;
-      flights_.add_depths(rays_[i].origin, rays_[i].direction, way, bodies_at_[r].medium(ambient_),
-                          {&depths_[r * media_], media_});
+      flights_.add_depths(rays_[i], way, bodies_at_[r].medium(ambient_), {&depths_[r * media_], media_});
       if (!met) continue;
       body_rules_.cross(bodies_at_[r], hit, material, rays_[i].direction);
       travelled_[r] += way;

@@ -22,7 +22,7 @@ VolumePaths::VolumePaths(const Surface& surface, const Optics& optics, const Env
       options_(options),
       ambient_(surface.tracer().scene().ambient),
       probability_(knot_probability.begin(), knot_probability.end()),
-      field_(surface.tracer().scene(), optics.state()),
+      field_(surface.tracer().scene(), optics.state(), surface.tracer().periodic()),
       bodies_(surface),
       flights_(field_, optics, knot_probability),
       light_(surface, bodies_, flights_, optics.media().size()),
@@ -111,8 +111,8 @@ bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
   if (!hit.hit() && environment_.earth)
     if (const auto met = environment_.earth->meet(live.origin, live.direction, length)) length = met->distance;
   const std::array<double, 4> u = numbers(live, kFlightNumbers);
-  const Flights::Arrival arrival = flights_.fly(live, path.knot, length, live.bodies.medium(ambient_), {u[0], u[1]},
-                                                wave.through(p, path.size), wave.gathered(p, path.size));
+  const Flights::Arrival arrival = flights_.fly(live, path.knot, length, live.bodies.medium(ambient_), path.ray.time,
+                                                {u[0], u[1]}, wave.through(p, path.size), wave.gathered(p, path.size));
   if (arrival.scattered) {
     live.length += arrival.distance;
     if (path.size == path.first_met()) path.scattered_first = true;

@@ -16,7 +16,7 @@ Scene Baker::run() {
   scene_.origin = draft_.origin;
   scene_.files = draft_.files;
   materials();
-  bake_media(draft_, report_, scene_);
+  bake_media(draft_, report_, scene_, motion_where_);
   class_maps();
   property_maps();
   geometry();
@@ -88,7 +88,7 @@ Baker::Built Baker::build_terrain(const DraftGeometry& g) {
     terrains_.push_back(std::make_unique<TerrainGrid>(on_plane(g.terrain)));
   } catch (const Error& e) {  // a sample that lies nowhere on Earth
     add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
-    return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr};
+    return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr, true};
   }
   const auto first = static_cast<uint32_t>(scene_.meshes.size());
   std::vector<Mesh> tiles = terrains_.back()->tiles(g.name, g.tile_m, material_id(g.material));
@@ -106,7 +106,13 @@ Baker::Built Baker::build_primitive(const DraftGeometry& g) {
 }
 
 void Baker::geometry() {
-  for (const DraftGeometry& g : draft_.geometry) switch (g.kind) {
+  for (const DraftGeometry& g : draft_.geometry) {
+    if (g.failed) {
+      if (g.material.given()) material_id(g.material);
+      built_[g.name] = {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr, true};
+      continue;
+    }
+    switch (g.kind) {
       case DraftGeometry::Kind::mesh:
       case DraftGeometry::Kind::voxels:
         built_[g.name] = build_mesh(g);
@@ -118,6 +124,7 @@ void Baker::geometry() {
         built_[g.name] = build_primitive(g);
         break;
     }
+  }
 }
 
 // World first, every group before the groups it contains (Kahn 1962); groups in a cycle are reported and left out.
@@ -191,6 +198,7 @@ bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& al
   const auto ground = built_.find(p.on.name);
   if (!world)
     return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand"), false;
+  if (ground != built_.end() && ground->second.failed) return false;
   if (ground == built_.end() || !ground->second.terrain)
     return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain"), false;
   for (Affine3& t : all) {

@@ -12,7 +12,7 @@ Scene bake_scene(const Draft& draft, Report& report);
 
 // Resolves media, what bounds them, grids and volumes of a draft into a scene that has its materials. Internal to
 // bake_scene.
-void bake_media(const Draft& draft, Report& report, Scene& scene);
+void bake_media(const Draft& draft, Report& report, Scene& scene, std::vector<Where>& motion_where);
 
 // Parts shared with tests. ---------------------------------------------------------------------------------------
 

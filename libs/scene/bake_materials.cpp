@@ -24,8 +24,56 @@ void Baker::check_coverage(const DraftMaterial& m) {
   for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
   for (const DraftPropertyMap& map : draft_.property_maps)
     for (const Reference& r : m.property_maps)
-      if (r.name == map.map.name)
-        for (const Curve& curve : map.map.family) check("a curve of map '" + r.name + "'", curve);
+      if (r.name == map.map.name) check_map_coverage(m, map.map, check);
+}
+
+// Beyond the channels of a cube its rule decides, as beyond the points of a curve.
+void Baker::check_map_coverage(const DraftMaterial& m, const PropertyMap& map,
+                               const std::function<void(const std::string&, const Curve&)>& check) {
+  for (const Curve& curve : map.family) check("a curve of map '" + map.name + "'", curve);
+  if (map.kind != MapKind::cube || map.outside != Outside::error || map.wavelength_um.empty()) return;
+  for (const SpectralWindow& w : draft_.windows)
+    if (w.low_um < map.wavelength_um.front() || w.high_um > map.wavelength_um.back())
+      add("SP104", m.where,
+          strf("material '%s': cube '%s' has channels from %g to %g um, the window is %g to %g um",
+               m.material.id.c_str(), map.name.c_str(), map.wavelength_um.front(), map.wavelength_um.back(), w.low_um,
+               w.high_um));
+}
+
+// A table that ends must hold for the whole time that is looked at.
+void Baker::check_times(const DraftMaterial& m) {
+  if (!draft_.times || !m.temperature || m.temperature->times.empty() || m.temperature->repeat) return;
+  const std::vector<double>& t = m.temperature->times;
+  if (draft_.times->begin < t.front() || draft_.times->end > t.back())
+    add("SP106", m.where,
+        strf("material '%s': temperatures are given from %g to %g s, 'times_s' is %g to %g s", m.material.id.c_str(),
+             t.front(), t.back(), draft_.times->begin, draft_.times->end));
+}
+
+// What a map puts in place of the reflectance must leave room for the transmittance, and the other way round.
+void Baker::check_map_energy(const DraftMaterial& m, const PropertyMap& map, const Where& where) {
+  const bool reflects = map.parameter == "reflectance";
+  if (!reflects && map.parameter != "transmittance") return;
+  const auto other = m.material.surface.curves.find(reflects ? "transmittance" : "reflectance");
+  if (other == m.material.surface.curves.end()) return;
+  const auto too_much = [&](double um, double value) {
+    if (!other->second.covers(um, um) || value + other->second.at(um) <= 1 + 1e-6) return false;
+    add("SP105", where,
+        strf("material '%s': map '%s' has %s %g, with %s %g at %g um", m.material.id.c_str(), map.name.c_str(),
+             map.parameter.c_str(), value, other->first.c_str(), other->second.at(um), um));
+    return true;
+  };
+  if (map.kind == MapKind::cube) {
+    std::vector<float> highest(map.channels, 0);
+    for (size_t i = 0; i < map.values.size(); ++i)
+      highest[i % map.channels] = std::max(highest[i % map.channels], map.values[i]);
+    for (size_t c = 0; c < highest.size(); ++c)
+      if (too_much(map.wavelength_um[c], highest[c])) return;
+  }
+  for (const Curve& curve : map.family)
+    for (size_t k = 0; k < curve.value().size(); ++k)
+      if (curve.is_constant() ? too_much(1, curve.value()[0]) : too_much(curve.wavelength_um()[k], curve.value()[k]))
+        return;
 }
 
 void Baker::materials() {
@@ -34,6 +82,7 @@ void Baker::materials() {
     scene_.materials.push_back(m.material);
     if (m.temperature) scene_.temperatures.push_back({material_ids_[m.material.id], *m.temperature});
     if (m.has_model) check_coverage(m);
+    check_times(m);
     // The sum over both sides' shares must stay below 1 wherever either curve has a knot.
     const auto& curves = m.material.surface.curves;
     const auto rho = curves.find("reflectance"), tau = curves.find("transmittance");
@@ -131,6 +180,7 @@ void Baker::property_maps() {
       used_maps_.insert(r.name);
       const PropertyMap& map = scene_.property_maps[found->second];
       check_parts(map, r.where);
+      check_map_energy(draft_.materials[m], map, r.where);
       if (!kinds.insert(map.kind).second)
         add("SP501", r.where,
             "material '" + draft_.materials[m].material.id + "' has two maps of the kind of '" + r.name + "'");

@@ -10,7 +10,8 @@ namespace {
 
 class MediaBaker {
  public:
-  MediaBaker(const Draft& draft, Report& report, Scene& scene) : draft_(draft), report_(report), scene_(scene) {}
+  MediaBaker(const Draft& draft, Report& report, Scene& scene, std::vector<Where>& motion_where)
+      : draft_(draft), report_(report), scene_(scene), motion_where_(motion_where) {}
 
   void run() {
     for (const DraftMedium& m : draft_.media) {
@@ -57,10 +58,27 @@ class MediaBaker {
                    name.c_str(), curve->low_um(), curve->high_um(), w.low_um, w.high_um));
   }
 
+  // Media that share cells are grids on top of each other: coefficients add up, each with its phase function.
+  void shared_grid(const DraftGrid& d, std::vector<uint32_t>& rows) {
+    for (size_t m = 0; m < d.media.size(); ++m) {
+      VoxelGrid g = d.grid;
+      g.name += " (" + d.media[m].name + ")";
+      g.media = {medium(d.media[m])};
+      for (size_t i = 0; i < g.density.size(); ++i) g.density[i] = std::min(g.density[i] * d.shares[m][i], 3e38f);
+      rows.push_back(static_cast<uint32_t>(scene_.grids.size()));
+      scene_.grids.push_back(std::move(g));
+    }
+  }
+
   void grids() {
-    std::map<std::string, uint32_t> rows;
+    std::map<std::string, std::vector<uint32_t>> rows;
     std::vector<std::string> names;
     for (const DraftGrid& d : draft_.grids) {
+      if (!d.shares.empty()) {
+        names.push_back(d.grid.name);
+        shared_grid(d, rows[d.grid.name]);
+        continue;
+      }
       VoxelGrid g = d.grid;
       for (const Reference& r : d.media) g.media.push_back(medium(r));
       for (const uint8_t k : g.kind)
@@ -69,7 +87,7 @@ class MediaBaker {
               strf("grid '%s' has a voxel of medium %u, %zu media are listed", g.name.c_str(), k, g.media.size()));
           break;
         }
-      rows[g.name] = static_cast<uint32_t>(scene_.grids.size());
+      rows[g.name] = {static_cast<uint32_t>(scene_.grids.size())};
       names.push_back(g.name);
       scene_.grids.push_back(std::move(g));
     }
@@ -84,7 +102,13 @@ class MediaBaker {
       bool sound = v.to_world.determinant() != 0 && finite(v.to_world.b);
       for (const double a : v.to_world.a) sound = sound && std::isfinite(a);
       if (!sound) add("SP404", v.where, "the transform of '" + v.grid.name + "' flattens or is not finite");
-      scene_.volumes.push_back({found->second, v.to_world});
+      uint32_t track = kNone;
+      if (v.motion) {
+        track = static_cast<uint32_t>(scene_.tracks.size());
+        scene_.tracks.push_back({strf("volume '%s' (line %d)", v.grid.name.c_str(), v.motion_where.line), v.motion});
+        motion_where_.push_back(v.motion_where);
+      }
+      for (const uint32_t row : found->second) scene_.volumes.push_back({row, v.to_world, track});
     }
     for (const DraftGrid& d : draft_.grids)
       if (!placed.count(d.grid.name)) add("SP603", d.where, "voxel grid '" + d.grid.name + "' is in no volume");
@@ -93,12 +117,15 @@ class MediaBaker {
   const Draft& draft_;
   Report& report_;
   Scene& scene_;
+  std::vector<Where>& motion_where_;
   std::map<std::string, uint32_t> ids_;
   std::set<std::string> used_;
 };
 
 }  // namespace
 
-void bake_media(const Draft& draft, Report& report, Scene& scene) { MediaBaker(draft, report, scene).run(); }
+void bake_media(const Draft& draft, Report& report, Scene& scene, std::vector<Where>& motion_where) {
+  MediaBaker(draft, report, scene, motion_where).run();
+}
 
 }  // namespace suite

@@ -1,5 +1,6 @@
 // What turns a Draft into a Scene, step by step; internal to bake.cpp and bake_materials.cpp.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,6 +30,7 @@ class Baker {
     TargetKind kind;
     uint32_t first, count;
     const TerrainGrid* terrain = nullptr;
+    bool failed = false;  // has been filed; placements of it say nothing more
   };
 
   void add(const char* code, const Where& where, const std::string& message) {
@@ -38,6 +40,10 @@ class Baker {
   uint32_t material_id(const Reference& ref);
   void materials();
   void check_coverage(const DraftMaterial& m);
+  void check_map_coverage(const DraftMaterial& m, const PropertyMap& map,
+                          const std::function<void(const std::string&, const Curve&)>& check);
+  void check_map_energy(const DraftMaterial& m, const PropertyMap& map, const Where& where);
+  void check_times(const DraftMaterial& m);
   void class_maps();
   void property_maps();
   void check_parts(const PropertyMap& map, const Where& where);

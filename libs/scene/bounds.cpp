@@ -65,8 +65,9 @@ Box3 scene_bounds(const Scene& s, double begin, double end) {
   Box3 all = groups.empty() ? Box3{} : groups.front();
   for (const Volume& v : s.volumes) {
     const VoxelGrid& g = s.grids[v.grid];
-    all.grow(transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}},
-                         v.to_world * g.to_local));
+    const Box3 placed = transformed(Box3{{0, 0, 0}, {double(g.cells[0]), double(g.cells[1]), double(g.cells[2])}},
+                                    v.to_world * g.to_local);
+    all.grow(v.track == kNone ? placed : swept(placed, *s.tracks[v.track].track, {begin, end}));
   }
   return all;
 }

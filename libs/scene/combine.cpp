@@ -64,11 +64,11 @@ class Combiner {
       all_.tracks.push_back(std::move(t));
     }
     indices(s, tracks);
-    media(part, root.to_parent);
     if (part.motion) {
       root.track = static_cast<uint32_t>(all_.tracks.size());
       all_.tracks.push_back({"'" + part.name + "'", part.motion});
     }
+    media(part, root);
     root.target = move_behind(all_.groups, s.groups);
     all_.groups[0].placements.push_back(root);
     if (!part.motion) all_.bounds.grow(transformed(s.bounds, root.to_parent));
@@ -80,10 +80,9 @@ class Combiner {
   }
 
   // Media, grids and volumes follow their scene's placement.
-  void media(ScenePart& part, const Affine3& place) {
+  void media(ScenePart& part, const Placement& root) {
     Scene& s = part.scene;
-    if (part.motion && !s.volumes.empty())
-      throw Error("scene '" + part.name + "' has volumes and moves", "volumes stand still");
+    const Affine3& place = root.to_parent;
     if (s.ambient != kNone && all_.ambient != kNone)
       throw Error("two scenes have an ambient medium", "one may fill what no body fills");
     const uint32_t first = move_behind(all_.media, s.media);
@@ -93,7 +92,23 @@ class Combiner {
     for (VoxelGrid& g : s.grids)
       for (uint32_t& m : g.media) m += first;
     const uint32_t grids = move_behind(all_.grids, s.grids);
-    for (const Volume& v : s.volumes) all_.volumes.push_back({v.grid + grids, place * v.to_world});
+    for (const Volume& v : s.volumes) {
+      if (v.track == kNone) {
+        all_.volumes.push_back({v.grid + grids, place * v.to_world, root.track});
+        continue;
+      }
+      // What moves in a scene that stands elsewhere would need the scene's placement after its own motion.
+      if (!(place == Affine3{}))
+        throw Error("scene '" + part.name + "' has a volume that moves, so it cannot be placed",
+                    "make it the first scene, without a placement");
+      uint32_t track = v.track;
+      if (part.motion) {
+        const SceneTrack own = all_.tracks[track];
+        track = static_cast<uint32_t>(all_.tracks.size());
+        all_.tracks.push_back({own.name, composed_track(part.motion, own.track)});
+      }
+      all_.volumes.push_back({v.grid + grids, v.to_world, track});
+    }
   }
 
   Affine3 place_of(const ScenePart& part, bool first) const {
@@ -159,6 +174,9 @@ class Combiner {
       for (auto& [key, text] : m.surface.texts)
         if (const auto found = renamed.find(text); key == "file" && found != renamed.end()) text = found->second;
     }
+    for (Medium& m : part.scene.media)
+      for (auto& [key, text] : m.phase.texts)
+        if (const auto found = renamed.find(text); key == "file" && found != renamed.end()) text = found->second;
   }
 
   double time_shift(const Scene& s) const {
@@ -187,6 +205,7 @@ class Combiner {
         shift(p.track, tracks);
         if (p.tag != kNone) p.tag = tags[p.tag];
       }
+    for (Volume& v : s.volumes) shift(v.track, tracks);
     for (ClassMap& m : s.class_maps)
       for (uint32_t& id : m.materials) id += materials;
     for (MapBinding& b : s.map_bindings)

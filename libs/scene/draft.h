@@ -65,6 +65,7 @@ struct DraftGeometry {
   NormalRule normals = NormalRule::file;
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
   double tile_m = 0;        // largest extent of one terrain tile
+  bool failed = false;           // could not be read, which has been filed: only the name is sure
 };
 
 struct DraftPlacement {
@@ -115,12 +116,15 @@ struct DraftGrid {
   Where where;
   VoxelGrid grid;  // `media` still empty
   std::vector<Reference> media;
+  std::vector<std::vector<float>> shares;  // of each medium, per cell; empty = each cell has one medium
 };
 
 struct DraftVolume {
   Where where;
   Reference grid;
   Affine3 to_world;
+  std::shared_ptr<const Track> motion;  // null: at rest
+  Where motion_where;
 };
 
 struct SpectralWindow {
@@ -128,7 +132,8 @@ struct SpectralWindow {
   Where where;
 };
 
-// One file that the scene was made from: the name as written, and its SHA-256.
+// One file that the scene was made from: the name as written, and its SHA-256. A file that another one brings along is
+// called "grid.vox -> density.raw"; one that would be read if it were there has no hash.
 struct InputFile {
   std::string name, sha256;
 };

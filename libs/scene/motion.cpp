@@ -13,6 +13,8 @@ void check_motion(const Scene& scene, double begin, double end, const Where& whe
   for (const Group& g : scene.groups)
     for (const Placement& p : g.placements)
       if (p.track != kNone) used[p.track] = true;
+  for (const Volume& v : scene.volumes)
+    if (v.track != kNone) used[v.track] = true;
   for (size_t k = 0; k < scene.tracks.size(); ++k) {
     if (!used[k]) continue;
     const TimeSpan c = scene.tracks[k].track->covered();

@@ -152,6 +152,7 @@ void check_media(const Scene& s, const std::string& file) {
   for (const VoxelGrid& g : s.grids) check_grid(g, s.media.size(), file);
   for (const Volume& v : s.volumes) {
     if (v.grid >= s.grids.size()) bad(file, "a volume names a grid that is not there");
+    if (v.track != kNone && v.track >= s.tracks.size()) bad(file, "a volume moves along a track that is not there");
     check_transform(v.to_world, file, "a volume: ");
   }
 }

@@ -124,7 +124,7 @@ struct MapBinding {
 // Rasters of numbers that vary a material from point to point. mixture: one channel a material of `materials`, fractions
 // that sum to 1 in every pixel. curve_index: one channel, whole numbers into `family`, which replaces the curve `parameter` of
 // the model (texture maps are baked to this). cube: the curve `parameter` is piecewise linear through the channels, which
-// stand at `wavelength_um`, and constant beyond them. temperature: one channel, K. bump: one channel, height in m along
+// stand at `wavelength_um`, and by `outside` beyond them. temperature: one channel, K. bump: one channel, height in m along
 // the normal. normal: three channels, the normal in the tangent frame (any length). opacity: one channel, 0 to 1.
 enum class MapKind : uint8_t { mixture, curve_index, cube, temperature, bump, normal, opacity };
 struct PropertyMap {
@@ -136,6 +136,7 @@ struct PropertyMap {
   std::string parameter;                // curve_index, cube: a curve parameter of the material's model
   std::vector<Curve> family;            // curve_index
   std::vector<double> wavelength_um;    // cube: ascending
+  Outside outside = Outside::hold;      // cube: what holds beyond the channels; error: states that reach there are refused
   // Between the pixels: the value of the pixel one is in, or linear between the four nearest pixel centres. Curve
   // numbers are never mixed; bumps are always linear.
   enum class Filter : uint8_t { nearest, linear } filter = Filter::nearest;
@@ -160,7 +161,8 @@ struct VoxelGrid {
 // A grid of media somewhere: it adds to whatever else is there, be it another grid, a body or the ambient medium.
 struct Volume {
   uint32_t grid = kNone;
-  Affine3 to_world;                     // the grid's own frame -> ENU
+  Affine3 to_world;                     // the grid's own frame -> ENU, or the axes of the moving body
+  uint32_t track = kNone;               // index into Scene::tracks; kNone = at rest
 };
 // A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
 struct TemperatureBinding {

@@ -1,10 +1,12 @@
 #include "scene/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/files.h"
 #include "base/progress.h"
+#include "motion/track.h"
 
 namespace suite {
 
@@ -40,6 +42,31 @@ std::string media_text(const Scene& s) {
                 g.temperature.empty() ? "" : ", temperatures");
   }
   return out;
+}
+}  // namespace
+
+namespace {
+// What holds in part of the spectrum or for some time only: a simulation that looks beyond is refused.
+std::string coverage_text(const Scene& s) {
+  std::string out;
+  for (const PropertyMap& m : s.property_maps) {
+    if (m.kind == MapKind::cube && !m.wavelength_um.empty())
+      out += strf("  cube '%s': %g to %g um, outside: %s\n", m.name.c_str(), m.wavelength_um.front(),
+                  m.wavelength_um.back(), to_text(m.outside));
+    for (const Curve& c : m.family)
+      if (!c.is_constant() && c.outside() == Outside::error) {
+        out += strf("  map '%s': a curve from %g to %g um\n", m.name.c_str(), c.low_um(), c.high_um());
+        break;
+      }
+  }
+  for (const TemperatureBinding& t : s.temperatures)
+    if (!t.spec.times.empty())
+      out += strf("  temperatures of '%s': %g to %g s%s\n", s.materials[t.material].id.c_str(), t.spec.times.front(),
+                  t.spec.times.back(), t.spec.repeat ? ", repeated" : "");
+  for (const SceneTrack& t : s.tracks)
+    if (const TimeSpan c = t.track->covered(); std::isfinite(c.begin) || std::isfinite(c.end))
+      out += strf("  motion of %s: %g to %g s\n", t.name.c_str(), c.begin, c.end);
+  return out.empty() ? "" : "limited to\n" + out;
 }
 }  // namespace
 
@@ -81,6 +108,7 @@ std::string summary_text(const Scene& s) {
     if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
     out += "\n";
   }
+  out += coverage_text(s);
   out += media_text(s);
   std::set<std::string> uses;
   for (const Mesh& m : s.meshes) {

@@ -36,8 +36,8 @@ struct StateKit {
   std::shared_ptr<const Tracer> lamps_of;  // whose geometry the environment was made for
 
   StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           bool periodic, std::span<const Band> bands)
-      : optics(scene, state, shown_materials(scene, tracer, sources)),
+           bool periodic, std::span<const Band> bands, TimeSpan window)
+      : optics(scene, state, shown_materials(scene, tracer, sources), {}, window),
         environment(bake_environment(sources, tracer, periodic, state)),
         projection(state, bands) {
     for (size_t b = 0; b < bands.size(); ++b)
@@ -101,7 +101,11 @@ class Job {
 
   JobReport run() {
     const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
-    for (const Item& item : items) check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
+    for (const Item& item : items) {
+      const TimeWindow& w = capture_of(item).window;
+      check_temperatures(*scene_, w.begin, w.end);
+      window_ = &item == items.data() ? TimeSpan{w.begin, w.end} : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
+    }
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
@@ -164,7 +168,7 @@ class Job {
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
       kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state], options_.periodic.has_value(),
-                                       sensors_[item.sensor]->bands(state));
+                                       sensors_[item.sensor]->bands(state), window_);
       ++report_.optics_bakes;
       log.new_optics = true;
     }
@@ -181,6 +185,8 @@ class Job {
     CaptureLog log;
     log.new_tracer = tracer_of(capture);
     StateKit& kit = kit_of(item, log);
+    if (capture.bin_by == Capture::BinBy::sun && (!kit.optics.media().empty() || kit.environment.atmosphere))
+      throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
     const Surface surface(*tracer_, kit.optics);
     const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
                                            kit.projection, kit.environment});
@@ -214,7 +220,9 @@ class Job {
     ++report_.captures;
     report_.problems += capture.problems();
     report_.log.push_back(std::move(log));
+    const Clock::time_point handed = Clock::now();
     sensors_[item.sensor]->accept(std::move(result));
+    report_.deliver_seconds += seconds_since(handed);
   }
 
   // The bands that decide, and how much stricter than theirs the strictest target is.
@@ -324,6 +332,7 @@ class Job {
   std::unique_ptr<TracerCache> tracers_;
   std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
+  TimeSpan window_;  // of all captures
   std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
   ErrorHistogram errors_;
   double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, flagged_ = 0, target_ = 0;

@@ -47,6 +47,7 @@ struct JobReport {
   size_t captures = 0, problems = 0;
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
   double seconds = 0, build_seconds = 0;
+  double deliver_seconds = 0;        // sensors taking their results
   double share_in_embree = 0;        // of the CPU time of the pipeline
   double median_relative_error = 0;  // standard error over radiance, reference band, all problems with radiance > 0
   double share_at_target = 0;        // of the problems of captures with a target

@@ -74,15 +74,15 @@ std::vector<double> total_angles(const std::vector<double>& views);
 class AlignedSource {
  public:
   struct Options {
-    std::optional<LobeFrame>
-        frame;  // none: retro when twice as much returns to the viewer as goes to the mirror direction, else half
-    size_t views = 0;           // 0: as many as view_error asks for
-    double view_error = 0.015;  // interpolation error allowed between views, log2 units
-    size_t most_views = 25;     // whatever view_error asks
-    double fold_error = 1;      // bilateral data are stored once when that costs at most this cosine-weighted l1
-    int base_order = 6;         // every cell of this order is asked
-    int max_order = 10;         // further only where it matters
-    double detail = 2e-6;       // share of the whole a cell's variation must have to be divided further
+    std::optional<LobeFrame> frame;  // none: as lobe_detection.h finds it
+    size_t views = 0;                // 0: as many as view_error asks for
+    double view_error = 0.015;       // interpolation error allowed between views, log2 units
+    size_t most_views = 25;          // whatever view_error asks
+    size_t azimuths = 0;             // of anisotropic surfaces; 0: as many as view_error asks for
+    double fold_error = 1;           // bilateral data are stored once when that costs at most this cosine-weighted l1
+    int base_order = 6;              // every cell of this order is asked; less when views x channels are very many
+    int max_order = 10;              // further only where it matters
+    double detail = 2e-6;            // share of the whole a cell's variation must have to be divided further
   };
   AlignedSource(const Function& function, const Options& options, const std::function<void(double)>& progress = {});
   ~AlignedSource();

@@ -160,7 +160,7 @@ class AlignedBundle final : public Bundle {
     return {std::sqrt(std::max(0.0, 1 - z * z)), 0, z};
   }
   Frame frame(Dir out) const {
-    if (info_.function.quantity == Quantity::phase) return Frame::around(-out);
+    if (info_.function.quantity == Quantity::phase) return Frame::around(out);
     if (!planar_) return {};
     const double r2 = out.x * out.x + out.y * out.y;
     if (!(r2 > 1e-30)) return {};

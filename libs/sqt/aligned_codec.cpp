@@ -134,7 +134,7 @@ int step_reference(const AlignedTotals& totals, const AlignedLayout& layout) {
 namespace {
 constexpr int kViewClasses = 6, kChannelClasses = 3, kNeighbour = 3;
 int channel_class(size_t c) { return c == 0 ? 0 : c == 1 ? 1 : 2; }
-int bucket(int n) { return n == 0 ? 0 : n == 1 ? 1 : 2; }
+int bucket(int n) { return std::min(n, 2); }
 }  // namespace
 
 BlockModel::BlockModel(const AlignedLayout& layout, const BlockTransform& transform)
@@ -144,7 +144,8 @@ BlockModel::BlockModel(const AlignedLayout& layout, const BlockTransform& transf
       significant_(kViewClasses * kChannelClasses * 9),
       last_(kViewClasses * kChannelClasses * 3),
       split_(16 * 5 * 2),
-      magnitude_(kViewClasses * kChannelClasses * kNeighbour) {
+      magnitude_(kViewClasses * kChannelClasses * kNeighbour),
+      nothing_(views_, 0) {
   for (size_t k = 0; k < views_; ++k) {
     const int h = transform.height(k);
     view_class_.push_back(h == 0 ? 0 : h == 1 ? 1 : h == 2 ? 2 : h <= 4 ? 3 : h <= 8 ? 4 : 5);
@@ -178,17 +179,20 @@ template <class Coder>
 void BlockModel::code(Coder& coder, std::span<int32_t> block, size_t details, std::span<const int32_t> parent,
                       int order) {
   const size_t width = views_ * channels_;
-  auto magnitude_at = [](std::span<const int32_t> s, size_t i) { return s.empty() ? 0 : std::abs(s[i]); };
   const int depth = std::min(3, order / 2);
+  const bool has_parent = parent.size() == 3 * width;
   int busy_before = 0;
   for (size_t d = 0; d < details; ++d)
     for (size_t c = 0; c < channels_; ++c) {
-      int32_t* row = &block[d * width + c * views_];
+      // Levels known already at the same frequencies: of the parent, of the detail and of the channel before.
       const size_t base = d * width + c * views_;
+      int32_t* row = &block[base];
+      const int32_t* above = has_parent ? &parent[base] : nothing_.data();
+      const int32_t* detail = d > 0 ? row - width : nothing_.data();
+      const int32_t* channel = c > 0 ? row - views_ : nothing_.data();
       // Is there anything in this row?
       int parent_any = 0;
-      if (details == 3 && parent.size() == 3 * width)
-        for (size_t k = 0; k < views_; ++k) parent_any += std::min(2, magnitude_at(parent, base + k));
+      for (size_t k = 0; k < views_ && parent_any < 3; ++k) parent_any += std::min(2, std::abs(above[k]));
       size_t end = views_;
       if constexpr (Coder::kEncodes)
         while (end > 0 && row[end - 1] == 0) --end;
@@ -200,25 +204,22 @@ void BlockModel::code(Coder& coder, std::span<int32_t> block, size_t details, st
         continue;
       }
       busy_before = std::min(2, busy_before + 1);
+      int before = 0;
       for (size_t k = 0; k < views_; ++k) {
-        const int vc = view_class_[k], cc = channel_class(c);
-        const int above = parent.size() == 3 * width ? magnitude_at(parent, base + k) : 0;
-        int beside = 0;
-        if (d > 0) beside += std::abs(int{block[base + k - width]});
-        if (c > 0) beside += std::abs(int{block[base + k - views_]});
-        if (k > 0) beside += std::abs(int{row[k - 1]});
-        const size_t where = static_cast<size_t>(vc * kChannelClasses + cc);
+        const int up = std::abs(above[k]), beside = std::abs(detail[k]) + std::abs(channel[k]) + before;
+        const size_t where = static_cast<size_t>(view_class_[k] * kChannelClasses + channel_class(c));
         const int known = row[k];
-        if (!coder.bit(significant_[where * 9 + static_cast<size_t>(bucket(above) * 3 + bucket(beside))], known != 0)) {
-          row[k] = 0;
+        if (!coder.bit(significant_[where * 9 + static_cast<size_t>(bucket(up) * 3 + bucket(beside))], known != 0)) {
+          row[k] = before = 0;
           continue;
         }
         const int m =
             code_magnitude(coder, std::abs(known),
-                           magnitude_[where * kNeighbour + static_cast<size_t>(bucket((above + beside + 1) / 2))]);
+                           magnitude_[where * kNeighbour + static_cast<size_t>(bucket((up + beside + 1) / 2))]);
         const bool negative = coder.even_bit(known < 0);
-        row[k] = static_cast<int32_t>(negative ? -m : m);
-        if (k + 1 < views_ && coder.bit(last_[where * 3 + static_cast<size_t>(bucket(above))], k + 1 == end)) {
+        row[k] = negative ? -m : m;
+        before = m;
+        if (k + 1 < views_ && coder.bit(last_[where * 3 + static_cast<size_t>(bucket(up))], k + 1 == end)) {
           std::fill(row + k + 1, row + views_, int32_t{0});
           break;
         }

@@ -62,6 +62,7 @@ class BlockModel {
   std::vector<int> view_class_;
   std::vector<BitContext> any_, significant_, last_, split_;
   std::vector<Magnitude> magnitude_;
+  std::vector<int32_t> nothing_;  // a row of zeros
 };
 
 // What the encoder wants; a decoder has none. Nodes are named by their index in the lattice being rebuilt.

@@ -2,6 +2,7 @@
 // them, which decodes. See aligned.h.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/error.h"
 #include "sqt/aligned_source.h"
@@ -76,17 +77,19 @@ AlignedSheet leaves_of(const AlignedLayout& layout, const Lattice& lattice) {
   // Room for coarse leaves to be divided (aligned_tables.cpp), so that the numbers need not move again.
   sheet.plane.reserve((sheet.leaves.size() + std::min<size_t>(1024, (1 << 20) / width)) * width *
                       AlignedSheet::kStride);
-  sheet.plane.resize(sheet.leaves.size() * width * AlignedSheet::kStride);
-  float* to = sheet.plane.data();
-  std::vector<float> mean(width);
+  std::vector<float> row(width * AlignedSheet::kStride);
   for (size_t i = 0; i < lattice.size(); ++i) {
     if (lattice.node(i).first_child >= 0) continue;
-    const float* value = lattice.value(i).data();
-    const float* gx = lattice.slope(i, 0).data();
-    const float* gy = lattice.slope(i, 1).data();
-    for (size_t j = 0; j < width; ++j) mean[j] = portable_exp2(value[j]) * mean_exp2(gx[j]) * mean_exp2(gy[j]);
-    for (size_t j = 0; j < width; ++j, to += AlignedSheet::kStride)
-      to[0] = value[j], to[1] = gx[j], to[2] = gy[j], to[3] = mean[j];
+    const float* numbers[] = {lattice.value(i).data(), lattice.slope(i, 0).data(), lattice.slope(i, 1).data()};
+    for (size_t j = 0; j < width; j += 8) {
+      EightFloats lanes[4] = {};
+      const size_t n = std::min<size_t>(8, width - j);
+      for (size_t k = 0; k < 3; ++k) std::memcpy(&lanes[k], numbers[k] + j, n * sizeof(float));
+      lanes[3] = portable_exp2(lanes[0]) * mean_exp2(lanes[1]) * mean_exp2(lanes[2]);
+      for (size_t lane = 0; lane < n; ++lane)
+        for (size_t k = 0; k < 4; ++k) row[(j + lane) * AlignedSheet::kStride + k] = lanes[k][lane];
+    }
+    sheet.plane.insert(sheet.plane.end(), row.begin(), row.end());
   }
   return sheet;
 }

@@ -14,18 +14,28 @@ namespace {
 
 constexpr size_t kStride = AlignedSheet::kStride;
 
-// Points of a leaf on a square grid, and where they are in it.
+// Coarse leaves are looked at in parts of this order, so that only those near the horizon need many points.
+constexpr int kPartOrder = 5;
+
+// A square part of a leaf, all of it if it is fine enough: its cell, its lower corner and its width in the leaf.
+struct LeafPart {
+  CellId id;
+  double x, y, width;
+};
+
+// Points of a part on a square grid, and where they are in the leaf.
 struct LeafGrid {
   int side = 0;
   std::vector<Dir> direction;
   std::vector<float> dx, dy;
-  void fill(CellId id, int n) {
+  void fill(const LeafPart& part, int n) {
     side = n;
     direction.clear(), dx.clear(), dy.clear();
     for (int k = 0; k < n * n; ++k) {
       const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
-      direction.push_back(direction_in(id, {ux, uy}));
-      dx.push_back(static_cast<float>(ux - 0.5)), dy.push_back(static_cast<float>(uy - 0.5));
+      direction.push_back(direction_in(part.id, {ux, uy}));
+      dx.push_back(static_cast<float>(part.x + ux * part.width - 0.5));
+      dy.push_back(static_cast<float>(part.y + uy * part.width - 0.5));
     }
   }
 };
@@ -62,26 +72,37 @@ class LeafIntegral {
   LeafIntegral(const AlignedLayout& layout, const std::vector<TotalView>& views) : layout_(layout), views_(views) {}
 
   void add(CellId id, size_t sheet, const float* leaf, std::vector<double>& integral) {
-    const double width = std::sqrt(cell_solid_angle(id.order()));
-    const int usual = id.order() >= 7 ? 1 : id.order() == 6 ? 2 : 1 << std::max(2, 7 - id.order());
-    const Dir center = center_of(id);
-    for (LeafGrid& g : grids_) g.side = 0;
-    for (size_t t = 0; t < views_.size(); ++t) {
-      const LobeMap& map = views_[t].map[sheet];
-      // Near the horizon the cosine changes within a leaf, and what lies below does not count: look more closely.
-      const double above = layout_.cosine_weighted ? map.cosine(center) : 1;
-      if (layout_.upper_only && above < -2 * width) continue;
-      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
-      LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
-      if (!grid.side) grid.fill(id, closer * usual);
-      const double copies = layout_.half_stored && mirrored(id) != id ? 2 : 1;
-      add(grid, cell_solid_angle(id.order()) * copies, views_[t], map, leaf, &integral[t * layout_.channels]);
+    const double copies = layout_.half_stored && mirrored(id) != id ? 2 : 1;
+    const int extra = std::max(0, kPartOrder - id.order());
+    const uint32_t side = 1u << extra;
+    for (uint32_t k = 0; k < side * side; ++k) {
+      const CellId part = CellId::of(id.order() + extra, (id.index() << (2 * extra)) + k);
+      const CellXY at = xy_of(part);
+      const double width = 1.0 / side;
+      add({part, width * (at.x % side), width * (at.y % side), width}, copies, sheet, leaf, integral);
     }
   }
 
  private:
-  void add(const LeafGrid& grid, double area, const TotalView& view, const LobeMap& map, const float* leaf,
-           double* integral) {
+  void add(const LeafPart& part, double copies, size_t sheet, const float* leaf, std::vector<double>& integral) {
+    const int order = part.id.order();
+    const double width = std::sqrt(cell_solid_angle(order));
+    const int usual = order >= 7 ? 1 : 2, closest = order >= 7 ? 4 : 6;
+    const Dir center = center_of(part.id);
+    for (LeafGrid& g : grids_) g.side = 0;
+    for (size_t t = 0; t < views_.size(); ++t) {
+      const LobeMap& map = views_[t].map[sheet];
+      // Near the horizon the cosine changes within a part, and what lies below does not count: look more closely.
+      const double above = layout_.cosine_weighted ? map.cosine(center) : 1;
+      if (layout_.upper_only && above < -2 * width) continue;
+      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, closest);
+      LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
+      if (!grid.side) grid.fill(part, closer * usual);
+      add(grid, part.width, cell_solid_angle(order) * copies, views_[t], map, leaf, &integral[t * layout_.channels]);
+    }
+  }
+  void add(const LeafGrid& grid, double width, double area, const TotalView& view, const LobeMap& map,
+           const float* leaf, double* integral) {
     const size_t channels = layout_.channels, points = grid.direction.size();
     weight_.resize(points);
     bool any = false;
@@ -94,7 +115,7 @@ class LeafIntegral {
       any |= counts;
     }
     if (!any) return;
-    const float inverse_side = 1.0f / static_cast<float>(grid.side);
+    const float spacing = static_cast<float>(width / grid.side);
     for (size_t c = 0; c < channels; ++c) {
       const float* a = leaf + (view.low * channels + c) * kStride;
       const float* b = leaf + (view.high * channels + c) * kStride;
@@ -102,13 +123,13 @@ class LeafIntegral {
                   gy = view.w0 * a[2] + view.w1 * b[2];
       float sum = 0;
       for (size_t k = 0; k < points; ++k) sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
-      integral[c] += static_cast<double>(sum * mean_exp2(gx * inverse_side) * mean_exp2(gy * inverse_side)) * area /
+      integral[c] += static_cast<double>(sum * mean_exp2(gx * spacing) * mean_exp2(gy * spacing)) * area /
                      static_cast<double>(points);
     }
   }
   const AlignedLayout& layout_;
   const std::vector<TotalView>& views_;
-  std::array<LeafGrid, 4> grids_;
+  std::array<LeafGrid, 6> grids_;
   std::vector<float> weight_;
 };
 

@@ -8,11 +8,15 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "math/sampling.h"
+#include "sqt/lobe_detection.h"
+#include "sqt/source_totals.h"
 #include "sqt/view_placement.h"
 
 namespace suite::sqt {
 
 namespace {
+
+constexpr double kMostNumbers = 3.2e7;  // of the pyramid's base
 
 struct Cellful {
   std::vector<float> value;    // [view][channel] log2 average
@@ -128,58 +132,23 @@ class Surveyor {
   std::vector<double> view_weight_;
 };
 
-// Totals at every fine view angle: the function at the points of the pyramid's leaves.
-void survey_totals(const Function& function, const AlignedLayout& layout,
-                   const std::vector<std::vector<CellId>>& leaves, AlignedTotals& totals) {
-  const size_t channels = layout.channels;
-  const Function::Info& info = function.info();
-  std::vector<size_t> order(channels);
-  for (size_t c = 0; c < channels; ++c)
-    order[c] = static_cast<size_t>(
-        std::lower_bound(totals.magnitude_um.begin(), totals.magnitude_um.end(), info.wavelength_um[c]) -
-        totals.magnitude_um.begin());
-  totals.magnitudes.assign(totals.theta.size() * totals.phi_count * totals.magnitude_um.size(), 0.0f);
-  parallel_for(0, totals.theta.size() * totals.phi_count, 1, [&](size_t begin, size_t end) {
-    std::vector<double> f(channels), sum(channels);
-    for (size_t t = begin; t < end; ++t) {
-      const Dir out =
-          dir_from_angles(totals.theta[t / totals.phi_count],
-                          2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count));
-      std::fill(sum.begin(), sum.end(), 0.0);
-      for (size_t s = 0; s < leaves.size(); ++s) {
-        const LobeMap map(layout.frame, out, s == 1);
-        for (const CellId id : leaves[s]) {
-          const double area = cell_solid_angle(id.order()) * (layout.half_stored && mirrored(id) != id ? 2 : 1);
-          const Dir d = center_of(id);
-          const double cosine = map.cosine(d);
-          if (layout.upper_only && !(cosine > 0)) continue;
-          function.value(out, map.incident(d), f);
-          const double weight = area * map.stretch(d) * (layout.cosine_weighted ? std::fabs(cosine) : 1.0);
-          for (size_t c = 0; c < channels; ++c)
-            if (std::isfinite(f[c]) && f[c] > 0) sum[c] += weight * f[c];
-        }
-      }
-      for (size_t c = 0; c < channels; ++c)
-        totals.magnitudes[t * totals.magnitude_um.size() + order[c]] = static_cast<float>(sum[c]);
+// Roots of which nothing is known take the mean of the others.
+void level_unknown_roots(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet) {
+  const size_t views = layout.views(), roots = sheet.data.size();
+  std::vector<float> mean(layout.width(), 0.0f);
+  std::vector<size_t> unknown;
+  for (size_t i = 0; i < roots; ++i) {
+    const auto first = sheet.valid.begin() + static_cast<ptrdiff_t>(i * views);
+    if (std::find(first, first + static_cast<ptrdiff_t>(views), 1) == first + static_cast<ptrdiff_t>(views)) {
+      unknown.push_back(i);
+      continue;
     }
-  });
-}
-
-void survey_dirac(const Function& function, const AlignedLayout& layout, AlignedTotals& totals) {
-  totals.delta_kind = function.dirac();
-  totals.delta_core = function.dirac_core();
-  if (totals.delta_kind == Dirac::none) return;
-  const size_t channels = layout.channels, rows = totals.theta.size() * totals.phi_count;
-  totals.delta.assign(rows * channels, 0.0f);
-  parallel_for(0, rows, 1, [&](size_t begin, size_t end) {
-    std::vector<double> W(channels);
-    for (size_t t = begin; t < end; ++t) {
-      const double phi = 2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count);
-      function.dirac_total(dir_from_angles(totals.theta[t / totals.phi_count], phi), W);
-      for (size_t c = 0; c < channels; ++c)
-        totals.delta[t * channels + c] = static_cast<float>(std::clamp(W[c], 0.0, 1.0));
-    }
-  });
+    for (size_t j = 0; j < mean.size(); ++j) mean[j] += sheet.data.value(i)[j];
+  }
+  if (unknown.empty() || unknown.size() == roots) return;
+  for (const size_t i : unknown)
+    for (size_t j = 0; j < mean.size(); ++j)
+      sheet.data.value(i)[j] = mean[j] / static_cast<float>(roots - unknown.size());
 }
 
 // The pyramid in the lattice's order, with slopes.
@@ -200,6 +169,7 @@ AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& 
       std::copy(value.begin(), value.end(), data.value(i).begin());
       sheet.valid.insert(sheet.valid.end(), cell.valid.begin(), cell.valid.end());
     }
+    if (begin == 0) level_unknown_roots(layout, sheet);
     data.compute_slopes(begin, end);
     for (size_t i = begin; i < end; ++i)
       if (pyramid.at(data.node(i).id.code).divided)
@@ -303,23 +273,6 @@ double cost_of_folding(const Function& function) {
   return sum > 0 ? difference / sum : 0;
 }
 
-// Half vectors, unless the function sends at least twice as much back to the viewer as to the mirror direction.
-LobeFrame detect_frame(const Function& function) {
-  std::vector<double> back(function.info().wavelength_um.size()), mirror(back.size());
-  double sum = 0;
-  int n = 0;
-  for (const double theta : {30 * kDegree, 45 * kDegree, 60 * kDegree})
-    for (const double phi : {0.0, 1.0, 2.0, 3.0}) {
-      const Dir out = dir_from_angles(theta, phi);
-      function.value(out, out, back);
-      function.value(out, {-out.x, -out.y, out.z}, mirror);
-      for (size_t c = 0; c < back.size(); ++c)
-        if (back[c] > 0 && mirror[c] > 0 && std::isfinite(back[c]) && std::isfinite(mirror[c]))
-          sum += std::log2(back[c] / mirror[c]), ++n;
-    }
-  return n && sum / n > 1 ? LobeFrame::retro : LobeFrame::half;
-}
-
 }  // namespace
 
 std::vector<double> total_angles(const std::vector<double>& views) {
@@ -334,10 +287,11 @@ std::vector<double> total_angles(const std::vector<double>& views) {
   return theta;
 }
 
-AlignedSource::AlignedSource(const Function& function, const Options& options,
+AlignedSource::AlignedSource(const Function& function, const Options& asked,
                              const std::function<void(double)>& progress)
     : impl_(new Impl) {
   Impl& m = *impl_;
+  Options options = asked;
   m.function = function.info();
   AlignedLayout& layout = m.layout;
   const bool surface = m.function.quantity == Quantity::bsdf;
@@ -355,7 +309,15 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   layout.theta = surface ? place_views(function, layout.frame, options.views, options.most_views, 89.9 * kDegree,
                                        options.view_error)
                          : std::vector<double>{0};
-  layout.phi_count = surface && !m.function.isotropic ? 16 : 1;
+  layout.phi_count = !surface || m.function.isotropic ? 1
+                     : options.azimuths               ? options.azimuths
+                                                      : count_azimuths(function, layout.frame, options.view_error);
+  // Some hundred wavelengths or views at many azimuths: coarser cells, so that the pyramid stays below a GiB.
+  const double cells_of_sphere = (layout.upper_only ? 0.5 : 1) * (layout.half_stored ? 0.5 : 1) * layout.sheets;
+  while (options.base_order > 3 &&
+         cell_count(options.base_order) * cells_of_sphere * static_cast<double>(layout.width()) > kMostNumbers)
+    --options.base_order;
+  options.detail *= std::max(1.0, static_cast<double>(layout.width()) / 2000);
   m.totals.phi_count = layout.phi_count;
   m.totals.magnitude_um = m.function.wavelength_um;
   std::sort(m.totals.magnitude_um.begin(), m.totals.magnitude_um.end());
@@ -363,11 +325,11 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
 
   // A first look at order 4 gives the whole (mean total) and the floor below which values count as dark.
   const Region region{layout.upper_only, layout.half_stored};
-  std::vector<std::vector<CellId>> coarse(static_cast<size_t>(layout.sheets));
+  std::vector<std::vector<SurveyedLeaf>> coarse(static_cast<size_t>(layout.sheets));
   for (auto& cells : coarse)
     for (uint32_t i = 0; i < cell_count(4); ++i)
-      if (region.holds(CellId::of(4, i))) cells.push_back(CellId::of(4, i));
-  survey_totals(function, layout, coarse, m.totals);
+      if (region.holds(CellId::of(4, i))) cells.push_back({CellId::of(4, i), -1});
+  survey_totals(function, layout, coarse, {}, m.totals);
   double whole = 0, norm = 0;
   for (size_t i = 0; i < m.totals.magnitudes.size(); ++i) whole += m.totals.magnitudes[i], norm += 1;
   whole = whole / norm * static_cast<double>(layout.channels);
@@ -375,7 +337,7 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
   double weight = 0;
   for (const double theta : layout.theta) weight += std::sin(theta) + 0.02;
 
-  std::vector<std::vector<CellId>> leaves;
+  std::vector<std::vector<SurveyedLeaf>> leaves;
   for (int s = 0; s < layout.sheets; ++s) {
     const Surveyor surveyor(function, layout, options, s, floor, std::max(1e-9, whole * weight));
     std::vector<CellId> roots;
@@ -393,12 +355,10 @@ AlignedSource::AlignedSource(const Function& function, const Options& options,
       if (region.holds(CellId::of(Lattice::kRootOrder, i)))
         surveyor.survey(CellId::of(Lattice::kRootOrder, i), parts[0]);
     m.sheets.push_back(assemble(layout, parts[0]));
-    leaves.emplace_back();
-    for (size_t i = 0; i < m.sheets.back().data.size(); ++i)
-      if (m.sheets.back().data.node(i).first_child < 0) leaves.back().push_back(m.sheets.back().data.node(i).id);
+    leaves.push_back(leaves_of(layout, m.sheets.back()));
     transform_details(layout, m.sheets.back());
   }
-  survey_totals(function, layout, leaves, m.totals);
+  survey_totals(function, layout, leaves, m.sheets, m.totals);
   survey_dirac(function, layout, m.totals);
   if (surface)  // no surface returns more than it receives
     for (size_t t = 0; t < m.totals.theta.size() * m.totals.phi_count; ++t)

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#ifdef __BMI2__
+#include <immintrin.h>
+#endif
 
 namespace suite::sqt {
 
@@ -11,6 +14,10 @@ namespace {
 constexpr int kRing[12] = {2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4};
 constexpr int kLongitude[12] = {1, 3, 5, 7, 0, 2, 4, 6, 1, 3, 5, 7};
 
+#ifdef __BMI2__
+uint32_t spread(uint32_t v) { return _pdep_u32(v, 0x55555555u); }  // bits of v to the even places
+uint32_t gather(uint32_t r) { return _pext_u32(r, 0x55555555u); }  // the even bits of r
+#else
 uint32_t spread(uint32_t v) {  // bits of v to the even places
   uint64_t r = v;
   r = (r | (r << 8)) & 0x00FF00FFu;
@@ -27,6 +34,7 @@ uint32_t gather(uint32_t r) {  // the even bits of r
   r = (r | (r >> 8)) & 0x0000FFFFu;
   return r;
 }
+#endif
 
 inline double below_one(double v) { return std::min(std::max(v, 0.0), 0x1.fffffffffffffp-1); }
 

@@ -13,6 +13,8 @@ namespace suite::sqt {
 namespace {
 
 constexpr double kLimit = 80 * kDegree;
+constexpr int kRings = 128, kSpokes = 128;  // of half directions, for totals
+constexpr size_t kPoints = 2 * kRings * kSpokes;
 const double kPeakAngles[3] = {20 * kDegree, 45 * kDegree, 70 * kDegree};
 
 // Directions near the mirror direction of `out`: half vectors with density 1 / (2 pi) a / ((1 - z) + a)^2 (1 + a - ...)
@@ -73,11 +75,16 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
     for (int k = 0; k <= 8; ++k) theta_.push_back(k * 10 * kDegree);
   else
     theta_.push_back(0);
-  for (const double theta : theta_) {
-    const std::vector<double> W =
-        integrate([&](Dir o, Dir i, std::span<double> f) { function_.value(o, i, f); }, dir_from_angles(theta, 0.3));
+  valid_.assign(theta_.size() * kPoints, 0);
+  for (size_t t = 0; t < theta_.size(); ++t) {
+    const std::vector<double> W = integrate(
+        [&](size_t point, Dir o, Dir i, std::span<double> f) {
+          function_.value(o, i, f);
+          valid_[t * kPoints + point] = std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); });
+        },
+        dir_from_angles(theta_[t], 0.3));
     total_.insert(total_.end(), W.begin(), W.end());
-    for (const double t : W) findings_.largest_total = std::max(findings_.largest_total, t);
+    for (const double w : W) findings_.largest_total = std::max(findings_.largest_total, w);
   }
   std::vector<double> f(channels_), back(channels_);
   double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
@@ -106,10 +113,11 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
 
 // Totals over an order-6 partition of half directions (lobes fall on its dense centre through the four-fold
 // sub-points).
-std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std::span<double>)>& value, Dir out) const {
+std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& value,
+                                         Dir out) const {
   std::vector<double> f(channels_), W(channels_, 0.0);
   const bool sphere = function_.info().domain == Domain::sphere;
-  const int n_r = 128, n_phi = 128;
+  const int n_r = kRings, n_phi = kSpokes;
   for (int side = 0; side < (sphere ? 2 : 1); ++side)
     for (int a = 0; a < n_r; ++a)
       for (int b = 0; b < n_phi; ++b) {
@@ -119,10 +127,11 @@ std::vector<double> Reference::integrate(const std::function<void(Dir, Dir, std:
         Dir in = h * (2 * dot(h, out)) - out;
         if (!(in.z > 0) || !(dot(h, out) > 0)) continue;
         if (side) in.z = -in.z;
-        value(out, in, f);
+        value(static_cast<size_t>((side * n_r + a) * n_phi + b), out, in, f);
+        if (!std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); })) continue;
         const double weight = 4 * dot(h, out) / near_pdf(s) / (n_r * n_phi) * (weighted_ ? std::fabs(in.z) : 1.0);
         for (size_t c = 0; c < channels_; ++c)
-          if (std::isfinite(f[c]) && f[c] > 0) W[c] += weight * f[c];
+          if (f[c] > 0) W[c] += weight * f[c];
       }
   return W;
 }
@@ -210,9 +219,9 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
       for (size_t t = 0; t < theta_.size(); ++t) {
         const Dir view = dir_from_angles(theta_[t], 0.3);
         const double W = integrate(
-            [&](Dir o, Dir i, std::span<double> v) {
+            [&](size_t point, Dir o, Dir i, std::span<double> v) {
               std::fill(v.begin(), v.end(), 0.0);
-              v[c] = bundle.value(o, i, c);
+              if (valid_[t * kPoints + point]) v[c] = bundle.value(o, i, c);
             },
             view)[c];
         const double expected = total_[t * channels_ + c];

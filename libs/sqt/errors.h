@@ -6,7 +6,7 @@
 //   cos_rmse = sqrt( sum ((g - f) cos_i)^2 / sum (f cos_i)^2 ), up to 80 deg
 //   rmse     = sqrt( mean (g - f)^2 ), 1/sr, whole hemisphere (the paper's metric)
 //   peak_ratio_20/45/70 = largest g over largest f in the plane of incidence at that view angle
-//   total_error = largest |W_g - W_f| / W_f over view angles up to 80 deg, W_g integrated from g
+//   total_error = largest |W_g - W_f| / W_f over view angles up to 80 deg, W_g integrated from g where f is valid
 //   reciprocity_error = sum |g(o,i) - g(i,o)| / (2 sum g), up to 80 deg
 //   max_weight = largest w / (pdf W) met while sampling the bundle, up to 80 deg
 // For functions over the sphere "hemisphere" reads sphere; cos_i is 1 for phase functions and intensities.
@@ -57,11 +57,13 @@ class Reference {
   bool weighted_;
   size_t channels_;
   std::vector<Pair> pairs_;
-  std::vector<float> value_;   // [pair][channel]
-  std::vector<double> theta_;  // of the totals
-  std::vector<double> total_;  // [theta][channel]
+  std::vector<float> value_;    // [pair][channel]
+  std::vector<double> theta_;   // of the totals
+  std::vector<double> total_;   // [theta][channel]
+  std::vector<uint8_t> valid_;  // [theta][point] of the integration
   Findings findings_;
-  std::vector<double> integrate(const std::function<void(Dir, Dir, std::span<double>)>& f, Dir out) const;
+  // Totals per channel; points where not every channel is finite do not count.
+  std::vector<double> integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& f, Dir out) const;
 };
 
 }  // namespace suite::sqt

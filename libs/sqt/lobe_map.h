@@ -4,7 +4,7 @@
 // half:    the half vector h = (in + out) / |in + out|; a mirror lobe sits at the pole for every view. d in = 4 (out.h)
 // d h. retro:   the same with `out` reflected at the normal's axis; a lobe that returns to the viewer sits at the pole.
 // direct:  the incident direction itself (no lobe to follow).
-// forward: the whole sphere around the direction of propagation -out (phase functions).
+// forward: the whole sphere around `out` (phase functions); what goes straight on, in = -out, sits at its lower pole.
 // On the transmitted side `in` is first folded up (in.z -> -in.z): light that goes straight on sits at the pole under
 // half.
 //

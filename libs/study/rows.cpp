@@ -11,10 +11,10 @@ namespace suite {
 namespace {
 
 const char* kColumns =
-    "by_time,budget,seed,seconds,build_seconds,file_seconds,paths,rays,nodes,paths_per_problem,share_in_embree,peak_"
-    "bytes,"
+    "by_time,budget,seed,seconds,build_seconds,file_seconds,paths,rays,nodes,paths_per_problem,share_trace,share_"
+    "sample,share_shade,share_sensor,peak_bytes,"
     "relative_rmse,bias,bias_error,reference_bias_error,coverage,counted,zero_variance,flagged,efficiency,series,ended";
-constexpr size_t kNumbers = 21;
+constexpr size_t kNumbers = 24;
 
 // Texts stand last and unquoted: commas and ends of line in them become semicolons.
 std::string plain(std::string text) {
@@ -40,6 +40,9 @@ std::string rows_to_csv(const std::vector<StudyRow>& rows, const std::string& id
                              r.nodes,
                              r.paths_per_problem,
                              r.share_in_embree,
+                             r.share_sample,
+                             r.share_shade,
+                             r.share_sensor,
                              r.peak_bytes,
                              f.relative_rmse,
                              f.bias,
@@ -78,18 +81,18 @@ std::vector<StudyRow> rows_from_csv(std::string_view text, const std::string& id
       at = next + 1;
     }
     StudyRow r{v[0] != 0, v[1], static_cast<uint64_t>(v[2]), v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11],
-               {},        {}};
+               v[12],     v[13], v[14],                       {},   {}};
     const char* comma = std::find(at, end, ',');
     if (comma == end) throw Error(where, "a row of the study is damaged", "remove the line: its run is done again");
     r.figures = {std::string(at, comma),
-                 v[12],
-                 v[13],
-                 v[14],
                  v[15],
                  v[16],
-                 static_cast<size_t>(v[17]),
-                 static_cast<size_t>(v[18]),
-                 static_cast<size_t>(v[19])};
+                 v[17],
+                 v[18],
+                 v[19],
+                 static_cast<size_t>(v[20]),
+                 static_cast<size_t>(v[21]),
+                 static_cast<size_t>(v[22])};
     r.ended.assign(comma + 1, end);
     rows.push_back(std::move(r));
   }

@@ -17,7 +17,9 @@ struct StudyRow {
   double file_seconds = 0;   // handing over results
   double paths = 0, rays = 0, nodes = 0;
   double paths_per_problem = 0;
-  double share_in_embree = 0;  // of the CPU time of the pipeline
+  // Of the CPU time of the pipeline: the ray tracer; the rest of building paths (surfaces, sources, directions); turning
+  // them into radiance and truth; asking the sensor for rays.
+  double share_in_embree = 0, share_sample = 0, share_shade = 0, share_sensor = 0;
   double peak_bytes = 0;       // of the process so far
   Comparison figures;
   std::string ended;  // what ended the run

@@ -72,6 +72,11 @@ void add_rows(const StudyPlan& plan, const StudyRun& run, double budget, const S
     row.nodes = static_cast<double>(r.statistics.nodes);
     row.paths_per_problem = row.paths / static_cast<double>(std::max<size_t>(1, r.problems));
     row.share_in_embree = r.share_in_embree;
+    if (const double cycles = static_cast<double>(r.statistics.cycles); cycles > 0) {
+      row.share_sample = static_cast<double>(r.statistics.path_cycles) / cycles - r.share_in_embree;
+      row.share_shade = static_cast<double>(r.statistics.shade_cycles) / cycles;
+      row.share_sensor = static_cast<double>(r.statistics.sensor_cycles) / cycles;
+    }
     row.peak_bytes = out.peak_bytes;
     row.figures = c;
     row.ended = r.stopped_by;
@@ -145,6 +150,43 @@ Plot bias_plot(const StudySummary& s) {
   return plot;
 }
 
+// What a run's seconds go into; every series of a sensor has the same runs, so the first one tells.
+Plot cost_plot(const StudySummary& s) {
+  Plot plot{"Where the time goes", "paths of a run", "seconds", true, true, {}};
+  if (s.series.empty()) return plot;
+  const std::vector<StudyPoint>& points = s.series.front().points;
+  auto add = [&](const char* name, auto seconds_of) {
+    PlotSeries p;
+    p.name = name;
+    for (const StudyPoint& q : points) p.x.push_back(q.paths), p.y.push_back(seconds_of(q));
+    plot.series.push_back(std::move(p));
+  };
+  add("trace", [](const StudyPoint& q) { return q.seconds * q.share_in_embree; });
+  add("sample", [](const StudyPoint& q) { return q.seconds * q.share_sample; });
+  add("shade", [](const StudyPoint& q) { return q.seconds * q.share_shade; });
+  add("sensor", [](const StudyPoint& q) { return q.seconds * q.share_sensor; });
+  add("build", [](const StudyPoint& q) { return q.build_seconds; });
+  add("I/O", [](const StudyPoint& q) { return q.file_seconds; });
+  return plot;
+}
+
+// The same as numbers.
+PageTable cost_table(const StudySummary& s) {
+  PageTable t{"Where the time goes: ray tracer; surfaces, sources and directions; radiance and truth; the sensor's rays; "
+              "acceleration structures; handing over results",
+              {"budget", "seconds", "trace %", "sample %", "shade %", "sensor %", "other %", "build s", "I/O s"},
+              {}};
+  if (s.series.empty()) return t;
+  for (const StudyPoint& p : s.series.front().points) {
+    const double other = 1 - p.share_in_embree - p.share_sample - p.share_shade - p.share_sensor;
+    t.rows.push_back({strf("%g %s", p.budget, s.series.front().by_time ? "s" : "paths"), strf("%.3g", p.seconds),
+                      strf("%.1f", 100 * p.share_in_embree), strf("%.1f", 100 * p.share_sample),
+                      strf("%.1f", 100 * p.share_shade), strf("%.1f", 100 * p.share_sensor), strf("%.1f", 100 * other),
+                      strf("%.3g", p.build_seconds), strf("%.3g", p.file_seconds)});
+  }
+  return t;
+}
+
 Plot coverage_plot(const StudySummary& s) {
   Plot plot{"Coverage of the 95 % intervals", "paths of a run", "% of the unflagged pixels", true, false, {}};
   for (const StudySeries& series : s.series) {
@@ -160,7 +202,7 @@ Plot coverage_plot(const StudySummary& s) {
 
 Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std::string& title,
              const std::vector<std::string>& paragraphs) {
-  Page page{title, paragraphs, {error_plot(s, true), error_plot(s, false), bias_plot(s), coverage_plot(s)}, {}};
+  Page page{title, paragraphs, {error_plot(s, true), error_plot(s, false), bias_plot(s), coverage_plot(s), cost_plot(s)}, {}};
   page.paragraphs.push_back(strf("Bias: smallest p of %zu tests is %.3g, so the runs %s at 1 %% family-wise.", s.tests,
                                  s.smallest_p, s.unbiased ? "pass" : "FAIL"));
   PageTable slopes{"Slopes of log error (standard error)", {"series", "against seconds", "against paths"}, {}};
@@ -180,16 +222,11 @@ Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std
                              strf("%.3g", p.paths_per_second / 1e6), strf("%.3g", p.rays_per_second / 1e6),
                              strf("%.0f", 100 * p.share_in_embree)});
   }
-  PageTable runs{
-      "Runs",
-      {"series", "budget", "seed", "build s", "trace s", "other s", "files s", "nodes a path", "peak MB", "ended by"},
-      {}};
+  PageTable runs{"Runs", {"series", "budget", "seed", "seconds", "nodes a path", "peak MB", "ended by"}, {}};
   for (const StudyRow& r : rows)
     runs.rows.push_back({r.figures.series, strf("%g", r.budget), strf("%llu", static_cast<unsigned long long>(r.seed)),
-                         strf("%.3g", r.build_seconds), strf("%.3g", r.seconds * r.share_in_embree),
-                         strf("%.3g", r.seconds * (1 - r.share_in_embree)), strf("%.3g", r.file_seconds),
-                         strf("%.2f", r.nodes / r.paths), strf("%.0f", r.peak_bytes / 1e6), r.ended});
-  page.tables = {std::move(slopes), std::move(points), std::move(runs)};
+                         strf("%.3g", r.seconds), strf("%.2f", r.nodes / r.paths), strf("%.0f", r.peak_bytes / 1e6), r.ended});
+  page.tables = {std::move(slopes), std::move(points), cost_table(s), std::move(runs)};
   return page;
 }
 
@@ -214,7 +251,9 @@ Json json_of(const StudySummary& s, const std::vector<StudyRow>& rows) {
       q.set("coverage", p.coverage), q.set("zero_variance_share", p.zero_share),
           q.set("flagged_share", p.flagged_share), q.set("efficiency", p.efficiency);
       q.set("paths_per_second", p.paths_per_second), q.set("rays_per_second", p.rays_per_second),
-          q.set("share_in_embree", p.share_in_embree);
+          q.set("share_in_embree", p.share_in_embree), q.set("share_sample", p.share_sample),
+          q.set("share_shade", p.share_shade), q.set("share_sensor", p.share_sensor),
+          q.set("build_seconds", p.build_seconds), q.set("file_seconds", p.file_seconds);
       points.push(std::move(q));
     }
     j.set("points", std::move(points));

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/json.h"
+#include "page/page.h"
 #include "scheduler/scheduler.h"
-#include "study/page.h"
 #include "study/rows.h"
 #include "study/summary.h"
 

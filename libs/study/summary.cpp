@@ -34,6 +34,11 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
     p.rays_per_second += r->rays / r->seconds / n;
     p.paths_per_second += r->paths / r->seconds / n;
     p.share_in_embree += r->share_in_embree / n;
+    p.share_sample += r->share_sample / n;
+    p.share_shade += r->share_shade / n;
+    p.share_sensor += r->share_sensor / n;
+    p.build_seconds += r->build_seconds / n;
+    p.file_seconds += r->file_seconds / n;
   }
   const double wide = p.runs > 1 ? student_t_quantile(0.95, p.runs - 1) * logs.stderr_of_mean() : 0;
   p.rmse = std::exp(logs.mean());

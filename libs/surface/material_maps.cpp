@@ -9,12 +9,15 @@ namespace suite {
 
 namespace {
 
-// The share that one channel has in a curve that is linear between the channels and constant beyond them.
-Curve hat(const std::vector<double>& wavelength_um, size_t channel) {
-  if (wavelength_um.size() == 1) return Curve::constant(1);
-  std::vector<double> value(wavelength_um.size(), 0.0);
+// Beyond the channels of a cube; where that is an error it has been refused.
+Outside beyond(const PropertyMap& map) { return map.outside == Outside::zero ? Outside::zero : Outside::hold; }
+
+// The share that one channel has in a curve that is linear between the channels.
+Curve hat(const PropertyMap& map, size_t channel) {
+  if (map.channels == 1) return Curve::constant(1);
+  std::vector<double> value(map.channels, 0.0);
   value[channel] = 1;
-  return Curve(wavelength_um, std::move(value), Outside::hold);
+  return Curve(map.wavelength_um, std::move(value), beyond(map));
 }
 
 // w of a few models for a few pairs of directions, on either side of the surface.
@@ -60,6 +63,10 @@ class Probe {
 
 BakedCube::BakedCube(const PropertyMap& map, const ModelSpec& model, const SpectralState& state) : map_(map) {
   const size_t channels = map.channels, bins = state.size();
+  if (map.outside == Outside::error && (state.low_um < map.wavelength_um.front() || state.high_um > map.wavelength_um.back()))
+    throw Error(strf("map '%s' has channels from %g to %g um, %g to %g um are asked for", map.name.c_str(),
+                     map.wavelength_um.front(), map.wavelength_um.back(), state.low_um, state.high_um),
+                "declare 'outside: hold' or 'zero' in the map");
   std::vector<double> low(channels, INFINITY), high(channels, -INFINITY), middle;
   for (size_t i = 0; i < map.values.size(); ++i) {
     const double v = map.values[i];
@@ -70,7 +77,7 @@ BakedCube::BakedCube(const PropertyMap& map, const ModelSpec& model, const Spect
   ModelSpec spec = model;
   const auto with = [&](const std::vector<double>& value) {
     spec.curves[map.parameter] =
-        channels == 1 ? Curve::constant(value[0]) : Curve(map.wavelength_um, value, Outside::hold);
+        channels == 1 ? Curve::constant(value[0]) : Curve(map.wavelength_um, value, beyond(map));
     lowest_ = state.sample(spec.curves[map.parameter]);
     return bake(spec, state);
   };
@@ -87,7 +94,7 @@ BakedCube::BakedCube(const PropertyMap& map, const ModelSpec& model, const Spect
                 "use a texture or curve index map, or a model such as lambert, oren_nayar, leaf or ward");
   std::vector<std::vector<Weight>> rows(bins);
   for (size_t c = 0; c < channels; ++c) {
-    const Curve shape = hat(map.wavelength_um, c);
+    const Curve shape = hat(map, c);
     const double from = c == 0 ? 0 : map.wavelength_um[c - 1],
                  to = c + 1 >= channels ? INFINITY : map.wavelength_um[c + 1];
     for (size_t i = 0; i < bins; ++i)

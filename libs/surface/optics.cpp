@@ -16,18 +16,21 @@ void widen(double& low, double& high, double kelvin) {
   high = std::max(high, kelvin);
 }
 
-std::shared_ptr<const BlackbodyTable> table_for(const PropertyMap* map, const TemperatureSpec* spec, double constant_k,
+void range_of(const TemperatureSpec& spec, double& low, double& high) {
+  if (!spec.kelvins.empty())
+    for (const double k : spec.kelvins) widen(low, high, k);
+  else if (spec.model == "constant")
+    widen(low, high, spec.numbers.at("kelvin"));
+  else
+    widen(low, high, 2), widen(low, high, 2000);  // what a simulated slab may reach
+}
+
+// low, high: of the temperature model, if there is one.
+std::shared_ptr<const BlackbodyTable> table_for(const PropertyMap* map, double low, double high, double constant_k,
                                                 const SpectralState& state) {
-  double low = INFINITY, high = 0;
   if (map)
     for (const float k : map->values) widen(low, high, double{k});
   if (constant_k > 0) widen(low, high, constant_k);
-  if (spec && !spec->kelvins.empty())
-    for (const double k : spec->kelvins) widen(low, high, k);
-  else if (spec && spec->model == "constant")
-    widen(low, high, spec->numbers.at("kelvin"));
-  else if (spec)
-    widen(low, high, 2), widen(low, high, 2000);  // what a simulated slab may reach
   return std::make_shared<BlackbodyTable>(state.bins, low, high);
 }
 
@@ -57,8 +60,9 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 
 }  // namespace
 
-Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const LoadsAt& loads)
-    : state_(std::move(state)) {
+Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const LoadsAt& loads,
+               TimeSpan window)
+    : state_(std::move(state)), window_(window) {
   if (uses_media(scene)) bake_media(scene);
   bake_all(scene, used, loads);
   if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
@@ -98,7 +102,9 @@ void Optics::bake_media(const Scene& scene) {
     if (*least == *most || before == 1) continue;
     for (const auto bin : {least, most}) {
       const size_t b = static_cast<size_t>(bin - m.scattering.begin());
-      if (state_.knots.size() < kMaxKnots && std::find(state_.knots.begin(), state_.knots.end(), b) == state_.knots.end()) state_.knots.push_back(b);
+      if (state_.knots.size() < kMaxKnots &&
+          std::find(state_.knots.begin(), state_.knots.end(), b) == state_.knots.end())
+        state_.knots.push_back(b);
     }
   }
   if (state_.knots.size() != before) bake_them();
@@ -184,17 +190,31 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
   for (const TemperatureBinding& t : scene.temperatures)
     if (t.material == index && !t.spec.model.empty()) spec = &t.spec, any = true;
   if (!any) return;
-  if (spec) maps->field = field_for(*spec, loads);
   maps->constant_k = m.temperature_k;
   if (maps->temperature || spec) {
     any_emission_ = true;
-    maps->blackbody = table_for(maps->temperature, spec, m.temperature_k, state_);
+    double low = INFINITY, high = 0;
+    if (spec && !spec->loads.empty()) {
+      auto solved = std::make_unique<SolvedField>(*spec, window_.begin, window_.end);
+      low = solved->coldest(), high = solved->hottest();
+      maps->field = std::move(solved);
+    } else if (spec) {
+      maps->field = field_for(*spec, loads);
+      range_of(*spec, low, high);
+    }
+    maps->blackbody = table_for(maps->temperature, low, high, m.temperature_k, state_);
   }
   baked.maps = std::move(maps);
 }
 
 void check_temperatures(const Scene& scene, double begin, double end) {
   for (const TemperatureBinding& t : scene.temperatures) {
+    if (!t.spec.loads.empty() && !t.spec.loads_repeat &&
+        (begin < t.spec.load_times.front() || end > t.spec.load_times.back()))
+      throw Error(
+          strf("material '%s': its loads are given from %g to %g s, %g to %g s are simulated",
+               scene.materials[t.material].id.c_str(), t.spec.load_times.front(), t.spec.load_times.back(), begin, end),
+          "give a longer table, or 'repeat: true'");
     if (t.spec.times.empty() || t.spec.repeat) continue;
     if (begin < t.spec.times.front() || end > t.spec.times.back())
       throw Error(strf("material '%s': its temperatures are given from %g to %g s, %g to %g s are simulated",

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "motion/time_span.h"
 #include "optics/models.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
@@ -22,9 +23,11 @@ struct BakedMaterial {
 class Optics {
  public:
   // Bakes the materials for which used[i] is true (all when empty). loads: what heats the surface of a material, for
-  // temperature models that ask; a model that asks without it is an Error. Error naming the material when one cannot be
-  // baked. Keeps a reference to the scene.
-  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {});
+  // temperature models that ask and bring no loads of their own; a model that asks without either is an Error. Models
+  // that do are solved here once, for the times of the window. Error naming the material when one cannot be baked. Keeps
+  // a reference to the scene.
+  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {},
+         TimeSpan window = {});
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
   // The scene's media, all of them where a ray can meet one, else none.
@@ -43,6 +46,7 @@ class Optics {
   bool one_shape() const;
   void bake_media(const Scene& scene);
   SpectralState state_;
+  TimeSpan window_;
   std::vector<BakedMaterial> materials_;
   std::vector<BakedMedium> media_;
   bool any_emission_ = false, spectral_flights_ = false;

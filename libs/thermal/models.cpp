@@ -42,6 +42,13 @@ void check_temperature(TemperatureSpec& spec, const Where& where) {
   }
   if (!row.takes_table && !(spec.times.empty() && spec.kelvins.empty())) throw Error(where, model + " takes no table");
   if (!row.takes_layers && !spec.layers.empty()) throw Error(where, model + " takes no layers");
+  if (spec.loads.empty() && spec.load_times.empty()) return;
+  if (row.name != "slab") throw Error(where, model + " takes no loads");
+  try {
+    loads_of(spec);
+  } catch (const Error& e) {
+    throw Error(where, "loads: " + e.message(), e.hint());
+  }
 }
 
 std::unique_ptr<const TemperatureModel> make_temperature_model(const TemperatureSpec& spec, const Where& where) {
@@ -78,6 +85,44 @@ class ModelField final : public TemperatureField {
 
 std::unique_ptr<const TemperatureField> field_of(std::shared_ptr<const TemperatureModel> model, LoadsAt loads) {
   return std::make_unique<ModelField>(std::move(model), std::move(loads));
+}
+
+Loads loads_of(const TemperatureSpec& spec) {
+  if (spec.loads.empty() && spec.load_times.empty()) return {};
+  return LoadTable::function(std::make_shared<const LoadTable>(
+      spec.load_times, spec.loads, spec.loads_repeat ? LoadTable::Outside::repeat : LoadTable::Outside::refuse));
+}
+
+SolvedField::SolvedField(const TemperatureSpec& spec, double begin, double end) {
+  SUITE_CHECK(begin <= end);
+  const double span = end - begin, apart = std::max(60.0, span / 1e5);
+  const auto steps = static_cast<size_t>(std::ceil(span / apart));
+  for (size_t k = 0; k <= steps; ++k) times_.push_back(k == steps ? end : begin + apart * static_cast<double>(k));
+  // Loads have kinks at their rows, of which a periodic table has some in every period.
+  if (!spec.load_times.empty()) {
+    const double first = spec.load_times.front(), period = spec.load_times.back() - first;
+    const bool repeat = spec.loads_repeat && period > 0;
+    const double from = repeat ? std::floor((begin - first) / period) : 0,
+                 to = repeat ? std::floor((end - first) / period) : 0;
+    if ((to - from + 1) * static_cast<double>(spec.load_times.size()) < 1e6)
+      for (double p = from; p <= to; ++p)
+        for (const double t : spec.load_times)
+          if (t + p * period > begin && t + p * period < end) times_.push_back(t + p * period);
+    std::sort(times_.begin(), times_.end());
+    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+  }
+  kelvins_.resize(times_.size());
+  make_temperature_model(spec)->kelvin(times_, loads_of(spec), kelvins_);
+  const auto [low, high] = std::minmax_element(kelvins_.begin(), kelvins_.end());
+  coldest_ = *low, hottest_ = *high;
+}
+
+double SolvedField::kelvin(Vec3, double time) const {
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+  if (after == times_.begin()) return kelvins_.front();
+  if (after == times_.end()) return kelvins_.back();
+  const auto k = static_cast<size_t>(after - times_.begin());
+  return kelvins_[k - 1] + (kelvins_[k] - kelvins_[k - 1]) * (time - times_[k - 1]) / (times_[k] - times_[k - 1]);
 }
 
 }  // namespace suite

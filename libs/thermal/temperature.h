@@ -21,6 +21,10 @@ struct TemperatureSpec {
   std::vector<double> times, kelvins;     // tabulated: s, K
   bool repeat = false;                    // tabulated: the table is one period
   std::vector<SlabLayer> layers;          // slab; empty = one layer from the numbers
+  // What heats the surface, as a table over time (s); empty = others have to say.
+  std::vector<double> load_times = {};
+  std::vector<SurfaceLoad> loads = {};
+  bool loads_repeat = false;
 };
 
 class TemperatureModel {
@@ -44,5 +48,24 @@ class TemperatureField {
 // it, so passes that need many answers of one place should ask the model for all times at once.
 using LoadsAt = std::function<Loads(Vec3 place)>;
 std::unique_ptr<const TemperatureField> field_of(std::shared_ptr<const TemperatureModel> model, LoadsAt loads);
+
+// The loads of a spec's own table; an empty function when it has none. Error: a bad table (see LoadTable).
+Loads loads_of(const TemperatureSpec& spec);
+
+// A model solved once over a span of times: the same kelvin everywhere, linear between times that lie no further apart
+// than a minute (a 100 000th of the span, if that is more) and on every row of the spec's loads.
+class SolvedField final : public TemperatureField {
+ public:
+  // begin <= end, s. Error: as TemperatureModel::kelvin.
+  SolvedField(const TemperatureSpec& spec, double begin, double end);
+  // Times outside the span see its nearer end.
+  double kelvin(Vec3 place, double time) const override;
+  double coldest() const { return coldest_; }
+  double hottest() const { return hottest_; }
+
+ private:
+  std::vector<double> times_, kelvins_;
+  double coldest_ = 0, hottest_ = 0;
+};
 
 }  // namespace suite

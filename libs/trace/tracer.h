@@ -97,6 +97,7 @@ class Tracer {
   // From the object's local frame (mesh origin included) to ENU at the time, exact.
   Affine3 to_world(const TracedObject& object, double time) const;
   Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
+  const std::optional<Periodic>& periodic() const;
   const Box3& bounds() const { return bounds_; }       // ENU, all places that moving things have in the window
   size_t triangles() const;                            // instanced ones counted each time
   size_t tiles() const;

@@ -57,5 +57,10 @@ sensors:
     irradiance: 1
     ground_reflectance: 0.159
     truth: []
-    paths: 65536
+    model: suite
+    experiment: HET01_DIS_UNI_NIR_20
+    by_reciprocity: true
+    planes: [principal]
+    strata: 32
+    paths: 1024
 """)

@@ -46,6 +46,17 @@ pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
 suite_vendor(geotiff ${GEOTIFF_LIBRARY} PkgConfig::TIFF)
 target_include_directories(vendor_geotiff SYSTEM INTERFACE ${GEOTIFF_INCLUDE})
 
+# Optional: OpenVDB volumes. Its CMake module asks for more than is needed.
+find_path(OPENVDB_INCLUDE openvdb/openvdb.h)
+find_library(OPENVDB_LIBRARY openvdb)
+if(OPENVDB_INCLUDE AND OPENVDB_LIBRARY)
+  suite_vendor(openvdb ${OPENVDB_LIBRARY} TBB::tbb)
+  target_include_directories(vendor_openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE})
+  target_compile_options(vendor_openvdb INTERFACE -Wno-deprecated-declarations)
+else()
+  message(STATUS "OpenVDB was not found: .vdb files will be refused")
+endif()
+
 find_package(tinyobjloader REQUIRED)
 suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced coordinates need double
 

@@ -1,14 +1,21 @@
-// How cost grows: bands, triangles, instances, threads, spectral width; whole renders of the terrain, as CSV on
-// standard output: bench, x, unit, value (seconds of CPU of this process), extra (Mrays/s, share of Embree). Usage:
-// scaling_bench [bands|triangles|instances|threads|seconds_to_1_percent]...   (default: all)
+// How cost grows: bands, triangles, instances, lamps, cells of a medium, threads; whole renders of the terrain, and how
+// long its scene takes to load; as CSV on standard output: bench, x, unit, value (seconds of CPU of this process),
+// extra (Mrays/s, share of Embree). Usage: scaling_bench
+// [bands|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...   (default: all)
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "formats/scene_hdf/scene_hdf.h"
+#include "math/sampling.h"
 #include "tests/bench/terrain.h"
 
 namespace suite::bench {
@@ -22,7 +29,8 @@ struct Run {
   JobReport report;
   double cpu = 0;
 };
-Run render(const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths, size_t bands, uint64_t seed = 1) {
+Run render(const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths, size_t bands, uint64_t seed = 1,
+           const SourceSpecs& sources = terrain_sources()) {
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<TerrainCamera>(edge, paths, bands));
   JobOptions options;
@@ -31,7 +39,7 @@ Run render(const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths, s
   options.progress = false;
   Run run;
   const double start = cpu_seconds();
-  run.report = run_job(scene, terrain_sources(), sensors, options);
+  run.report = run_job(scene, sources, sensors, options);
   run.cpu = cpu_seconds() - start;
   run.result = std::move(static_cast<TerrainCamera&>(*sensors[0]).result);
   return run;
@@ -45,8 +53,8 @@ void print(const char* bench, double x, const char* unit, double value, const Ru
   std::fflush(stdout);
 }
 void per_path(const char* bench, double x, const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths,
-              size_t bands) {
-  const Run few = render(scene, edge, 4, bands), many = render(scene, edge, 4 + paths, bands);
+              size_t bands, const SourceSpecs& sources = terrain_sources()) {
+  const Run few = render(scene, edge, 4, bands, 1, sources), many = render(scene, edge, 4 + paths, bands, 1, sources);
   print(bench, x, "us/path (CPU)", 1e6 * (many.cpu - few.cpu) / (static_cast<double>(edge) * edge * paths), many);
 }
 
@@ -71,6 +79,63 @@ void instances() {
       }
     per_path("instances", side * side, scene, 96, 16, 1);
   }
+}
+// Lamps a few metres over the terrain, of one power in all.
+void lamps() {
+  const auto scene = terrain_scene(100);
+  for (const int n : {1, 10, 100, 1000, 10000}) {
+    SourceSpecs sources;
+    LampSpec lamp;
+    lamp.intensity = Curve::constant(100.0 / n);
+    Pcg32 random(3);
+    for (int i = 0; i < n; ++i) {
+      const double x = 1000 * random.uniform() - 500, y = 1000 * random.uniform() - 500;
+      lamp.positions.push_back({x, y, terrain_height(x, y) + 5});
+    }
+    sources.lamps.push_back(lamp);
+    per_path("lamps", n, scene, 96, 32, 1, sources);
+  }
+}
+// A cloud of optical depth 2 over the terrain, of the same shape in grids of 8 to 128 cells a side.
+void media() {
+  for (const uint32_t n : {8u, 32u, 128u}) {
+    auto scene = terrain_scene(72);
+    Medium m;
+    m.id = "cloud";
+    m.absorption = Curve::constant(0.001), m.scattering = Curve::constant(0.019);
+    m.phase = {"hg", {}, {{"g", Curve::constant(0.6)}}, {}, nullptr};
+    check_medium(m);
+    scene->media = {m};
+    VoxelGrid grid;
+    grid.name = "cloud";
+    grid.cells = {n, n, n};
+    const double low = 150, high = 250;
+    grid.to_local = translation({-500, -500, low}) * scaling({1000.0 / n, 1000.0 / n, (high - low) / n});
+    grid.media = {0};
+    for (uint32_t k = 0; k < n; ++k)
+      for (uint32_t j = 0; j < n; ++j)
+        for (uint32_t i = 0; i < n; ++i)
+          grid.density.push_back(static_cast<float>(1 + std::sin(12.0 * i / n) * std::sin(9.0 * j / n)));
+    scene->grids = {std::move(grid)};
+    scene->volumes = {{0, Affine3{}}};
+    check_scene(*scene, "cloud");
+    per_path("media", n, scene, 96, 16, 1);
+  }
+}
+// Reading and checking a prepared scene, the best of five.
+void load() {
+  const std::string path = (std::filesystem::temp_directory_path() / strf("scaling_bench_%d.h5", ::getpid())).string();
+  for (const uint32_t edge : {72u, 225u, 708u}) {
+    write_scene(*terrain_scene(edge), {}, path);
+    double best = INFINITY;
+    for (int k = 0; k < 5; ++k) {
+      const double start = cpu_seconds();
+      read_scene(path);
+      best = std::min(best, cpu_seconds() - start);
+    }
+    std::printf("scene_load,%u,ms (CPU),%.6g,,\n", 2 * (edge - 1) * (edge - 1), 1e3 * best);
+  }
+  std::filesystem::remove(path);
 }
 // Seconds on the wall of the rendering alone.
 void thread_counts() {
@@ -108,11 +173,11 @@ void seconds_to_1_percent() {
 
 int main(int argc, char** argv) {
   using namespace suite::bench;
-  const std::pair<const char*, void (*)()> all[] = {{"bands", bands},
-                                                    {"triangles", triangles},
-                                                    {"instances", instances},
-                                                    {"threads", thread_counts},
-                                                    {"seconds_to_1_percent", seconds_to_1_percent}};
+  const std::pair<const char*, void (*)()> all[] = {
+      {"bands", bands},           {"triangles", triangles},
+      {"instances", instances},   {"lamps", lamps},
+      {"media", media},           {"load", load},
+      {"threads", thread_counts}, {"seconds_to_1_percent", seconds_to_1_percent}};
   std::puts("bench,x,unit,value,Mrays_per_s,share_in_embree");
   for (const auto& [name, run] : all)
     if (argc == 1 ||

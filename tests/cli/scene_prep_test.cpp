@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "base/files.h"
@@ -35,6 +36,11 @@ TEST_F(ScenePrep, WritesSummarisesAndRepeats) {
   EXPECT_THAT(r.out, HasSubstr("[SP103] x1"));
   EXPECT_THAT(r.out, HasSubstr("verdict: accepted (0 errors, 1 warnings)"));
   EXPECT_THAT(read_text(folder_ / "r.json"), HasSubstr("\"code\": \"SP103\""));
+  // What the steps took, as a page that needs nothing else.
+  const std::string page = read_text(folder_ / "r.html");
+  for (const char* part : {"<svg", "<td>read</td>", "<td>check</td>", "<td>bake</td>", "<td>write</td>", "SP103"})
+    EXPECT_THAT(page, HasSubstr(part));
+  EXPECT_EQ(page.find("src="), std::string::npos);
   // The library once put the time of the second into every group.
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   EXPECT_EQ(run("good.yaml -o b.h5").code, 0);
@@ -56,6 +62,48 @@ TEST_F(ScenePrep, SkipsWorkThatIsDone) {
   EXPECT_THAT(run("good.yaml -o a.h5").out, HasSubstr("verdict"));
   write_file(folder_ / "a.h5", "not a scene");
   EXPECT_THAT(run("good.yaml -o a.h5").out, HasSubstr("verdict"));
+}
+
+// Every file that was read counts, also those that other files bring along, and those that would be read before them.
+TEST_F(ScenePrep, SkippedWorkLooksAtEveryFile) {
+  const float cube[8] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f};
+  write_file(folder_ / "c.img", std::as_bytes(std::span(cube)));
+  const std::string header =
+      "ENVI\nsamples = 2\nlines = 2\nbands = 2\ndata type = 4\ninterleave = bip\nbyte order = 0\nwavelength units = "
+      "um\n";
+  write_file(folder_ / "c.hdr", header + "wavelength = {0.5, 0.6}\n");
+  const float density[2] = {1, 2};
+  write_file(folder_ / "d.raw", std::as_bytes(std::span(density)));
+  write_file(folder_ / "g.vox", "voxels: 1\ncells: [2, 1, 1]\ncell_m: 1\nfields: {density: {file: d.raw}}\n");
+  write_file(folder_ / "all.yaml",
+             "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2, maps: [cube]}}\nmedia: {fog: {absorption: "
+             "0, scattering: 1}}\n"
+             "maps: {cube: {type: cube, file: c.img, projection: uv}}\ngrids: {g: {voxels: g.vox, medium: "
+             "fog}}\nvolumes: [{place: g}]\n"
+             "objects: {tri: {obj: tri.obj, material: grey}}\nworld: [{place: tri}]\n");
+  const auto prepared = [&] { return run("all.yaml -o all.h5").out.find("verdict: accepted") != std::string::npos; };
+  EXPECT_TRUE(prepared());
+  EXPECT_FALSE(prepared());
+  write_file(folder_ / "c.hdr", header + "wavelength = {0.5, 0.7}\n");
+  EXPECT_TRUE(prepared());
+  EXPECT_FALSE(prepared());
+  write_file(folder_ / "c.img.hdr", header + "wavelength = {0.5, 0.8}\n");  // found before the other one
+  EXPECT_TRUE(prepared());
+  EXPECT_FALSE(prepared());
+  const float thicker[2] = {1, 3};
+  write_file(folder_ / "d.raw", std::as_bytes(std::span(thicker)));
+  EXPECT_TRUE(prepared());
+  EXPECT_FALSE(prepared());
+  // A scene that is older than the program may have been made by another one of the same version.
+  std::filesystem::last_write_time(folder_ / "all.h5",
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 365 * 20));
+  EXPECT_TRUE(prepared());
+  EXPECT_FALSE(prepared());
+  // What is refused leaves the old scene, and says so.
+  write_file(folder_ / "c.img.hdr", "ENVI\n");
+  const CommandResult refused = run("all.yaml -o all.h5");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("all.h5 is left as it was: it does not hold this scene"));
 }
 
 TEST_F(ScenePrep, AnswersQuestionsAboutAPreparedScene) {

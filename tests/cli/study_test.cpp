@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "formats/scene_hdf/scene_hdf.h"
-#include "study/page.h"
+#include "page/page.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
@@ -40,6 +40,8 @@ TEST(Study, WritesItsResultsAndGoesOn) {
   EXPECT_EQ(lines_of(before), 2 + 2 * 2 * 2);  // two lines of head; budgets, seeds, bands
   const std::string html = read_text(out + "/study.html");
   EXPECT_NE(html.find("<svg"), std::string::npos);
+  for (const char* part : {"Where the time goes", "trace %", "sample %", "shade %", "sensor %", "I/O s"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
   EXPECT_EQ(html.find("src="), std::string::npos) << "the page must need nothing else";
   EXPECT_NE(read_text(out + "/study.json").find("\"slope_paths\""), std::string::npos);
   // Going on keeps the rows that are there, to the last digit, and adds the new budget.
@@ -102,12 +104,12 @@ TEST(Study, RefusesWhatItCannotStudy) {
 // Other programs' tables become the same kind of page.
 TEST(Page, FromATable) {
   const std::string csv = "# a note <&>\nmethod,bytes,l1\naligned,1000,0.1\naligned,2000,0.05\npaper,4000,0.1\n";
-  const std::string html = html_of(page_of_csv(csv, "size & error", "bytes", {"l1"}, "method", "c.csv"));
+  const std::string html = html_of(page_of_csv(csv, "size & error", {"bytes"}, {"l1"}, "method", "c.csv"));
   EXPECT_NE(html.find("a note &lt;&amp;&gt;"), std::string::npos);
   EXPECT_NE(html.find("aligned</text>"), std::string::npos);
   EXPECT_NE(html.find("paper</text>"), std::string::npos);
-  EXPECT_THROW(page_of_csv(csv, "t", "byte", {"l1"}, "", "c.csv"), Error);
-  EXPECT_THROW(page_of_csv("a,b\n1\n", "t", "a", {"b"}, "", "c.csv"), Error);
+  EXPECT_THROW(page_of_csv(csv, "t", {"byte"}, {"l1"}, "", "c.csv"), Error);
+  EXPECT_THROW(page_of_csv("a,b\n1\n", "t", {"a"}, {"b"}, "", "c.csv"), Error);
 }
 
 }  // namespace

@@ -40,6 +40,18 @@ TEST(SqtFitCli, KeepsASize) {
   EXPECT_GT(file_size(out), 6000u);
 }
 
+TEST(SqtFitCli, DrawsErrorAgainstSizeAndSeconds) {
+  const TempFolder folder;
+  const CommandResult r = run_command(kFit + kWard + "-q --curve " + (folder / "c.csv"));
+  ASSERT_EQ(r.code, 0) << r.err;
+  const std::string csv = read_text(folder / "c.csv"), page = read_text(folder / "c.html");
+  EXPECT_EQ(csv.rfind("method,knob,bytes,leaves,seconds,l1,cos_rmse,rmse\n", 0), 0u);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 10);
+  for (const char* part : {"l1 against bytes", "l1 against seconds", "rmse against seconds", "aligned</text>"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_EQ(run_command(kFit + kWard + "--curve c.html").code, 2);
+}
+
 TEST(SqtFitCli, SameBytesForAnyThreadCount) {
   const TempFolder folder;
   std::vector<std::byte> first;

@@ -32,6 +32,13 @@ Analytic leaf() {  // reflects and lets through, each with a lobe
       },
       2, Domain::sphere);
 }
+Analytic rough() {
+  return Analytic([](Dir o, Dir i) {
+    const Dir h = normalized(o + i);
+    const double d = 1 - 0.8 * h.z * h.z;
+    return 0.2 / kPi / (4 * d * d) / (0.5 + o.z + i.z + o.z * i.z);
+  });
+}
 Analytic haze() {
   return Analytic([](Dir o, Dir i) { return test::henyey_greenstein(-dot(o, i), 0.8); }, 1, Domain::sphere,
                   Quantity::phase);
@@ -48,6 +55,11 @@ struct Case {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = [] {
     auto aligned = [](const Analytic& f) { return make_bundle(test::small_fit(f).data); };
+    auto direct = [](const Analytic& f) {
+      AlignedSource::Options options = test::small_options();
+      options.frame = LobeFrame::direct;
+      return make_bundle(encode_aligned(AlignedSource(f, options), 0.1).data);
+    };
     auto paper = [](const Analytic& f) { return make_bundle(test::small_paper(f)); };
     return std::vector<Case>{{"paper_glossy", paper(test::glossy())},
                              {"paper_leaf", paper(leaf())},
@@ -56,6 +68,7 @@ const std::vector<Case>& cases() {
                              {"aligned_glossy", aligned(test::glossy())},
                              {"aligned_narrow", aligned(test::glossy(0.03))},
                              {"aligned_brushed", aligned(brushed())},
+                             {"aligned_rough", direct(rough())},
                              {"aligned_leaf", aligned(leaf())},
                              {"aligned_haze", aligned(haze())},
                              {"aligned_light", aligned(street_light())}};
@@ -126,8 +139,13 @@ TEST_P(Verbs, MeanWeightIsTotal) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sqt, Verbs, testing::Range(size_t{0}, size_t{10}),
+INSTANTIATE_TEST_SUITE_P(Sqt, Verbs, testing::Range(size_t{0}, size_t{11}),
                          [](const auto& i) { return cases()[i.param].name; });
+
+TEST(VerbsFrames, AllKindsAreThere) {
+  EXPECT_EQ(cases()[4].bundle->info().frame, "half");
+  EXPECT_EQ(cases()[7].bundle->info().frame, "direct");
+}
 
 TEST(VerbsControl, TwoPercentAreRejected) {
   EXPECT_LT(chi_square_of(*cases()[4].bundle, {0, 0, 1}, 0, 0.02, 600000), 1e-5);

@@ -85,6 +85,36 @@ TEST(Combine, PlacementsMotionsAndTimes) {
   EXPECT_THAT(message_of([&] { check_motion(*all, 0, 5, {}); }), HasSubstr("car in traffic is known from 60 to 70 s"));
 }
 
+TEST(Combine, VolumesFollowTheirScenes) {
+  // One that moves in the first scene, one at rest in a scene that stands elsewhere, and both in a scene that moves.
+  const auto with_volumes = [](bool moves) {
+    Scene s = part(0, 0, "t");
+    s.class_maps.clear();
+    s.media.emplace_back();
+    s.grids.push_back({"g", {1, 1, 1}, {}, {1}, {}, {0}, {}});
+    s.volumes.push_back({0, translation({1, 0, 0}), moves ? 0 : kNone});
+    if (moves) s.tracks = {{"puff", static_track({{}, {0, 0, 2}})}};
+    return s;
+  };
+  std::vector<ScenePart> parts(3);
+  parts[0] = {"a", with_volumes(true), {}, nullptr};
+  parts[1] = {"b", with_volumes(false), translation({10, 20, 30}), nullptr};
+  parts[2] = {"c", with_volumes(true), {}, static_track({{}, {5, 6, 7}})};
+  const Scene all = combine_scenes(parts);
+  check_scene(all, "all");
+  ASSERT_EQ(all.volumes.size(), 3u);
+  const auto place = [&](const Volume& v) {
+    return v.track == kNone ? v.to_world.b : (all.tracks[v.track].track->at(0).affine() * v.to_world).b;
+  };
+  EXPECT_EQ(place(all.volumes[0]), (Vec3{1, 0, 2}));
+  EXPECT_EQ(place(all.volumes[1]), (Vec3{11, 20, 30}));
+  EXPECT_EQ(place(all.volumes[2]), (Vec3{6, 6, 9}));
+  EXPECT_EQ(all.volumes[2].grid, 2u);
+  parts[2].motion = nullptr;
+  parts[2].placement = translation({1, 1, 1});
+  EXPECT_THAT(message_of([&] { combine_scenes(parts); }), HasSubstr("has a volume that moves"));
+}
+
 TEST(Combine, MotionsKeepTheirDates) {
   Scene s = part(48, 9, "t");
   s.tracks = {{"car", keyframe_track({{0, {}}, {10, {{}, {100, 0, 0}}}})}};

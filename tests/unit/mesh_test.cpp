@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mesh/check.h"
 #include "mesh/repair.h"
 #include "mesh/weld.h"
@@ -75,6 +77,22 @@ TEST(Mesh, CrossingTrianglesAreFoundSharingOrNot) {
   // Folded flat along a shared edge, and lying open.
   EXPECT_EQ(count(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {0, 1, 2, 1, 0, 3}), "SP308"), 2u);
   EXPECT_EQ(count(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, {0, 1, 2, 1, 0, 3}), "SP308"), 0u);
+}
+
+// Everything close to everything: the search is given up and says so, instead of taking hours; repetitions do not
+// count.
+TEST(Mesh, TangledMeshesAreGivenUp) {
+  std::vector<Vec3> fan{{0, 0, 0}};
+  std::vector<uint32_t> corners, same;
+  for (uint32_t k = 0; k < 20000; ++k) {
+    fan.push_back({std::cos(3e-4 * k), std::sin(3e-4 * k), 0});
+    if (k) corners.insert(corners.end(), {0, k, k + 1});
+    same.insert(same.end(), {0, 1, 2});
+  }
+  EXPECT_EQ(count(soup(fan, corners), "SP315"), 1u);
+  EXPECT_EQ(count(soup(fan, corners), "SP308"), 0u);
+  EXPECT_EQ(count(soup(fan, same), "SP315"), 0u);
+  EXPECT_EQ(count(soup(fan, same), "SP304"), 19999u);
 }
 
 TEST(Mesh, BoundaryLoopsAreCounted) {

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "formats/obj/obj.h"
 #include "formats/obj/polygon.h"
 #include "scene/issues.h"
@@ -67,7 +69,48 @@ TEST(Obj, ConcavePolygonIsCutAlongItsOutline) {
   EXPECT_DOUBLE_EQ(area, 6);
 }
 
+// Many corners: all at once would take hours if every ear were sought anew. A jagged disk has as many reflex corners as
+// others.
+TEST(Obj, PolygonsOfManyCornersAreCutInTime) {
+  for (const double teeth : {0.0, 0.3}) {
+    std::vector<Vec3> p;
+    const int n = 20000;
+    for (int k = 0; k < n; ++k) {
+      const double r = 1 + teeth * (k % 2), a = 2 * kPi * k / n;
+      p.push_back({r * std::cos(a), r * std::sin(a), 0});
+    }
+    bool clean = false;
+    const auto triangles = split_polygon(p, clean);
+    EXPECT_TRUE(clean) << teeth;
+    double area = 0, outline = 0;
+    for (const auto& t : triangles) {
+      const double a = cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]).z / 2;
+      EXPECT_GT(a, 0);
+      area += a;
+    }
+    for (size_t k = 0; k < p.size(); ++k) outline += cross(p[k], p[(k + 1) % p.size()]).z / 2;
+    EXPECT_NEAR(area, outline, 1e-9 * outline);
+  }
+}
+
+// One position with a normal of its own in each of many faces.
+TEST(Obj, CrowdedPositionsAreSharedInTime) {
+  std::string text = kSquare;
+  for (int k = 0; k < 100000; ++k) text += "vn 0 0 1\n";
+  for (int turn = 0; turn < 2; ++turn)
+    for (int k = 1; k <= 100000; ++k) text += strf("f 1//%d 2//%d 3//%d\n", k, k, k);
+  const Read read(text);
+  EXPECT_EQ(read.mesh.indices.size(), 600000u);
+  EXPECT_EQ(read.mesh.positions.size(), 300000u);
+}
+
 TEST(Obj, FaultsAreLocated) {
+  // The loader turned these into other numbers and went on.
+  EXPECT_THAT(Read(kSquare + "f 1 2 99999999999999999999\n").report.text(),
+              HasSubstr("t.obj:5:1: index 99999999999999999999"));
+  EXPECT_THAT(Read(kSquare + "f -1 -2 -2147483650\n").report.text(), HasSubstr("t.obj:5:1: index 2147483650"));
+  // A mark before UTF-8 once swallowed the first vertex.
+  EXPECT_EQ(Read("\xef\xbb\xbf" + std::string(kSquare) + "f 1 2 3\n").report.count(Severity::error), 0u);
   EXPECT_THAT(Read(kSquare + "f 0 1 2\n").report.text(),
               HasSubstr("[SP201] x1: a face names something that is not there\n    t.obj:5:1: vertex index 0"));
   EXPECT_THAT(Read(kSquare + "vt 0 0\nf 1/0 2/1 3/1\n").report.text(), HasSubstr("t.obj:6:1: index 0"));

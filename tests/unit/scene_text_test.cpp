@@ -164,11 +164,22 @@ TEST_F(SceneText, PropertyMapsAreCheckedAndBound) {
   const std::string head =
       "scene: 1\nwindows_um: [[0.45, 0.7]]\nmaterials:\n  grey: {model: lambert, reflectance: 0.2, maps: "
       "[cube]}\nobjects: {tri: {obj: tri.obj}}\nworld: [{place: tri}]\nmaps:\n";
-  const Scene s = bake(head + "  cube: {type: cube, file: c.img, projection: uv}\n");
+  const Scene s = bake(head + "  cube: {type: cube, file: c.img, outside: hold, projection: uv}\n");
   ASSERT_TRUE(report_.ok()) << report_.text();
   EXPECT_EQ(s.property_maps.at(0).values, std::vector<float>(cube, cube + 8));
   EXPECT_EQ(s.property_bindings.at(0).material, 0u);
   EXPECT_NO_THROW(check_scene(s, "t"));
+  EXPECT_EQ(s.property_maps[0].outside, Outside::hold);
+  // Beyond its channels a cube holds nothing unless it says so; what it reflects leaves room for what is let through.
+  EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, projection: uv}\n"),
+              HasSubstr("cube 'cube' has channels from 0.5 to 0.6 um, the window is 0.45 to 0.7 um"));
+  std::string leaf = head;
+  leaf.replace(leaf.find("reflectance: 0.2"), 16, "reflectance: 0.2, transmittance: 0.25");
+  EXPECT_THAT(findings(leaf + "  cube: {type: cube, file: c.img, outside: hold, projection: uv}\n"),
+              HasSubstr("map 'cube' has reflectance 0.8, with transmittance 0.25 at 0.6 um"));
+  leaf.replace(leaf.find("0.25"), 4, "0.19");
+  EXPECT_THAT(findings(leaf + "  cube: {type: cube, file: c.img, outside: hold, projection: uv}\n"),
+              Not(HasSubstr("SP105")));
   EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, projection: uv, scale: 10}\n"),
               HasSubstr("a value of 2"));
   EXPECT_THAT(findings(head + "  cube: {type: cube, file: c.img, projection: uv, parameter: roughness}\n"),
@@ -264,6 +275,16 @@ TEST_F(SceneText, TemperaturesAndLayers) {
   ASSERT_TRUE(report_.ok()) << report_.text();
   EXPECT_EQ(s.temperatures.at(0).spec.layers.at(0).specific_heat[1], 0.5);
   EXPECT_THAT(findings(material("temperature: {table: [[0, 280], [0, 300]]}")), HasSubstr("s.yaml:3"));
+  // The declared time must lie in a table that does not repeat.
+  const std::string early = "times_s: [-1, 50]\n" + tail, within = "times_s: [0, 100]\n" + tail;
+  const auto timed = [&](const std::string& more, const std::string& rest) {
+    return "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2, " + more + "}\n" + rest;
+  };
+  EXPECT_THAT(findings(timed("temperature: {table: [[0, 280], [100, 300]]}", early)),
+              HasSubstr("temperatures are given from 0 to 100 s, 'times_s' is -1 to 50 s"));
+  EXPECT_THAT(findings(timed("temperature: {table: [[0, 280], [100, 300]]}", within)), Not(HasSubstr("SP106")));
+  EXPECT_THAT(findings(timed("temperature: {table: [[0, 280], [100, 300]], repeat: true}", early)),
+              Not(HasSubstr("SP106")));
   EXPECT_THAT(findings(material("temperature: {table: [[0, 280, 1]]}")), HasSubstr("a point is [seconds, kelvin]"));
   EXPECT_THAT(findings(material("temperature: {model: tabluated}")), HasSubstr("did you mean 'tabulated'?"));
   EXPECT_THAT(findings(material("temperature_k: 300, temperature: {model: constant, kelvin: 300}")),

@@ -246,5 +246,32 @@ TEST(TemperatureField, AsksTheModelWithTheLoadsOfThePlace) {
   EXPECT_EQ(uniform->kelvin({}, 5), 301);
 }
 
+TEST(TemperatureField, SolvedOnceIsTheModelAskedAnew) {
+  // A day that repeats, with the sun switched on within seconds: rows of loads are kinks of the temperature.
+  TemperatureSpec spec = find_temperature_model("slab").examples()[0];
+  spec.load_times = {0, 21600, 21601, 64800, 64801, 86400};
+  spec.loads = {{0, 300, 280, 1}, {0, 300, 282, 1}, {500, 320, 285, 2}, {400, 330, 290, 2}, {0, 320, 286, 1}, {0, 300, 280, 1}};
+  spec.loads_repeat = true;
+  const SolvedField field(spec, 5000, 190000);
+  const auto model = make_temperature_model(spec);
+  for (const double t : {5000.0, 21600.0, 21700.0, 43210.0, 70000.5, 100000.0, 189999.0}) {
+    double kelvin = 0;
+    model->kelvin({&t, 1}, loads_of(spec), {&kelvin, 1});
+    EXPECT_NEAR(field.kelvin({}, t), kelvin, 0.05) << t;
+  }
+  EXPECT_EQ(field.kelvin({}, 0), field.kelvin({}, 5000));
+  EXPECT_EQ(field.kelvin({}, 1e9), field.kelvin({}, 190000));
+  EXPECT_LT(field.coldest(), field.hottest() - 5);
+  // An instant has one answer; loads that do not cover the times, or belong to another model, are refused.
+  EXPECT_EQ(SolvedField(spec, 7, 7).coldest(), SolvedField(spec, 7, 7).hottest());
+  spec.loads_repeat = false;
+  EXPECT_THROW(SolvedField(spec, 0, 90000), Error);
+  spec.loads.pop_back();
+  EXPECT_THAT(complaint([&] { make_temperature_model(spec); }), HasSubstr("loads: a table over time has 6 times and 5 values"));
+  TemperatureSpec constant{"constant", {{"kelvin", 301}}, {}, {}, false, {}};
+  constant.load_times = {0}, constant.loads = {{}};
+  EXPECT_THAT(complaint([&] { make_temperature_model(constant); }), HasSubstr("takes no loads"));
+}
+
 }  // namespace
 }  // namespace suite

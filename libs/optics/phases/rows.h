@@ -8,6 +8,7 @@ PhaseRow hg_row();
 PhaseRow double_hg_row();
 PhaseRow rayleigh_row();
 PhaseRow tabulated_row();
+PhaseRow sqt_phase_row();
 
 template <class Phase>
 std::unique_ptr<const PhaseFunction> make_phase(const ModelSpec& spec, const SpectralState& state) {

@@ -98,8 +98,6 @@ uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
 
 Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic,
                              const SpectralState& state) {
-  if (periodic && !tracer.scene().volumes.empty())
-    throw Error("volumes do not repeat themselves with a periodic scene", "give the medium as a body or as the ambient one");
   SUITE_CHECK(!specs.clear);
   const Scene& scene = tracer.scene();
   Environment e;

@@ -1,10 +1,16 @@
 // The measurements of the RAMI canopy intercomparison: BRF in the principal and the orthogonal plane, black-sky albedo,
 // and what canopy and ground absorb.
 //
+// by_reciprocity: paths start towards the patch along the sun's rays and every view is asked at each of their nodes,
+// which gives all views from the same paths (radiometry/many_suns.h) at a tenth of the cost or less. The patch is
+// divided into strata x strata problems, whose mean is the result; fluxes are left to the other mode.
+//
 // Assumes: a collimated sun of the given direction and irradiance and no sky in the simulation; a Lambertian ground.
 // The reference area is the whole patch at the height of the canopy's top; every problem is a mean over all of it.
 // Based on: J.-L. Widlowski et al., "Third Radiation Transfer Model Intercomparison (RAMI) exercise", J. Geophys. Res.
-// 112, 2007; Goodenough & Brown, section V-B (each measurement is a problem of fixed angles).
+// 112, 2007, and the formats of its online model checker (romc.jrc.ec.europa.eu); Goodenough & Brown, section V-B (each
+// measurement is a problem of fixed angles).
+#include <array>
 #include <cmath>
 
 #include "sensor/kinds/simple.h"
@@ -13,7 +19,7 @@ namespace suite {
 
 namespace {
 
-constexpr int kViews = 76;       // -75, -73 ... 75 degrees in each plane
+constexpr size_t kViews = 76;    // -75, -73 ... 75 degrees in each plane
 constexpr double kAbove = 1e-3;  // m: where the look at the ground starts
 
 class Rami final : public SimpleSensor {
@@ -36,9 +42,30 @@ class Rami final : public SimpleSensor {
     for (const double e : irradiance_)
       if (!(e > 0)) throw p.at("irradiance").error("the sun's irradiance must be positive in every band");
     if (const auto ground = p.find("ground_reflectance")) ground_reflectance_ = in_bands(*ground);
-    capture_.columns = 2 * kViews + 2;
-    capture_.rows = 1;
+    planes_ = {true, true};
+    if (const auto planes = p.find("planes")) {
+      planes_ = {false, false};
+      for (const Params& plane : planes->items()) planes_[plane.as_choice({"principal", "orthogonal"})] = true;
+      if (!planes_[0] && !planes_[1]) throw planes->error("no plane is listed", "principal, orthogonal or both");
+    }
+    for (const size_t plane : {0u, 1u})
+      for (size_t k = 0; planes_[plane] && k < kViews; ++k)
+        views_.push_back({plane, -75 + 2.0 * static_cast<double>(k)});
+    if (p.boolean("by_reciprocity", false)) {
+      strata_ = static_cast<uint32_t>(p.integer("strata", 1, 4096, 32));
+      capture_.columns = capture_.rows = strata_;
+      capture_.bin_by = Capture::BinBy::sun;
+      for (const View& v : views_) capture_.suns.push_back(direction(v));
+      capture_.bins = static_cast<uint32_t>(views_.size());
+    } else {
+      capture_.columns = static_cast<uint32_t>(views_.size()) + 2;
+      capture_.rows = 1;
+    }
     capture_.neighbours = false;
+    model_ = p.text("model", "suite");
+    experiment_ = p.text("experiment", "");
+    if (!experiment_.empty() && bands_.size() > 1)
+      throw p.at("experiment").error("an experiment has one band", "give each band a sensor of its own");
     done();
   }
   std::span<const Channel> channels() const override {
@@ -47,11 +74,13 @@ class Rami final : public SimpleSensor {
   }
   SensorRay ray(const RayRequest& r) const override {
     const size_t i = r.problem;
-    if (i < 2 * kViews) {
-      const Dir out = view(i);
-      return {{patch_.at(r.u[0], r.u[1], top_), -out, moment(0)}};
+    if (strata_) {
+      const double column = static_cast<double>(i % strata_), row = static_cast<double>(i / strata_);
+      return {{patch_.at((column + r.u[0]) / strata_, (row + r.u[1]) / strata_, top_),
+               -dir_from_angles(sun_zenith_, sun_azimuth_), moment(0)}};
     }
-    if (i == 2 * kViews) {  // all directions, cosine-weighted: the mean radiance times pi is the flux upwards
+    if (i < views_.size()) return {{patch_.at(r.u[0], r.u[1], top_), -direction(views_[i]), moment(0)}};
+    if (i == views_.size()) {  // all directions, cosine-weighted: the mean radiance times pi is the flux upwards
       const Dir out = cosine_hemisphere({r.u[2], r.u[3]});
       return {{patch_.at(r.u[0], r.u[1], top_), -out, moment(0)}};
     }
@@ -59,64 +88,98 @@ class Rami final : public SimpleSensor {
   }
 
  private:
-  // Negative zeniths look from the sun's side.
-  static double zenith_deg(size_t i) { return -75 + 2.0 * static_cast<double>(i % kViews); }
-  Dir view(size_t i) const {
-    const double zenith = zenith_deg(i) * kDegree, side = i < kViews ? 0 : kPi / 2;
-    return dir_from_angles(std::fabs(zenith), sun_azimuth_ + side + (zenith < 0 ? 0 : kPi));
+  struct View {
+    size_t plane;       // 0 = the sun's, 1 = orthogonal to it
+    double zenith_deg;  // negative: from the sun's side
+    double from_sun_deg() const { return (plane ? 90 : 0) + (zenith_deg < 0 ? 0 : 180); }
+  };
+  struct Value {
+    double value, error;
+  };
+  Dir direction(const View& v) const {
+    return dir_from_angles(std::fabs(v.zenith_deg) * kDegree, sun_azimuth_ + v.from_sun_deg() * kDegree);
   }
-  double value(const Delivery& d, size_t i, size_t channel, size_t b, bool error) const {
-    const auto& from = error ? d.result.standard_error : d.result.radiance;
-    return kPi * from[(i * 2 + channel) * bands_.size() + b] / (irradiance_[b] * std::cos(sun_zenith_));
+  // BRF of a problem of the direct mode.
+  Value value(const Delivery& d, size_t i, size_t channel, size_t b) const {
+    const double scale = kPi / (irradiance_[b] * std::cos(sun_zenith_));
+    const size_t at = (i * 2 + channel) * bands_.size() + b;
+    return {scale * d.result.radiance[at], scale * d.result.standard_error[at]};
+  }
+  // BRF of a view, in either mode.
+  Value brf(const Delivery& d, size_t i, size_t channel, size_t b) const {
+    if (!strata_) return value(d, i, channel, b);
+    const double scale = kPi / std::cos(views_[i].zenith_deg * kDegree) / static_cast<double>(d.result.problems());
+    double mean = 0, square = 0;
+    for (size_t p = 0; p < d.result.problems(); ++p) {
+      const size_t at = ((p * 2 + channel) * views_.size() + i) * bands_.size() + b;
+      mean += d.result.radiance[at];
+      square += d.result.standard_error[at] * d.result.standard_error[at];
+    }
+    return {scale * mean, scale * std::sqrt(square)};
   }
   void finish(Delivery& d) const override {
     std::string views = "plane,view_zenith_deg,view_azimuth_from_sun_deg,band,brf,standard_error,brf_single\n";
     std::string fluxes = "band,quantity,value,standard_error\n";
     for (size_t b = 0; b < bands_.size(); ++b) {
-      for (size_t i = 0; i < 2 * kViews; ++i) {
-        const double from_sun = (i < kViews ? 0 : 90) + (zenith_deg(i) < 0 ? 0 : 180);
-        views +=
-            strf("%s,%g,%g,%s,%.8g,%.3g,%.8g\n", i < kViews ? "principal" : "orthogonal", zenith_deg(i), from_sun,
-                 bands_[b].name.c_str(), value(d, i, 0, b, false), value(d, i, 0, b, true), value(d, i, 1, b, false));
+      std::array<std::string, 2> total, multiple;
+      for (size_t i = 0; i < views_.size(); ++i) {
+        const View& v = views_[i];
+        const Value all = brf(d, i, 0, b);
+        const double single = brf(d, i, 1, b).value;
+        views += strf("%s,%g,%g,%s,%.8g,%.3g,%.8g\n", v.plane ? "orthogonal" : "principal", v.zenith_deg,
+                      v.from_sun_deg(), bands_[b].name.c_str(), all.value, all.error, single);
+        total[v.plane] += mes_line(v, all.value);
+        multiple[v.plane] += mes_line(v, all.value - single);
       }
-      add_fluxes(d, b, fluxes);
-      for (const int plane : {0, 1})
-        d.texts.push_back({name_ + "_" + bands_[b].name + (plane ? "-brfop.mes" : "-brfpp.mes"), mes(d, b, plane)});
+      if (!strata_) add_fluxes(d, b, fluxes);
+      for (const size_t plane : {0u, 1u}) {
+        if (!planes_[plane]) continue;
+        const std::string head = strf("%zu\t5\t-1.000000\n", kViews);
+        add_mes(d, b, plane ? "brfop" : "brfpp", head + total[plane]);
+        add_mes(d, b, plane ? "brfop_mlt" : "brfpp_mlt", head + multiple[plane]);
+      }
+      if (!strata_)
+        add_mes(d, b, "brf1",
+                strf("1\t5\t-1.000000\n%.6f\t-1.000000\t-1.000000\t%.6f\t-1.000000\n", sun_zenith_,
+                     value(d, views_.size(), 0, b).value));
     }
     d.texts.push_back({name_ + "_brf.csv", std::move(views)});
-    d.texts.push_back({name_ + "_fluxes.csv", std::move(fluxes)});
-    d.description = "problems: 76 views in the principal plane, 76 in the orthogonal one, the upward flux, the ground";
+    if (!strata_) d.texts.push_back({name_ + "_fluxes.csv", std::move(fluxes)});
+    d.description = strata_ ? "problems: strata of the patch; bins: views, as radiance back along the sun's rays"
+                            : "problems: the views of each plane, the upward flux, the ground";
+  }
+  // Tables of the intercomparison's model checker: files <measurement>_<model>-<experiment>.mes; a line that counts
+  // lines and columns; then sun zenith, view zenith, view azimuth from the sun (rad), value, its spread (-1 = not
+  // given).
+  std::string mes_line(const View& v, double value) const {
+    return strf("%.6f\t%.6f\t%.6f\t%.6f\t-1.000000\n", sun_zenith_, std::fabs(v.zenith_deg) * kDegree,
+                v.from_sun_deg() * kDegree, value);
+  }
+  void add_mes(Delivery& d, size_t b, const std::string& measurement, std::string text) const {
+    const std::string experiment = experiment_.empty() ? name_ + "_" + bands_[b].name : experiment_;
+    d.texts.push_back({measurement + "_" + model_ + "-" + experiment + ".mes", std::move(text)});
   }
   void add_fluxes(const Delivery& d, size_t b, std::string& text) const {
     auto line = [&](const char* what, double v, double e) {
       text += strf("%s,%s,%.8g,%.3g\n", bands_[b].name.c_str(), what, v, e);
     };
-    const double albedo = value(d, 2 * kViews, 0, b, false), e = value(d, 2 * kViews, 0, b, true);
-    line("black_sky_albedo", albedo, e);
+    const Value albedo = value(d, views_.size(), 0, b), ground = value(d, views_.size() + 1, 0, b);
+    line("black_sky_albedo", albedo.value, albedo.error);
     if (ground_reflectance_.empty() || !(ground_reflectance_[b] > 0)) return;
     // A Lambertian ground of reflectance r shows r times its irradiance over pi.
-    const double r = ground_reflectance_[b], down = value(d, 2 * kViews + 1, 0, b, false) / r,
-                 de = value(d, 2 * kViews + 1, 0, b, true) / r;
-    line("transmitted_to_ground", down, de);
-    line("absorbed_by_ground", (1 - r) * down, (1 - r) * de);
-    line("absorbed_by_canopy", 1 - albedo - (1 - r) * down, std::hypot(e, (1 - r) * de));
-  }
-  // One line a view: sun zenith, sun azimuth, view zenith, view azimuth from the sun (rad), value; the first line
-  // counts lines and columns.
-  std::string mes(const Delivery& d, size_t b, int plane) const {
-    std::string text = strf("%d 5 -1.000000\n", kViews);
-    for (int i = 0; i < kViews; ++i) {
-      const size_t at = static_cast<size_t>(plane * kViews + i);
-      const double from_sun = (plane ? 90 : 0) + (zenith_deg(at) < 0 ? 0 : 180);
-      text += strf("%.6f %.6f %.6f %.6f %.6f\n", sun_zenith_, 0.0, std::fabs(zenith_deg(at)) * kDegree,
-                   from_sun * kDegree, value(d, at, 0, b, false));
-    }
-    return text;
+    const double r = ground_reflectance_[b], down = ground.value / r, error = ground.error / r;
+    line("transmitted_to_ground", down, error);
+    line("absorbed_by_ground", (1 - r) * down, (1 - r) * error);
+    line("absorbed_by_canopy", 1 - albedo.value - (1 - r) * down, std::hypot(albedo.error, (1 - r) * error));
   }
 
   Patch patch_;
+  std::string model_, experiment_;
   double top_ = 0, ground_ = 0, sun_zenith_ = 0, sun_azimuth_ = 0;
   std::vector<double> irradiance_, ground_reflectance_;
+  std::array<bool, 2> planes_{};
+  std::vector<View> views_;
+  uint32_t strata_ = 0;  // 0: direct
 };
 
 }  // namespace

@@ -267,20 +267,4 @@ std::vector<Case> thermal_cases() {
   return c;
 }
 
-// Rows whose subject is not in the suite yet; each counts as open.
-std::vector<Case> open_cases() {
-  const char* why = "the suite has no volumes yet";
-  std::vector<Case> c;
-  auto open = [&](const char* group, const char* name, const char* reference, double bound, const char* reason) {
-    Case row;
-    row.group = group, row.name = name, row.reference = reference, row.unit = "1", row.bound = bound, row.open = reason;
-    c.push_back(std::move(row));
-  };
-  open("medium", "transmittance at optical depth 1e-6", "closed form 1 - exp(-tau)", 1e-9, why);
-  open("medium", "transmittance at optical depth 1e6", "closed form 0", 0, why);
-  open("medium", "multiple scattering, depth 64, albedo 1 - 1e-7", "adding-doubling, 1e-12", 1e-3, why);
-  open("medium", "camera inside a medium", "closed form exp(-tau)", 1e-3, why);
-  return c;
-}
-
 }  // namespace suite::extreme

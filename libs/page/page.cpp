@@ -1,4 +1,4 @@
-#include "study/page.h"
+#include "page/page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,9 @@ struct Axis {
       for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (const double m : {1.0, 2.0, 5.0})
           if ((dense || m == 1) && decade * m >= low && decade * m <= high) t.push_back(decade * m);
-    } else {
+    }
+    if (t.size() < 2) {  // also of a logarithmic axis over less than a decade
+      t.clear();
       const double raw = (high - low) / 5, unit = std::pow(10, std::floor(std::log10(raw)));
       const double step = unit * (raw / unit < 1.5 ? 1 : raw / unit < 3.5 ? 2 : raw / unit < 7.5 ? 5 : 10);
       for (double v = std::ceil(low / step) * step; v <= high; v += step)
@@ -161,7 +163,7 @@ std::string html_of(const Page& page) {
   return h + "</body></html>\n";
 }
 
-Page page_of_csv(std::string_view csv, const std::string& title, const std::string& x,
+Page page_of_csv(std::string_view csv, const std::string& title, const std::vector<std::string>& x,
                  const std::vector<std::string>& y, const std::string& group, const std::string& file) {
   Page page;
   page.title = title;
@@ -194,16 +196,16 @@ Page page_of_csv(std::string_view csv, const std::string& title, const std::stri
       throw Error(Where{file, 0, 0, {}, -1}, "there is no column '" + name + "'", name_hint(name, table.columns));
     return static_cast<size_t>(found - table.columns.begin());
   };
-  const size_t cx = column(x);
-  for (const std::string& name : y) {
-    const size_t cy = column(name);
+  for (size_t i = 0; i < x.size() * y.size(); ++i) {
+    const std::string &along = x[i / y.size()], &name = y[i % y.size()];
+    const size_t cx = column(along), cy = column(name);
     std::map<std::string, PlotSeries> series;
     for (const auto& row : table.rows) {
       PlotSeries& s = series[group.empty() ? name : row[column(group)]];
       s.x.push_back(std::strtod(row[cx].c_str(), nullptr));
       s.y.push_back(std::strtod(row[cy].c_str(), nullptr));
     }
-    Plot plot{name + " against " + x, x, name, true, true, {}};
+    Plot plot{name + " against " + along, along, name, true, true, {}};
     for (auto& [key, s] : series) s.name = key, plot.series.push_back(std::move(s));
     page.plots.push_back(std::move(plot));
   }

@@ -31,10 +31,10 @@ struct Page {
 std::string svg_of(const Plot& plot);  // a standalone <svg> element
 std::string html_of(const Page& page);
 
-// A page from a CSV table: lines with # are paragraphs, the first other line names the columns; plots column y against
-// column x, one series for each text in column `group` (empty = one series), and shows the table. Error at `file` when
-// a column is missing or a row is short.
-Page page_of_csv(std::string_view csv, const std::string& title, const std::string& x,
+// A page from a CSV table: lines with # are paragraphs, the first other line names the columns; plots each column y
+// against each column x, one series for each text in column `group` (empty = one series), and shows the table. Error at
+// `file` when a column is missing or a row is short.
+Page page_of_csv(std::string_view csv, const std::string& title, const std::vector<std::string>& x,
                  const std::vector<std::string>& y, const std::string& group, const std::string& file);
 
 }  // namespace suite

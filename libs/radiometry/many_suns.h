@@ -1,0 +1,36 @@
+// Turns a path into what it shows under each of many collimated suns by itself: all of them are asked at every node of
+// one path. With the path's own start in the direction of a real sun this gives, by reciprocity, what many viewers see
+// under that sun at little more than the cost of one (the scene's models have to be reciprocal, its means over a whole
+// period).
+//
+// Assumes: no media, no air; nothing else shines.
+// Based on: H. von Helmholtz's reciprocity as in C. Borner et al., J. Quant. Spectrosc. 57, 1997; local estimates of
+// photons at every collision, e.g. J. M. Marchuk et al., "The Monte Carlo methods in atmospheric optics", 1980.
+#pragma once
+#include <vector>
+
+#include "radiometry/pipeline.h"
+#include "radiometry/wave.h"
+
+namespace suite {
+
+class ManySuns {
+ public:
+  explicit ManySuns(const Surface& surface) : surface_(surface) {}
+
+  // Adds path p's band radiances under suns[i] of unit spectral irradiance (W/(m2 um), normal to the beam) to
+  // sums[i * bands], and of what was scattered once to sums[(suns + i) * bands] when `single`. Returns false, with
+  // nothing added, when a radiance is no finite number >= 0.
+  bool add(Wave& wave, size_t p, std::span<const Dir> suns, const BandProjection& projection, bool single,
+           std::span<double> sums, TraceStatistics& statistics);
+
+ private:
+  const Surface& surface_;
+  std::vector<Ray> rays_;
+  std::vector<size_t> sun_;
+  std::vector<double> distance_;
+  std::vector<uint8_t> blocked_;
+  std::vector<float> weight_, radiance_, single_;
+};
+
+}  // namespace suite

@@ -1,0 +1,88 @@
+#include "sqt/source_totals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "sqt/theta_grid.h"
+
+namespace suite::sqt {
+
+void survey_totals(const Function& function, const AlignedLayout& layout,
+                   const std::vector<std::vector<SurveyedLeaf>>& leaves,
+                   const std::vector<AlignedSource::Impl::Sheet>& sheets, AlignedTotals& totals) {
+  const size_t channels = layout.channels;
+  const Function::Info& info = function.info();
+  const ThetaGrid grid(layout.theta);
+  std::vector<size_t> order(channels);
+  for (size_t c = 0; c < channels; ++c)
+    order[c] = static_cast<size_t>(
+        std::lower_bound(totals.magnitude_um.begin(), totals.magnitude_um.end(), info.wavelength_um[c]) -
+        totals.magnitude_um.begin());
+  totals.magnitudes.assign(totals.theta.size() * totals.phi_count * totals.magnitude_um.size(), 0.0f);
+  parallel_for(0, totals.theta.size() * totals.phi_count, 1, [&](size_t begin, size_t end) {
+    std::vector<double> f(channels), sum(channels);
+    for (size_t t = begin; t < end; ++t) {
+      const double theta = totals.theta[t / totals.phi_count];
+      const size_t j = t % totals.phi_count;
+      const Dir out = dir_from_angles(theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(totals.phi_count));
+      const ThetaGrid::At at = grid.locate(theta);
+      const size_t nearest = std::min(at.low + (at.t > 0.5 ? 1 : 0), grid.size() - 1) * layout.phi_count + j;
+      std::fill(sum.begin(), sum.end(), 0.0);
+      for (size_t s = 0; s < leaves.size(); ++s) {
+        const LobeMap map(layout.frame, out, s == 1);
+        for (const SurveyedLeaf& leaf : leaves[s]) {
+          const double area =
+              cell_solid_angle(leaf.id.order()) * (layout.half_stored && mirrored(leaf.id) != leaf.id ? 2 : 1);
+          const Dir d = center_of(leaf.id);
+          const double cosine = map.cosine(d);
+          if (layout.upper_only && !(cosine > 0)) continue;
+          function.value(out, map.incident(d), f);
+          const double weight = area * map.stretch(d) * (layout.cosine_weighted ? std::fabs(cosine) : 1.0);
+          const bool valid = std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); });
+          const bool filled = !valid && leaf.node >= 0;
+          if (!valid && !filled) continue;
+          for (size_t c = 0; c < channels; ++c) {
+            const double value =
+                valid ? f[c] : std::exp2(sheets[s].data.value(static_cast<size_t>(leaf.node))[nearest * channels + c]);
+            if (value > 0) sum[c] += weight * value;
+          }
+        }
+      }
+      for (size_t c = 0; c < channels; ++c)
+        totals.magnitudes[t * totals.magnitude_um.size() + order[c]] = static_cast<float>(sum[c]);
+    }
+  });
+}
+
+std::vector<SurveyedLeaf> leaves_of(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet) {
+  const size_t views = layout.views();
+  std::vector<uint8_t> known(sheet.data.size(), 0);
+  std::vector<SurveyedLeaf> leaves;
+  for (size_t i = 0; i < sheet.data.size(); ++i) {
+    const Lattice::Node& node = sheet.data.node(i);
+    for (size_t v = 0; v < views && !known[i]; ++v) known[i] = sheet.valid[i * views + v];
+    for (int k = 0; k < node.child_count; ++k) known[static_cast<size_t>(node.first_child + k)] = known[i];
+    if (node.first_child < 0) leaves.push_back({node.id, known[i] ? static_cast<ptrdiff_t>(i) : -1});
+  }
+  return leaves;
+}
+
+void survey_dirac(const Function& function, const AlignedLayout& layout, AlignedTotals& totals) {
+  totals.delta_kind = function.dirac();
+  totals.delta_core = function.dirac_core();
+  if (totals.delta_kind == Dirac::none) return;
+  const size_t channels = layout.channels, rows = totals.theta.size() * totals.phi_count;
+  totals.delta.assign(rows * channels, 0.0f);
+  parallel_for(0, rows, 1, [&](size_t begin, size_t end) {
+    std::vector<double> W(channels);
+    for (size_t t = begin; t < end; ++t) {
+      const double phi = 2 * kPi * static_cast<double>(t % totals.phi_count) / static_cast<double>(totals.phi_count);
+      function.dirac_total(dir_from_angles(totals.theta[t / totals.phi_count], phi), W);
+      for (size_t c = 0; c < channels; ++c)
+        totals.delta[t * channels + c] = static_cast<float>(std::clamp(W[c], 0.0, 1.0));
+    }
+  });
+}
+
+}  // namespace suite::sqt
