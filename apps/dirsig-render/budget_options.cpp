@@ -23,7 +23,8 @@ double leading_number(const std::string& text, const std::string& option, std::s
 uint32_t paths_of(const std::string& text) {
   std::string rest;
   const double n = leading_number(text, "--paths", rest);
-  if (rest.empty() && n == 0) throw Error("--paths 0: a budget of nothing gives nothing", "whole numbers from 1 to 2^30");
+  if (rest.empty() && n == 0)
+    throw Error("--paths 0: a budget of nothing gives nothing", "whole numbers from 1 to 2^30");
   if (!rest.empty() || n < 1 || n > kMostPaths || n != std::floor(n))
     throw UsageError("--paths wants whole numbers from 1 to 2^30, N or MIN,MAX; found '" + text + "'");
   return static_cast<uint32_t>(n);

@@ -31,7 +31,8 @@ std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string
     throw UsageError("--resume finishes a run as it was begun; --more adds to it: give one of them");
   if (options.pipeline.stop == StopRule::change)
     throw UsageError("--stop change looks at its own samples and cannot be continued");
-  if (options.pipeline.method == Method::paper) throw UsageError("--method paper is for comparisons and cannot be continued");
+  if (options.pipeline.method == Method::paper)
+    throw UsageError("--method paper is for comparisons and cannot be continued");
   const std::string path = folder + "/result.state.h5";
   const StateIdentity identity = identity_of(sim, options);
   if (o.resume || more) {

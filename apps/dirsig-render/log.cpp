@@ -25,7 +25,9 @@ Json json_of(const RunStatistics& s) {
   j.set("nodes", s.nodes);
   j.set("rays", s.trace.rays);
   j.set("share_in_ray_tracer", s.cycles ? static_cast<double>(s.trace.cycles) / static_cast<double>(s.cycles) : 0.0);
-  auto share = [&](uint64_t part) { return s.cycles ? static_cast<double>(part) / static_cast<double>(s.cycles) : 0.0; };
+  auto share = [&](uint64_t part) {
+    return s.cycles ? static_cast<double>(part) / static_cast<double>(s.cycles) : 0.0;
+  };
   j.set("share_in_sampling", share(s.path_cycles - std::min(s.path_cycles, s.trace.cycles)));
   j.set("share_in_shading", share(s.shade_cycles));
   j.set("share_in_sensor", share(s.sensor_cycles));

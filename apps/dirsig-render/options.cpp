@@ -4,7 +4,8 @@ namespace suite {
 
 AppInfo render_info() {
   return {"dirsig-render",
-          "Renders what the sensors of a simulation measure in a prepared scene: spectral radiance in W/(m2 sr um), its standard error for "
+          "Renders what the sensors of a simulation measure in a prepared scene: spectral radiance in W/(m2 sr um), "
+          "its standard error for "
           "every pixel and band, and truth.",
           "Output, for each sensor NAME, in the folder given with -o (ENVI, opens in GDAL, QGIS, ENVI):\n"
           "  NAME.img         radiance, one band per channel, with wavelengths and fwhm\n"
@@ -24,29 +25,47 @@ AppInfo render_info() {
           "  dirsig-render sim.yaml --more 64\n"
           "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
-          "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 our bug."};
+          "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 "
+          "our bug."};
 }
 
 void declare_render(Cli& cli, RenderOptions& o) {
   cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
   cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
-  cli.option("--paths", o.paths, "paths per pixel instead of what the sensors ask for; MIN,MAX leaves room for a target", "N|MIN,MAX");
-  cli.option("--target-error", o.target_error, "relative standard error to reach, planned from a pilot without bias", "1%");
-  cli.option("--target-floor", o.target_floor, "radiance, W/(m2 sr um), below which the error is judged absolutely", "L");
-  cli.option("--target-bands", o.target_bands, "whose error decides: the band at the reference wavelength, or all", "reference|all");
-  cli.option("--time", o.time, "time for the whole run, s, min or h; turned into a number of paths after the first pilot, and printed", "10min");
-  cli.option("--stop", o.stop, "'plan' (unbiased) or 'change', the rule of the DIRSIG5 paper, for comparison", "plan|change");
-  cli.option("--method", o.method, "'standard', or 'paper': the estimator of the DIRSIG5 paper as written, with its rule of stopping, for comparison", "standard|paper");
+  cli.option("--paths", o.paths,
+             "paths per pixel instead of what the sensors ask for; MIN,MAX leaves room for a target", "N|MIN,MAX");
+  cli.option("--target-error", o.target_error, "relative standard error to reach, planned from a pilot without bias",
+             "1%");
+  cli.option("--target-floor", o.target_floor, "radiance, W/(m2 sr um), below which the error is judged absolutely",
+             "L");
+  cli.option("--target-bands", o.target_bands, "whose error decides: the band at the reference wavelength, or all",
+             "reference|all");
+  cli.option("--time", o.time,
+             "time for the whole run, s, min or h; turned into a number of paths after the first pilot, and printed",
+             "10min");
+  cli.option("--stop", o.stop, "'plan' (unbiased) or 'change', the rule of the DIRSIG5 paper, for comparison",
+             "plan|change");
+  cli.option("--method", o.method,
+             "'standard', or 'paper': the estimator of the DIRSIG5 paper as written, with its rule of stopping, for "
+             "comparison",
+             "standard|paper");
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
-  cli.option("--more", o.more, "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
-  cli.option("--study", o.study, "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes on from them", "FOLDER");
-  cli.option("--study-budgets", o.study_budgets, "paths per pixel, or seconds (1s,2s,4s), of the study's runs", "N,N,...");
+  cli.option("--more", o.more,
+             "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
+  cli.option("--study", o.study,
+             "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes "
+             "on from them",
+             "FOLDER");
+  cli.option("--study-budgets", o.study_budgets, "paths per pixel, or seconds (1s,2s,4s), of the study's runs",
+             "N,N,...");
   cli.option("--study-seeds", o.study_seeds, "runs of the study at each budget", "N");
-  cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run", "FILE");
+  cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run",
+             "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
-  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop", "FEATURE");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
+             "FEATURE");
   cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");
   cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");

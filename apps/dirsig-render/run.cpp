@@ -15,10 +15,10 @@
 #include "formats/sqt/sqt.h"
 #include "log.h"
 #include "optics/models.h"
-#include "scene/combine.h"
 #include "output.h"
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
+#include "scene/combine.h"
 #include "scheduler/features.h"
 #include "sensor/plugin.h"
 #include "study.h"
@@ -33,19 +33,24 @@ int list_sensors() {
 }
 
 int list_sources() {
-  for (const SourceRow& row : source_kinds()) std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
+  for (const SourceRow& row : source_kinds())
+    std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
   return 0;
 }
 
 int list_truth() {
-  for (const TruthRow& row : truth_rows()) std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [", row.unit.c_str(), row.unit.empty() ? "" : "]");
+  for (const TruthRow& row : truth_rows())
+    std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [",
+                row.unit.c_str(), row.unit.empty() ? "" : "]");
   return 0;
 }
 
 int list_models() {
   for (const ModelRow& row : models()) {
     std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
-    for (const ModelParameter& p : row.parameters) std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(), p.required ? "" : ", optional");
+    for (const ModelParameter& p : row.parameters)
+      std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(),
+                  p.required ? "" : ", optional");
   }
   return 0;
 }
@@ -83,7 +88,8 @@ Scene load_scenes(const Simulation& sim, bool all, std::vector<std::shared_ptr<c
     LoadReport loaded;
     const auto begun = std::chrono::steady_clock::now();
     Scene scene = read_scene(
-        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; }, needs, &loaded);
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; },
+        needs, &loaded);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     note("of " + s.path + strf(", loaded in %.3f s:\n", seconds) + loaded.text() + "(--explain FEATURE says why)");
     if (loaded.later) later.push_back(loaded.later);
@@ -103,13 +109,15 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
     for (const SpectralState& s : sensor->states()) std::printf("  state %s\n", s.text().c_str());
     for (const Task& t : sensor->tasks())
       for (const Capture& c : t.captures)
-        std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(), c.columns, c.rows, c.window.begin, c.window.end);
+        std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(),
+                    c.columns, c.rows, c.window.begin, c.window.end);
   }
   const JobOrder order = order_of(sim.sensors);
   std::printf("order of the captures:");
   for (const size_t id : order.captures) std::printf(" %zu", id);
-  std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n", order.state_changes,
-              human_count(forecast_paths(sim.sensors, options)).c_str(), human_bytes(forecast_bytes(sim.sensors, options)).c_str());
+  std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n",
+              order.state_changes, human_count(forecast_paths(sim.sensors, options)).c_str(),
+              human_bytes(forecast_bytes(sim.sensors, options)).c_str());
   return 0;
 }
 
@@ -119,19 +127,25 @@ void check_memory(const Simulation& sim, const JobOptions& options) {
                there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (needed > there)
     throw Error(Where{sim.path, 0, 0, {}, -1},
-                strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(), human_bytes(there).c_str()),
+                strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(),
+                     human_bytes(there).c_str()),
                 "fewer columns or rows, or fewer lines_per_capture");
 }
 
 void tell(const JobReport& r) {
   const double paths = static_cast<double>(r.statistics.paths);
-  note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer", human_count(paths).c_str(),
-            human_count(static_cast<double>(r.statistics.trace.rays)).c_str(), paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
-  note(strf("median relative standard error %.2f %%; %.2f %% of the pixels are flagged for heavy tails", 100 * r.median_relative_error, 100 * r.share_flagged));
+  note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
+            human_count(paths).c_str(), human_count(static_cast<double>(r.statistics.trace.rays)).c_str(),
+            paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
+  note(strf("median relative standard error %.2f %%; %.2f %% of the pixels are flagged for heavy tails",
+            100 * r.median_relative_error, 100 * r.share_flagged));
   note(r.stopped_by);
   if (paths > 0 && r.statistics.truncated > 0)
-    note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength", 100 * r.statistics.truncated / paths));
-  if (r.statistics.failures) warn(strf("%llu samples were not finite or negative and were left out", static_cast<unsigned long long>(r.statistics.failures)));
+    note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
+              100 * r.statistics.truncated / paths));
+  if (r.statistics.failures)
+    warn(strf("%llu samples were not finite or negative and were left out",
+              static_cast<unsigned long long>(r.statistics.failures)));
 }
 
 }  // namespace
@@ -144,17 +158,22 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (o.list_models) return list_models();
   if (!o.explain.empty()) return std::fputs(explain(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
-  if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30))) throw UsageError("--more wants a number from 0 to 2^30");
+  if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))
+    throw UsageError("--more wants a number from 0 to 2^30");
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
   StudyImage* study = nullptr;  // where captures go while a study runs
   callbacks.deliver = [&](const Delivery& delivery) {
-    if (study) append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
-    else writer->take(delivery);
+    if (study)
+      append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    else
+      writer->take(delivery);
   };
   // The first scene gives a simulation its frame.
-  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) { return read_scene_origin(scenes.front().path).origin; };
+  callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
+    return read_scene_origin(scenes.front().path).origin;
+  };
   Simulation sim = read_simulation(o.simulation, callbacks);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
@@ -165,7 +184,8 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
-  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state || o.resume || cli.given("--more")))
+  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state ||
+                           o.resume || cli.given("--more")))
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
   check_memory(sim, options);
@@ -176,7 +196,8 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   for (const auto& sensor : sim.sensors)
     for (const Task& task : sensor->tasks())
-      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+      for (const Capture& c : task.captures)
+        check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
   for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
   for (const auto& sensor : sim.sensors) {

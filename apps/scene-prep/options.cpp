@@ -18,7 +18,9 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.positional("input", o.input, "scene text (YAML or JSON), or a prepared scene with --summary", false);
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
-  cli.option("--report", o.report, "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html", "FILE.json");
+  cli.option("--report", o.report,
+             "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
+             "FILE.json");
   cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)",
              "CODE");
   cli.flag("--strict", o.strict, "warnings refuse the scene too");

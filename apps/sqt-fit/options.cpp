@@ -48,8 +48,10 @@ void declare(Cli& cli, SqtFitOptions& o) {
   cli.option("--max-error", o.max_error, "aligned: find the smallest file with at most this error", "E");
   cli.option("--max-bytes", o.max_bytes, "aligned: find the best fit of at most this size", "N");
   cli.option("--report", o.report, "write sizes and errors as JSON", "FILE.json");
-  cli.option("--curve", o.curve, "sweep the quality (paper: the threshold): error against bytes and seconds, and plots beside it in FILE.html",
-             "FILE.csv");
+  cli.option(
+      "--curve", o.curve,
+      "sweep the quality (paper: the threshold): error against bytes and seconds, and plots beside it in FILE.html",
+      "FILE.csv");
   cli.flag("--strict", o.strict, "unphysical input and promises that cannot be kept are errors");
 }
 

@@ -155,10 +155,11 @@ void write_curve(const SqtFitOptions& o, const FitInput& input, const sqt::Refer
   write_file(o.curve, csv);
   // The same as a page to look at, beside the table.
   const std::string page = std::filesystem::path(o.curve).replace_extension(".html").string();
-  write_file(page, html_of(page_of_csv("# " + command_line() + "\n# " + input.provenance.input +
-                                           ": l1 and cos_rmse are relative, rmse is in 1/sr; seconds are of one fit\n" + csv,
-                                       "Error against size and seconds", {"bytes", "seconds"},
-                                       {"l1", "cos_rmse", "rmse"}, "method", o.curve)));
+  write_file(page,
+             html_of(page_of_csv("# " + command_line() + "\n# " + input.provenance.input +
+                                     ": l1 and cos_rmse are relative, rmse is in 1/sr; seconds are of one fit\n" + csv,
+                                 "Error against size and seconds", {"bytes", "seconds"}, {"l1", "cos_rmse", "rmse"},
+                                 "method", o.curve)));
 }
 
 }  // namespace

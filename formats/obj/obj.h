@@ -13,8 +13,8 @@ namespace suite {
 SourceMesh read_obj(const std::string& path, Report& report);
 SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report);
 
-// Writes every placed mesh, flattened into scene ENU, m; placements of exact primitives are left out and counted in the result.
-// Written whole or not at all. The hierarchy must be one that check_scene accepts.
+// Writes every placed mesh, flattened into scene ENU, m; placements of exact primitives are left out and counted in the
+// result. Written whole or not at all. The hierarchy must be one that check_scene accepts.
 size_t write_obj(const Scene& scene, const std::string& path);
 
 }  // namespace suite

@@ -18,6 +18,7 @@ Budget read_budget(h5::Reader& reader);
 // The budget as the numbers that are stored.
 std::vector<double> pack(const Budget& budget);
 // Makes a new state file, empty.
-void create_state(const std::string& path, const StateIdentity& identity, const Budget& budget, const std::vector<CaptureShape>& shapes);
+void create_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
+                  const std::vector<CaptureShape>& shapes);
 
 }  // namespace suite::render_state

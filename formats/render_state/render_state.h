@@ -27,8 +27,9 @@ enum class StateUse {
 // scene, simulation, seed, build or engine; damaged.
 Budget read_state_budget(const std::string& path, const StateIdentity& identity);
 
-// A state for a run. The file is made, checked or widened when the run tells its shapes. Errors then: no room on the disk;
-// a state of another run; damaged; in use by another run.
-std::unique_ptr<StateStore> make_state(const std::string& path, StateUse use, const StateIdentity& identity, const Budget& budget);
+// A state for a run. The file is made, checked or widened when the run tells its shapes. Errors then: no room on the
+// disk; a state of another run; damaged; in use by another run.
+std::unique_ptr<StateStore> make_state(const std::string& path, StateUse use, const StateIdentity& identity,
+                                       const Budget& budget);
 
 }  // namespace suite

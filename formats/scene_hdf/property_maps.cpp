@@ -18,9 +18,9 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
   for (const PropertyMap& m : maps) {
     size.insert(size.end(), {m.width, m.height, m.channels, static_cast<uint32_t>(m.materials.size()),
                              static_cast<uint32_t>(m.wavelength_um.size()), static_cast<uint32_t>(m.family.size())});
-    rule.insert(rule.end(), {static_cast<uint8_t>(m.kind), static_cast<uint8_t>(m.projection),
-                             static_cast<uint8_t>(m.drape.extend), static_cast<uint8_t>(m.filter),
-                 static_cast<uint8_t>(m.outside)});
+    rule.insert(rule.end(),
+                {static_cast<uint8_t>(m.kind), static_cast<uint8_t>(m.projection), static_cast<uint8_t>(m.drape.extend),
+                 static_cast<uint8_t>(m.filter), static_cast<uint8_t>(m.outside)});
     drape.insert(drape.end(), {m.drape.origin_x, m.drape.origin_y, m.drape.gsd_x, m.drape.gsd_y});
     materials.insert(materials.end(), m.materials.begin(), m.materials.end());
     wavelength.insert(wavelength.end(), m.wavelength_um.begin(), m.wavelength_um.end());
@@ -70,7 +70,8 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
     const uint32_t* z = &size[6 * k];
     const uint8_t* q = &rule[5 * k];
     if (q[0] > static_cast<uint8_t>(MapKind::opacity) || q[1] > static_cast<uint8_t>(Projection::uv) ||
-        q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear) || q[4] > static_cast<uint8_t>(Outside::zero))
+        q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear) ||
+        q[4] > static_cast<uint8_t>(Outside::zero))
       r.fail("map '" + m.name + "' has an unknown rule");
     m.width = z[0], m.height = z[1], m.channels = z[2];
     m.kind = static_cast<MapKind>(q[0]);

@@ -77,7 +77,8 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
         break;
     }
   }
-  if (const bool wants = std::any_of(row.parameters.begin(), row.parameters.end(), [](const ModelParameter& q) { return q.name == "index"; });
+  if (const bool wants = std::any_of(row.parameters.begin(), row.parameters.end(),
+                                     [](const ModelParameter& q) { return q.name == "index"; });
       wants && !spec.curves.count("index"))
     if (const auto index = relative_index(p)) spec.curves["index"] = *index;
   check_model(spec, model.where());

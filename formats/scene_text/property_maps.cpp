@@ -99,11 +99,13 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
   apply_transfer(p, map.values);
   const bool smooth = type == "temperature" || type == "bump" || type == "normal";
   if (type == "texture" || type == "curve_index") {
-    if (p.has("filter")) throw p.at("filter").error("the pixels of a " + type + " map are numbers of curves, which cannot be mixed");
+    if (p.has("filter"))
+      throw p.at("filter").error("the pixels of a " + type + " map are numbers of curves, which cannot be mixed");
   } else {
     const auto filter = p.find("filter");
     if (filter ? filter->as_choice({"nearest", "linear"}) == 1 : smooth) map.filter = PropertyMap::Filter::linear;
-    if (type == "bump" && map.filter == PropertyMap::Filter::nearest) throw p.error("the heights of a bump map are always linear between pixels");
+    if (type == "bump" && map.filter == PropertyMap::Filter::nearest)
+      throw p.error("the heights of a bump map are always linear between pixels");
   }
   const auto one_channel = [&](size_t count) {
     if (map.channels != count)

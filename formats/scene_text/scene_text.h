@@ -16,8 +16,8 @@ struct SceneTextOptions {
 // Error only when the text itself cannot be read as YAML.
 Draft read_scene_text(const std::string& path, const SceneTextOptions& options, Report& report);
 
-// Do the files that a scene was made from still have these contents? Names are found as read_scene_text finds them; files
-// that were not there (no hash) must not be there now.
+// Do the files that a scene was made from still have these contents? Names are found as read_scene_text finds them;
+// files that were not there (no hash) must not be there now.
 bool inputs_unchanged(const std::string& path, const SceneTextOptions& options, const std::vector<InputFile>& inputs);
 
 }  // namespace suite

@@ -59,7 +59,7 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
       const std::vector<double> v = line.as_numbers();
       if (v.size() < 3 || v.size() > 5)
         throw line.error("a row of loads is [seconds, absorbed sunlight W/m2, sky W/m2, air K, wind m/s]",
-                        "air and wind may be left out");
+                         "air and wind may be left out");
       spec.load_times.push_back(v[0]);
       spec.loads.push_back({v[1], v[2], v.size() > 3 ? v[3] : 0, v.size() > 4 ? v[4] : 0});
     }

@@ -11,16 +11,23 @@ namespace suite {
 namespace {
 
 void read_output(const Params& p, OutputSpec& out) {
-  if (const auto type = p.find("type")) out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64", "uint16"}));
+  if (const auto type = p.find("type"))
+    out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64", "uint16"}));
   if (out.type == OutputSpec::Type::uint16) out.scale = p.number_in("scale", 1e-30, 1e30, "(units of one count)");
-  if (const auto files = p.find("files")) out.files = static_cast<OutputSpec::Files>(1 + files->as_choice({"capture", "task", "simulation"}));
-  if (const auto units = p.find("units")) out.units = static_cast<OutputSpec::Units>(units->as_choice({"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"}));
+  if (const auto files = p.find("files"))
+    out.files = static_cast<OutputSpec::Files>(1 + files->as_choice({"capture", "task", "simulation"}));
+  if (const auto units = p.find("units"))
+    out.units =
+        static_cast<OutputSpec::Units>(units->as_choice({"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"}));
   if (const auto also = p.find("also"))
-    for (const Params& format : also->items()) (format.as_choice({"geotiff", "exr"}) == 0 ? out.geotiff : out.exr) = true;
-  if (const auto order = p.find("interleave")) out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
+    for (const Params& format : also->items())
+      (format.as_choice({"geotiff", "exr"}) == 0 ? out.geotiff : out.exr) = true;
+  if (const auto order = p.find("interleave"))
+    out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
   if (const auto preview = p.find("preview")) {
     for (const Params& band : preview->items()) out.preview.push_back(band.as_text());
-    if (out.preview.size() != 1 && out.preview.size() != 3) throw preview->error(strf("a preview has one band or three, found %zu", out.preview.size()));
+    if (out.preview.size() != 1 && out.preview.size() != 3)
+      throw preview->error(strf("a preview has one band or three, found %zu", out.preview.size()));
   }
 }
 
@@ -32,7 +39,8 @@ void check_truth(const Params& sensor, const SensorContext& context) {
     const std::string name = item.as_text();
     find_truth(name, item.where());
     if ((name == "ecef" || name == "geodetic") && !context.frame())
-      throw item.error("the truth '" + name + "' needs a scene with an origin on the Earth", "give the scene an origin");
+      throw item.error("the truth '" + name + "' needs a scene with an origin on the Earth",
+                       "give the scene an origin");
   }
 }
 
@@ -51,7 +59,8 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
     const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();
     if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
     if (!(size[0] > 0 && size[1] > 0)) throw p->at("size_m").error("the cell needs a positive size");
-    if (!sim.sources.lamps.empty() || sim.sources.earth) throw p->error("a scene that repeats itself has no lamps and no earth under it", "drop one of them");
+    if (!sim.sources.lamps.empty() || sim.sources.earth)
+      throw p->error("a scene that repeats itself has no lamps and no earth under it", "drop one of them");
     sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
   }
   if (const auto output = root.find("output")) read_output(*output, sim.output);
@@ -63,7 +72,9 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   for (const Params& p : sensors.items()) {
     check_truth(p, context);
     sim.sensors.push_back(make_sensor(p, context));
-    if (!names.insert(sim.sensors.back()->name()).second) throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'", "give each its own `name`: it names the output files");
+    if (!names.insert(sim.sensors.back()->name()).second)
+      throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'",
+                    "give each its own `name`: it names the output files");
   }
   if (sim.sensors.empty()) throw sensors.error("a simulation needs at least one sensor");
   root.reject_unread();

@@ -1,4 +1,5 @@
-// A simulation as a user writes it: YAML (or JSON) that names a prepared scene, sources, sensors and output. See FORMAT.md.
+// A simulation as a user writes it: YAML (or JSON) that names a prepared scene, sources, sensors and output. See
+// FORMAT.md.
 #pragma once
 #include <functional>
 #include <memory>
@@ -13,31 +14,32 @@ namespace suite {
 
 struct OutputSpec {
   enum class Type { float32, float64, uint16 } type = Type::float32;
-  double scale = 1;                  // uint16: what one count stands for, in the units
+  double scale = 1;  // uint16: what one count stands for, in the units
   enum class Order { bsq, bil, bip } order = Order::bsq;
-  // How images are cut into files: as each image suggests (lines of a task in one file, frames each in their own), or so.
+  // How images are cut into files: as each image suggests (lines of a task in one file, frames each in their own), or
+  // so.
   enum class Files { natural, capture, task, simulation } files = Files::natural;
   enum class Units { w_m2, w_cm2, photons } units = Units::w_m2;  // per sr and um; photons per s
-  bool geotiff = false, exr = false; // beside ENVI
+  bool geotiff = false, exr = false;                              // beside ENVI
   std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
 };
 
 // One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
 struct SimulationScene {
   std::string path;
-  std::optional<Affine3> placement;      // none: by its origin on the Earth
-  std::shared_ptr<const Track> motion;   // null: at rest
+  std::optional<Affine3> placement;     // none: by its origin on the Earth
+  std::shared_ptr<const Track> motion;  // null: at rest
 };
 
 struct Simulation {
   std::string path;
   std::vector<SimulationScene> scenes;
-  std::string scene_path;                // of the first
+  std::string scene_path;  // of the first
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
-  SourceSpecs sources;               // as written: dates, phases and clear skies are still to be resolved
-  std::optional<Utc> epoch;          // of second 0: key `epoch`, or the sun's date
-  double dut1 = 0;                   // s, UT1 - UTC
+  SourceSpecs sources;       // as written: dates, phases and clear skies are still to be resolved
+  std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's date
+  double dut1 = 0;           // s, UT1 - UTC
   std::vector<std::unique_ptr<Sensor>> sensors;
   OutputSpec output;
 };

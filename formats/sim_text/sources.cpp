@@ -16,7 +16,8 @@ namespace {
 // A file that a value names, which must be there.
 std::string file_of(const Params& p) {
   const std::string path = p.as_path();
-  if (!file_exists(path)) throw p.error("there is no file '" + path + "'", "relative names start at this file's folder");
+  if (!file_exists(path))
+    throw p.error("there is no file '" + path + "'", "relative names start at this file's folder");
   return path;
 }
 }  // namespace

@@ -88,8 +88,8 @@ std::string strf(const char* format, ...) {
 void throw_bug(const char* file, int line, const char* condition, const std::string& values) {
   const std::string_view path = file;
   const size_t cut = path.find("libs/") != std::string_view::npos ? path.find("libs/") : path.rfind('/') + 1;
-  throw Bug(strf("%s:%d: this should hold and does not: %s%s%s", file + cut, line, condition, values.empty() ? "" : ": ",
-                 values.c_str()));
+  throw Bug(strf("%s:%d: this should hold and does not: %s%s%s", file + cut, line, condition,
+                 values.empty() ? "" : ": ", values.c_str()));
 }
 
 }  // namespace suite

@@ -14,8 +14,8 @@ struct Where {
   std::string file;
   int line = 0;
   int column = 0;
-  std::string source_line;      // text of that line, for the caret; may be empty
-  long long byte_offset = -1;   // position in a binary file, or -1
+  std::string source_line;     // text of that line, for the caret; may be empty
+  long long byte_offset = -1;  // position in a binary file, or -1
 };
 
 // Thrown by formats, apps and constructors; caught once, in run_app (exit code 1).
@@ -30,7 +30,8 @@ class Error : public std::exception {
   const std::string& message() const { return message_; }
   const std::string& hint() const { return hint_; }
   const std::string& code() const { return code_; }
-  // The whole text, without a trailing newline: "f.yaml:12:9: error: ... [SP104]; did you mean ...?" + source line + caret.
+  // The whole text, without a trailing newline: "f.yaml:12:9: error: ... [SP104]; did you mean ...?" + source line +
+  // caret.
   const char* what() const noexcept override { return text_.c_str(); }
 
  private:
@@ -68,24 +69,27 @@ class Bug : public std::exception {
 namespace detail {
 template <class T>
 std::string show(const T& value) {
-  if constexpr (std::is_arithmetic_v<T>) return std::to_string(value);
-  else if constexpr (std::is_convertible_v<T, std::string_view>) return std::string(std::string_view(value));
-  else return "?";
+  if constexpr (std::is_arithmetic_v<T>)
+    return std::to_string(value);
+  else if constexpr (std::is_convertible_v<T, std::string_view>)
+    return std::string(std::string_view(value));
+  else
+    return "?";
 }
 }  // namespace detail
 
-#define SUITE_CHECK(condition)                                                  \
-  do {                                                                          \
-    if (!(condition)) ::suite::throw_bug(__FILE__, __LINE__, #condition, "");   \
+#define SUITE_CHECK(condition)                                                \
+  do {                                                                        \
+    if (!(condition)) ::suite::throw_bug(__FILE__, __LINE__, #condition, ""); \
   } while (false)
 
-#define SUITE_CHECK_OP(a, op, b)                                                                                 \
-  do {                                                                                                           \
-    const auto& suite_a = (a);                                                                                   \
-    const auto& suite_b = (b);                                                                                   \
-    if (!(suite_a op suite_b))                                                                                   \
-      ::suite::throw_bug(__FILE__, __LINE__, #a " " #op " " #b,                                                  \
-                         ::suite::detail::show(suite_a) + " against " + ::suite::detail::show(suite_b));         \
+#define SUITE_CHECK_OP(a, op, b)                                                                         \
+  do {                                                                                                   \
+    const auto& suite_a = (a);                                                                           \
+    const auto& suite_b = (b);                                                                           \
+    if (!(suite_a op suite_b))                                                                           \
+      ::suite::throw_bug(__FILE__, __LINE__, #a " " #op " " #b,                                          \
+                         ::suite::detail::show(suite_a) + " against " + ::suite::detail::show(suite_b)); \
   } while (false)
 #define SUITE_CHECK_EQ(a, b) SUITE_CHECK_OP(a, ==, b)
 #define SUITE_CHECK_LT(a, b) SUITE_CHECK_OP(a, <, b)

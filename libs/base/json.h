@@ -18,8 +18,7 @@ class Json {
   Json(bool value);
   Json(double value);
   template <std::integral T>
-    requires(!std::same_as<T, bool>)
-  Json(T value) : Json(Integer{static_cast<long long>(value)}) {}
+  requires(!std::same_as<T, bool>) Json(T value) : Json(Integer{static_cast<long long>(value)}) {}
   Json(Json&&) noexcept;
   Json& operator=(Json&&) noexcept;
   ~Json();

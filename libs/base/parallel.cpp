@@ -21,7 +21,8 @@ tbb::task_arena& arena() {
   if (!g_arena) {
     const int n = g_threads > 0 ? g_threads : tbb::info::default_concurrency();
     // More threads than cores are allowed: the bits must not depend on it, and tests prove that.
-    g_control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(n));
+    g_control =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(n));
     g_arena = std::make_unique<tbb::task_arena>(n);
   }
   return *g_arena;
@@ -43,8 +44,8 @@ void parallel_for(size_t begin, size_t end, size_t grain, const std::function<vo
   const size_t blocks = (end - begin + grain - 1) / grain;
   arena().execute([&] {
     tbb::parallel_for(
-        size_t{0}, blocks,
-        [&](size_t b) { body(begin + b * grain, std::min(end, begin + (b + 1) * grain)); }, tbb::simple_partitioner());
+        size_t{0}, blocks, [&](size_t b) { body(begin + b * grain, std::min(end, begin + (b + 1) * grain)); },
+        tbb::simple_partitioner());
   });
 }
 

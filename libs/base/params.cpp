@@ -27,8 +27,8 @@ struct Params::Node {
   bool quoted = false;
   std::vector<const Node*> items;
   std::vector<Entry> entries;
-  std::map<std::string, size_t, std::less<>> index;       // key -> entry
-  mutable std::set<std::string, std::less<>> asked;       // names asked of this map: the candidates for "did you mean"
+  std::map<std::string, size_t, std::less<>> index;  // key -> entry
+  mutable std::set<std::string, std::less<>> asked;  // names asked of this map: the candidates for "did you mean"
 };
 
 struct Params::Document {
@@ -59,22 +59,29 @@ class TreeBuilder : public YAML::EventHandler {
     if (document_.root) throw Error(at(mark), "a second document starts here", "one document a file");
   }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(mark, anchor, Params::Kind::null, "", false); }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    leaf(mark, anchor, Params::Kind::null, "", false);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
     const bool quoted = tag == "!";
-    if (!quoted && (value.empty() || value == "~" || value == "null")) leaf(mark, anchor, Params::Kind::null, "", false);
-    else leaf(mark, anchor, Params::Kind::scalar, value, quoted);
+    if (!quoted && (value.empty() || value == "~" || value == "null"))
+      leaf(mark, anchor, Params::Kind::null, "", false);
+    else
+      leaf(mark, anchor, Params::Kind::scalar, value, quoted);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) throw Error(at(mark), "alias to a value that is not complete yet");
     attach(mark, found->second);
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
     open(mark, anchor, Params::Kind::list);
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open(mark, anchor, Params::Kind::map);
   }
   void OnMapEnd() override { close(); }
@@ -91,7 +98,8 @@ class TreeBuilder : public YAML::EventHandler {
   Where at(const YAML::Mark& mark) const { return document_.where(mark.line + 1, mark.column + 1); }
 
   Node* make(const YAML::Mark& mark, Params::Kind kind) {
-    if (document_.nodes.size() >= kMaxNodes) throw Error(at(mark), "the document is too large", "use a binary or CSV table");
+    if (document_.nodes.size() >= kMaxNodes)
+      throw Error(at(mark), "the document is too large", "use a binary or CSV table");
     Node& node = document_.nodes.emplace_back();
     node.kind = kind;
     node.line = mark.line + 1;
@@ -99,7 +107,8 @@ class TreeBuilder : public YAML::EventHandler {
     return &node;
   }
   void leaf(const YAML::Mark& mark, YAML::anchor_t anchor, Params::Kind kind, const std::string& text, bool quoted) {
-    if (!stack_.empty() && stack_.back().node->kind == Params::Kind::map && !stack_.back().have_key) return set_key(mark, text);
+    if (!stack_.empty() && stack_.back().node->kind == Params::Kind::map && !stack_.back().have_key)
+      return set_key(mark, text);
     Node* node = make(mark, kind);
     node->scalar = text;
     node->quoted = quoted;
@@ -155,10 +164,14 @@ class TreeBuilder : public YAML::EventHandler {
 
 const char* kind_name(Params::Kind kind) {
   switch (kind) {
-    case Params::Kind::null: return "nothing";
-    case Params::Kind::scalar: return "a single value";
-    case Params::Kind::list: return "a list";
-    case Params::Kind::map: return "a map of keys";
+    case Params::Kind::null:
+      return "nothing";
+    case Params::Kind::scalar:
+      return "a single value";
+    case Params::Kind::list:
+      return "a list";
+    case Params::Kind::map:
+      return "a map of keys";
   }
   return "?";
 }
@@ -185,7 +198,8 @@ Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
     document->lines.push_back(line);
   }
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
-    throw Error(Where{file_name, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file", "YAML or JSON is expected");
+    throw Error(Where{file_name, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file",
+                "YAML or JSON is expected");
   try {
     std::istringstream in(text);
     YAML::Parser parser(in);
@@ -215,7 +229,9 @@ Error Params::error(std::string what, std::string hint, std::string code) const 
 }
 
 std::optional<Params> Params::find(std::string_view key) const {
-  if (node_->kind != Kind::map) throw error(strf("expected a map with the key '%.*s', found %s", static_cast<int>(key.size()), key.data(), kind_name(node_->kind)));
+  if (node_->kind != Kind::map)
+    throw error(strf("expected a map with the key '%.*s', found %s", static_cast<int>(key.size()), key.data(),
+                     kind_name(node_->kind)));
   node_->asked.emplace(key);
   const auto found = node_->index.find(key);
   if (found == node_->index.end()) return std::nullopt;
@@ -267,7 +283,9 @@ std::string Params::as_text() const {
 double Params::as_number() const {
   double value = 0;
   if (node_->kind != Kind::scalar || !parse_double(node_->scalar, value))
-    throw error(strf("expected a finite number, found %s", node_->kind == Kind::scalar ? ("'" + node_->scalar.substr(0, 60) + "'").c_str() : kind_name(node_->kind)));
+    throw error(strf("expected a finite number, found %s", node_->kind == Kind::scalar
+                                                               ? ("'" + node_->scalar.substr(0, 60) + "'").c_str()
+                                                               : kind_name(node_->kind)));
   return value;
 }
 double Params::as_number_in(double low, double high, const char* unit) const {
@@ -280,12 +298,14 @@ long long Params::as_integer(long long low, long long high) const {
   const double value = as_number();
   if (value != std::floor(value)) throw error("expected a whole number, found " + node_->scalar);
   const auto outside = [&] {
-    return error(node_->scalar + " is outside the valid range", strf("give a whole number from %lld to %lld", low, high));
+    return error(node_->scalar + " is outside the valid range",
+                 strf("give a whole number from %lld to %lld", low, high));
   };
   // Digits alone are taken exactly; "1e6" goes through a double, which is exact up to 2^53.
   long long whole = 0;
   const char* end = node_->scalar.data() + node_->scalar.size();
-  const auto [stop, code] = std::from_chars(node_->scalar.data() + (node_->scalar.starts_with('+') ? 1 : 0), end, whole);
+  const auto [stop, code] =
+      std::from_chars(node_->scalar.data() + (node_->scalar.starts_with('+') ? 1 : 0), end, whole);
   if (code != std::errc() || stop != end) {
     if (!(std::fabs(value) <= 0x1p53)) throw outside();
     whole = static_cast<long long>(value);
@@ -361,7 +381,8 @@ std::vector<Error> Params::unread() const {
   walk(node_, seen, [&](const Node* node) {
     const std::vector<std::string> asked(node->asked.begin(), node->asked.end());
     for (const Node::Entry& e : node->entries)
-      if (!e.read) found.emplace_back(document_->where(e.line, e.column), "unknown key '" + e.key + "'", name_hint(e.key, asked));
+      if (!e.read)
+        found.emplace_back(document_->where(e.line, e.column), "unknown key '" + e.key + "'", name_hint(e.key, asked));
   });
   return found;
 }

@@ -1,5 +1,6 @@
-// Located key-values: what a user wrote, where it was written, and whether anybody read it. YAML in, and therefore JSON.
-// A key nobody asked for is an error with the nearest name that was asked for, so a misspelt option cannot be ignored.
+// Located key-values: what a user wrote, where it was written, and whether anybody read it. YAML in, and therefore
+// JSON. A key nobody asked for is an error with the nearest name that was asked for, so a misspelt option cannot be
+// ignored.
 #pragma once
 #include <array>
 #include <memory>
@@ -24,30 +25,30 @@ class Params {
   static Params parse_text(std::string_view yaml, const std::string& file_name);
 
   Kind kind() const;
-  Where where() const;                        // of this value
-  Where where(std::string_view key) const;    // of the key of a map (its name, not its value)
+  Where where() const;                      // of this value
+  Where where(std::string_view key) const;  // of the key of a map (its name, not its value)
   const std::string& file() const;
 
   // Maps.
-  bool has(std::string_view key) const;                      // marks as asked for, not as read
-  Params at(std::string_view key) const;                     // Error when missing
+  bool has(std::string_view key) const;   // marks as asked for, not as read
+  Params at(std::string_view key) const;  // Error when missing
   std::optional<Params> find(std::string_view key) const;
-  std::vector<std::string> keys() const;                     // in the order written; marks none
+  std::vector<std::string> keys() const;  // in the order written; marks none
   // Lists.
-  size_t size() const;                                       // of a list or map
-  Params operator[](size_t i) const;                         // of a list
-  std::vector<Params> items() const;                         // of a list; a single scalar or map counts as a list of one
+  size_t size() const;                // of a list or map
+  Params operator[](size_t i) const;  // of a list
+  std::vector<Params> items() const;  // of a list; a single scalar or map counts as a list of one
 
   // Scalars. Error with place and expectation when the value is of another kind or outside [low, high].
   std::string as_text() const;
-  double as_number() const;                                  // finite
+  double as_number() const;  // finite
   double as_number_in(double low, double high, const char* unit) const;
   long long as_integer(long long low, long long high) const;
-  bool as_bool() const;                                      // true/false/yes/no/on/off
+  bool as_bool() const;  // true/false/yes/no/on/off
   size_t as_choice(std::initializer_list<const char*> names) const;
-  std::vector<double> as_numbers() const;                    // list of finite numbers
+  std::vector<double> as_numbers() const;  // list of finite numbers
   std::array<double, 3> as_vec3() const;
-  std::string as_path() const;                               // resolved against the folder of this file
+  std::string as_path() const;  // resolved against the folder of this file
 
   // Shorthands: required, and with a default.
   std::string text(std::string_view key) const { return at(key).as_text(); }

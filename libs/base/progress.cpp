@@ -16,8 +16,12 @@ std::atomic<bool> g_quiet{false};
 void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
 
 Progress::Progress(std::string label, double total, std::string unit)
-    : label_(std::move(label)), unit_(std::move(unit)), total_(total), start_(std::chrono::steady_clock::now()),
-      next_(start_), terminal_(::isatty(2) != 0) {}
+    : label_(std::move(label)),
+      unit_(std::move(unit)),
+      total_(total),
+      start_(std::chrono::steady_clock::now()),
+      next_(start_),
+      terminal_(::isatty(2) != 0) {}
 
 Progress::~Progress() { finish(); }
 
@@ -43,8 +47,9 @@ void Progress::draw(bool last) {
   const double done = done_, share = total_ > 0 ? std::min(1.0, done / total_) : 1, seconds = this->seconds();
   const double rate = seconds > 0 ? done / seconds : 0;
   if (last) {
-    std::fprintf(stderr, "%s%s: %s %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(), human_count(done).c_str(),
-                 unit_.c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(), unit_.c_str(), terminal_ ? "\033[K" : "");
+    std::fprintf(stderr, "%s%s: %s %s in %s (%s %s/s)%s\n", terminal_ ? "\r" : "", label_.c_str(),
+                 human_count(done).c_str(), unit_.c_str(), human_seconds(seconds).c_str(), human_count(rate).c_str(),
+                 unit_.c_str(), terminal_ ? "\033[K" : "");
     return;
   }
   const std::string left = share > 0 ? human_seconds(seconds * (1 - share) / share) : "?";

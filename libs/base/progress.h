@@ -11,10 +11,10 @@ class Progress {
  public:
   // label: "rendering"; total: units of work; unit: "pixel". Writes to standard error unless quieted.
   Progress(std::string label, double total, std::string unit);
-  ~Progress();                      // finishes the line
-  void add(double amount);          // from any thread
-  void finish();                    // idempotent; prints the closing line with total time and mean rate
-  double seconds() const;           // since construction
+  ~Progress();              // finishes the line
+  void add(double amount);  // from any thread
+  void finish();            // idempotent; prints the closing line with total time and mean rate
+  double seconds() const;   // since construction
   static void set_quiet(bool quiet);
 
  private:

@@ -15,10 +15,10 @@ const char* to_text(Severity severity);
 
 // One kind of finding: the published row of an issue table.
 struct IssueKind {
-  std::string code;      // stable, e.g. "SP104"
+  std::string code;  // stable, e.g. "SP104"
   Severity severity;
-  std::string summary;   // one line for --list-issues
-  std::string hint;      // what would be right
+  std::string summary;  // one line for --list-issues
+  std::string hint;     // what would be right
 };
 
 struct Finding {
@@ -36,14 +36,14 @@ class Report {
   // Takes over an Error thrown while reading; unknown or empty code is filed under `fallback_code`.
   void add(const Error& error, const std::string& asset, const std::string& fallback_code);
 
-  void mute(const std::string& code);      // Error with the nearest code when unknown
+  void mute(const std::string& code);                 // Error with the nearest code when unknown
   void set_strict(bool strict) { strict_ = strict; }  // warnings count as errors in ok()
 
-  bool ok() const;                                    // no (unmuted) errors
-  size_t count(Severity severity) const;              // single faults of that severity, muted ones left out
+  bool ok() const;                        // no (unmuted) errors
+  size_t count(Severity severity) const;  // single faults of that severity, muted ones left out
   size_t count(const std::string& code) const;
-  std::string text() const;                           // findings + verdict line
-  std::string json() const;                           // schema "suite.report/1", see formats/report/FORMAT.md
+  std::string text() const;  // findings + verdict line
+  std::string json() const;  // schema "suite.report/1", see formats/report/FORMAT.md
   const std::vector<IssueKind>& kinds() const { return kinds_; }
 
  private:

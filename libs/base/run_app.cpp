@@ -24,7 +24,9 @@ Cli::Cli(const std::string& name, const std::string& description) : impl_(new Im
 }
 Cli::~Cli() = default;
 
-void Cli::flag(const std::string& names, bool& value, const std::string& help) { impl_->app.add_flag(names, value, help); }
+void Cli::flag(const std::string& names, bool& value, const std::string& help) {
+  impl_->app.add_flag(names, value, help);
+}
 void Cli::option(const std::string& names, std::string& value, const std::string& help, const std::string& metavar) {
   impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
 }
@@ -34,13 +36,15 @@ void Cli::option(const std::string& names, double& value, const std::string& hel
 void Cli::option(const std::string& names, long long& value, const std::string& help, const std::string& metavar) {
   impl_->app.add_option(names, value, help)->type_name(metavar)->capture_default_str();
 }
-void Cli::option(const std::string& names, std::vector<std::string>& values, const std::string& help, const std::string& metavar) {
+void Cli::option(const std::string& names, std::vector<std::string>& values, const std::string& help,
+                 const std::string& metavar) {
   impl_->app.add_option(names, values, help)->type_name(metavar)->allow_extra_args(false)->take_all();
 }
 void Cli::positional(const std::string& name, std::string& value, const std::string& help, bool required) {
   impl_->app.add_option(name, value, help)->type_name("")->required(required);
 }
-void Cli::positional(const std::string& name, std::vector<std::string>& values, const std::string& help, bool required) {
+void Cli::positional(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                     bool required) {
   impl_->app.add_option(name, values, help)->type_name("")->required(required);
 }
 void Cli::footer(const std::string& text) { impl_->app.footer(text); }
@@ -63,7 +67,9 @@ void remember_command_line(const std::string& name, int argc, const char* const*
   g_command_line = name;
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
-    const bool plain = !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") == std::string::npos;
+    const bool plain =
+        !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") ==
+                          std::string::npos;
     g_command_line += ' ';
     g_command_line += plain ? a : "'" + a + "'";
   }
@@ -80,7 +86,8 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
     message = given.rfind('-', 0) == 0 ? "unknown option '" + given + "'" : "unexpected argument '" + given + "'";
     if (const std::string near = nearest_name(given, known); !near.empty()) message += "; did you mean '" + near + "'?";
   }
-  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), message.c_str(), info.name.c_str(), info.name.c_str());
+  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), message.c_str(), info.name.c_str(),
+               info.name.c_str());
   return 2;
 }
 
@@ -96,7 +103,8 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   std::signal(SIGPIPE, SIG_IGN);
   remember_command_line(info.name, argc, argv);
   if (!__builtin_cpu_supports("avx2")) {
-    std::fprintf(stderr, "%s: error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n", info.name.c_str());
+    std::fprintf(stderr, "%s: error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n",
+                 info.name.c_str());
     return 1;
   }
   Cli cli(info.name, info.description);
@@ -108,7 +116,8 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
     declare(cli);
     app.add_flag("-q,--quiet", quiet, "print errors and results only");
     app.add_option("-j,--threads", thread_count, "worker threads; 0 = one per core; the results do not depend on it")
-        ->type_name("N")->check(CLI::Range(0, 4096));
+        ->type_name("N")
+        ->check(CLI::Range(0, 4096));
     if (!info.footer.empty()) app.footer(info.footer);
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
@@ -132,7 +141,8 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
     std::fprintf(stderr, "%s: error: out of memory\n", info.name.c_str());
     return 1;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(), e.what(), g_command_line.c_str());
+    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(), e.what(),
+                 g_command_line.c_str());
     return 3;
   }
 }

@@ -19,15 +19,18 @@ class Cli {
   Cli& operator=(const Cli&) = delete;
 
   void flag(const std::string& names, bool& value, const std::string& help);
-  void option(const std::string& names, std::string& value, const std::string& help, const std::string& metavar = "TEXT");
+  void option(const std::string& names, std::string& value, const std::string& help,
+              const std::string& metavar = "TEXT");
   void option(const std::string& names, double& value, const std::string& help, const std::string& metavar = "NUMBER");
   void option(const std::string& names, long long& value, const std::string& help, const std::string& metavar = "INT");
-  void option(const std::string& names, std::vector<std::string>& values, const std::string& help, const std::string& metavar = "TEXT...");
+  void option(const std::string& names, std::vector<std::string>& values, const std::string& help,
+              const std::string& metavar = "TEXT...");
   // Positional arguments are named without dashes.
   void positional(const std::string& name, std::string& value, const std::string& help, bool required = true);
-  void positional(const std::string& name, std::vector<std::string>& values, const std::string& help, bool required = true);
-  void footer(const std::string& text);                // examples, shown under --help
-  bool given(const std::string& name) const;           // was the option on the command line?
+  void positional(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                  bool required = true);
+  void footer(const std::string& text);       // examples, shown under --help
+  bool given(const std::string& name) const;  // was the option on the command line?
 
   struct Impl;
   Impl& impl() { return *impl_; }
@@ -47,9 +50,9 @@ class UsageError : public std::exception {
 };
 
 struct AppInfo {
-  std::string name;          // "scene-prep"
-  std::string description;   // first lines of --help
-  std::string footer;        // examples and conventions at the end of --help
+  std::string name;         // "scene-prep"
+  std::string description;  // first lines of --help
+  std::string footer;       // examples and conventions at the end of --help
 };
 
 // declare() adds options, run() does the work and returns 0 or 1. run() is not called for --help and --version.

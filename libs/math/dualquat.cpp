@@ -19,10 +19,14 @@ Quat quat_from_matrix(const Affine3& m) {
   const auto& a = m.a;
   const double trace = a[0] + a[4] + a[8];
   Quat q;
-  if (trace >= a[0] && trace >= a[4] && trace >= a[8]) q = {1 + trace, a[7] - a[5], a[2] - a[6], a[3] - a[1]};
-  else if (a[0] >= a[4] && a[0] >= a[8]) q = {a[7] - a[5], 1 + a[0] - a[4] - a[8], a[1] + a[3], a[2] + a[6]};
-  else if (a[4] >= a[8]) q = {a[2] - a[6], a[1] + a[3], 1 - a[0] + a[4] - a[8], a[5] + a[7]};
-  else q = {a[3] - a[1], a[2] + a[6], a[5] + a[7], 1 - a[0] - a[4] + a[8]};
+  if (trace >= a[0] && trace >= a[4] && trace >= a[8])
+    q = {1 + trace, a[7] - a[5], a[2] - a[6], a[3] - a[1]};
+  else if (a[0] >= a[4] && a[0] >= a[8])
+    q = {a[7] - a[5], 1 + a[0] - a[4] - a[8], a[1] + a[3], a[2] + a[6]};
+  else if (a[4] >= a[8])
+    q = {a[2] - a[6], a[1] + a[3], 1 - a[0] + a[4] - a[8], a[5] + a[7]};
+  else
+    q = {a[3] - a[1], a[2] + a[6], a[5] + a[7], 1 - a[0] - a[4] + a[8]};
   return normalized(q);
 }
 

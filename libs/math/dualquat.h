@@ -17,9 +17,9 @@ struct Quat {
   Vec3 vec() const { return {x, y, z}; }
 };
 inline double dot(const Quat& a, const Quat& b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; }
-Quat normalized(const Quat& q);                       // Bug when the norm is 0 or not finite
+Quat normalized(const Quat& q);  // Bug when the norm is 0 or not finite
 Quat quat_about(Dir axis, double angle);
-Quat quat_from_matrix(const Affine3& rotation);       // Shepperd's method; `rotation` must be a proper rotation
+Quat quat_from_matrix(const Affine3& rotation);  // Shepperd's method; `rotation` must be a proper rotation
 Vec3 rotate(const Quat& q, Vec3 v);
 
 // Rigid motion p -> R p + t.
@@ -29,7 +29,7 @@ struct Pose {
   Vec3 point(Vec3 p) const { return rotate(rotation, p) + translation; }
   Vec3 vector(Vec3 v) const { return rotate(rotation, v); }
   Affine3 affine() const;
-  Pose operator*(const Pose& first) const;            // this after first
+  Pose operator*(const Pose& first) const;  // this after first
   Pose inverse() const;
 };
 
@@ -41,9 +41,10 @@ struct DualQuat {
 };
 
 // The screw motion from a (s = 0) to b (s = 1) along the shorter way round; s outside [0, 1] extrapolates the screw.
-// Exact for rotations by 0, by less than 1e-9 rad and by 180 degrees. There (within 2e-12 rad) both ways round are equally
-// short, and the one whose axis has a positive first component in a's frame is taken: the same in every world frame.
-// The screw is taken relative to a, so large common translations (Earth-centred coordinates) cost no precision in it.
+// Exact for rotations by 0, by less than 1e-9 rad and by 180 degrees. There (within 2e-12 rad) both ways round are
+// equally short, and the one whose axis has a positive first component in a's frame is taken: the same in every world
+// frame. The screw is taken relative to a, so large common translations (Earth-centred coordinates) cost no precision
+// in it.
 Pose sclerp(const Pose& a, const Pose& b, double s);
 
 }  // namespace suite

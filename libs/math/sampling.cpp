@@ -41,8 +41,8 @@ constexpr uint32_t reversed(uint32_t x) {
   return r;
 }
 
-// XOR of the direction numbers of the set bits, four bits at a time: 8 look-ups instead of up to 32 branches. Scrambling
-// works on numbers with their bits in reverse order, so index and value of the table are kept that way.
+// XOR of the direction numbers of the set bits, four bits at a time: 8 look-ups instead of up to 32 branches.
+// Scrambling works on numbers with their bits in reverse order, so index and value of the table are kept that way.
 struct Nibbles {
   alignas(16) uint32_t value[8][16][4];
 };
@@ -119,7 +119,8 @@ std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const 
   const uint64_t key = mix64(mixed_key_ ^ block);  // hash_of(key_, block)
   const uint32_t shuffled = laine_karras(reverse_bits(sample), static_cast<uint32_t>(key));
   const uint64_t a = mix64(key), b = mix64(key ^ 0x5bd1e995ull);
-  const Four seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b), static_cast<uint32_t>(b >> 32)};
+  const Four seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b),
+                   static_cast<uint32_t>(b >> 32)};
   return units(reverse_bits(laine_karras(reversed_point(shuffled), seeds)));
 }
 

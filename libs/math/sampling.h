@@ -35,14 +35,18 @@ std::array<uint32_t, 4> sobol4(uint32_t index);
 uint32_t owen_scramble(uint32_t value, uint32_t seed);
 
 // The stream of one problem (pixel): an independent random scramble of the sequence per `scramble`.
-// draw(sample, block) are four numbers in [0, 1): the stratified coordinates of that sample in that block of dimensions.
+// draw(sample, block) are four numbers in [0, 1): the stratified coordinates of that sample in that block of
+// dimensions.
 class SampleStream {
  public:
   SampleStream(uint64_t seed, uint64_t capture, uint64_t problem, uint32_t scramble = 0)
       : SampleStream(problem_key(seed, capture, problem), scramble) {}
   // The same, from what all scrambles of a problem have in common.
-  SampleStream(uint64_t problem_key, uint32_t scramble) : key_(mix64(problem_key ^ scramble)), mixed_key_(mix64(key_)) {}
-  static uint64_t problem_key(uint64_t seed, uint64_t capture, uint64_t problem) { return hash_of(hash_of(seed, capture), problem); }
+  SampleStream(uint64_t problem_key, uint32_t scramble)
+      : key_(mix64(problem_key ^ scramble)), mixed_key_(mix64(key_)) {}
+  static uint64_t problem_key(uint64_t seed, uint64_t capture, uint64_t problem) {
+    return hash_of(hash_of(seed, capture), problem);
+  }
   std::array<double, 4> draw(uint32_t sample, uint32_t block) const;
   // A number that is not stratified (hashed), for choices that must not use up a low-discrepancy dimension.
   double hashed(uint32_t sample, uint32_t purpose) const {

@@ -70,7 +70,8 @@ double student_t_quantile(double confidence, int n) {
   return 0.5 * (low + high);
 }
 
-double chi_square_test(std::span<const double> observed, std::span<const double> expected, double pool_below, int* degrees) {
+double chi_square_test(std::span<const double> observed, std::span<const double> expected, double pool_below,
+                       int* degrees) {
   // Pool the rarest cells together until every pooled cell is expected often enough for the statistic to be chi-square.
   std::vector<size_t> order(expected.size());
   std::iota(order.begin(), order.end(), size_t{0});

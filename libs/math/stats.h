@@ -8,9 +8,9 @@ namespace suite {
 
 struct Estimate {
   double mean = 0;
-  double stderr_ = 0;      // standard error of the mean
+  double stderr_ = 0;  // standard error of the mean
   uint64_t n = 0;
-  uint64_t failures = 0;   // samples that were NaN or negative and not averaged in
+  uint64_t failures = 0;  // samples that were NaN or negative and not averaged in
 };
 
 // Welford's recurrence; merge after Chan, Golub & LeVeque 1979.
@@ -53,6 +53,7 @@ double student_t_quantile(double confidence, int n);
 
 // Pearson's chi-square of observed counts against expected ones; cells expected below `pool_below` are pooled.
 // Returns the p-value; `degrees` receives the degrees of freedom used.
-double chi_square_test(std::span<const double> observed, std::span<const double> expected, double pool_below, int* degrees = nullptr);
+double chi_square_test(std::span<const double> observed, std::span<const double> expected, double pool_below,
+                       int* degrees = nullptr);
 
 }  // namespace suite

@@ -75,7 +75,8 @@ struct Affine3 {
   std::array<double, 9> a{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
   Vec3 b;
   Vec3 vector(Vec3 v) const {
-    return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z, a[6] * v.x + a[7] * v.y + a[8] * v.z};
+    return {a[0] * v.x + a[1] * v.y + a[2] * v.z, a[3] * v.x + a[4] * v.y + a[5] * v.z,
+            a[6] * v.x + a[7] * v.y + a[8] * v.z};
   }
   Vec3 point(Vec3 p) const { return vector(p) + b; }
   // Normals transform with the cofactor matrix (inverse transpose times determinant), which exists for any scale and
@@ -113,9 +114,10 @@ inline Affine3 scaling(Vec3 s) { return {{s.x, 0, 0, 0, s.y, 0, 0, 0, s.z}, {}};
 // Rotation by `angle` about a unit axis (Rodrigues).
 inline Affine3 rotation(Dir k, double angle) {
   const double c = std::cos(angle), s = std::sin(angle), h = std::sin(angle / 2), v = 2 * h * h;  // v = 1 - cos, exact
-  return {{c + k.x * k.x * v, k.x * k.y * v - k.z * s, k.x * k.z * v + k.y * s,
-           k.y * k.x * v + k.z * s, c + k.y * k.y * v, k.y * k.z * v - k.x * s,
-           k.z * k.x * v - k.y * s, k.z * k.y * v + k.x * s, c + k.z * k.z * v}, {}};
+  return {
+      {c + k.x * k.x * v, k.x * k.y * v - k.z * s, k.x * k.z * v + k.y * s, k.y * k.x * v + k.z * s, c + k.y * k.y * v,
+       k.y * k.z * v - k.x * s, k.z * k.x * v - k.y * s, k.z * k.y * v + k.x * s, c + k.z * k.z * v},
+      {}};
 }
 
 struct Box3 {
@@ -137,7 +139,8 @@ struct Ray {
   Vec3 origin;
   Dir direction;
   double time = 0;  // s, simulation time
-  uint32_t draw = 0;  // number of the random draw this ray belongs to; surfaces with holes decide by it (trace/hit_filter.h)
+  uint32_t draw =
+      0;  // number of the random draw this ray belongs to; surfaces with holes decide by it (trace/hit_filter.h)
 };
 
 }  // namespace suite

@@ -38,8 +38,8 @@ double deviation(const Affine3& truth, const Affine3& a, const Affine3& b, doubl
 }
 
 // The largest error found with that many keys (1: the pose at the start throughout); stops early above `bound`.
-double blend_error(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, size_t steps, double radius,
-                   double bound) {
+double blend_error(const MovingFrame& frame, std::span<const double> kinks, TimeSpan window, size_t steps,
+                   double radius, double bound) {
   std::vector<Affine3> keys = time_keys(frame, window, steps);
   if (steps == 1) keys.push_back(keys[0]);
   const size_t segments = keys.size() - 1;

@@ -109,7 +109,10 @@ class Straight final : public Track {
   }
   Vec3 velocity(double t) const override { return local_ ? Track::velocity(t) : direction_ * m_.speed; }
   TrackRecord record() const override {
-    TrackRecord r{TrackRecord::Kind::straight, {m_.start.x, m_.start.y, m_.start.z, m_.azimuth, m_.climb, m_.speed, m_.t0}, {}, {}};
+    TrackRecord r{TrackRecord::Kind::straight,
+                  {m_.start.x, m_.start.y, m_.start.z, m_.azimuth, m_.climb, m_.speed, m_.t0},
+                  {},
+                  {}};
     if (frame_) record::put(r.numbers, *frame_);
     return r;
   }
@@ -201,7 +204,9 @@ class Composed final : public Track {
     return all;
   }
 
-  TrackRecord record() const override { return {TrackRecord::Kind::composed, {}, {}, {outer_->record(), inner_->record()}}; }
+  TrackRecord record() const override {
+    return {TrackRecord::Kind::composed, {}, {}, {outer_->record(), inner_->record()}};
+  }
 
  private:
   TrackPtr outer_, inner_;

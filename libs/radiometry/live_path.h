@@ -25,8 +25,8 @@ struct LivePath {
   bool scattered = false;                // the last event was a scattering in a medium, at:
   Vec3 place;
   const BakedMaterial* receiver = nullptr;  // that the path starts at
-  uint32_t flights = 0;      // through media so far
-  uint32_t scatterings = 0;  // inside media so far
+  uint32_t flights = 0;                     // through media so far
+  uint32_t scatterings = 0;                 // inside media so far
 };
 
 }  // namespace suite

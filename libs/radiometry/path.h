@@ -19,8 +19,8 @@ enum LightSlot : uint8_t { light_sun, light_moon, light_sky, light_lamp, light_s
 // Light that a node receives straight from an explicit source.
 struct ExplicitLight {
   Dir direction;
-  double density = 0;            // of having drawn this direction from the source, 1/sr; 0 = collimated
-  float radiance_scale = 0;      // relative radiance of the source in this direction
+  double density = 0;               // of having drawn this direction from the source, 1/sr; 0 = collimated
+  float radiance_scale = 0;         // relative radiance of the source in this direction
   const float* spectrum = nullptr;  // null = the sky's, whose shape changes with wavelength
   // What arrives, when the scattering factors into a number and a spectrum: scale * spectrum[k] * scatter[k].
   const float* scatter = nullptr;
@@ -29,13 +29,13 @@ struct ExplicitLight {
 };
 
 struct Node {
-  Hit hit;                       // object kNone: the Earth under the scene
+  Hit hit;  // object kNone: the Earth under the scene
   Interaction at;
-  Dir out;                       // back along the segment, ENU
-  double optical_length = 0;     // m from the sensor, sum of segment lengths
-  bool sunlit = false;           // the explicit sample of the sun arrived
-  bool has_direct = false;       // explicit light that did not factor stands in the wave's store
-  double spectral_factor = 1;    // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
+  Dir out;                     // back along the segment, ENU
+  double optical_length = 0;   // m from the sensor, sum of segment lengths
+  bool sunlit = false;         // the explicit sample of the sun arrived
+  bool has_direct = false;     // explicit light that did not factor stands in the wave's store
+  double spectral_factor = 1;  // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
   // Bit s is set when light[s] arrived and its scattering factored; the other entries hold nothing.
   uint8_t lights = 0;
   std::array<ExplicitLight, light_slots> light;
@@ -48,20 +48,20 @@ struct Node {
   Dir in;
   int lobe = 0;
   bool delta = false, continues = false;
-  double density = 0;            // at the path's own knot, roulette included; of Dirac lobes the probability
+  double density = 0;  // at the path's own knot, roulette included; of Dirac lobes the probability
 };
 
 enum class PathEnd : uint8_t { escaped, absorbed, roulette, max_nodes };
 
 // The nodes of a path stand in its wave (wave.h), next to their spectra.
 struct Path {
-  Ray ray;                       // the sensor's
-  double weight = 1;             // the sensor's
-  int knot = 0;                  // the knot whose shapes drew this path
+  Ray ray;            // the sensor's
+  double weight = 1;  // the sensor's
+  int knot = 0;       // the knot whose shapes drew this path
   PathEnd end = PathEnd::absorbed;
-  Dir escape;                    // direction in which it left the scene
-  double escape_factor = 1;      // spectral factor of the whole path
-  double sun_factor = 0;         // the same when the Sun was met by chance, shared with explicit sampling
+  Dir escape;                // direction in which it left the scene
+  double escape_factor = 1;  // spectral factor of the whole path
+  double sun_factor = 0;     // the same when the Sun was met by chance, shared with explicit sampling
   double moon_factor = 0;
   double sky_factor = 0;
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes

@@ -16,17 +16,28 @@ constexpr uint32_t kLobes = kLobeBlock;
 constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 }  // namespace
 
-PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options)
-    : surface_(surface), optics_(optics), environment_(environment), options_(options), knots_(optics.state().knots.size()), knot_bins_(optics.state().knots) {
+PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment,
+                             const PipelineOptions& options)
+    : surface_(surface),
+      optics_(optics),
+      environment_(environment),
+      options_(options),
+      knots_(optics.state().knots.size()),
+      knot_bins_(optics.state().knots) {
   paper_ = options.method == Method::paper;
   // The reference keeps at least half of the paths.
-  for (size_t k = 0; k < knots_; ++k) knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
-  if (paper_) std::fill_n(knot_probability_, knots_, 0.0), knot_probability_[0] = 1, options_.roulette_after = kMaxNodes;
+  for (size_t k = 0; k < knots_; ++k)
+    knot_probability_[k] = knots_ == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots_ - 1);
+  if (paper_)
+    std::fill_n(knot_probability_, knots_, 0.0), knot_probability_[0] = 1, options_.roulette_after = kMaxNodes;
   asks_disks_ = options.explicit_sources && !paper_;
   asks_around_ = asks_disks_ && (environment.lamps || (environment.sky && environment.sky->tabulated()));
-  if (environment.lamps && !paper_) lamp_draws_ = static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
+  if (environment.lamps && !paper_)
+    lamp_draws_ =
+        static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
   if (!optics.media().empty()) {
-    volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options, std::span<const double>(knot_probability_, knots_));
+    volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options,
+                                            std::span<const double>(knot_probability_, knots_));
     transmission_.resize(optics.state().size());
   }
 }
@@ -60,7 +71,9 @@ void PathGenerator::start(Wave& wave, size_t p, const SensorRay& ray, const Samp
   if (volume_) volume_->start(live, ray.ray.time, probing_);
   if (knots_ > 1 && !paper_) {
     const double u = stream.hashed(sample, kKnotPurpose);
-    if (u >= 0.5) path.knot = 1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
+    if (u >= 0.5)
+      path.knot =
+          1 + std::min(static_cast<int>(knots_) - 2, static_cast<int>((u - 0.5) * 2 * static_cast<double>(knots_ - 1)));
   }
   wave.active.push_back(static_cast<uint32_t>(p));
 }
@@ -72,7 +85,8 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     // Propagate every path to its next node or out of the scene.
     if (depth == 0) set_receivers_aside(wave);
     wave.rays.clear();
-    for (const uint32_t p : wave.active) wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
+    for (const uint32_t p : wave.active)
+      wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
     if (volume_) volume_->travel(wave, live_, statistics);
@@ -90,18 +104,24 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
     wave.rays.clear(), wave.owner.clear(), wave.light.clear(), wave.distance.clear();
     for (const uint32_t p : wave.active) {
       live_[p].u = live_[p].stream.draw(live_[p].sample, 1 + static_cast<uint32_t>(depth));
-      if (asks_disks_) ask_disks(wave, p);
-      else if (options_.explicit_sources) ask_one(wave, p);
+      if (asks_disks_)
+        ask_disks(wave, p);
+      else if (options_.explicit_sources)
+        ask_one(wave, p);
     }
     const size_t parallel = paper_ ? 0 : wave.rays.size();
     if (asks_around_)
       for (const uint32_t p : wave.active) ask_around(wave, p);
     wave.blocked.resize(wave.rays.size());
-    if (volume_) volume_->look(wave, live_, statistics);
-    else see(wave, parallel, depth == 0, statistics.trace);
+    if (volume_)
+      volume_->look(wave, live_, statistics);
+    else
+      see(wave, parallel, depth == 0, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
-      if (wave.blocked[i] || (environment_.earth && environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i]))) continue;
+      if (wave.blocked[i] || (environment_.earth &&
+                              environment_.earth->meet(wave.rays[i].origin, wave.rays[i].direction, wave.distance[i])))
+        continue;
       Node& node = wave.node(p, wave.path(p).size - 1);
       node.sunlit = node.sunlit || wave.light[i] == light_sun;
       add_explicit(wave, p, wave.light[i], i);
@@ -122,8 +142,10 @@ void PathGenerator::see(Wave& wave, size_t parallel, bool first, TraceStatistics
   const std::span<const double> distance = wave.distance;
   const std::span<uint8_t> blocked = wave.blocked;
   const Tracer& tracer = surface_.tracer();
-  if (parallel) tracer.occluded(rays.first(parallel), distance.first(parallel), blocked.first(parallel), first, statistics);
-  if (parallel < rays.size()) tracer.occluded(rays.subspan(parallel), distance.subspan(parallel), blocked.subspan(parallel), false, statistics);
+  if (parallel)
+    tracer.occluded(rays.first(parallel), distance.first(parallel), blocked.first(parallel), first, statistics);
+  if (parallel < rays.size())
+    tracer.occluded(rays.subspan(parallel), distance.subspan(parallel), blocked.subspan(parallel), false, statistics);
 }
 
 // The next node of a path, without its surface.
@@ -185,7 +207,9 @@ bool PathGenerator::arrive(Wave& wave, uint32_t p, const Hit& hit) {
 // A path that missed the scene meets the Earth under it, if there is one; false when the path ends.
 bool PathGenerator::arrive_on_earth(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
-  const auto met = environment_.earth ? environment_.earth->meet(live.origin, live.direction, std::numeric_limits<double>::infinity()) : std::nullopt;
+  const auto met = environment_.earth
+                       ? environment_.earth->meet(live.origin, live.direction, std::numeric_limits<double>::infinity())
+                       : std::nullopt;
   if (!met) {
     escape(wave.path(p), live);
     return false;

@@ -3,8 +3,8 @@
 // Directions are drawn from the shapes at one of the state's knots, chosen per path; every other knot could have drawn
 // the same path, and the one-sample balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014) divides by the mean of
 // all their densities. With P_k the probability of knot k, r_k the density of the path so far under knot k relative to
-// the knot that drew it, and A = sum P_k r_k, a contribution carries the factor 1 / A. Explicit samples of a source with
-// density p_s and continuations that meet it by chance share the same heuristic:
+// the knot that drew it, and A = sum P_k r_k, a contribution carries the factor 1 / A. Explicit samples of a source
+// with density p_s and continuations that meet it by chance share the same heuristic:
 //   explicit:   1 / (A p_s + sum P_k r_k p_k)        by chance:   1 / (A' + A p_s / p_h),  A' after the last event.
 #pragma once
 #include <memory>
@@ -21,15 +21,16 @@ namespace suite {
 // formulas above is draws times that of one draw.
 //
 // Dimensions of the sample streams: block 0 is the sensor's, 1 + n is node n's continuation and its sample of the sun,
-// kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp (three
-// numbers), kMoonBlock + n of the moon.
+// kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp
+// (three numbers), kMoonBlock + n of the moon.
 inline constexpr uint32_t kLobeBlock = 128, kLampBlock = 512, kMoonBlock = 640;
 
 class VolumePaths;
 
 class PathGenerator {
  public:
-  PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment, const PipelineOptions& options);
+  PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment,
+                const PipelineOptions& options);
 
   ~PathGenerator();
   PathGenerator(PathGenerator&&) noexcept;
@@ -68,17 +69,17 @@ class PathGenerator {
   const Environment& environment_;
   PipelineOptions options_;
   size_t knots_;
-  bool paper_;        // Method::paper
+  bool paper_;                     // Method::paper
   bool asks_disks_, asks_around_;  // explicit sources: far disks and others
   int lamp_draws_ = 1;
   double knot_probability_[kMaxKnots];
   std::vector<size_t> knot_bins_;
   std::vector<Live> live_;
-  std::unique_ptr<VolumePaths> volume_;   // null where the scene has no media
-  TraceStatistics probing_;               // of rays that look for bodies around sensors
+  std::unique_ptr<VolumePaths> volume_;  // null where the scene has no media
+  TraceStatistics probing_;              // of rays that look for bodies around sensors
   std::vector<float> transmission_;
-  std::vector<uint32_t> received_;        // paths that start at a receiver
-  BakedMaterial receivers_[2];            // plane, sphere; made when a ray first asks for one
+  std::vector<uint32_t> received_;  // paths that start at a receiver
+  BakedMaterial receivers_[2];      // plane, sphere; made when a ray first asks for one
 };
 
 }  // namespace suite

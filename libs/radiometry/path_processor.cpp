@@ -23,7 +23,8 @@ void from_outside(const Path& path, const Environment& environment, std::span<fl
 }
 
 // The air of a segment: L = T L + c S, from the segment's near end along -out.
-void through_air(const Atmosphere& air, Vec3 from, Dir direction, double distance, double factor, Wave& wave, std::span<float> radiance) {
+void through_air(const Atmosphere& air, Vec3 from, Dir direction, double distance, double factor, Wave& wave,
+                 std::span<float> radiance) {
   const std::span<float> T = wave.scratch(), S = wave.scratch3();
   air.path(from, direction, distance, T, S);
   const float c = static_cast<float>(factor);
@@ -42,7 +43,8 @@ void add_emission(const Node& node, std::span<float> scratch, std::span<float> r
 // the continuation is left out.
 void propagate(const Node& node, bool continues, size_t n, float* __restrict L) {
   const ExplicitLight& sun = node.light[light_sun];
-  const bool sunlit = node.lights & (1u << light_sun), together = sunlit && continues && sun.scatter == node.bounce_spectrum;
+  const bool sunlit = node.lights & (1u << light_sun),
+             together = sunlit && continues && sun.scatter == node.bounce_spectrum;
   if (continues) {
     const float* __restrict w = node.bounce_spectrum;
     const float b = node.bounce_scale;
@@ -58,7 +60,7 @@ void propagate(const Node& node, bool continues, size_t n, float* __restrict L) 
   }
   for (unsigned rest = together ? node.lights & ~(1u << light_sun) : node.lights; rest; rest &= rest - 1) {
     const ExplicitLight& light = node.light[static_cast<size_t>(std::countr_zero(rest))];
-    const float *__restrict e = light.spectrum, *__restrict w = light.scatter;
+    const float* __restrict e = light.spectrum, * __restrict w = light.scatter;
     const float s = light.scale;
     for (size_t i = 0; i < n; ++i) L[i] += s * e[i] * w[i];
   }
@@ -90,20 +92,25 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
   from_outside(path, environment, radiance);
   const Atmosphere* air = environment.atmosphere.get();
   auto start_of = [&](int n) { return n == 0 ? path.ray.origin : wave.node(p, n - 1).at.position; };
-  if (air && path.end == PathEnd::escaped) through_air(*air, start_of(path.size), path.escape, std::numeric_limits<double>::infinity(), path.escape_factor, wave, radiance);
+  if (air && path.end == PathEnd::escaped)
+    through_air(*air, start_of(path.size), path.escape, std::numeric_limits<double>::infinity(), path.escape_factor,
+                wave, radiance);
   const bool media = wave.has_media();
   // A path that did not go on from its last node has no segment behind it.
   if (media && (path.size == 0 || wave.node(p, path.size - 1).continues)) add_segment(wave, p, path.size, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
     add_node(wave, p, n, wave.node(p, n).continues, radiance);
     if (media) add_segment(wave, p, n, radiance);
-    if (air) through_air(*air, start_of(n), -wave.node(p, n).out, wave.node(p, n).hit.distance, wave.node(p, n).spectral_factor, wave, radiance);
+    if (air)
+      through_air(*air, start_of(n), -wave.node(p, n).out, wave.node(p, n).hit.distance,
+                  wave.node(p, n).spectral_factor, wave, radiance);
   }
   if (path.weight != 1)
     for (float& x : radiance) x *= static_cast<float>(path.weight);
 }
 
-void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance, std::span<float> single) {
+void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance,
+                    std::span<float> single) {
   const Path& path = wave.path(p);
   if (path.size < 2) {
     std::copy(radiance.begin(), radiance.end(), single.begin());
@@ -112,7 +119,8 @@ void process_single(Wave& wave, size_t p, const Environment& environment, std::s
   add_node(wave, p, 0, false, single);
   if (wave.has_media()) add_segment(wave, p, 0, single);
   const Node& first = wave.node(p, 0);
-  if (const Atmosphere* air = environment.atmosphere.get()) through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
+  if (const Atmosphere* air = environment.atmosphere.get())
+    through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
   if (path.weight != 1)
     for (float& x : single) x *= static_cast<float>(path.weight);
 }

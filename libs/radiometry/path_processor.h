@@ -18,6 +18,7 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
 
 // The part of it that was scattered or emitted once (Channel::single): the first node without its continuation, or
 // everything where the path met no second node. After process_path, whose result is `radiance`.
-void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance, std::span<float> single);
+void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance,
+                    std::span<float> single);
 
 }  // namespace suite

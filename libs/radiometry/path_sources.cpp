@@ -71,7 +71,8 @@ void PathGenerator::ask_disks(Wave& wave, uint32_t p) {
   };
   if (environment_.sun) ask_disk(light_sun, *environment_.sun, {live.u[2], live.u[3]});
   if (!environment_.moon) return;
-  const std::array<double, 4> v = live.stream.draw(live.sample, kMoonBlock + static_cast<uint32_t>(wave.path(p).size - 1));
+  const std::array<double, 4> v =
+      live.stream.draw(live.sample, kMoonBlock + static_cast<uint32_t>(wave.path(p).size - 1));
   ask_disk(light_moon, *environment_.moon, {v[0], v[1]});
 }
 
@@ -79,12 +80,14 @@ void PathGenerator::ask_disks(Wave& wave, uint32_t p) {
 void PathGenerator::ask_around(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
   if (environment_.sky && environment_.sky->tabulated()) {
-    const std::array<double, 4> v = live.stream.draw(live.sample, kLobeBlock + static_cast<uint32_t>(wave.path(p).size - 1));
+    const std::array<double, 4> v =
+        live.stream.draw(live.sample, kLobeBlock + static_cast<uint32_t>(wave.path(p).size - 1));
     const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
     const float* spectrum = environment_.sky->spectrum();
     const double relative = spectrum ? environment_.sky->relative(drawn.direction) : 1;
     if (relative > 0)
-      ask(wave, p, light_sky, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0}, kFar, nullptr);
+      ask(wave, p, light_sky, {drawn.direction, drawn.density, static_cast<float>(relative), spectrum, nullptr, 0},
+          kFar, nullptr);
   }
   if (environment_.lamps) ask_lamps(wave, p);
 }
@@ -126,12 +129,15 @@ void PathGenerator::ask_one(Wave& wave, uint32_t p) {
   const std::array<double, 4> v = live.stream.draw(live.sample, kLampBlock + static_cast<uint32_t>(n));
   size_t chosen = std::min(sources - 1, static_cast<size_t>(v[0] * static_cast<double>(sources)));
   if (chosen < lamps)
-    return ask_lamp(wave, p, 0, environment_.lamps->sample_one(static_cast<uint32_t>(chosen), 1.0 / static_cast<double>(sources), wave.node(p, n).at.position, {v[1], v[2]}));
+    return ask_lamp(wave, p, 0,
+                    environment_.lamps->sample_one(static_cast<uint32_t>(chosen), 1.0 / static_cast<double>(sources),
+                                                   wave.node(p, n).at.position, {v[1], v[2]}));
   chosen -= lamps;
   const uint8_t slot = chosen == 0 && disks[0] ? light_sun : light_moon;
   const Sun& disk = slot == light_sun ? *disks[0] : *disks[1];
   const DirectionSample drawn = disk.sample({v[1], v[2]});
-  ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(sources), disk.spectrum(), nullptr, 0}, kFar, nullptr);
+  ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(sources), disk.spectrum(), nullptr, 0}, kFar,
+      nullptr);
 }
 
 // A surface met by chance may glow; what an explicit sample of it brings is shared with it.
@@ -172,7 +178,8 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
     float pdf[kMaxKnots];
     model.pdf(out, in, {pdf, knots_});
     denominator = live.shares * light.density;
-    for (size_t k = 0; k < knots_ && !paper_; ++k) denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+    for (size_t k = 0; k < knots_ && !paper_; ++k)
+      denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
   const Atmosphere* air = environment_.atmosphere.get();

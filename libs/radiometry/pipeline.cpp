@@ -26,13 +26,20 @@ void RunStatistics::merge(const RunStatistics& o) {
 }
 
 Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
-    : bands_(bands), scrambles_(scrambles), sums_(problems * bands * static_cast<size_t>(scrambles)), paths_(problems), failures_(problems),
-      truncated_(problems), largest_(problems), truth_slots_(truth_slots), truth_(problems * truth_slots) {}
+    : bands_(bands),
+      scrambles_(scrambles),
+      sums_(problems * bands * static_cast<size_t>(scrambles)),
+      paths_(problems),
+      failures_(problems),
+      truncated_(problems),
+      largest_(problems),
+      truth_slots_(truth_slots),
+      truth_(problems * truth_slots) {}
 
 namespace {
 
-// How n samples share out among the scrambles, and what the squared deviation of each one's mean weighs in the variance of
-// the mean of all.
+// How n samples share out among the scrambles, and what the squared deviation of each one's mean weighs in the variance
+// of the mean of all.
 struct Shares {
   Shares(uint32_t n, int scrambles) {
     double sum = 0;
@@ -113,16 +120,26 @@ std::vector<Block> blocks_of(const Capture& capture) {
   return blocks;
 }
 
-Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-                   const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
-                   const PipelineOptions& options)
-    : surface_(surface), optics_(optics), environment_(environment), state_(state), projection_(projection), reference_band_(reference_band), truth_(truth), options_(options) {
+Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment,
+                   const SpectralState& state, const BandProjection& projection, size_t reference_band,
+                   const TruthPlan& truth, const PipelineOptions& options)
+    : surface_(surface),
+      optics_(optics),
+      environment_(environment),
+      state_(state),
+      projection_(projection),
+      reference_band_(reference_band),
+      truth_(truth),
+      options_(options) {
   if (!optics.media().empty() && environment.atmosphere)
-    throw Error("layers of air and media in the scene cannot be combined", "let a clear sky stand for the air, or leave the media out");
+    throw Error("layers of air and media in the scene cannot be combined",
+                "let a clear sky stand for the air, or leave the media out");
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
-  if (options_.lamp_draws < 1 || options_.lamp_draws > kLampDraws) throw Error(strf("%d lamps a node are not between 1 and %d", options_.lamp_draws, kLampDraws));
-  if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes) throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
+  if (options_.lamp_draws < 1 || options_.lamp_draws > kLampDraws)
+    throw Error(strf("%d lamps a node are not between 1 and %d", options_.lamp_draws, kLampDraws));
+  if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes)
+    throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
 }
 
 namespace {
@@ -158,22 +175,25 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
       return found;
     }
   }
-  return std::unique_ptr<Workspace>(new Workspace{Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
-                                                  PathGenerator(surface_, optics_, environment_, options_),
-                                                  {},
-                                                  std::vector<float>(kWaveWidth * state_.size()),
-                                                  std::vector<uint8_t>(kWaveWidth),
-                                                  std::vector<float>(state_.size()),
-                                                  ManySuns(surface_)});
+  return std::unique_ptr<Workspace>(
+      new Workspace{Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
+                    PathGenerator(surface_, optics_, environment_, options_),
+                    {},
+                    std::vector<float>(kWaveWidth * state_.size()),
+                    std::vector<uint8_t>(kWaveWidth),
+                    std::vector<float>(state_.size()),
+                    ManySuns(surface_)});
 }
 
 namespace {
 
-// The second block of numbers that a sensor may ask for; nodes take the blocks from 1 on, their lobes those from 128 on.
+// The second block of numbers that a sensor may ask for; nodes take the blocks from 1 on, their lobes those from 128
+// on.
 constexpr uint32_t kSecondSensorBlock = 250;
 
 // Asks the sensor for the ray of a sample. weights: where it may leave spectral weights.
-SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream, uint32_t index, std::span<float> weights) {
+SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream,
+                  uint32_t index, std::span<float> weights) {
   const size_t numbers = static_cast<size_t>(sensor.numbers());
   std::array<double, 8> u;
   const std::array<double, 4> first = stream.draw(index, 0);
@@ -205,10 +225,18 @@ size_t bin_of(const Capture& capture, const Path& path) {
 // The problems of one block while they run.
 class Pipeline::BlockRun {
  public:
-  BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
-           std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics, Workspace& workspace)
-      : pipeline_(pipeline), sensor_(sensor), capture_(capture), block_(block), sums_(sums), slots_(slots),
-        statistics_(statistics), workspace_(workspace), single_(sensor.channels().size() > 1) {
+  BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id,
+           const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics,
+           Workspace& workspace)
+      : pipeline_(pipeline),
+        sensor_(sensor),
+        capture_(capture),
+        block_(block),
+        sums_(sums),
+        slots_(slots),
+        statistics_(statistics),
+        workspace_(workspace),
+        single_(sensor.channels().size() > 1) {
     const size_t width = size_t{block.columns} * block.rows;
     for (uint32_t i = 0; i < width; ++i) {
       next_.push_back(sums.paths(slot_of(i)));
@@ -220,7 +248,8 @@ class Pipeline::BlockRun {
   // Every problem takes its samples in order; a few of one problem run together, those of the next beside them.
   void run() {
     const auto width = static_cast<uint32_t>(next_.size());
-    const uint32_t first = *std::min_element(next_.begin(), next_.end()), last = *std::max_element(end_.begin(), end_.end());
+    const uint32_t first = *std::min_element(next_.begin(), next_.end()),
+                   last = *std::max_element(end_.begin(), end_.end());
     // A rule that looks at every sample must not be given many at a time.
     const uint32_t together = pipeline_.options_.stop == StopRule::change ? 1 : std::max(kTogether, kWaveWidth / width);
     for (uint32_t group = first; group < last; group += together)
@@ -233,7 +262,9 @@ class Pipeline::BlockRun {
   }
 
  private:
-  size_t problem_of(size_t i) const { return (size_t{block_.row} + i / block_.columns) * capture_.columns + block_.column + i % block_.columns; }
+  size_t problem_of(size_t i) const {
+    return (size_t{block_.row} + i / block_.columns) * capture_.columns + block_.column + i % block_.columns;
+  }
   size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
   double reference_sum(size_t slot) const {
     double sum = 0;
@@ -251,9 +282,11 @@ class Pipeline::BlockRun {
       const auto [scramble, index] = deal(sample);
       // Independent numbers: every sample is the first of a sequence of its own.
       const bool independent = pipeline_.options_.method == Method::paper;
-      const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
+      const SampleStream stream =
+          independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
       const uint32_t number = independent ? 0 : index;
-      const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {&workspace_.weights[p * bins], bins});
+      const SensorRay ray =
+          ask_ray(sensor_, capture_, problem_of(place), stream, number, {&workspace_.weights[p * bins], bins});
       workspace_.weighted[p] = ray.spectral;
       workspace_.generator.start(wave, p, ray, stream, number);
     }
@@ -265,8 +298,10 @@ class Pipeline::BlockRun {
     for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
       const auto [place, sample] = workspace_.lanes[p];
       if (sample >= end_[place]) continue;
-      if (capture_.bin_by == Capture::BinBy::sun) accumulate_suns(p, place, sample);
-      else accumulate(p, place, sample);
+      if (capture_.bin_by == Capture::BinBy::sun)
+        accumulate_suns(p, place, sample);
+      else
+        accumulate(p, place, sample);
     }
     statistics_.shade_cycles += __rdtsc() - completed;
     workspace_.lanes.clear();
@@ -292,7 +327,8 @@ class Pipeline::BlockRun {
   void accumulate_suns(size_t p, size_t place, uint32_t sample) {
     const size_t slot = slot_of(place);
     double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
-    const bool good = workspace_.suns.add(workspace_.wave, p, capture_.suns, pipeline_.projection_, single_, {target, sums_.bands()}, statistics_.trace);
+    const bool good = workspace_.suns.add(workspace_.wave, p, capture_.suns, pipeline_.projection_, single_,
+                                          {target, sums_.bands()}, statistics_.trace);
     ++statistics_.paths;
     statistics_.truncated += workspace_.wave.path(p).truncated;
     sums_.set_paths(slot, sample + 1);

@@ -33,25 +33,25 @@ enum class Method : uint8_t {
              // one explicit source a node out of sun, moon and all lamps, divided by its probability (the paper leaves
              // that open: here all have the same, and no lamp is left out for being far); what is asked explicitly does
              // not count when a continuation meets it; the sky is met by continuations only; directions are drawn at
-             // the reference wavelength; paths end at max_nodes. Not for media. Its rule of stopping is StopRule::change.
+          // the reference wavelength; paths end at max_nodes. Not for media. Its rule of stopping is StopRule::change.
 };
 
 struct PipelineOptions {
   uint64_t seed = 1;
-  int max_nodes = 16;            // 1..kMaxNodes: consecutive scattering events
+  int max_nodes = 16;                // 1..kMaxNodes: consecutive scattering events
   uint32_t max_scatterings = 10000;  // consecutive scattering events of a path inside media, beside the nodes
-  int roulette_after = 3;        // nodes before paths may end by chance
-  bool explicit_sources = true;  // sample sun and sky at every node (off only for comparisons)
+  int roulette_after = 3;            // nodes before paths may end by chance
+  bool explicit_sources = true;      // sample sun and sky at every node (off only for comparisons)
   Method method = Method::standard;
-  int lamp_draws = kLampDraws;   // 1..kLampDraws: lamps asked at the first node of a path, where there are as many
+  int lamp_draws = kLampDraws;  // 1..kLampDraws: lamps asked at the first node of a path, where there are as many
   StopRule stop = StopRule::plan;
-  uint32_t change_after = 20;    // StopRule::change: samples before the first test
-  double change = 1e-3;          // StopRule::change: relative change that counts as convergence
+  uint32_t change_after = 20;  // StopRule::change: samples before the first test
+  double change = 1e-3;        // StopRule::change: relative change that counts as convergence
 };
 
-// Samples are dealt to independent scrambles of the sequence, from whose spread the standard error comes. The rule depends
-// on the sample's number alone, so that a run that is continued deals like one that never stopped: four scrambles share
-// the first 256 samples, four more the next 256, all eight take turns from there on.
+// Samples are dealt to independent scrambles of the sequence, from whose spread the standard error comes. The rule
+// depends on the sample's number alone, so that a run that is continued deals like one that never stopped: four
+// scrambles share the first 256 samples, four more the next 256, all eight take turns from there on.
 struct Deal {
   uint32_t scramble, index;
 };
@@ -70,12 +70,12 @@ constexpr uint32_t dealt(uint32_t n, uint32_t scramble) {
 
 struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
-  double truncated = 0;          // sum over paths of the throughput cut at max_nodes
+  double truncated = 0;  // sum over paths of the throughput cut at max_nodes
   TraceStatistics trace;
-  uint64_t cycles = 0;           // all cycles spent in run(), all threads; of these:
-  uint64_t sensor_cycles = 0;    // asking the sensor for rays
-  uint64_t path_cycles = 0;      // building paths, the ray tracer (trace.cycles) included
-  uint64_t shade_cycles = 0;     // turning paths into radiance and truth, adding up
+  uint64_t cycles = 0;         // all cycles spent in run(), all threads; of these:
+  uint64_t sensor_cycles = 0;  // asking the sensor for rays
+  uint64_t path_cycles = 0;    // building paths, the ray tracer (trace.cycles) included
+  uint64_t shade_cycles = 0;   // turning paths into radiance and truth, adding up
   void merge(const RunStatistics& o);
 };
 
@@ -90,8 +90,12 @@ class Accumulators {
   int scrambles() const { return scrambles_; }
   size_t bands() const { return bands_; }
   size_t problems() const { return paths_.size(); }
-  double* sums(size_t problem, int scramble) { return &sums_[(problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)) * bands_]; }
-  const double* sums(size_t problem, int scramble) const { return &sums_[(problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)) * bands_]; }
+  double* sums(size_t problem, int scramble) {
+    return &sums_[(problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)) * bands_];
+  }
+  const double* sums(size_t problem, int scramble) const {
+    return &sums_[(problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)) * bands_];
+  }
   uint32_t paths(size_t problem) const { return paths_[problem]; }
   void set_paths(size_t problem, uint32_t n) { paths_[problem] = n; }
   uint32_t& failures(size_t problem) { return failures_[problem]; }
@@ -118,11 +122,11 @@ class Accumulators {
  private:
   size_t bands_;
   int scrambles_;
-  std::vector<double> sums_;     // [problem][scramble][band]
+  std::vector<double> sums_;  // [problem][scramble][band]
   std::vector<uint32_t> paths_, failures_;
   std::vector<float> truncated_, largest_;
   size_t truth_slots_;
-  std::vector<double> truth_;    // [problem][slot]
+  std::vector<double> truth_;  // [problem][slot]
 };
 
 // A rectangle of problems that run together.
@@ -141,13 +145,14 @@ class Pipeline {
  public:
   // Keeps references; all must outlive it.
   Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-           const BandProjection& projection, size_t reference_band, const TruthPlan& truth, const PipelineOptions& options);
+           const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
+           const PipelineOptions& options);
   ~Pipeline();
 
   // Continues each problem of a block from the paths that its accumulators hold up to to[problem]. Thread-safe for
   // distinct blocks.
-  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block, std::span<const uint32_t> to,
-           Accumulators& sums, Slots slots, RunStatistics& statistics) const;
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
+           std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
 
  private:
   const Surface& surface_;

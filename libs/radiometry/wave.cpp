@@ -6,7 +6,11 @@
 namespace suite {
 
 Wave::Wave(size_t width, int max_nodes, size_t bins, bool media)
-    : bins_(bins), stride_((bins + 7) / 8 * 8), max_nodes_(max_nodes), paths_(width), nodes_(width * static_cast<size_t>(max_nodes)) {
+    : bins_(bins),
+      stride_((bins + 7) / 8 * 8),
+      max_nodes_(max_nodes),
+      paths_(width),
+      nodes_(width * static_cast<size_t>(max_nodes)) {
   const size_t floats = (2 * width * static_cast<size_t>(max_nodes) + 3) * stride_;
   spectra_.reset(static_cast<float*>(std::aligned_alloc(64, (floats * sizeof(float) + 63) / 64 * 64)));
   if (!spectra_) throw std::bad_alloc();

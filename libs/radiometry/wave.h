@@ -26,8 +26,8 @@ class Wave {
   // Radiance that explicit sources send along the path from this node.
   std::span<float> direct(size_t p, int n) { return {at(2 * place(p, n) + 1), bins_}; }
   // With media, segment n is all that lies between node n - 1 (the sensor for 0) and node n (or the end of the path),
-  // however often the path was scattered there: what arrives from its far end is multiplied by `through`, then `gathered`
-  // is added, light that was emitted and scattered into the path on the way.
+  // however often the path was scattered there: what arrives from its far end is multiplied by `through`, then
+  // `gathered` is added, light that was emitted and scattered into the path on the way.
   bool has_media() const { return !segments_.empty(); }
   std::span<float> through(size_t p, int n) { return {&segments_[2 * segment(p, n) * stride_], bins_}; }
   std::span<float> gathered(size_t p, int n) { return {&segments_[(2 * segment(p, n) + 1) * stride_], bins_}; }
@@ -40,9 +40,9 @@ class Wave {
   std::vector<Hit> hits;
   std::vector<double> distance;
   std::vector<uint8_t> blocked;
-  std::vector<uint32_t> owner;       // path of rays[i]
-  std::vector<uint8_t> light;        // which ExplicitLight of its node
-  std::vector<uint32_t> active;      // paths that go on
+  std::vector<uint32_t> owner;   // path of rays[i]
+  std::vector<uint8_t> light;    // which ExplicitLight of its node
+  std::vector<uint32_t> active;  // paths that go on
 
  private:
   struct Free {

@@ -66,7 +66,7 @@ struct DraftGeometry {
   NormalRule normals = NormalRule::file;
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
   double tile_m = 0;        // largest extent of one terrain tile
-  bool failed = false;           // could not be read, which has been filed: only the name is sure
+  bool failed = false;      // could not be read, which has been filed: only the name is sure
 };
 
 struct DraftPlacement {
@@ -150,7 +150,7 @@ struct Draft {
   std::string epoch;  // UTC of second 0, or empty
   std::optional<TimeWindowSpec> times;
   GeodeticOrigin origin;
-  std::optional<double> curvature_m;    // the scene is flat and to be laid onto the ellipsoid this exactly, m
+  std::optional<double> curvature_m;  // the scene is flat and to be laid onto the ellipsoid this exactly, m
   Where curvature_where;
   std::vector<SpectralWindow> windows;
   std::vector<DraftMaterial> materials;

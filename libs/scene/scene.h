@@ -28,13 +28,13 @@ inline constexpr uint32_t kNone = 0xffffffffu;
 struct Part {
   std::string name;
   uint32_t first_triangle = 0, triangle_count = 0;
-  uint32_t material = kNone;            // index into Scene::materials
+  uint32_t material = kNone;  // index into Scene::materials
 };
 
 // What is known of a mesh whose arrays are still in a file, and how to get them.
 struct StoredArrays {
   size_t vertices = 0, triangles = 0;
-  Box3 box;                             // local, mesh origin included
+  Box3 box;                               // local, mesh origin included
   std::function<void(const Mesh&)> fill;  // Error when the file is damaged
   std::mutex turn;
 };
@@ -45,12 +45,12 @@ struct StoredArrays {
 // fills itself is what `mutable` stands for here.
 struct Mesh {
   std::string name;
-  Vec3 origin;                               // local frame position of (0, 0, 0) of the floats
-  mutable std::vector<float> positions;      // 3 * vertex_count + 1
-  mutable std::vector<uint32_t> indices;     // 3 * triangle_count
-  mutable std::vector<uint32_t> normals;     // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
-  mutable std::vector<float> uvs;            // 2 per vertex; empty = none
-  std::vector<Part> parts;                   // cover all triangles, ascending
+  Vec3 origin;                            // local frame position of (0, 0, 0) of the floats
+  mutable std::vector<float> positions;   // 3 * vertex_count + 1
+  mutable std::vector<uint32_t> indices;  // 3 * triangle_count
+  mutable std::vector<uint32_t> normals;  // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
+  mutable std::vector<float> uvs;         // 2 per vertex; empty = none
+  std::vector<Part> parts;                // cover all triangles, ascending
   std::shared_ptr<StoredArrays> stored = nullptr;  // null: the arrays are here
   size_t vertex_count() const { return stored ? stored->vertices : positions.empty() ? 0 : (positions.size() - 1) / 3; }
   size_t triangle_count() const { return stored ? stored->triangles : indices.size() / 3; }
@@ -76,15 +76,15 @@ struct Primitive {
 struct Placement {
   Affine3 to_parent;
   TargetKind kind = TargetKind::mesh;
-  uint32_t target = 0;                  // index into meshes, groups or primitives
+  uint32_t target = 0;  // index into meshes, groups or primitives
   uint32_t material_override = kNone;
-  uint32_t tag = kNone;                 // index into Scene::tags, for truth
-  uint32_t track = kNone;               // index into Scene::tracks; kNone = at rest
+  uint32_t tag = kNone;    // index into Scene::tags, for truth
+  uint32_t track = kNone;  // index into Scene::tracks; kNone = at rest
 };
 
 // How something moves, in the frame of the group that places it (the root: ENU). Time counts from the scene's epoch.
 struct SceneTrack {
-  std::string name;                     // for messages
+  std::string name;  // for messages
   std::shared_ptr<const Track> track;
 };
 
@@ -97,8 +97,8 @@ struct Group {
 // Where a vertical drape puts the pixels of a map: pixel (0, 0) has its outer corner at `origin`, columns go along +x
 // (east) and rows along -y (south) with the given ground sample distances (negative flips).
 struct Drape {
-  double origin_x = 0, origin_y = 0;    // m, scene ENU
-  double gsd_x = 1, gsd_y = 1;          // m
+  double origin_x = 0, origin_y = 0;  // m, scene ENU
+  double gsd_x = 1, gsd_y = 1;        // m
   enum class Extend : uint8_t { clamp, repeat, none } extend = Extend::clamp;
   std::shared_ptr<const FlatPlane> plane = nullptr;  // the flat plane that the map lies on; null: scene ENU itself
 };
@@ -108,8 +108,8 @@ enum class Projection : uint8_t { drape, uv };
 struct ClassMap {
   std::string name;
   uint32_t width = 0, height = 0;
-  std::vector<uint16_t> classes;        // row-major, top row first: indices into `materials`
-  std::vector<uint32_t> materials;      // class -> Scene::materials
+  std::vector<uint16_t> classes;    // row-major, top row first: indices into `materials`
+  std::vector<uint32_t> materials;  // class -> Scene::materials
   Projection projection = Projection::drape;
   Drape drape;
 };
@@ -117,26 +117,27 @@ struct ClassMap {
 // Materials that a map decides: a material whose surface is looked up per point. Its own model holds where the map says
 // nothing (outside of it under Extend::none); scene-prep fills it from the map's first class when none was given.
 struct MapBinding {
-  uint32_t material = kNone;            // the material id that geometry carries
-  uint32_t class_map = kNone;           // index into Scene::class_maps
+  uint32_t material = kNone;   // the material id that geometry carries
+  uint32_t class_map = kNone;  // index into Scene::class_maps
 };
 
-// Rasters of numbers that vary a material from point to point. mixture: one channel a material of `materials`, fractions
-// that sum to 1 in every pixel. curve_index: one channel, whole numbers into `family`, which replaces the curve `parameter` of
-// the model (texture maps are baked to this). cube: the curve `parameter` is piecewise linear through the channels, which
-// stand at `wavelength_um`, and by `outside` beyond them. temperature: one channel, K. bump: one channel, height in m along
-// the normal. normal: three channels, the normal in the tangent frame (any length). opacity: one channel, 0 to 1.
+// Rasters of numbers that vary a material from point to point. mixture: one channel a material of `materials`,
+// fractions that sum to 1 in every pixel. curve_index: one channel, whole numbers into `family`, which replaces the
+// curve `parameter` of the model (texture maps are baked to this). cube: the curve `parameter` is piecewise linear
+// through the channels, which stand at `wavelength_um`, and by `outside` beyond them. temperature: one channel, K.
+// bump: one channel, height in m along the normal. normal: three channels, the normal in the tangent frame (any
+// length). opacity: one channel, 0 to 1.
 enum class MapKind : uint8_t { mixture, curve_index, cube, temperature, bump, normal, opacity };
 struct PropertyMap {
   std::string name;
   MapKind kind = MapKind::mixture;
   uint32_t width = 0, height = 0, channels = 1;
-  std::vector<float> values;            // row-major, top row first, channels together
-  std::vector<uint32_t> materials;      // mixture: index into Scene::materials of each channel
-  std::string parameter;                // curve_index, cube: a curve parameter of the material's model
-  std::vector<Curve> family;            // curve_index
-  std::vector<double> wavelength_um;    // cube: ascending
-  Outside outside = Outside::hold;      // cube: what holds beyond the channels; error: states that reach there are refused
+  std::vector<float> values;          // row-major, top row first, channels together
+  std::vector<uint32_t> materials;    // mixture: index into Scene::materials of each channel
+  std::string parameter;              // curve_index, cube: a curve parameter of the material's model
+  std::vector<Curve> family;          // curve_index
+  std::vector<double> wavelength_um;  // cube: ascending
+  Outside outside = Outside::hold;  // cube: what holds beyond the channels; error: states that reach there are refused
   // Between the pixels: the value of the pixel one is in, or linear between the four nearest pixel centres. Curve
   // numbers are never mixed; bumps are always linear.
   enum class Filter : uint8_t { nearest, linear } filter = Filter::nearest;
@@ -151,20 +152,21 @@ struct PropertyBinding {
 struct VoxelGrid {
   std::string name;
   std::array<uint32_t, 3> cells{0, 0, 0};
-  Affine3 to_local;                     // index space -> the grid's own frame, m (cell size and origin)
-  std::vector<float> density;           // per cell: scales the medium's coefficients
-  std::vector<uint8_t> kind;            // per cell: index into `media`; empty = all are media[0]
-  std::vector<uint32_t> media;          // indices into Scene::media
-  std::vector<float> temperature;       // per cell, K, 0 = the medium's own; empty = all have the medium's own
+  Affine3 to_local;                // index space -> the grid's own frame, m (cell size and origin)
+  std::vector<float> density;      // per cell: scales the medium's coefficients
+  std::vector<uint8_t> kind;       // per cell: index into `media`; empty = all are media[0]
+  std::vector<uint32_t> media;     // indices into Scene::media
+  std::vector<float> temperature;  // per cell, K, 0 = the medium's own; empty = all have the medium's own
   size_t size() const { return size_t{cells[0]} * cells[1] * cells[2]; }
 };
 // A grid of media somewhere: it adds to whatever else is there, be it another grid, a body or the ambient medium.
 struct Volume {
   uint32_t grid = kNone;
-  Affine3 to_world;                     // the grid's own frame -> ENU, or the axes of the moving body
-  uint32_t track = kNone;               // index into Scene::tracks; kNone = at rest
+  Affine3 to_world;        // the grid's own frame -> ENU, or the axes of the moving body
+  uint32_t track = kNone;  // index into Scene::tracks; kNone = at rest
 };
-// A temperature model of a material, in place of its constant temperature. An empty model: layers for others to simulate.
+// A temperature model of a material, in place of its constant temperature. An empty model: layers for others to
+// simulate.
 struct TemperatureBinding {
   uint32_t material = kNone;
   TemperatureSpec spec;
@@ -172,7 +174,7 @@ struct TemperatureBinding {
 
 // A file that a material's `texts` name and that travels inside the scene, e.g. an SQT.
 struct DataFile {
-  std::string name;                     // unique within the scene
+  std::string name;  // unique within the scene
   std::vector<std::byte> bytes;
 };
 
@@ -187,25 +189,25 @@ struct GeodeticOrigin {
 struct Scene {
   std::string name, description, author;
   GeodeticOrigin origin;
-  bool curved = false;                  // laid from a flat plane onto the ellipsoid (curvature.h); drapes are on the plane
+  bool curved = false;  // laid from a flat plane onto the ellipsoid (curvature.h); drapes are on the plane
   std::vector<Mesh> meshes;
   std::vector<Primitive> primitives;
-  std::vector<Group> groups;            // [0] = root
+  std::vector<Group> groups;  // [0] = root
   std::vector<Material> materials;
   std::vector<ClassMap> class_maps;
   std::vector<MapBinding> map_bindings;
   std::vector<PropertyMap> property_maps;
   std::vector<PropertyBinding> property_bindings;  // a material may have several, one of each kind
   std::vector<Medium> media;
-  uint32_t ambient = kNone;             // medium that fills everything no body fills
+  uint32_t ambient = kNone;  // medium that fills everything no body fills
   std::vector<VoxelGrid> grids;
   std::vector<Volume> volumes;
-  std::vector<TemperatureBinding> temperatures;    // at most one a material
+  std::vector<TemperatureBinding> temperatures;  // at most one a material
   std::vector<std::string> tags;
   std::vector<SceneTrack> tracks;
-  std::string epoch;                    // UTC (ISO 8601) of second 0 of the tracks; empty when none was given
+  std::string epoch;  // UTC (ISO 8601) of second 0 of the tracks; empty when none was given
   std::vector<DataFile> files;
-  Box3 bounds;                          // ENU
+  Box3 bounds;  // ENU
 };
 
 // Does a ray anywhere in the scene have to ask what it travels through?
@@ -217,8 +219,8 @@ void check_arrays(const Mesh& mesh, const std::string& file);
 // Checks every index and size of a scene that was read from a file; Error naming the table otherwise.
 void check_scene(const Scene& scene, const std::string& file);
 
-// Extent of everything placed, ENU, from the corners of each target's own box (so rotated targets give a box that may be
-// somewhat large); infinite primitives count as nothing. What moves counts with all places it has in the span (s),
+// Extent of everything placed, ENU, from the corners of each target's own box (so rotated targets give a box that may
+// be somewhat large); infinite primitives count as nothing. What moves counts with all places it has in the span (s),
 // found by sampling: its box may be up to 1 % of its size short. Error: a track that does not cover the span.
 Box3 scene_bounds(const Scene& scene, double begin = 0, double end = 0);
 

@@ -101,7 +101,8 @@ std::vector<uint32_t> pilot_of(const CaptureWork& work) {
 }
 
 // Runs a capture whose counts are known from the start: each block gets its sums, runs, and is done with.
-void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
+void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result,
+                  RunStatistics& statistics) {
   const std::vector<Block> blocks = blocks_of(work.capture);
   const std::vector<uint32_t> to = most_of(work);
   std::mutex mutex;
@@ -112,14 +113,17 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
       const std::lock_guard lock(mutex);
       if (!idle.empty()) sums = std::move(idle.back()), idle.pop_back();
     }
-    if (!sums) sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
+    if (!sums)
+      sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values,
+                                            Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
     for (size_t b = begin; b < end; ++b) {
       const Block& block = blocks[b];
       RunStatistics mine;
       sums->clear();
       work.pipeline.run(work.sensor, work.capture, work.id, block, to, *sums, Slots::by_place, mine);
       for (uint32_t i = 0; i < block.columns * block.rows; ++i)
-        result.take((size_t{block.row} + i / block.columns) * work.capture.columns + block.column + i % block.columns, *sums, i);
+        result.take((size_t{block.row} + i / block.columns) * work.capture.columns + block.column + i % block.columns,
+                    *sums, i);
       const std::lock_guard lock(mutex);
       statistics.merge(mine);
       if (work.progress) work.progress->add(static_cast<double>(mine.paths));
@@ -131,7 +135,8 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
 
 }  // namespace
 
-void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics) {
+void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result,
+                 RunStatistics& statistics) {
   const bool target = work.goals.all.relative_error > 0, alone = target && !has_neighbours(work.capture);
   const bool piloted = target || work.after_pilot;
   if (!piloted && !work.store) return run_streamed(work, values, truth_slots, result, statistics);

@@ -20,7 +20,7 @@ struct CaptureWork {
   uint64_t id = 0;  // of the capture in the job: part of the key of its sample points
   Goals goals;
   std::vector<JudgedBand> judged;  // bands whose error decides
-  StateStore* store = nullptr;  // null = nothing is kept
+  StateStore* store = nullptr;     // null = nothing is kept
   Progress* progress = nullptr;
   // Called once the pilot is finished, with the needs (all 0 without a target) and the seconds that the pilot took for
   // `paths` new paths; may lower goals.all.max_paths (a time budget). Empty = nothing does.
@@ -28,9 +28,10 @@ struct CaptureWork {
 };
 
 // Runs all problems and hands each to the builder. Without pilot and store the sums of a block live only as long as the
-// block runs; otherwise those of the whole capture are kept. A capture whose pilot decides without neighbours is sampled
-// anew after it, from other sample points: its pilot is thrown away.
-// values, truth_slots: doubles of a problem in its accumulators.
-void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result, RunStatistics& statistics);
+// block runs; otherwise those of the whole capture are kept. A capture whose pilot decides without neighbours is
+// sampled anew after it, from other sample points: its pilot is thrown away. values, truth_slots: doubles of a problem
+// in its accumulators.
+void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result,
+                 RunStatistics& statistics);
 
 }  // namespace suite

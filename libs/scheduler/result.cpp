@@ -8,7 +8,8 @@
 
 namespace suite {
 
-ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth)
+ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band,
+                             const TruthPlan& truth)
     : reference_band_(reference_band), neighbours_(has_neighbours(capture)), truth_(truth) {
   CaptureResult& r = result_;
   r.columns = capture.columns;
@@ -47,7 +48,8 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   }
 }
 
-void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const {
+void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means,
+                              std::vector<double>& products) const {
   const size_t bands = result_.bands;
   std::vector<double> deviation(bands);
   for (int s = 0; s < sums.scrambles(); ++s) {
@@ -60,9 +62,9 @@ void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const doubl
 }
 
 // Events that brighten or darken a problem but happened not to be among its samples leave no trace in them, only in its
-// neighbours': a problem whose variance at the reference band is far below the mean of its 24 neighbours' has an interval
-// that cannot be trusted. 1/40: of four scrambles with the same variance everywhere 0.5 % fall below it (chi-square with
-// three degrees of freedom), of eight none.
+// neighbours': a problem whose variance at the reference band is far below the mean of its 24 neighbours' has an
+// interval that cannot be trusted. 1/40: of four scrambles with the same variance everywhere 0.5 % fall below it
+// (chi-square with three degrees of freedom), of eight none.
 void ResultBuilder::flag_unlike_neighbours() {
   constexpr long reach = 2;
   constexpr double share = 1.0 / 40;

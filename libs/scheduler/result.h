@@ -22,10 +22,10 @@ class ResultBuilder {
   void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
   CaptureResult result_;
   size_t reference_band_, correlated_every_;
-  bool neighbours_;              // problems beside each other look at neighbouring places
+  bool neighbours_;  // problems beside each other look at neighbouring places
   const TruthPlan& truth_;
-  // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands ride
-  // on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
+  // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands
+  // ride on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
   std::vector<std::vector<double>> products_;
 };
 

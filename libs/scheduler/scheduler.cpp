@@ -75,7 +75,8 @@ std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, boo
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
       for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
         const Capture& capture = sensors[s]->tasks()[t].captures[c];
-        const size_t window = moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
+        const size_t window =
+            moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
         items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
       }
   }
@@ -100,11 +101,13 @@ class Job {
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
 
   JobReport run() {
-    const std::vector<Item> items = in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+    const std::vector<Item> items =
+        in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
     for (const Item& item : items) {
       const TimeWindow& w = capture_of(item).window;
       check_temperatures(*scene_, w.begin, w.end);
-      window_ = &item == items.data() ? TimeSpan{w.begin, w.end} : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
+      window_ = &item == items.data() ? TimeSpan{w.begin, w.end}
+                                      : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
     }
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
     if (!items.empty()) tracer_of(capture_of(items.front()));
@@ -167,13 +170,14 @@ class Job {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
     if (!kit) {
-      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state], options_.periodic.has_value(),
-                                       sensors_[item.sensor]->bands(state), window_);
+      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
+                                       options_.periodic.has_value(), sensors_[item.sensor]->bands(state), window_);
       ++report_.optics_bakes;
       log.new_optics = true;
     }
     // Glowing geometry has its places in the tracer.
-    if (kit->environment.lamps && kit->lamps_of != tracer_) kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
+    if (kit->environment.lamps && kit->lamps_of != tracer_)
+      kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
     kit->lamps_of = tracer_;
     return *kit;
   }
@@ -193,8 +197,15 @@ class Job {
     const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
                             kit.reference_band, truth, options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
-    CaptureWork work{pipeline,          sensor,         capture,         item.id, goals_of(sensor, capture, budget()),
-                     judged_bands(capture, kit), options_.store, progress_.get(), {}};
+    CaptureWork work{pipeline,
+                     sensor,
+                     capture,
+                     item.id,
+                     goals_of(sensor, capture, budget()),
+                     judged_bands(capture, kit),
+                     options_.store,
+                     progress_.get(),
+                     {}};
     if (options_.budget.seconds > 0 && !cap_)
       work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
         fix_cap(w, needs, paths, seconds);
@@ -258,8 +269,8 @@ class Job {
     const double here = static_cast<double>(work.capture.problems());
     // Each capture gets its share of what can be traced in the time that is left, counting the pilot that this one has.
     const double total = here / total_problems_ * (std::max(0.0, left) * rate + paths);
-    cap_ =
-        cap_for_total(needs, work.goals, work.goals.all.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
+    cap_ = cap_for_total(needs, work.goals,
+                         work.goals.all.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
     work.goals.all.max_paths = report_.time_cap = cap_;
     if (options_.store) options_.store->save_cap(cap_);
   }

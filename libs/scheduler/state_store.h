@@ -12,7 +12,7 @@ namespace suite {
 // Size of what a capture gathers: the arguments of its Accumulators.
 struct CaptureShape {
   uint32_t columns = 0, rows = 0;
-  size_t values = 0;       // [channel][time bin][band]
+  size_t values = 0;  // [channel][time bin][band]
   int scrambles = 4;
   size_t truth_slots = 0;
   size_t problems() const { return size_t{columns} * rows; }

@@ -154,8 +154,7 @@ class PluginSensor final : public Sensor {
   Convergence convergence(const Capture& capture, size_t problem) const override {
     const auto [task, index] = place_of(capture);
     const Convergence& c = capture.convergence;
-    suite_convergence own{sizeof(suite_convergence), c.min_paths,      c.max_paths, 0,
-                          c.relative_error,          c.absolute_floor};
+    suite_convergence own{sizeof(suite_convergence), c.min_paths, c.max_paths, 0, c.relative_error, c.absolute_floor};
     int failed = 1;
     try {
       failed = sensor_.convergence(sensor_.self, numbers_[task][index], problem, &own);

@@ -32,10 +32,11 @@ struct Capture {
   size_t state = 0;                // index into Sensor::states()
   Convergence convergence;
   // Target for the relative standard error of each band, 0 = its error does not matter. Empty: the target is
-  // convergence.relative_error at the reference wavelength. convergence.relative_error is the least of those that matter.
+  // convergence.relative_error at the reference wavelength. convergence.relative_error is the least of those that
+  // matter.
   std::vector<double> band_targets;
   bool own_convergence = false;  // Sensor::convergence says for each problem what it may take
-  bool neighbours = true;  // problems beside each other look at things beside each other
+  bool neighbours = true;        // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
   // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
   // of equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths from east; each is the

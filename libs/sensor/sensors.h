@@ -50,8 +50,8 @@ std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& c
 // Parts that several kinds share.
 std::vector<Band> read_bands(const Params& list, const SensorContext& context);
 Convergence read_convergence(const Params& params);  // key `paths`: N, or {min, max, relative_error, absolute_floor}
-// Key `paths: {bands: {NAME: relative error, ...}}`: a target for each band listed. Sets convergence.relative_error to the
-// strictest of them and returns one a band, 0 for the others; nothing when the key is absent.
+// Key `paths: {bands: {NAME: relative error, ...}}`: a target for each band listed. Sets convergence.relative_error to
+// the strictest of them and returns one a band, 0 for the others; nothing when the key is absent.
 std::vector<double> read_band_targets(const Params& params, std::span<const Band> bands, Convergence& convergence);
 // Keys spectral_step_um, reference_um, knots.
 SpectralState read_state(const Params& params, std::span<const Band> bands);

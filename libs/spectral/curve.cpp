@@ -8,9 +8,12 @@ namespace suite {
 
 const char* to_text(Outside rule) {
   switch (rule) {
-    case Outside::error: return "error";
-    case Outside::hold: return "hold";
-    case Outside::zero: return "zero";
+    case Outside::error:
+      return "error";
+    case Outside::hold:
+      return "hold";
+    case Outside::zero:
+      return "zero";
   }
   return "?";
 }
@@ -18,19 +21,23 @@ const char* to_text(Outside rule) {
 Curve::Curve(std::vector<double> x, std::vector<double> y, Outside outside, const Where& where)
     : x_(std::move(x)), y_(std::move(y)), outside_(outside) {
   if (x_.empty() || x_.size() != y_.size())
-    throw Error(where, strf("a curve needs as many values as wavelengths and at least one, found %zu and %zu", y_.size(), x_.size()));
+    throw Error(where, strf("a curve needs as many values as wavelengths and at least one, found %zu and %zu",
+                            y_.size(), x_.size()));
   if (x_.size() > 1 && x_.front() > x_.back()) {
     std::reverse(x_.begin(), x_.end());
     std::reverse(y_.begin(), y_.end());
   }
   for (size_t i = 0; i < x_.size(); ++i) {
-    if (!std::isfinite(x_[i]) || !(x_[i] > 0)) throw Error(where, strf("wavelength %g um is not positive and finite", x_[i]));
+    if (!std::isfinite(x_[i]) || !(x_[i] > 0))
+      throw Error(where, strf("wavelength %g um is not positive and finite", x_[i]));
     if (!std::isfinite(y_[i])) throw Error(where, strf("the value at %g um is not finite", x_[i]));
     if (i && !(x_[i] > x_[i - 1]))
-      throw Error(where, strf("wavelengths are not monotonic: %g um follows %g um", x_[i], x_[i - 1]), "sort them and give each once");
+      throw Error(where, strf("wavelengths are not monotonic: %g um follows %g um", x_[i], x_[i - 1]),
+                  "sort them and give each once");
   }
   cumulative_.assign(x_.size(), 0);
-  for (size_t i = 1; i < x_.size(); ++i) cumulative_[i] = cumulative_[i - 1] + 0.5 * (y_[i] + y_[i - 1]) * (x_[i] - x_[i - 1]);
+  for (size_t i = 1; i < x_.size(); ++i)
+    cumulative_[i] = cumulative_[i - 1] + 0.5 * (y_[i] + y_[i - 1]) * (x_[i] - x_[i - 1]);
 }
 
 Curve Curve::constant(double value) {
@@ -52,7 +59,8 @@ bool Curve::covers(double low, double high) const {
 double Curve::at(double w) const {
   if (w < x_.front() || w > x_.back()) {
     if (!covers(w, w))
-      throw Error(strf("a curve from %g to %g um was asked at %g um", x_.front(), x_.back(), w), "declare 'outside: hold' or 'zero', or give a longer curve");
+      throw Error(strf("a curve from %g to %g um was asked at %g um", x_.front(), x_.back(), w),
+                  "declare 'outside: hold' or 'zero', or give a longer curve");
     if (outside_ == Outside::zero) return 0;
     return w < x_.front() ? y_.front() : y_.back();
   }
@@ -72,7 +80,8 @@ double Curve::primitive(double w) const {
 
 double Curve::integral(double low, double high) const {
   if (!covers(low, high))
-    throw Error(strf("a curve from %g to %g um was asked from %g to %g um", x_.front(), x_.back(), low, high), "declare 'outside: hold' or 'zero', or give a longer curve");
+    throw Error(strf("a curve from %g to %g um was asked from %g to %g um", x_.front(), x_.back(), low, high),
+                "declare 'outside: hold' or 'zero', or give a longer curve");
   return primitive(high) - primitive(low);
 }
 

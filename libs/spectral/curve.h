@@ -26,7 +26,7 @@ class Curve {
 
   bool is_constant() const { return constant_; }
   Outside outside() const { return outside_; }
-  double low_um() const;                                 // of the tabulated range; 0 and infinity for a constant
+  double low_um() const;  // of the tabulated range; 0 and infinity for a constant
   double high_um() const;
   const std::vector<double>& wavelength_um() const { return x_; }
   const std::vector<double>& value() const { return y_; }
@@ -36,7 +36,7 @@ class Curve {
   Curve with_outside(Outside rule) const;
 
  private:
-  std::vector<double> x_, y_;     // x ascending
+  std::vector<double> x_, y_;       // x ascending
   std::vector<double> cumulative_;  // integral from x_[0] to x_[i]
   Outside outside_ = Outside::error;
   bool constant_ = false;

@@ -16,10 +16,14 @@ constexpr double kSplit = 1;  // where the power series hands over to the expone
 // Integral of t^3/(e^t - 1) from 0 to x <= kSplit: Bernoulli series t^2 (1 - t/2 + t^2/12 - ...).
 double head_integral(double x) {
   const double x2 = x * x;
-  static constexpr double c[] = {1.0 / 60,        -1.0 / 5040,
-                                 1.0 / 272160,    -1.0 / 13305600,
-                                 1.0 / 622702080, -691.0 / 19615115520000.0,
-                                 1.0 / 1270312243200.0, -3617.0 / 202741834014720000.0};
+  static constexpr double c[] = {1.0 / 60,
+                                 -1.0 / 5040,
+                                 1.0 / 272160,
+                                 -1.0 / 13305600,
+                                 1.0 / 622702080,
+                                 -691.0 / 19615115520000.0,
+                                 1.0 / 1270312243200.0,
+                                 -3617.0 / 202741834014720000.0};
   double sum = 1.0 / 3 - x / 8, power = x2;
   for (const double k : c) sum += k * power, power *= x2;
   return x * x2 * sum;
@@ -49,8 +53,8 @@ double integral_between(double near, double far) {
 double planck_radiance(double w, double kelvin) {
   if (!(kelvin > 0)) return 0;
   const double x = kC2 / (w * kelvin), scale = kC1 / (w * w * w * w * w);
-  // For large x, exp(x) overflows before the product underflows: use exp(-x) there, in two halves, because exp(-x) itself
-  // loses its digits below 1e-308 while the product may still be far from there.
+  // For large x, exp(x) overflows before the product underflows: use exp(-x) there, in two halves, because exp(-x)
+  // itself loses its digits below 1e-308 while the product may still be far from there.
   if (x > 40) {
     const double half = std::exp(-0.5 * x);
     return scale * half * half;
@@ -65,8 +69,10 @@ double planck_band_radiance(double low, double high, double kelvin) {
   if (near > 800) return 0;  // kC1 / w^5 stays below e^60 for any wavelength this could matter at
   // Narrow bands cancel in the difference of tails; Gauss-Legendre over the band is exact there.
   if ((high - low) < 0.05 * high) {
-    static constexpr double node[5] = {0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640, -0.9061798459386640};
-    static constexpr double weight[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891, 0.2369268850561891};
+    static constexpr double node[5] = {0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640,
+                                       -0.9061798459386640};
+    static constexpr double weight[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665, 0.2369268850561891,
+                                         0.2369268850561891};
     double sum = 0;
     const int pieces = 1 + static_cast<int>(2 * (far - near));  // the integrand falls as e^-x: half an e-fold a piece
     const double step = (high - low) / pieces;

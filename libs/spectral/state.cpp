@@ -8,8 +8,10 @@ namespace suite {
 
 namespace {
 void check_band(const std::string& name, double center, double width) {
-  if (!(center > 0) || !std::isfinite(center)) throw Error(strf("band '%s': centre %g um is not a wavelength", name.c_str(), center));
-  if (!(width > 0) || !(width < 2 * center)) throw Error(strf("band '%s': width %g um is not between 0 and twice the centre", name.c_str(), width));
+  if (!(center > 0) || !std::isfinite(center))
+    throw Error(strf("band '%s': centre %g um is not a wavelength", name.c_str(), center));
+  if (!(width > 0) || !(width < 2 * center))
+    throw Error(strf("band '%s': width %g um is not between 0 and twice the centre", name.c_str(), width));
 }
 }  // namespace
 
@@ -39,16 +41,19 @@ Band Band::triangular(std::string name, double center, double fwhm) {
 }
 
 Band Band::tabulated(std::string name, const Curve& response, const Where& where) {
-  if (response.min() < 0) throw Error(where, "band '" + name + "': the response is negative", "responses are at least 0");
+  if (response.min() < 0)
+    throw Error(where, "band '" + name + "': the response is negative", "responses are at least 0");
   if (!(response.max() > 0) || response.wavelength_um().size() < 2)
-    throw Error(where, "band '" + name + "': the response is zero everywhere", "give at least two wavelengths and one positive value");
+    throw Error(where, "band '" + name + "': the response is zero everywhere",
+                "give at least two wavelengths and one positive value");
   // Cut leading and trailing zeros: the support, not the table, decides which curves must cover the band.
   const auto& x = response.wavelength_um();
   const auto& y = response.value();
   size_t first = 0, last = y.size() - 1;
   while (y[first + 1] == 0 && y[first] == 0) ++first;
   while (y[last - 1] == 0 && y[last] == 0) --last;
-  const Curve cut(std::vector<double>(x.begin() + first, x.begin() + last + 1), std::vector<double>(y.begin() + first, y.begin() + last + 1), Outside::zero, where);
+  const Curve cut(std::vector<double>(x.begin() + first, x.begin() + last + 1),
+                  std::vector<double>(y.begin() + first, y.begin() + last + 1), Outside::zero, where);
   double area = 0, moment = 0;
   const auto& cx = cut.wavelength_um();
   const auto& cy = cut.value();
@@ -77,7 +82,8 @@ std::vector<int> SpectralState::knot_of_bin() const {
   std::vector<int> nearest(bins.size(), 0);
   for (size_t b = 0; b < bins.size(); ++b)
     for (size_t k = 1; k < knots.size(); ++k)
-      if (std::fabs(bins[knots[k]].center_um() - bins[b].center_um()) < std::fabs(bins[knots[nearest[b]]].center_um() - bins[b].center_um()))
+      if (std::fabs(bins[knots[k]].center_um() - bins[b].center_um()) <
+          std::fabs(bins[knots[nearest[b]]].center_um() - bins[b].center_um()))
         nearest[b] = static_cast<int>(k);
   return nearest;
 }
@@ -88,7 +94,9 @@ std::vector<float> SpectralState::sample(const Curve& curve) const {
   return v;
 }
 
-std::string SpectralState::text() const { return strf("%.4g-%.4g um, %zu bins, reference %.4g um", low_um, high_um, bins.size(), reference_um); }
+std::string SpectralState::text() const {
+  return strf("%.4g-%.4g um, %zu bins, reference %.4g um", low_um, high_um, bins.size(), reference_um);
+}
 
 SpectralState make_state(std::span<const Band> bands, double step, double reference_um, size_t knot_count) {
   if (bands.empty()) throw Error("a spectral state needs at least one band");
@@ -105,8 +113,10 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   std::sort(spans.begin(), spans.end());
   std::vector<std::pair<double, double>> merged;
   for (const auto& s : spans) {
-    if (!merged.empty() && s.first <= merged.back().second) merged.back().second = std::max(merged.back().second, s.second);
-    else merged.push_back(s);
+    if (!merged.empty() && s.first <= merged.back().second)
+      merged.back().second = std::max(merged.back().second, s.second);
+    else
+      merged.push_back(s);
   }
   SpectralState state;
   state.low_um = merged.front().first;
@@ -114,7 +124,9 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   for (const auto& [low, high] : merged) {
     double count = 0;
     for (const auto& m : merged) count += (m.second - m.first) / step + 2;
-    if (count > 100000) throw Error(strf("a step of %g um needs about %.0f spectral bins, at most 100000 are carried", step, count), "use a larger step or more states");
+    if (count > 100000)
+      throw Error(strf("a step of %g um needs about %.0f spectral bins, at most 100000 are carried", step, count),
+                  "use a larger step or more states");
     double edge = low;
     while (edge < high) {
       double next = (std::floor(edge / step * (1 + 1e-12)) + 1) * step;
@@ -127,10 +139,12 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   state.reference_um = reference_um > 0 ? reference_um : moment / weight;
   size_t reference = 0;
   for (size_t i = 0; i < state.bins.size(); ++i)
-    if (std::fabs(state.bins[i].center_um() - state.reference_um) < std::fabs(state.bins[reference].center_um() - state.reference_um)) reference = i;
+    if (std::fabs(state.bins[i].center_um() - state.reference_um) <
+        std::fabs(state.bins[reference].center_um() - state.reference_um))
+      reference = i;
   state.knots.push_back(reference);
-  // Each further knot is the bin farthest in wavelength from all knots so far, so that every band has a knot near it: no
-  // bin is farther from one than 1/k of the window (Gonzalez 1985: at most twice the best possible).
+  // Each further knot is the bin farthest in wavelength from all knots so far, so that every band has a knot near it:
+  // no bin is farther from one than 1/k of the window (Gonzalez 1985: at most twice the best possible).
   std::vector<double> distance(state.bins.size(), std::numeric_limits<double>::infinity());
   const size_t wanted = std::min({knot_count, size_t{8}, state.bins.size()});
   while (state.knots.size() < wanted) {
@@ -159,7 +173,8 @@ BandProjection::BandProjection(const SpectralState& state, std::span<const Band>
     if (!(sum > 0.999)) throw Error("band '" + band.name + "' is not covered by the bins of its spectral state");
     while (!weights.empty() && weights.back() == 0) weights.pop_back();
     identity_ = identity_ && weights.size() == 1 && first == rows_.size();
-    rows_.push_back({static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
+    rows_.push_back(
+        {static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
     for (const double w : weights) weights_.push_back(w / sum);
   }
   identity_ = identity_ && rows_.size() == state.bins.size();

@@ -15,8 +15,8 @@ namespace suite {
 // A channel of an instrument: relative response, zero outside its support.
 struct Band {
   std::string name;
-  Curve response;          // dimensionless, >= 0, Outside::zero
-  double center_um = 0;    // reported centre
+  Curve response;        // dimensionless, >= 0, Outside::zero
+  double center_um = 0;  // reported centre
   double fwhm_um = 0;
   double low_um() const { return response.low_um(); }
   double high_um() const { return response.high_um(); }
@@ -36,10 +36,10 @@ struct Bin {
 
 // One spectral state (paper, section III-C): what the radiometry core is primed for.
 struct SpectralState {
-  double low_um = 0, high_um = 0;   // the window
-  double reference_um = 0;          // drives directions and convergence
-  std::vector<Bin> bins;            // ascending, not overlapping, inside the window; gaps where no band looks
-  std::vector<size_t> knots;        // <= 8 indices into bins: where the shape of scattering is drawn; knots[0] = reference
+  double low_um = 0, high_um = 0;  // the window
+  double reference_um = 0;         // drives directions and convergence
+  std::vector<Bin> bins;           // ascending, not overlapping, inside the window; gaps where no band looks
+  std::vector<size_t> knots;  // <= 8 indices into bins: where the shape of scattering is drawn; knots[0] = reference
 
   size_t size() const { return bins.size(); }
   size_t reference_bin() const { return knots.at(0); }
@@ -51,10 +51,10 @@ struct SpectralState {
   std::string text() const;
 };
 
-// bins: `step_um` wide, edges at multiples of the step, only where some band responds; the first and last bin of a stretch
-// reach to its ends and are 1/4 to 5/4 of a step wide (3/2 when the stretch has one bin only).
-// reference_um = 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the
-// reference first. Errors: no bands, step not positive, more than 100 000 bins.
+// bins: `step_um` wide, edges at multiples of the step, only where some band responds; the first and last bin of a
+// stretch reach to its ends and are 1/4 to 5/4 of a step wide (3/2 when the stretch has one bin only). reference_um =
+// 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the reference first.
+// Errors: no bands, step not positive, more than 100 000 bins.
 SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
 
 // Weights that turn bin radiances into band radiances: sum over bins of weight = 1 for each band.
@@ -69,13 +69,13 @@ class BandProjection {
 
  private:
   struct Row {
-    uint32_t first = 0;    // bin
-    uint32_t offset = 0;   // of its weights
+    uint32_t first = 0;   // bin
+    uint32_t offset = 0;  // of its weights
     uint32_t count = 0;
   };
   std::vector<Row> rows_;
   std::vector<double> weights_;
-  bool identity_ = true;   // band b is bin b
+  bool identity_ = true;  // band b is bin b
 };
 
 }  // namespace suite

@@ -30,8 +30,8 @@ void append(StudyImage& image, const std::string& sensor, std::span<const Band> 
 
 namespace {
 
-// Quantiles of Student's distribution for 1..100 degrees of freedom, beyond that the last; between whole numbers linear in
-// 1 / degrees, in which they hardly bend.
+// Quantiles of Student's distribution for 1..100 degrees of freedom, beyond that the last; between whole numbers linear
+// in 1 / degrees, in which they hardly bend.
 double quantile_95(double degrees) {
   static const std::vector<double> table = [] {
     std::vector<double> t;

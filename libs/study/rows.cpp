@@ -80,8 +80,12 @@ std::vector<StudyRow> rows_from_csv(std::string_view text, const std::string& id
         throw Error(where, "a row of the study is damaged", "remove the line: its run is done again");
       at = next + 1;
     }
-    StudyRow r{v[0] != 0, v[1], static_cast<uint64_t>(v[2]), v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[11],
-               v[12],     v[13], v[14],                       {},   {}};
+    StudyRow r{v[0] != 0, v[1],  static_cast<uint64_t>(v[2]),
+               v[3],      v[4],  v[5],
+               v[6],      v[7],  v[8],
+               v[9],      v[10], v[11],
+               v[12],     v[13], v[14],
+               {},        {}};
     const char* comma = std::find(at, end, ',');
     if (comma == end) throw Error(where, "a row of the study is damaged", "remove the line: its run is done again");
     r.figures = {std::string(at, comma),

@@ -17,10 +17,10 @@ struct StudyRow {
   double file_seconds = 0;   // handing over results
   double paths = 0, rays = 0, nodes = 0;
   double paths_per_problem = 0;
-  // Of the CPU time of the pipeline: the ray tracer; the rest of building paths (surfaces, sources, directions); turning
-  // them into radiance and truth; asking the sensor for rays.
+  // Of the CPU time of the pipeline: the ray tracer; the rest of building paths (surfaces, sources, directions);
+  // turning them into radiance and truth; asking the sensor for rays.
   double share_in_embree = 0, share_sample = 0, share_shade = 0, share_sensor = 0;
-  double peak_bytes = 0;       // of the process so far
+  double peak_bytes = 0;  // of the process so far
   Comparison figures;
   std::string ended;  // what ended the run
   double efficiency() const { return 1 / (figures.relative_rmse * figures.relative_rmse * seconds); }

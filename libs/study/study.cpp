@@ -172,10 +172,11 @@ Plot cost_plot(const StudySummary& s) {
 
 // The same as numbers.
 PageTable cost_table(const StudySummary& s) {
-  PageTable t{"Where the time goes: ray tracer; surfaces, sources and directions; radiance and truth; the sensor's rays; "
-              "acceleration structures; handing over results",
-              {"budget", "seconds", "trace %", "sample %", "shade %", "sensor %", "other %", "build s", "I/O s"},
-              {}};
+  PageTable t{
+      "Where the time goes: ray tracer; surfaces, sources and directions; radiance and truth; the sensor's rays; "
+      "acceleration structures; handing over results",
+      {"budget", "seconds", "trace %", "sample %", "shade %", "sensor %", "other %", "build s", "I/O s"},
+      {}};
   if (s.series.empty()) return t;
   for (const StudyPoint& p : s.series.front().points) {
     const double other = 1 - p.share_in_embree - p.share_sample - p.share_shade - p.share_sensor;
@@ -202,7 +203,8 @@ Plot coverage_plot(const StudySummary& s) {
 
 Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std::string& title,
              const std::vector<std::string>& paragraphs) {
-  Page page{title, paragraphs, {error_plot(s, true), error_plot(s, false), bias_plot(s), coverage_plot(s), cost_plot(s)}, {}};
+  Page page{
+      title, paragraphs, {error_plot(s, true), error_plot(s, false), bias_plot(s), coverage_plot(s), cost_plot(s)}, {}};
   page.paragraphs.push_back(strf("Bias: smallest p of %zu tests is %.3g, so the runs %s at 1 %% family-wise.", s.tests,
                                  s.smallest_p, s.unbiased ? "pass" : "FAIL"));
   PageTable slopes{"Slopes of log error (standard error)", {"series", "against seconds", "against paths"}, {}};
@@ -225,7 +227,8 @@ Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std
   PageTable runs{"Runs", {"series", "budget", "seed", "seconds", "nodes a path", "peak MB", "ended by"}, {}};
   for (const StudyRow& r : rows)
     runs.rows.push_back({r.figures.series, strf("%g", r.budget), strf("%llu", static_cast<unsigned long long>(r.seed)),
-                         strf("%.3g", r.seconds), strf("%.2f", r.nodes / r.paths), strf("%.0f", r.peak_bytes / 1e6), r.ended});
+                         strf("%.3g", r.seconds), strf("%.2f", r.nodes / r.paths), strf("%.0f", r.peak_bytes / 1e6),
+                         r.ended});
   page.tables = {std::move(slopes), std::move(points), cost_table(s), std::move(runs)};
   return page;
 }

@@ -63,7 +63,8 @@ class Probe {
 
 BakedCube::BakedCube(const PropertyMap& map, const ModelSpec& model, const SpectralState& state) : map_(map) {
   const size_t channels = map.channels, bins = state.size();
-  if (map.outside == Outside::error && (state.low_um < map.wavelength_um.front() || state.high_um > map.wavelength_um.back()))
+  if (map.outside == Outside::error &&
+      (state.low_um < map.wavelength_um.front() || state.high_um > map.wavelength_um.back()))
     throw Error(strf("map '%s' has channels from %g to %g um, %g to %g um are asked for", map.name.c_str(),
                      map.wavelength_um.front(), map.wavelength_um.back(), state.low_um, state.high_um),
                 "declare 'outside: hold' or 'zero' in the map");

@@ -24,8 +24,8 @@ class Optics {
  public:
   // Bakes the materials for which used[i] is true (all when empty). loads: what heats the surface of a material, for
   // temperature models that ask and bring no loads of their own; a model that asks without either is an Error. Models
-  // that do are solved here once, for the times of the window. Error naming the material when one cannot be baked. Keeps
-  // a reference to the scene.
+  // that do are solved here once, for the times of the window. Error naming the material when one cannot be baked.
+  // Keeps a reference to the scene.
   Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {},
          TimeSpan window = {});
 

@@ -4,7 +4,8 @@
 
 namespace suite {
 
-std::optional<Dir> vertex_normal(const Scene& scene, const Affine3& to_world, const TracedObject& object, const Hit& hit) {
+std::optional<Dir> vertex_normal(const Scene& scene, const Affine3& to_world, const TracedObject& object,
+                                 const Hit& hit) {
   if (object.mesh == kNone || scene.meshes[object.mesh].normals.empty()) return std::nullopt;
   const Mesh& mesh = scene.meshes[object.mesh];
   const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];

@@ -6,7 +6,8 @@
 namespace suite {
 
 // Interpolated vertex normal, on the front side as the winding says; nothing when the mesh has none.
-std::optional<Dir> vertex_normal(const Scene& scene, const Affine3& to_world, const TracedObject& object, const Hit& hit);
+std::optional<Dir> vertex_normal(const Scene& scene, const Affine3& to_world, const TracedObject& object,
+                                 const Hit& hit);
 
 // n bent by the heights of a map: n - (gradient of the height along the surface). Based on: J. Blinn, "Simulation of
 // wrinkled surfaces", SIGGRAPH 1978, in the form of M. Mikkelsen, "Bump mapping unparametrized surfaces", 2010.

@@ -102,8 +102,7 @@ SurfaceTangents tangents_at(const Scene& scene, const Affine3& to_world, const T
     const Vec3 n = hit.normal;
     const Vec3 local{a[0] * n.x + a[3] * n.y + a[6] * n.z, a[1] * n.x + a[4] * n.y + a[7] * n.z,
                      a[2] * n.x + a[5] * n.y + a[8] * n.z};
-    t = of_primitive(scene.primitives[object.primitive], to_world.inverse().point(hit.position),
-                     normalized(local));
+    t = of_primitive(scene.primitives[object.primitive], to_world.inverse().point(hit.position), normalized(local));
   } else if (!scene.meshes[object.mesh].uvs.empty()) {
     t = of_triangle(scene.meshes[object.mesh], hit.triangle);
   }

@@ -31,7 +31,8 @@ void CellWalk::wrap(Ray& ray) const {
   }
 }
 
-void CellWalk::start(const Periodic& periodic, const Box3& bounds, std::span<const Ray> rays, std::span<const double> distance) {
+void CellWalk::start(const Periodic& periodic, const Box3& bounds, std::span<const Ray> rays,
+                     std::span<const double> distance) {
   cell_ = periodic;
   rays_.clear();
   state_.clear();
@@ -75,8 +76,10 @@ void CellWalk::advance() {
     const double low[2] = {cell_.low.x, cell_.low.y}, size[2] = {cell_.size.x, cell_.size.y};
     for (int a = 0; a < 2; ++a) {
       const double d = ray.direction[a], slack = 1e-12 * (std::fabs(low[a]) + size[a]);
-      if (d > 0 && ray.origin[a] >= low[a] + size[a] - slack) ray.origin[a] = low[a];
-      else if (d < 0 && ray.origin[a] <= low[a] + slack) ray.origin[a] = low[a] + size[a];
+      if (d > 0 && ray.origin[a] >= low[a] + size[a] - slack)
+        ray.origin[a] = low[a];
+      else if (d < 0 && ray.origin[a] <= low[a] + slack)
+        ray.origin[a] = low[a] + size[a];
     }
     s.side = to_side(ray);
     rays_[kept] = ray;

@@ -1,5 +1,5 @@
-// Surfaces with holes: Embree's callback for triangles, and the same question for exact surfaces. The ray is looked up in
-// the caller's list, so the filter sees it unrounded.
+// Surfaces with holes: Embree's callback for triangles, and the same question for exact surfaces. The ray is looked up
+// in the caller's list, so the filter sees it unrounded.
 #include "trace/hit_filter.h"
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace suite {
 
-bool World::keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position, Vec3 normal) const {
+bool World::keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position,
+                  Vec3 normal) const {
   if (!filter || !may_pass[object]) return true;
   Hit hit;
   hit.position = position;
@@ -21,13 +22,15 @@ bool World::keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, 
   return filter->keeps(ray, flat.objects[object], hit);
 }
 
-std::optional<LocalHit> World::meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min, double t_max) const {
+std::optional<LocalHit> World::meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
+                                    double t_max) const {
   const Primitive& primitive = scene->primitives[flat.objects[object].primitive];
   const Affine3 to_local = to_world.inverse();
   const Vec3 origin = to_local.point(ray.origin + ray.direction * from), direction = to_local.vector(ray.direction);
   auto found = intersect(primitive, origin, direction, t_min, t_max);
   if (!filter || !may_pass[object]) return found;
-  while (found && !keeps(ray, object, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t), to_world.normal(found->normal)))
+  while (found && !keeps(ray, object, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t),
+                         to_world.normal(found->normal)))
     found = intersect(primitive, origin, direction, found->t + 1e-12 * std::max(1.0, std::fabs(found->t)), t_max);
   return found;
 }
@@ -36,7 +39,9 @@ void filter_triangles(const RTCFilterFunctionNArguments* args) {
   const auto& context = *static_cast<const TraceContext*>(args->context);
   const World& world = *context.world;
   // In the tile itself the geometry knows whose it is.
-  const uint32_t object = context.object != kNone ? context.object : static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
+  const uint32_t object = context.object != kNone
+                              ? context.object
+                              : static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
   if (!world.may_pass[object]) return;
   const TracedObject& o = world.flat.objects[object];
   const Mesh& m = world.scene->meshes[o.mesh];
@@ -50,7 +55,8 @@ void filter_triangles(const RTCFilterFunctionNArguments* args) {
       const float* f = &m.positions[3 * size_t{m.indices[3 * size_t{triangle} + c]}];
       p[c] = {f[0], f[1], f[2]};
     }
-    const double time = context.moving ? std::clamp(ray.time, context.moving->window.begin, context.moving->window.end) : 0;
+    const double time =
+        context.moving ? std::clamp(ray.time, context.moving->window.begin, context.moving->window.end) : 0;
     const Vec3 position = world.to_world(o, time).point(m.origin + p[0] * (1 - u - v) + p[1] * u + p[2] * v);
     if (!world.keeps(ray, object, triangle, u, v, position)) args->valid[i] = 0;
   }

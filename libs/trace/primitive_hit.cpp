@@ -34,8 +34,10 @@ void plane(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
   const double t = -o.z / d.z;
   if (d.z == 0 || !n.wants(t)) return;
   const double x = o.x + t * d.x, y = o.y + t * d.y;
-  if (a[0] == 0) n.hit = LocalHit{t, {0, 0, 1}, x, y};
-  else if (std::fabs(x) <= a[0] / 2 && std::fabs(y) <= a[1] / 2) n.hit = LocalHit{t, {0, 0, 1}, x / a[0] + 0.5, y / a[1] + 0.5};
+  if (a[0] == 0)
+    n.hit = LocalHit{t, {0, 0, 1}, x, y};
+  else if (std::fabs(x) <= a[0] / 2 && std::fabs(y) <= a[1] / 2)
+    n.hit = LocalHit{t, {0, 0, 1}, x / a[0] + 0.5, y / a[1] + 0.5};
 }
 
 // A flat ring at height z, facing along `up`.
@@ -106,7 +108,8 @@ struct Waves {
   Vec3 o, d;
   double bound1 = 0, bound2 = 0;  // of the slope and curvature of f along the ray
 
-  Waves(const std::vector<double>& parameters, Vec3 origin, Vec3 direction) : a(parameters), o(origin), d(direction), bound1(std::fabs(direction.z)) {
+  Waves(const std::vector<double>& parameters, Vec3 origin, Vec3 direction)
+      : a(parameters), o(origin), d(direction), bound1(std::fabs(direction.z)) {
     for (size_t i = 2; i < a.size(); i += 4) {
       const double k = std::fabs(a[i + 1] * d.x + a[i + 2] * d.y);
       bound1 += std::fabs(a[i]) * k;
@@ -183,13 +186,27 @@ std::optional<LocalHit> intersect(const Primitive& p, Vec3 o, Vec3 d, double t_m
   Nearest n{t_min, t_max, std::nullopt};
   const std::vector<double>& a = p.parameters;
   switch (p.kind) {
-    case PrimitiveKind::plane: plane(a, o, d, n); break;
-    case PrimitiveKind::disk: ring(a[1], a[0], 0, 1, o, d, n); break;
-    case PrimitiveKind::box: box(a, o, d, n); break;
-    case PrimitiveKind::sphere: sphere(a[0], o, d, n); break;
-    case PrimitiveKind::cone: cone(a[0], a[1], a[2], a[3] != 0, o, d, n); break;
-    case PrimitiveKind::cylinder: cone(a[0], a[0], a[1], a[2] != 0, o, d, n); break;
-    case PrimitiveKind::sinusoid: sinusoid(a, o, d, n); break;
+    case PrimitiveKind::plane:
+      plane(a, o, d, n);
+      break;
+    case PrimitiveKind::disk:
+      ring(a[1], a[0], 0, 1, o, d, n);
+      break;
+    case PrimitiveKind::box:
+      box(a, o, d, n);
+      break;
+    case PrimitiveKind::sphere:
+      sphere(a[0], o, d, n);
+      break;
+    case PrimitiveKind::cone:
+      cone(a[0], a[1], a[2], a[3] != 0, o, d, n);
+      break;
+    case PrimitiveKind::cylinder:
+      cone(a[0], a[0], a[1], a[2] != 0, o, d, n);
+      break;
+    case PrimitiveKind::sinusoid:
+      sinusoid(a, o, d, n);
+      break;
   }
   return n.hit;
 }

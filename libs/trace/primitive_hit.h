@@ -9,9 +9,9 @@
 namespace suite {
 
 struct LocalHit {
-  double t;       // in units of the direction's length
-  Vec3 normal;    // outward or upward, any length
-  double u, v;    // as libs/scene/primitives.h says for each kind
+  double t;     // in units of the direction's length
+  Vec3 normal;  // outward or upward, any length
+  double u, v;  // as libs/scene/primitives.h says for each kind
 };
 
 // First hit with t_min < t < t_max. direction: any length > 0. The primitive has passed check_primitive.

@@ -13,7 +13,8 @@ namespace suite {
 inline bool clip(const Box3& box, Vec3 origin, Vec3 inverse_direction, double t_max, double& enter, double& leave) {
   double near = 0, far = t_max;
   for (int i = 0; i < 3; ++i) {
-    const double a = (box.low[i] - origin[i]) * inverse_direction[i], b = (box.high[i] - origin[i]) * inverse_direction[i];
+    const double a = (box.low[i] - origin[i]) * inverse_direction[i],
+                 b = (box.high[i] - origin[i]) * inverse_direction[i];
     // 0 * infinity when the origin lies in the slab's plane and the ray runs within it: NaN compares false and the
     // slab does not clip.
     const double first = a > b ? b : a, last = (a > b ? a : b) * (1 + 4 * 2.22e-16);
@@ -68,8 +69,8 @@ class TileBvh {
  private:
   struct Node {
     Box3 box;
-    uint32_t second = 0;              // right child; the left one follows its parent
-    uint32_t tile = UINT32_MAX;       // leaves
+    uint32_t second = 0;         // right child; the left one follows its parent
+    uint32_t tile = UINT32_MAX;  // leaves
   };
   uint32_t build(std::span<const Box3> boxes, std::span<uint32_t> order, int depth);
   std::vector<Node> nodes_;

@@ -14,10 +14,13 @@ RTCDevice device() {
   static const RTCDevice made = [] {
     RTCDevice d = rtcNewDevice("isa=avx2,threads=0");
     if (!d) throw Error("Embree cannot be started", "a processor with AVX2 is needed");
-    rtcSetDeviceErrorFunction(d, [](void*, RTCError code, const char* text) {
-      if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-      throw Bug(strf("Embree error %d: %s", static_cast<int>(code), text ? text : ""));
-    }, nullptr);
+    rtcSetDeviceErrorFunction(
+        d,
+        [](void*, RTCError code, const char* text) {
+          if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+          throw Bug(strf("Embree error %d: %s", static_cast<int>(code), text ? text : ""));
+        },
+        nullptr);
     return d;
   }();
   return made;
@@ -26,10 +29,12 @@ RTCDevice device() {
 FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window, std::shared_ptr<const HitFilter> filter)
+Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window,
+               std::shared_ptr<const HitFilter> filter)
     : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter)), window) {}
 
-Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window) : world_(std::move(world)), bounds_(world_->bounds) {
+Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
+    : world_(std::move(world)), bounds_(world_->bounds) {
   if (world_->flat.fixed == world_->flat.objects.size()) return;
   const FlushDenormals flush;
   moving_ = std::make_unique<MovingPart>(*world_, window);
@@ -43,11 +48,15 @@ const std::optional<Periodic>& Tracer::periodic() const { return world_->periodi
 size_t Tracer::triangles() const { return world_->triangles; }
 size_t Tracer::tiles() const { return world_->tiles.tiles.size() + (moving_ ? moving_->tiles.tiles.size() : 0); }
 size_t Tracer::tiles_built() const {
-  const auto count = [](const TileSet& set) { return static_cast<size_t>(std::count_if(set.tiles.begin(), set.tiles.end(), [](const auto& t) { return t->once.done(); })); };
+  const auto count = [](const TileSet& set) {
+    return static_cast<size_t>(
+        std::count_if(set.tiles.begin(), set.tiles.end(), [](const auto& t) { return t->once.done(); }));
+  };
   return count(world_->tiles) + (moving_ ? count(moving_->tiles) : 0);
 }
 std::string Tracer::engine() {
-  return strf("Embree %d.%d.%d avx2", static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_MAJOR)),
+  return strf("Embree %d.%d.%d avx2",
+              static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_MAJOR)),
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_MINOR)),
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_PATCH)));
 }
@@ -58,7 +67,8 @@ Affine3 Tracer::to_world(const TracedObject& o, double time) const {
 
 namespace {
 
-// A ray's way through the tiles, nearest first. Rays that cross more tiles than fit here start again where they stopped.
+// A ray's way through the tiles, nearest first. Rays that cross more tiles than fit here start again where they
+// stopped.
 struct Itinerary {
   static constexpr uint32_t kRoom = 12;
   uint32_t tile[kRoom];
@@ -126,8 +136,10 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
     for (uint32_t i = 0; i < rays.size(); ++i) {
       Itinerary& way = ways[i];
       if (way.next == way.count && way.more && reach[i] > 0) way.go_on(bvh, rays[i], reach[i]);
-      if (way.next < way.count && way.enter[way.next] <= reach[i]) waiting.emplace_back(way.tile[way.next], i);
-      else way.next = way.count;
+      if (way.next < way.count && way.enter[way.next] <= reach[i])
+        waiting.emplace_back(way.tile[way.next], i);
+      else
+        way.next = way.count;
     }
     if (waiting.empty()) return;
     std::stable_sort(waiting.begin(), waiting.end(), [](auto& a, auto& b) { return a.first < b.first; });
@@ -136,7 +148,8 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
       packet.ray[packet.size] = i;
       packet.advance[packet.size] = ways[i].enter[ways[i].next++];
       ++packet.size;
-      if (packet.size == kWidth || w + 1 == waiting.size() || waiting[w + 1].first != tile) send(tile, packet), packet.size = 0;
+      if (packet.size == kWidth || w + 1 == waiting.size() || waiting[w + 1].first != tile)
+        send(tile, packet), packet.size = 0;
     }
   }
 }
@@ -147,7 +160,8 @@ static std::span<const uint32_t> unbounded_of(const World& world) {
 }
 
 // reach: how far each ray may go on entry, where it was stopped on return.
-void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& s) const {
+void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent,
+                              TraceStatistics& s) const {
   for (Hit& hit : hits) hit.object = kNone;
   s.rays += rays.size();
   const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
@@ -164,7 +178,8 @@ void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
 }
 
-void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& s) const {
+void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked,
+                               bool coherent, TraceStatistics& s) const {
   std::fill(blocked.begin(), blocked.end(), uint8_t{0});
   s.rays += rays.size();
   const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
@@ -225,8 +240,8 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool cohere
   if (!world_->unbounded.empty()) nearest_unbounded(rays, hits, s);
 }
 
-void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
-                      TraceStatistics& s) const {
+void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
+                      bool coherent, TraceStatistics& s) const {
   thread_local std::vector<double> reach;
   thread_local CellWalk walk;
   if (!world_->periodic) {

@@ -1,12 +1,12 @@
 // A scene frozen in a time window, ready to be asked for nearest hits and visibility.
 //
-// Geometry lives in tiles: groups of objects within a few kilometres, each an Embree scene in float metres around its own
-// double origin. Rays are double; they are advanced to a tile's bounds and re-based before they become float. Instances
-// take the unrounded ray into their own frame in double, so what is inside one is as precise as its own size, wherever it
-// stands and however it moves. Hits are rebuilt in double from barycentrics.
+// Geometry lives in tiles: groups of objects within a few kilometres, each an Embree scene in float metres around its
+// own double origin. Rays are double; they are advanced to a tile's bounds and re-based before they become float.
+// Instances take the unrounded ray into their own frame in double, so what is inside one is as precise as its own size,
+// wherever it stands and however it moves. Hits are rebuilt in double from barycentrics.
 //
-// What moves has exact poses at the keys of its window and linear ones between them, keys as close as motion_bound asks;
-// hits are rebuilt with the exact pose (screw motion) at the time of the ray.
+// What moves has exact poses at the keys of its window and linear ones between them, keys as close as motion_bound
+// asks; hits are rebuilt with the exact pose (screw motion) at the time of the ray.
 //
 // Based on: Goodenough & Brown, section III-A-1 (Embree, instancing of any depth); I. Wald et al., "Embree: a kernel
 // framework for efficient CPU ray tracing", 2014. Debian's Embree has one instance level, so nested placements are
@@ -27,35 +27,35 @@ namespace suite {
 
 // One flattened instance of a mesh or of an exact surface.
 struct TracedObject {
-  const Affine3* place;             // local (double, mesh origin included) -> ENU, or the axes of the moving node
-  uint32_t mesh = kNone;            // index into Scene::meshes, or kNone
-  uint32_t primitive = kNone;       // index into Scene::primitives, or kNone
+  const Affine3* place;        // local (double, mesh origin included) -> ENU, or the axes of the moving node
+  uint32_t mesh = kNone;       // index into Scene::meshes, or kNone
+  uint32_t primitive = kNone;  // index into Scene::primitives, or kNone
   uint32_t material_override = kNone;
-  uint32_t tag = kNone;             // nearest tag on the way down from the root
-  uint32_t instance = kNone;        // number of the flattened instance, in the order of the hierarchy
-  uint32_t node = kNone;            // the moving frame it belongs to; kNone = at rest
+  uint32_t tag = kNone;       // nearest tag on the way down from the root
+  uint32_t instance = kNone;  // number of the flattened instance, in the order of the hierarchy
+  uint32_t node = kNone;      // the moving frame it belongs to; kNone = at rest
 };
 
 struct Hit {
-  double distance = 0;              // m from the ray's origin
-  Vec3 position;                    // ENU, rebuilt from barycentrics in double
-  Dir normal;                       // geometric, unit, on the front side (counter-clockwise vertices), ENU
-  double time = 0;                  // s, of the ray
-  uint32_t object = kNone;          // index into Tracer::objects(); kNone = nothing was hit
-  uint32_t triangle = 0;            // in the mesh
-  float u = 0, v = 0;               // barycentrics of vertices 1 and 2; of an exact surface its UV
-  float step = 0;                   // m, how far rays that leave the surface must start off it
+  double distance = 0;      // m from the ray's origin
+  Vec3 position;            // ENU, rebuilt from barycentrics in double
+  Dir normal;               // geometric, unit, on the front side (counter-clockwise vertices), ENU
+  double time = 0;          // s, of the ray
+  uint32_t object = kNone;  // index into Tracer::objects(); kNone = nothing was hit
+  uint32_t triangle = 0;    // in the mesh
+  float u = 0, v = 0;       // barycentrics of vertices 1 and 2; of an exact surface its UV
+  float step = 0;           // m, how far rays that leave the surface must start off it
   bool hit() const { return object != kNone; }
 };
 
 struct TraceStatistics {
-  uint64_t rays = 0;                // nearest + visibility
-  uint64_t cycles = 0;              // time-stamp counter cycles spent inside Embree
+  uint64_t rays = 0;    // nearest + visibility
+  uint64_t cycles = 0;  // time-stamp counter cycles spent inside Embree
 };
 
 // A scene that repeats itself in both horizontal directions: what leaves the cell on one side comes in on the other.
 struct Periodic {
-  Vec2 low, size;                   // the cell, m ENU; size > 0
+  Vec2 low, size;  // the cell, m ENU; size > 0
 };
 
 // How far (m) what moves may be from its true place while rays look for it: 1e-5 of its extent, at most 0.1 mm. Hits
@@ -63,7 +63,7 @@ struct Periodic {
 double motion_bound(double radius);
 
 class HitFilter;
-struct World;         // what is at rest, shared by the tracers of all windows
+struct World;  // what is at rest, shared by the tracers of all windows
 struct MovingPart;
 
 class Tracer {
@@ -74,8 +74,8 @@ class Tracer {
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Surfaces without bounds are not repeated but met by the whole ray.
   // Error: a motion that does not cover the window; moving things, or a plane that is not level, in a periodic scene.
-  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt, TimeSpan window = {},
-                  std::shared_ptr<const HitFilter> filter = nullptr);
+  explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
+                  TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -98,21 +98,23 @@ class Tracer {
   Affine3 to_world(const TracedObject& object, double time) const;
   Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
   const std::optional<Periodic>& periodic() const;
-  const Box3& bounds() const { return bounds_; }       // ENU, all places that moving things have in the window
-  size_t triangles() const;                            // instanced ones counted each time
+  const Box3& bounds() const { return bounds_; }  // ENU, all places that moving things have in the window
+  size_t triangles() const;                       // instanced ones counted each time
   size_t tiles() const;
-  size_t tiles_built() const;                          // so far
+  size_t tiles_built() const;  // so far
   // Name and instruction set of the ray tracer, for result headers: "Embree 3.13.5 avx2".
   static std::string engine();
 
  private:
   friend class TracerCache;
   Tracer(std::shared_ptr<const World> world, TimeSpan window);
-  void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent, TraceStatistics& statistics) const;
+  void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent,
+                        TraceStatistics& statistics) const;
   void nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& statistics) const;
-  void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent, TraceStatistics& statistics) const;
+  void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent,
+                         TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
-  std::unique_ptr<MovingPart> moving_;                 // null when nothing moves
+  std::unique_ptr<MovingPart> moving_;  // null when nothing moves
   Box3 bounds_;
 };
 
@@ -124,12 +126,12 @@ class TracerCache {
                        std::shared_ptr<const HitFilter> filter = nullptr);
   ~TracerCache();
   std::shared_ptr<const Tracer> get(TimeSpan window);
-  size_t builds() const { return builds_; }            // tracers made so far
+  size_t builds() const { return builds_; }  // tracers made so far
 
  private:
   struct Kept;
   std::shared_ptr<const World> world_;
-  std::vector<std::unique_ptr<Kept>> kept_;            // the most recent last
+  std::vector<std::unique_ptr<Kept>> kept_;  // the most recent last
   size_t builds_ = 0;
 };
 

@@ -58,7 +58,8 @@ inline SourceSpecs terrain_sources() {
 class TerrainCamera final : public Sensor {
  public:
   TerrainCamera(uint32_t edge, uint32_t paths, size_t bands = 1) {
-    for (size_t b = 0; b < bands; ++b) bands_.push_back(Band::rectangular("b" + std::to_string(b), 0.5 + 0.01 * static_cast<double>(b), 0.01));
+    for (size_t b = 0; b < bands; ++b)
+      bands_.push_back(Band::rectangular("b" + std::to_string(b), 0.5 + 0.01 * static_cast<double>(b), 0.01));
     state_ = make_state(bands_, 0.01);
     Capture c;
     c.columns = c.rows = edge;

@@ -56,7 +56,8 @@ struct Expected {
   Place stare, nadir, along;
 };
 Expected expected(const std::string& tle, double time, double dut1) {
-  const OrbitState teme = Sgp4(read_tle(tle).at(0).elements).at_minutes(time / 60);  // the epoch of the elements is second 0
+  const OrbitState teme =
+      Sgp4(read_tle(tle).at(0).elements).at_minutes(time / 60);  // the epoch of the elements is second 0
   const double turn = sidereal(10.5 * 3600 + time + dut1);
   const Vec3 p = turned(teme.position, turn), v = turned(teme.velocity, turn) - Vec3{-kRate * p.y, kRate * p.x, 0};
   const Vec3 up = up_at(place_of(p)), y = normalized(v), z = normalized(up - y * dot(up, y));

@@ -46,7 +46,7 @@ TEST(SampleScenes, RamiCanopy) {
                                       kSamples + "rami_hom03/plot.py' plot.svg out/hom03_red_50_brf.csv");
   ASSERT_EQ(r.code, 0) << r.out << r.err;
   const std::string brf = read_text(folder / "out/hom03_red_50_brf.csv"),
-                    mes = read_text(folder / "out/hom03_red_50_red-brfpp.mes");
+                    mes = read_text(folder / "out/brfpp_suite-hom03_red_50_red.mes");
   EXPECT_EQ(std::count(brf.begin(), brf.end(), '\n'), 1 + 152);
   EXPECT_EQ(std::count(mes.begin(), mes.end(), '\n'), 1 + 76);
   EXPECT_THAT(read_text(folder / "out/hom03_red_50_fluxes.csv"), testing::HasSubstr("red,absorbed_by_canopy,0."));

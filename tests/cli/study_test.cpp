@@ -60,7 +60,8 @@ TEST(Method, ThePapersBringsItsRuleOfStopping) {
   const std::string command = kBin + "dirsig-render " + prepared(folder, "smooth") + " -o " + (folder / "out");
   const CommandResult paper = run_command(command + " --method paper");
   EXPECT_EQ(paper.code, 0) << paper.err;
-  EXPECT_NE((paper.out + paper.err).find("one more path changed its mean"), std::string::npos) << paper.out << paper.err;
+  EXPECT_NE((paper.out + paper.err).find("one more path changed its mean"), std::string::npos)
+      << paper.out << paper.err;
   const CommandResult planned = run_command(command + " --method paper --stop plan");
   EXPECT_EQ(planned.code, 0) << planned.err;
   EXPECT_EQ((planned.out + planned.err).find("one more path changed its mean"), std::string::npos);

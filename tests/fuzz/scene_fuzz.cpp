@@ -37,8 +37,10 @@ const std::string kText =
     "[1, 2, 3]}]\n"
     "world:\n  - {place: a, translate: [1, 2, 3], tag: t, material: red}\n  - {place: tri, on: tri, scatter: "
     "{density_per_m2: 10}}\n  - {place: sea, matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}\n"
-    "  - {place: tri, motion: {kind: composed, outer: {kind: keyframes, keys: [{time_s: 0, latitude_deg: 49, longitude_deg: "
-    "8, height_m: 2}, {time_s: 5, position_m: [1, 2, 3], heading_deg: 4}]}, inner: {kind: spin, position_m: [0, 0, 1], axis: "
+    "  - {place: tri, motion: {kind: composed, outer: {kind: keyframes, keys: [{time_s: 0, latitude_deg: 49, "
+    "longitude_deg: "
+    "8, height_m: 2}, {time_s: 5, position_m: [1, 2, 3], heading_deg: 4}]}, inner: {kind: spin, position_m: [0, 0, 1], "
+    "axis: "
     "[0, 0, 1], rate_deg_s: 9}, pointing: nadir}}\n";
 
 }  // namespace

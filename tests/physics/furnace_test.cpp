@@ -1,7 +1,8 @@
 // Furnaces and closed forms of the radiometry core.
 //
-// Open furnace: a convex body in a uniform field of radiance L0 returns W(out) L0, for every model of the table, knot and
-// direction. Closed furnace: an isothermal box returns B(T). One-surface closed forms: a Lambert plane under the sun.
+// Open furnace: a convex body in a uniform field of radiance L0 returns W(out) L0, for every model of the table, knot
+// and direction. Closed furnace: an isothermal box returns B(T). One-surface closed forms: a Lambert plane under the
+// sun.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,17 +58,20 @@ TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
     model->total(dir_from_angles(zeniths[i], 0.7), W);
     projection.apply(std::vector<double>(W.begin(), W.end()), in_bands);
     for (size_t b = 0; b < bands.size(); ++b) {
-      const double expected = 2.0 * in_bands[b], got = run.result.radiance[i * bands.size() + b], se = run.result.standard_error[i * bands.size() + b];
+      const double expected = 2.0 * in_bands[b], got = run.result.radiance[i * bands.size() + b],
+                   se = run.result.standard_error[i * bands.size() + b];
       // 0.1 % of the value; the 5-sigma term covers models whose sampling weights vary.
       EXPECT_NEAR(got, expected, 1e-3 * expected + 5 * se + 1e-9) << "zenith " << zeniths[i] << " band " << b;
       // A dispersive interface carries each wavelength on one knot's paths only: most paths then bring nothing.
       const double share = model->has_delta() && !model->spectrally_uniform_shape() ? 10 : 1;
-      EXPECT_LE(se, share * 5e-3 * expected + 1e-4) << "sampling weights vary too much for the furnace to mean anything";
+      EXPECT_LE(se, share * 5e-3 * expected + 1e-4)
+          << "sampling weights vary too much for the furnace to mean anything";
     }
   }
   EXPECT_EQ(run.report.statistics.failures, 0u);
 }
-INSTANTIATE_TEST_SUITE_P(Table, OpenFurnace, testing::ValuesIn(all_models()), [](const auto& one) { return one.param.row + "_" + std::to_string(one.param.example); });
+INSTANTIATE_TEST_SUITE_P(Table, OpenFurnace, testing::ValuesIn(all_models()),
+                         [](const auto& one) { return one.param.row + "_" + std::to_string(one.param.example); });
 
 TEST(ClosedFurnace, IsothermalBoxIsBlack) {
   // A camera inside a closed box of emissivity 0.3 at 300 K sees the blackbody, short of what max_nodes cuts:
@@ -94,7 +98,11 @@ TEST(ClosedFurnace, RouletteKeepsTheMean) {
   PipelineOptions options;
   options.max_nodes = 64;
   options.roulette_after = 2;
-  const auto run = render(scene, {}, std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 0}, {0.6, 0, 0.8}, 0}}, std::vector<Band>{Band::rectangular("lwir", 10, 1)}, 1 << 16, 0.1), options);
+  const auto run =
+      render(scene, {},
+             std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 0}, {0.6, 0, 0.8}, 0}},
+                                         std::vector<Band>{Band::rectangular("lwir", 10, 1)}, 1 << 16, 0.1),
+             options);
   const double blackbody = planck_band_radiance(9.5, 10.5, 300);
   EXPECT_NEAR(run.result.radiance[0], blackbody, 4.5 * run.result.standard_error[0]);
   EXPECT_LT(run.result.standard_error[0], 0.01 * blackbody);
@@ -118,7 +126,8 @@ TEST(LambertPlane, UnderSunDisk) {
   for (const double half_angle : {0.0001, 0.00465, 0.1}) {
     SourceSpecs sources;
     sources.sun = SunSpec{dir_from_angles(0.8, 2), half_angle, Curve::constant(1361)};
-    const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.1, 0.9}), one_band(), 4096));
+    const auto run =
+        render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.1, 0.9}), one_band(), 4096));
     const double expected = 0.37 * 1361 * std::cos(0.8) / kPi;
     for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(run.result.radiance[i], expected, 1e-3 * expected) << half_angle;
   }
@@ -132,7 +141,8 @@ TEST(LambertPlane, ExplicitAndChanceSunsAgree) {
   PipelineOptions chance;
   chance.explicit_sources = false;
   const auto both = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.3}), one_band(), 1 << 14));
-  const auto alone = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.3}), one_band(), 1 << 16), chance);
+  const auto alone =
+      render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.3}), one_band(), 1 << 16), chance);
   const double se = std::hypot(both.result.standard_error[0], alone.result.standard_error[0]);
   EXPECT_NEAR(both.result.radiance[0], alone.result.radiance[0], 4.5 * se);
   EXPECT_LT(se, 0.01 * both.result.radiance[0]);
@@ -153,8 +163,8 @@ TEST(LambertPlane, TabulatedSkyMatchesItsIntegral) {
 
 TEST(TwoBounces, FloorAndWallExchange) {
   // Two infinite-looking parallel plates would need no closed form here; instead: a floor point under a large parallel
-  // ceiling that emits uniformly. Ceiling at 400 K black, floor rho = 0.5 cold: L = rho F B, F = view factor of a square
-  // ceiling of half size a at height h from the middle of the floor (Howell C-12, four corner rectangles).
+  // ceiling that emits uniformly. Ceiling at 400 K black, floor rho = 0.5 cold: L = rho F B, F = view factor of a
+  // square ceiling of half size a at height h from the middle of the floor (Howell C-12, four corner rectangles).
   Material ceiling = material("ceiling", lambert(0));
   ceiling.temperature_k = 400;
   Mesh top = quad(3, 2, 1);
@@ -162,13 +172,17 @@ TEST(TwoBounces, FloorAndWallExchange) {
   const double a = 3.0 / 2.0;
   const double corner = (1 / (2 * kPi)) * 2 * (a / std::sqrt(1 + a * a)) * std::atan(a / std::sqrt(1 + a * a));
   const double F = 4 * corner, B = planck_band_radiance(9.5, 10.5, 400);
-  const auto run = render(scene, {}, std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 1}, {0, 0, -1}, 0}}, std::vector<Band>{Band::rectangular("lwir", 10, 1)}, 1 << 16, 0.1));
+  const auto run =
+      render(scene, {},
+             std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 1}, {0, 0, -1}, 0}},
+                                         std::vector<Band>{Band::rectangular("lwir", 10, 1)}, 1 << 16, 0.1));
   EXPECT_NEAR(run.result.radiance[0], 0.5 * F * B, 1e-3 * 0.5 * F * B + 4 * run.result.standard_error[0]);
 }
 
 TEST(Determinism, SameBytesForAnyNumberOfThreads) {
   Material leaf = material("leaf", lambert(0.4, 0.4));
-  const auto scene = scene_of({quad(5, 0, 0), box({-1, -1, 0.5}, {1, 1, 1.5}, 1, true)}, {material("floor", lambert(0.5)), leaf});
+  const auto scene =
+      scene_of({quad(5, 0, 0), box({-1, -1, 0.5}, {1, 1, 1.5}, 1, true)}, {material("floor", lambert(0.5)), leaf});
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.6, 2), 0.00465, Curve::constant(1000)};
   sources.sky = uniform_sky(20, false);
@@ -179,17 +193,20 @@ TEST(Determinism, SameBytesForAnyNumberOfThreads) {
     set_threads(threads);
     const auto run = render(scene, sources, std::make_unique<RaySensor>(rays, one_band(), 64));
     if (first.empty()) first = run.result.radiance;
-    EXPECT_TRUE(std::equal(first.begin(), first.end(), run.result.radiance.begin(), run.result.radiance.end())) << threads << " threads";
+    EXPECT_TRUE(std::equal(first.begin(), first.end(), run.result.radiance.begin(), run.result.radiance.end()))
+        << threads << " threads";
   }
   set_threads(0);
 }
 
 TEST(Nothing, EmptySceneAndNoSourcesAreBlack) {
   const auto empty = scene_of({}, {});
-  const auto run = render(empty, {}, std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 0}, {0, 0, 1}, 0}}, one_band(), 16));
+  const auto run =
+      render(empty, {}, std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 0}, {0, 0, 1}, 0}}, one_band(), 16));
   EXPECT_EQ(run.result.radiance[0], 0);
   EXPECT_EQ(run.result.standard_error[0], 0);
-  const auto dark = render(scene_of({quad(1, 0, 0)}, {material("m", lambert(1))}), {}, std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 1}, {0, 0, -1}, 0}}, one_band(), 16));
+  const auto dark = render(scene_of({quad(1, 0, 0)}, {material("m", lambert(1))}), {},
+                           std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 1}, {0, 0, -1}, 0}}, one_band(), 16));
   EXPECT_EQ(dark.result.radiance[0], 0);
 }
 

@@ -12,7 +12,8 @@ namespace {
 
 std::shared_ptr<Scene> spheres(int copies) {
   // A ground square of 10 m and two spheres, one of them across the side of the cell.
-  auto scene = scene_of({mesh_of({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}}, {0, 1, 2, 0, 2, 3}, 0)}, {material("ground", lambert(0.3)), material("ball", lambert(0.6))});
+  auto scene = scene_of({mesh_of({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
+                        {material("ground", lambert(0.3)), material("ball", lambert(0.6))});
   scene->primitives.push_back({"ball", PrimitiveKind::sphere, {1.5}, 1});
   Group cell = scene->groups[0];
   for (const Vec3 c : {Vec3{4, 5, 2}, Vec3{9.5, 0.3, 3}}) {
@@ -80,7 +81,9 @@ TEST(Periodic, PlanesWithoutBoundsAreMet) {
       int met = 0;
       for (int i = 0; i < 2000; ++i) {
         const double up = height > 4 ? 1 : -1;
-        const Ray ray{{10 * rng.uniform(), 10 * rng.uniform(), 4}, normalized(Vec3{rng.uniform() - 0.5, rng.uniform() - 0.5, up * (0.01 + 0.3 * rng.uniform())}), 0};
+        const Ray ray{{10 * rng.uniform(), 10 * rng.uniform(), 4},
+                      normalized(Vec3{rng.uniform() - 0.5, rng.uniform() - 0.5, up * (0.01 + 0.3 * rng.uniform())}),
+                      0};
         Hit hit;
         cell.nearest({&ray, 1}, {&hit, 1}, false, statistics);
         ASSERT_TRUE(hit.hit()) << height << " " << i;

@@ -34,9 +34,9 @@ Mesh dome(double width) {
 
 struct Setting {
   const char* name;
-  double distance;   // of the camera, m
-  Vec3 centre;       // of the dome, ENU
-  double width;      // m
+  double distance;  // of the camera, m
+  Vec3 centre;      // of the dome, ENU
+  double width;     // m
 };
 
 class Precision : public testing::TestWithParam<Setting> {};
@@ -90,8 +90,10 @@ TEST_P(Precision, NothingMissedNothingFalselyShadowed) {
 
 constexpr double kEarth = 6.378e6;
 INSTANTIATE_TEST_SUITE_P(Table, Precision,
-                         testing::Values(Setting{"camera_1m_scene_1mm", 1, {0, 0, 0}, 1e-3}, Setting{"camera_2km", 2e3, {0, 0, 0}, 1000},
-                                         Setting{"camera_700km", 7e5, {0, 0, 0}, 1000}, Setting{"camera_36000km", 3.6e7, {0, 0, 0}, 1000},
+                         testing::Values(Setting{"camera_1m_scene_1mm", 1, {0, 0, 0}, 1e-3},
+                                         Setting{"camera_2km", 2e3, {0, 0, 0}, 1000},
+                                         Setting{"camera_700km", 7e5, {0, 0, 0}, 1000},
+                                         Setting{"camera_36000km", 3.6e7, {0, 0, 0}, 1000},
                                          Setting{"geometry_1000km_away", 7e5, {1e6, 2e5, 0}, 1000},
                                          Setting{"earth_centred", 7e5, {kEarth * 0.6, 0, kEarth * 0.8}, 1000},
                                          Setting{"tile_4km", 7e5, {0, 0, 0}, 4000}),
@@ -134,7 +136,8 @@ TEST(Instancing, NestedSixtyFourDeepAgreesWithDoubleReference) {
     Group g;
     Placement p;
     const double scale = level % 2 ? 1.25 : 0.8;
-    p.to_parent = translation({0.3, -0.2, 0.1}) * rotation(normalized(Vec3{1, 2, 3}), 0.3) * scaling({level % 8 == 0 ? -scale : scale, scale, scale});
+    p.to_parent = translation({0.3, -0.2, 0.1}) * rotation(normalized(Vec3{1, 2, 3}), 0.3) *
+                  scaling({level % 8 == 0 ? -scale : scale, scale, scale});
     p.kind = level < 63 ? TargetKind::group : TargetKind::mesh;
     p.target = level < 63 ? level + 1 : 0;
     product = product * p.to_parent;
@@ -166,7 +169,9 @@ TEST(Precision, CoherentPacketsMissNoSheetWhereTheyBegin) {
   Pcg32 random(9);
   std::vector<Ray> rays;
   for (int i = 0; i < 4000; ++i)
-    rays.push_back({{12 * random.uniform() - 6, 12 * random.uniform() - 6, 20}, normalized(Vec3{0.1 * random.uniform(), 0.1 * random.uniform(), -1}), 0});
+    rays.push_back({{12 * random.uniform() - 6, 12 * random.uniform() - 6, 20},
+                    normalized(Vec3{0.1 * random.uniform(), 0.1 * random.uniform(), -1}),
+                    0});
   std::vector<Hit> hits(rays.size());
   for (const bool coherent : {true, false}) {
     tracer.nearest(rays, hits, coherent, statistics);

@@ -38,21 +38,53 @@ Vec3 polar(double r, double turn, double z) { return {r * std::cos(2 * kPi * tur
 
 std::vector<Case> cases() {
   return {
-      {"plane", PrimitiveKind::plane, {2, 1}, {[](double u, double v) { return Vec3{2 * u - 1, v - 0.5, 0}; }}},
+      {"plane", PrimitiveKind::plane, {2, 1}, {[](double u, double v) {
+         return Vec3{2 * u - 1, v - 0.5, 0};
+       }}},
       {"disk", PrimitiveKind::disk, {1, 0.3}, {[](double u, double v) { return polar(0.3 + 0.7 * u, v, 0); }}},
-      {"box", PrimitiveKind::box, {-1, -0.5, 0, 1, 0.5, 0.7},
-       {[](double u, double v) { return Vec3{2 * u - 1, v - 0.5, 0}; }, [](double u, double v) { return Vec3{2 * u - 1, v - 0.5, 0.7}; },
-        [](double u, double v) { return Vec3{-1, u - 0.5, 0.7 * v}; }, [](double u, double v) { return Vec3{1, u - 0.5, 0.7 * v}; },
-        [](double u, double v) { return Vec3{2 * u - 1, -0.5, 0.7 * v}; }, [](double u, double v) { return Vec3{2 * u - 1, 0.5, 0.7 * v}; }}},
-      {"sphere", PrimitiveKind::sphere, {0.8}, {[](double u, double v) { return dir_from_angles(kPi * v, 2 * kPi * u) * 0.8; }}},
-      {"frustum", PrimitiveKind::cone, {0.8, 0.3, 1, 1},
-       {[](double u, double v) { return polar(0.8 - 0.5 * v, u, v); }, [](double u, double v) { return polar(0.8 * u, v, 0); }, [](double u, double v) { return polar(0.3 * u, v, 1); }}},
-      {"cone_open", PrimitiveKind::cone, {0.8, 0, 1, 0}, {[](double u, double v) { return polar(0.8 * (1 - v), u, v); }}},
-      {"cylinder", PrimitiveKind::cylinder, {0.6, 1.2, 1},
-       {[](double u, double v) { return polar(0.6, u, 1.2 * v); }, [](double u, double v) { return polar(0.6 * u, v, 0); }, [](double u, double v) { return polar(0.6 * u, v, 1.2); }}},
-      {"cylinder_open", PrimitiveKind::cylinder, {0.6, 1.2, 0}, {[](double u, double v) { return polar(0.6, u, 1.2 * v); }}},
-      {"sinusoid", PrimitiveKind::sinusoid, {2, 1.5, 0.1, 9, 2, 0.3, 0.04, -5, 17, 1},
+      {"box",
+       PrimitiveKind::box,
+       {-1, -0.5, 0, 1, 0.5, 0.7},
        {[](double u, double v) {
+          return Vec3{2 * u - 1, v - 0.5, 0};
+        },
+        [](double u, double v) {
+          return Vec3{2 * u - 1, v - 0.5, 0.7};
+        },
+        [](double u, double v) {
+          return Vec3{-1, u - 0.5, 0.7 * v};
+        },
+        [](double u, double v) {
+          return Vec3{1, u - 0.5, 0.7 * v};
+        },
+        [](double u, double v) {
+          return Vec3{2 * u - 1, -0.5, 0.7 * v};
+        },
+        [](double u, double v) {
+          return Vec3{2 * u - 1, 0.5, 0.7 * v};
+        }}},
+      {"sphere", PrimitiveKind::sphere, {0.8}, {[](double u, double v) {
+         return dir_from_angles(kPi * v, 2 * kPi * u) * 0.8;
+       }}},
+      {"frustum",
+       PrimitiveKind::cone,
+       {0.8, 0.3, 1, 1},
+       {[](double u, double v) { return polar(0.8 - 0.5 * v, u, v); },
+        [](double u, double v) { return polar(0.8 * u, v, 0); },
+        [](double u, double v) { return polar(0.3 * u, v, 1); }}},
+      {"cone_open", PrimitiveKind::cone, {0.8, 0, 1, 0}, {[](double u, double v) {
+         return polar(0.8 * (1 - v), u, v);
+       }}},
+      {"cylinder",
+       PrimitiveKind::cylinder,
+       {0.6, 1.2, 1},
+       {[](double u, double v) { return polar(0.6, u, 1.2 * v); },
+        [](double u, double v) { return polar(0.6 * u, v, 0); },
+        [](double u, double v) { return polar(0.6 * u, v, 1.2); }}},
+      {"cylinder_open", PrimitiveKind::cylinder, {0.6, 1.2, 0}, {[](double u, double v) {
+         return polar(0.6, u, 1.2 * v);
+       }}},
+      {"sinusoid", PrimitiveKind::sinusoid, {2, 1.5, 0.1, 9, 2, 0.3, 0.04, -5, 17, 1}, {[](double u, double v) {
          const double x = 2 * (u - 0.5), y = 1.5 * (v - 0.5);
          return Vec3{x, y, 0.1 * std::sin(9 * x + 2 * y + 0.3) + 0.04 * std::sin(-5 * x + 17 * y + 1)};
        }}},
@@ -63,7 +95,8 @@ class Exact : public testing::TestWithParam<size_t> {};
 
 TEST_P(Exact, AgreesWithItsTessellation) {
   const Case c = cases()[GetParam()];
-  const Affine3 place = translation({3, -2, 5}) * rotation(normalized(Vec3{1, 0.4, -0.3}), 1.1) * scaling({1.3, 1.3, -1.3});
+  const Affine3 place =
+      translation({3, -2, 5}) * rotation(normalized(Vec3{1, 0.4, -0.3}), 1.1) * scaling({1.3, 1.3, -1.3});
   std::vector<Vec3> v;
   std::vector<uint32_t> f;
   for (const Surface2& s : c.faces) tessellate(v, f, s, 300);
@@ -106,7 +139,8 @@ TEST_P(Exact, AgreesWithItsTessellation) {
   EXPECT_GT(both, 2000);
   EXPECT_LT(differ, both / 200) << "beyond silhouettes";
 }
-INSTANTIATE_TEST_SUITE_P(Table, Exact, testing::Range(size_t{0}, cases().size()), [](const auto& one) { return std::string(cases()[one.param].name); });
+INSTANTIATE_TEST_SUITE_P(Table, Exact, testing::Range(size_t{0}, cases().size()),
+                         [](const auto& one) { return std::string(cases()[one.param].name); });
 
 TEST(Exact, SpheresFromAMillimetreToAHundredKilometres) {
   for (const double radius : {1e-3, 1.0, 1e5}) {
@@ -127,7 +161,8 @@ TEST(Exact, SpheresFromAMillimetreToAHundredKilometres) {
       ASSERT_TRUE(hit.hit());
       EXPECT_NEAR(length(hit.position) / radius, 1, 1e-12);
       // A sun above the tangent plane is not blocked by the sphere itself.
-      const Ray sun{tracer.leave(hit, hit.normal), normalized(hit.normal + cross(hit.normal, Vec3{0.3, 0.5, 0.1}) * 20.0), 0};
+      const Ray sun{tracer.leave(hit, hit.normal),
+                    normalized(hit.normal + cross(hit.normal, Vec3{0.3, 0.5, 0.1}) * 20.0), 0};
       uint8_t blocked = 0;
       const double far = INFINITY;
       tracer.occluded({&sun, 1}, {&far, 1}, {&blocked, 1}, false, statistics);

@@ -147,7 +147,8 @@ TEST(StopRules, ThePapersRuleIsBiasedLow) {
 
 // A floor with a box on it under sun and sky, and a corner of two walls: noise from shadow edges and exchange.
 // half_angle: of the sun, rad.
-StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint32_t n, uint64_t seed, double inflate = 1) {
+StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint32_t n, uint64_t seed,
+                    double inflate = 1) {
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)};
   sources.sky = uniform_sky(10, false);
@@ -166,8 +167,8 @@ StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint
 }
 double coverage_of(const StudyImage& image, const StudyImage& reference, double half_angle) {
   const Comparison c = compare(image, reference)[0];
-  std::printf("%4u paths, sun of %.2f rad: coverage %.1f %% of %zu pixels, %zu without variance, %zu flagged\n", image.paths[0],
-              half_angle, 100 * c.coverage, c.counted, c.zero_variance, c.flagged);
+  std::printf("%4u paths, sun of %.2f rad: coverage %.1f %% of %zu pixels, %zu without variance, %zu flagged\n",
+              image.paths[0], half_angle, 100 * c.coverage, c.counted, c.zero_variance, c.flagged);
   EXPECT_GT(c.counted, 1500u);
   return c.coverage;
 }
@@ -195,7 +196,9 @@ TEST(Coverage, NinetyFivePerCentIntervalsHold) {
       }
     }
 }
-TEST(Coverage, StandardErrorsThatAreHalvedAreNoticed) { EXPECT_LT(coverage_of(image_of(court(), 0.05, 256, 3, 0.5), image_of(court(), 0.05, 1024, 1003), 0.05), 0.93); }
+TEST(Coverage, StandardErrorsThatAreHalvedAreNoticed) {
+  EXPECT_LT(coverage_of(image_of(court(), 0.05, 256, 3, 0.5), image_of(court(), 0.05, 1024, 1003), 0.05), 0.93);
+}
 
 }  // namespace
 }  // namespace suite::test

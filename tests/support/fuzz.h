@@ -1,6 +1,7 @@
 // Seeded mutations of a valid input, for any reader: truncate, flip bits, overwrite sizes with huge or odd numbers,
-// copy and cut blocks, and for texts splice in words that the grammar gives meaning to. A reader may accept or throw suite::Error; anything else (another exception, a signal, a
-// sanitizer report, a slow or memory-hungry parse) fails the test.
+// copy and cut blocks, and for texts splice in words that the grammar gives meaning to. A reader may accept or throw
+// suite::Error; anything else (another exception, a signal, a sanitizer report, a slow or memory-hungry parse) fails
+// the test.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -66,13 +66,15 @@ inline Mesh mesh_of(const std::vector<Vec3>& vertices, std::vector<uint32_t> ind
 }
 // Horizontal square of the given half size at height z, facing up.
 inline Mesh quad(double half, double z, uint32_t material) {
-  return mesh_of({{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}}, {0, 1, 2, 0, 2, 3}, material);
+  return mesh_of({{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}}, {0, 1, 2, 0, 2, 3},
+                 material);
 }
 // Axis-aligned box; outward: front sides point out, otherwise in.
 inline Mesh box(Vec3 low, Vec3 high, uint32_t material, bool outward) {
   std::vector<Vec3> v;
   for (int i = 0; i < 8; ++i) v.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-  std::vector<uint32_t> f{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  std::vector<uint32_t> f{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
   if (!outward)
     for (size_t i = 0; i < f.size(); i += 3) std::swap(f[i + 1], f[i + 2]);
   return mesh_of(v, f, material);
@@ -99,7 +101,8 @@ struct Rendered {
   CaptureResult result;
   JobReport report;
 };
-inline Rendered render(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::unique_ptr<RaySensor> sensor, PipelineOptions options = {}) {
+inline Rendered render(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
+                       std::unique_ptr<RaySensor> sensor, PipelineOptions options = {}) {
   JobOptions job;
   job.pipeline = options;
   job.progress = false;
@@ -112,6 +115,8 @@ inline Rendered render(const std::shared_ptr<const Scene>& scene, const SourceSp
   return r;
 }
 
-inline SkySpec uniform_sky(double radiance, bool full_sphere) { return {Curve::constant(radiance), {}, 0, 0, full_sphere}; }
+inline SkySpec uniform_sky(double radiance, bool full_sphere) {
+  return {Curve::constant(radiance), {}, 0, 0, full_sphere};
+}
 
 }  // namespace suite::test

@@ -94,7 +94,8 @@ TEST(Plan, counts_follow_from_variance_target_and_limits) {
   goal.relative_error = 0.5;
   EXPECT_EQ(paths_for(needs, {goal, {}})[4], 32u);
   goal = {32, 4096, 0.01, 0};
-  EXPECT_EQ(cap_for_total(needs, {goal, {}}, 9 * 200), 200u);  // all nine want more than that, and 201 each does not fit
+  EXPECT_EQ(cap_for_total(needs, {goal, {}}, 9 * 200),
+            200u);  // all nine want more than that, and 201 each does not fit
   EXPECT_EQ(cap_for_total(needs, {goal, {}}, 1), goal.min_paths);
 }
 

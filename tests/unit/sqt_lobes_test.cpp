@@ -82,8 +82,8 @@ TEST(SqtLobes, TheFrameFoundCodesBest) {
   }
 }
 
-// A brushed surface whose half-vector lobe does not turn with the view takes the fewest azimuths; one whose colour turns
-// quickly with the view's azimuth needs many; and what is chosen keeps the error between them.
+// A brushed surface whose half-vector lobe does not turn with the view takes the fewest azimuths; one whose colour
+// turns quickly with the view's azimuth needs many; and what is chosen keeps the error between them.
 TEST(SqtLobes, AzimuthsFollowTheFunction) {
   const Analytic brushed(
       [](Dir o, Dir i) {

@@ -1,4 +1,5 @@
-// A density over the cosine of the scattering angle, linear between the entries of a table, so that sampling it is exact.
+// A density over the cosine of the scattering angle, linear between the entries of a table, so that sampling it is
+// exact.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,8 @@ namespace suite {
 
 class CosineTable {
  public:
-  // cosine: ascending from -1 to 1, at least two; value: >= 0, any scale; it is normalised to 1 over the sphere. valid()
-  // is false when the integral is 0 or not finite.
+  // cosine: ascending from -1 to 1, at least two; value: >= 0, any scale; it is normalised to 1 over the sphere.
+  // valid() is false when the integral is 0 or not finite.
   CosineTable(std::vector<double> cosine, std::vector<double> value)
       : cosine_(std::move(cosine)), value_(std::move(value)), cumulative_(cosine_.size(), 0) {
     double moment = 0;

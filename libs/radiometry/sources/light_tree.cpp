@@ -72,8 +72,8 @@ Eight32 step_of(Eight cosine) {
   return __builtin_convertvector(step, Eight32);
 }
 
-// In place of the most that a cluster can send, which takes wide flat clusters, whose sphere reaches high above them, for
-// much brighter than they are, only this share of it counts: enough to keep every lamp drawable.
+// In place of the most that a cluster can send, which takes wide flat clusters, whose sphere reaches high above them,
+// for much brighter than they are, only this share of it counts: enough to keep every lamp drawable.
 constexpr float kShareOfBound = 0.05f;
 // By which bounds on cosines are widened: they are compared in single precision, and rounding must not hide a lamp.
 constexpr float kSlack = 1e-3f;
@@ -107,7 +107,8 @@ LightTree::LightTree(std::span<const LightBounds> lights, std::vector<LightProfi
       profiles_.push_back(p[first]);
       peaks_.resize(peaks_.size() + first, 0.0f);
       for (size_t last = first; last < kSteps; ++last)
-        peaks_.push_back(*std::max_element(p.begin() + static_cast<long>(first), p.begin() + static_cast<long>(last) + 1));
+        peaks_.push_back(
+            *std::max_element(p.begin() + static_cast<long>(first), p.begin() + static_cast<long>(last) + 1));
     }
   if (profiles.empty()) profiles_.assign(kSteps, 0.0f), peaks_.assign(kSteps * kSteps, 0.0f);
   origin_ = nodes[0].bounds.box.center();
@@ -140,7 +141,8 @@ uint32_t LightTree::widen(const std::vector<Node>& nodes, uint32_t top, uint64_t
     to.child[k] = child;
     to.x[k] = static_cast<float>(c.x), to.y[k] = static_cast<float>(c.y), to.z[k] = static_cast<float>(c.z);
     to.radius2[k] = static_cast<float>(0.25 * dot(size, size) * (1 + 1e-6));
-    to.axis_x[k] = static_cast<float>(b.axis.x), to.axis_y[k] = static_cast<float>(b.axis.y), to.axis_z[k] = static_cast<float>(b.axis.z);
+    to.axis_x[k] = static_cast<float>(b.axis.x), to.axis_y[k] = static_cast<float>(b.axis.y),
+    to.axis_z[k] = static_cast<float>(b.axis.z);
     to.cos_cone[k] = static_cast<float>(std::cos(b.cone)), to.sin_cone[k] = static_cast<float>(std::sin(b.cone));
     to.cos_spread[k] = b.spread >= kPi ? -2.0f : static_cast<float>(std::cos(b.spread)) - kSlack;
     to.power[k] = static_cast<float>(b.power);
@@ -150,7 +152,8 @@ uint32_t LightTree::widen(const std::vector<Node>& nodes, uint32_t top, uint64_t
   return index;
 }
 
-uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_t> order, int depth, std::vector<Node>& nodes) const {
+uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_t> order, int depth,
+                          std::vector<Node>& nodes) const {
   const auto index = static_cast<uint32_t>(nodes.size());
   nodes.emplace_back();
   LightBounds all;
@@ -203,9 +206,9 @@ uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_
   return index;
 }
 
-// What the lamps of each branch send to a place, up to a common factor (section 4.3): what one at its centre would send,
-// and a share of the most they can. Single precision: it decides about probabilities only, and those are used as they
-// come out.
+// What the lamps of each branch send to a place, up to a common factor (section 4.3): what one at its centre would
+// send, and a share of the most they can. Single precision: it decides about probabilities only, and those are used as
+// they come out.
 double LightTree::importance(const Branches& b, const LightReceiver& at, float* each) const {
   const Vec3 from = at.position - origin_;
   const Eight to_x = load(b.x) - static_cast<float>(from.x), to_y = load(b.y) - static_cast<float>(from.y),
@@ -217,8 +220,10 @@ double LightTree::importance(const Branches& b, const LightReceiver& at, float* 
   Eight cos_w = -(load(b.axis_x) * x + load(b.axis_y) * y + load(b.axis_z) * z);
   const auto both = reinterpret_cast<Eight32>(_mm256_load_si256(reinterpret_cast<const __m256i*>(b.both_sides)));
   cos_w = both ? absolute(cos_w) : cos_w;
-  const Eight sin_w = sine(cos_w), cos_cone = load(b.cos_cone), sin_cone = load(b.sin_cone), cos_spread = load(b.cos_spread);
-  const Eight cos_x = cos_difference(sin_w, cos_w, sin_cone, cos_cone), sin_x = sin_difference(sin_w, cos_w, sin_cone, cos_cone);
+  const Eight sin_w = sine(cos_w), cos_cone = load(b.cos_cone), sin_cone = load(b.sin_cone),
+              cos_spread = load(b.cos_spread);
+  const Eight cos_x = cos_difference(sin_w, cos_w, sin_cone, cos_cone),
+              sin_x = sin_difference(sin_w, cos_w, sin_cone, cos_cone);
   const Eight cos_out = cos_difference(sin_x, cos_x, sin_b, cos_b);
   // Falls off with the cosine; where a lamp sends beyond a right angle it is only known to be positive.
   Eight most = larger(cos_out, Eight{} + 0.05f);
@@ -237,7 +242,8 @@ double LightTree::importance(const Branches& b, const LightReceiver& at, float* 
     middle = profiled ? centre : middle;
   }
   if (dot(at.normal, at.normal) > 0) {
-    Eight cos_i = static_cast<float>(at.normal.x) * x + static_cast<float>(at.normal.y) * y + static_cast<float>(at.normal.z) * z;
+    Eight cos_i =
+        static_cast<float>(at.normal.x) * x + static_cast<float>(at.normal.y) * y + static_cast<float>(at.normal.z) * z;
     if (at.two_sided) cos_i = absolute(cos_i);
     most *= larger(Eight{}, cos_difference(sine(cos_i), cos_i, sin_b, cos_b) + kSlack);
     middle *= larger(Eight{}, cos_i);

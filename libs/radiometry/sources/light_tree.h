@@ -62,7 +62,8 @@ class LightTree {
  private:
   struct Node;
   struct Branches;
-  uint32_t build(std::span<const LightBounds> lights, std::span<uint32_t> order, int depth, std::vector<Node>& nodes) const;
+  uint32_t build(std::span<const LightBounds> lights, std::span<uint32_t> order, int depth,
+                 std::vector<Node>& nodes) const;
   uint32_t widen(const std::vector<Node>& nodes, uint32_t root, uint64_t trail, int depth);
   // What each branch is worth to a place; returns the sum. 0 for a branch that cannot reach it.
   double importance(const Branches& branches, const LightReceiver& at, float* each) const;

@@ -36,10 +36,10 @@ struct Readout {
 
 struct Chip {
   uint32_t columns = 0, rows = 0;
-  Vec2 offset;                // m in the focal plane, right and down, of its centre
-  double gain = 1;            // relative response
+  Vec2 offset;                             // m in the focal plane, right and down, of its centre
+  double gain = 1;                         // relative response
   std::optional<Convergence> convergence;  // instead of the array's
-  uint32_t first_column = 0;  // in the array's image
+  uint32_t first_column = 0;               // in the array's image
 };
 
 struct FocalArray {
@@ -62,9 +62,9 @@ struct Segment {
   uint32_t first_column = 0, columns = 0;  // of the array's image
   std::vector<Band> bands;                 // as listed, then those that count photons when there is a detector
   size_t radiance_bands = 0;
-  Convergence convergence;                 // of its chips without one of their own
-  std::vector<double> band_targets;        // of the radiance bands; empty = the reference decides
-  std::vector<double> electrons;  // per W/(m2 um) s m2 of irradiance, of each band
+  Convergence convergence;           // of its chips without one of their own
+  std::vector<double> band_targets;  // of the radiance bands; empty = the reference decides
+  std::vector<double> electrons;     // per W/(m2 um) s m2 of irradiance, of each band
   std::unique_ptr<const PointSpread> psf;
 };
 

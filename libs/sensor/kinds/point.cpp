@@ -46,7 +46,8 @@ class PointCollectors final : public SimpleSensor {
 
  private:
   void finish(Delivery& d) const override {
-    std::string text = "# irradiance and actinic flux hold direct and diffuse light; a radiance that looks at the sun its disk\n";
+    std::string text =
+        "# irradiance and actinic flux hold direct and diffuse light; a radiance that looks at the sun its disk\n";
     text += "name,quantity,unit,band,wavelength_um,value,standard_error\n";
     static constexpr const char* kNames[][2] = {
         {"irradiance", "W/(m2 um)"}, {"radiance", "W/(m2 sr um)"}, {"actinic_flux", "W/(m2 um)"}};

@@ -17,8 +17,8 @@
 extern "C" {
 #endif
 
-/* Raised when a plug-in built with an older header cannot work any more. Fields that came later say since when; a plug-in
- * that was built without them goes on working. */
+/* Raised when a plug-in built with an older header cannot work any more. Fields that came later say since when; a
+ * plug-in that was built without them goes on working. */
 #define SUITE_SENSOR_ABI 1u
 
 enum suite_band_shape {
@@ -71,8 +71,8 @@ typedef struct suite_ray_request {
   float* weights; /* one per bin, to be filled when suite_ray.weighted is set */
 } suite_ray_request;
 
-/* What a sample collects: the radiance along its ray, or the light of many directions at the ray's origin. The host then
- * chooses where to look and asks Sun, Moon, sky and lamps there, as it does at surfaces. */
+/* What a sample collects: the radiance along its ray, or the light of many directions at the ray's origin. The host
+ * then chooses where to look and asks Sun, Moon, sky and lamps there, as it does at surfaces. */
 enum suite_receiver {
   SUITE_RECEIVER_NONE = 0,
   SUITE_RECEIVER_PLANE = 1, /* facing `direction`: the sample is irradiance / pi */
@@ -84,7 +84,7 @@ typedef struct suite_ray {
   uint32_t weighted;              /* 1: weights were filled, see the request */
   double origin[3], direction[3]; /* ENU; the direction need not be a unit vector, but finite and not 0 */
   double time_s;
-  double weight; /* pupil weight; 0 = contributes nothing */
+  double weight;     /* pupil weight; 0 = contributes nothing */
   uint32_t receiver; /* suite_receiver; since 1.1 */
   uint32_t reserved;
 } suite_ray;
@@ -135,8 +135,8 @@ typedef struct suite_sensor {
   /* Called from one thread, once per capture, in any order. Returns 0 or anything else for a failure. */
   int (*accept)(void* self, const suite_result* result);
   void (*destroy)(void* self);
-  /* May be NULL. Called before rendering, from one thread, for every problem: comes in filled with what the capture says
-   * for all of them. Returns 0 or anything else for a failure. Since 1.1. */
+  /* May be NULL. Called before rendering, from one thread, for every problem: comes in filled with what the capture
+   * says for all of them. Returns 0 or anything else for a failure. Since 1.1. */
   int (*convergence)(void* self, uint32_t capture, uint64_t problem, suite_convergence* convergence);
 } suite_sensor;
 
