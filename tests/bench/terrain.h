@@ -4,6 +4,7 @@
 // irradiance 3, constant sky 0.3.
 #pragma once
 #include <cmath>
+#include <ctime>
 #include <memory>
 
 #include "scene/scene.h"
@@ -57,7 +58,8 @@ inline SourceSpecs terrain_sources() {
 // Camera at (0, -600, 500) m looking at the origin, 60 degrees, `edge` x `edge` pixels, `bands` narrow bands.
 class TerrainCamera final : public Sensor {
  public:
-  TerrainCamera(uint32_t edge, uint32_t paths, size_t bands = 1) {
+  // captures: how often the same picture is taken.
+  TerrainCamera(uint32_t edge, uint32_t paths, size_t bands = 1, size_t captures = 1) {
     for (size_t b = 0; b < bands; ++b)
       bands_.push_back(Band::rectangular("b" + std::to_string(b), 0.5 + 0.01 * static_cast<double>(b), 0.01));
     state_ = make_state(bands_, 0.01);
@@ -65,7 +67,7 @@ class TerrainCamera final : public Sensor {
     c.columns = c.rows = edge;
     pixel_ = 2 * 0.57735026918962576 / edge;
     c.convergence.min_paths = c.convergence.max_paths = paths;
-    tasks_.push_back({"terrain", {}, {c}});
+    tasks_.push_back({"terrain", {}, std::vector<Capture>(captures, c)});
     forward_ = normalized(-position_);
     right_ = normalized(cross(forward_, Vec3{0, 0, 1}));
     down_ = cross(forward_, right_);
@@ -82,8 +84,12 @@ class TerrainCamera final : public Sensor {
     const Vec3 d = forward_ + right_ * x + down_ * y;
     return {{position_, d * (1 / length(d)), 0}, 1};
   }
-  void accept(CaptureResult&& r) override { result = std::move(r); }
-  CaptureResult result;
+  void accept(CaptureResult&& r) override {
+    result = std::move(r);
+    cpu_seconds.push_back(static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+  }
+  CaptureResult result;             // of the last capture
+  std::vector<double> cpu_seconds;  // of the process when each capture was done
 
  private:
   std::vector<Band> bands_;
