@@ -219,10 +219,10 @@ Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std
       points.rows.push_back({series.name, strf("%g %s", p.budget, series.by_time ? "s" : "paths"), strf("%d", p.runs),
                              strf("%.3g", p.seconds), strf("%.4g", 100 * p.rmse),
                              strf("%.4g to %.4g", 100 * p.low, 100 * p.high), strf("%+.2g", 100 * p.bias),
-                             strf("%.2g", p.bias_p), strf("%.1f", 100 * p.coverage), strf("%.2f", 100 * p.zero_share),
-                             strf("%.2f", 100 * p.flagged_share), strf("%.3g", p.efficiency),
-                             strf("%.3g", p.paths_per_second / 1e6), strf("%.3g", p.rays_per_second / 1e6),
-                             strf("%.0f", 100 * p.share_in_embree)});
+                             strf("%.2g", p.bias_p), std::isnan(p.coverage) ? "none" : strf("%.1f", 100 * p.coverage),
+                             strf("%.2f", 100 * p.zero_share), strf("%.2f", 100 * p.flagged_share),
+                             strf("%.3g", p.efficiency), strf("%.3g", p.paths_per_second / 1e6),
+                             strf("%.3g", p.rays_per_second / 1e6), strf("%.0f", 100 * p.share_in_embree)});
   }
   PageTable runs{"Runs", {"series", "budget", "seed", "seconds", "nodes a path", "peak MB", "ended by"}, {}};
   for (const StudyRow& r : rows)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "math/stats.h"
@@ -16,7 +17,7 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
   p.runs = static_cast<int>(runs.size());
   const double n = static_cast<double>(runs.size());
   RunningStats logs;
-  double scatter = 0, shared = 0;
+  double scatter = 0, shared = 0, covered = 0, counted = 0;
   for (const StudyRow* r : runs) {
     const Comparison& f = r->figures;
     const double pixels = static_cast<double>(f.counted + f.zero_variance + f.flagged);
@@ -27,7 +28,8 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
     // What a repetition has of its own, and what the reference brings to all of them.
     scatter += std::max(0.0, f.bias_error * f.bias_error - f.reference_bias_error * f.reference_bias_error) / n;
     shared = std::max(shared, f.reference_bias_error * f.reference_bias_error);
-    p.coverage += f.coverage / n;
+    covered += f.coverage * static_cast<double>(f.counted);
+    counted += static_cast<double>(f.counted);
     p.zero_share += static_cast<double>(f.zero_variance) / pixels / n;
     p.flagged_share += static_cast<double>(f.flagged) / pixels / n;
     p.efficiency += r->efficiency() / n;
@@ -40,6 +42,7 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
     p.build_seconds += r->build_seconds / n;
     p.file_seconds += r->file_seconds / n;
   }
+  p.coverage = counted > 0 ? covered / counted : std::numeric_limits<double>::quiet_NaN();
   const double wide = p.runs > 1 ? student_t_quantile(0.95, p.runs - 1) * logs.stderr_of_mean() : 0;
   p.rmse = std::exp(logs.mean());
   p.low = std::exp(logs.mean() - wide);

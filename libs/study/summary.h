@@ -15,7 +15,8 @@ struct StudyPoint {
          high = 0;                  // geometric mean, and its 95 % interval over the seeds (Student; equal = one run)
   double bias = 0, bias_error = 0;  // mean over the seeds; the reference's part is not averaged away
   double bias_p = 1;                // two-sided
-  double coverage = 0, zero_share = 0, flagged_share = 0;
+  double coverage = 0;              // share of the counted problems of all runs; NaN when none was counted
+  double zero_share = 0, flagged_share = 0;
   double efficiency = 0, rays_per_second = 0, paths_per_second = 0;
   double share_in_embree = 0, share_sample = 0, share_shade = 0, share_sensor = 0, build_seconds = 0, file_seconds = 0;
 };

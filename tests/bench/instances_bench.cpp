@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 
 #include "base/parallel.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "math/sampling.h"
 #include "motion/track.h"
 #include "scene/scene.h"
+#include "tests/bench/memory.h"
 #include "trace/tracer.h"
 
 using namespace suite;
@@ -21,17 +21,6 @@ using namespace suite;
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double memory(const char* key) {  // bytes, of /proc/self/status
-  std::ifstream file("/proc/self/status");
-  for (std::string word; file >> word;)
-    if (word == key) {
-      double kb = 0;
-      file >> kb;
-      return 1024 * kb;
-    }
-  return 0;
-}
 
 // A lumpy ball of 2 n^2 triangles, about a metre wide.
 Mesh ball(uint32_t n, double lumps) {
@@ -214,7 +203,7 @@ int main(int argc, char** argv) try {
   const auto count = static_cast<double>(instances);
   {
     const Tracer warm(std::make_shared<Scene>(forest(bases, bases)));
-    const double before = memory("VmRSS:"), start = now();
+    const double before = bench::memory("VmRSS:"), start = now();
     const auto scene = std::make_shared<const Scene>(read_scene(path));
     const double loaded = now();
     const Tracer tracer(scene);
@@ -223,13 +212,13 @@ int main(int argc, char** argv) try {
     std::printf("%zu instances of %u objects, %zu triangles unfolded, %zu tiles\n", instances, bases,
                 tracer.triangles(), tracer.tiles());
     std::printf("load %.3f s, build %.3f s, together %.3f s; resident %.0f B an instance, at the peak %.0f B\n",
-                loaded - start, built - loaded, built - start, (memory("VmRSS:") - before) / count,
-                (memory("VmHWM:") - before) / count);
-    const double between = memory("VmRSS:");
+                loaded - start, built - loaded, built - start, (bench::memory("VmRSS:") - before) / count,
+                (bench::memory("VmHWM:") - before) / count);
+    const double between = bench::memory("VmRSS:");
     const Stock stock(*scene);
     malloc_trim(0);
     std::printf("Embree's own instances: build %.3f s, %.0f B an instance besides the scene\n", stock.seconds,
-                (memory("VmRSS:") - between) / count);
+                (bench::memory("VmRSS:") - between) / count);
     const double side = 2 * std::sqrt(count);
     for (const bool coherent : {true, false}) {
       const std::vector<Ray> rays = rays_of(side, coherent);

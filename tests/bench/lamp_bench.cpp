@@ -16,22 +16,13 @@ int main(int argc, char** argv) {
   const auto scene = terrain_scene(100);
   std::printf("%8s %14s %12s %14s\n", "lamps", "CPU us/path", "rays/path", "sd of a path");
   for (const int n : {1, 10, 100, 1000, 10000}) {
-    SourceSpecs sources;
-    LampSpec lamp;
-    lamp.intensity = Curve::constant(100.0 / n);
-    Pcg32 random(3);
-    for (int i = 0; i < n; ++i) {
-      const double x = 1000 * random.uniform() - 500, y = 1000 * random.uniform() - 500;
-      lamp.positions.push_back({x, y, terrain_height(x, y) + 5});
-    }
-    sources.lamps.push_back(lamp);
     std::vector<std::unique_ptr<Sensor>> sensors;
     sensors.push_back(std::make_unique<TerrainCamera>(64, paths));
     JobOptions options;
     options.pipeline.max_nodes = 2;
     options.progress = false;
     const std::clock_t begun = std::clock();
-    const JobReport report = run_job(scene, sources, sensors, options);
+    const JobReport report = run_job(scene, lamps_over_terrain(n), sensors, options);
     const std::clock_t used = std::clock() - begun;
     const CaptureResult& r = static_cast<TerrainCamera&>(*sensors[0]).result;
     double error = 0, mean = 0;

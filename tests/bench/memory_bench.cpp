@@ -3,25 +3,12 @@
 #include <malloc.h>
 
 #include <cstdio>
-#include <fstream>
 #include <string>
 
 #include "base/error.h"
 #include "formats/scene_hdf/scene_hdf.h"
+#include "tests/bench/memory.h"
 #include "trace/tracer.h"
-
-namespace {
-double memory(const char* key) {  // bytes, of /proc/self/status
-  std::ifstream file("/proc/self/status");
-  for (std::string word; file >> word;)
-    if (word == key) {
-      double kb = 0;
-      file >> kb;
-      return 1024 * kb;
-    }
-  return 0;
-}
-}  // namespace
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: memory_bench scene.h5\n"), 2;
@@ -29,7 +16,7 @@ int main(int argc, char** argv) try {
   double triangles = 0;
   for (const suite::Mesh& m : scene->meshes) triangles += static_cast<double>(m.triangle_count());
   malloc_trim(0);
-  const double loaded = memory("VmRSS:"), loading = memory("VmHWM:");
+  const double loaded = suite::bench::memory("VmRSS:"), loading = suite::bench::memory("VmHWM:");
   const suite::Tracer tracer(scene);
   // Rays from above, so that tiles that wait for one are built too.
   const suite::Vec3 low = tracer.bounds().low, size = tracer.bounds().size();
@@ -44,7 +31,7 @@ int main(int argc, char** argv) try {
       tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
       hits += hit.hit() ? 1 : 0;
     }
-  const double built = memory("VmRSS:"), peak = memory("VmHWM:");
+  const double built = suite::bench::memory("VmRSS:"), peak = suite::bench::memory("VmHWM:");
   std::printf("%.0f triangles stored, %zu unfolded, %zu of %zu tiles built, %zu of 40000 rays hit\n", triangles,
               tracer.triangles(), tracer.tiles_built(), tracer.tiles(), hits);
   std::printf("bytes a triangle, the whole program: loaded %.1f (peak %.1f), built %.1f (peak %.1f)\n",

@@ -85,18 +85,7 @@ void instances() {
 // Lamps a few metres over the terrain, of one power in all.
 void lamps() {
   const auto scene = terrain_scene(100);
-  for (const int n : {1, 10, 100, 1000, 10000}) {
-    SourceSpecs sources;
-    LampSpec lamp;
-    lamp.intensity = Curve::constant(100.0 / n);
-    Pcg32 random(3);
-    for (int i = 0; i < n; ++i) {
-      const double x = 1000 * random.uniform() - 500, y = 1000 * random.uniform() - 500;
-      lamp.positions.push_back({x, y, terrain_height(x, y) + 5});
-    }
-    sources.lamps.push_back(lamp);
-    per_path("lamps", n, scene, 96, 32, 1, sources);
-  }
+  for (const int n : {1, 10, 100, 1000, 10000}) per_path("lamps", n, scene, 96, 32, 1, lamps_over_terrain(n));
 }
 // A cloud of optical depth 2 over the terrain, of the same shape in grids of 8 to 128 cells a side.
 void media() {

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <memory>
 
+#include "math/sampling.h"
 #include "scene/scene.h"
 #include "scheduler/scheduler.h"
 
@@ -52,6 +53,20 @@ inline SourceSpecs terrain_sources() {
   SourceSpecs sources;
   sources.sun = SunSpec{normalized(Vec3{0.5, -0.3, 0.8}), 0, Curve::constant(3)};
   sources.sky = SkySpec{Curve::constant(0.3), {}, 0, 0, true};
+  return sources;
+}
+
+// n lamps at random places 5 m over the terrain, of one power in all.
+inline SourceSpecs lamps_over_terrain(int n) {
+  LampSpec lamp;
+  lamp.intensity = Curve::constant(100.0 / n);
+  Pcg32 random(3);
+  for (int i = 0; i < n; ++i) {
+    const double x = 1000 * random.uniform() - 500, y = 1000 * random.uniform() - 500;
+    lamp.positions.push_back({x, y, terrain_height(x, y) + 5});
+  }
+  SourceSpecs sources;
+  sources.lamps.push_back(lamp);
   return sources;
 }
 

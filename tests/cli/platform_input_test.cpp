@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "base/files.h"
+#include "support/platform_text.h"
 #include "support/run_command.h"
 
 namespace suite {
@@ -11,37 +14,13 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kGood =
-    "scene: scene.h5\n"
-    "epoch: 2026-06-21T10:30:00Z\n"
-    "sky: {radiance: 1}\n"
-    "sensors:\n"
-    "  - kind: platform\n"
-    "    name: uas\n"
-    "    motion: {kind: straight, position_m: [0, 0, 100], heading_deg: 0, speed_m_s: 10}\n"
-    "    jitter: {rotate_x: {sigma_rad: 1.0e-5}}\n"
-    "    tasks: [{name: pass, start: 0, stop: 1}]\n"
-    "    truth: [material]\n"
-    "    attachments:\n"
-    "      - name: gimbal\n"
-    "        mount: {kind: whisk, axis: across, amplitude_deg: 5, rate_hz: 1}\n"
-    "        instruments:\n"
-    "          - name: eye\n"
-    "            focal_length_mm: 50\n"
-    "            f_number: 4\n"
-    "            distortion: {k1: -0.01}\n"
-    "            psf: {kind: gaussian, sigma_um: 3}\n"
-    "            clock: {rate_hz: 2}\n"
-    "            arrays:\n"
-    "              - name: main\n"
-    "                columns: 10\n"
-    "                rows: 8\n"
-    "                pitch_um: 5\n"
-    "                integration_time_s: 0.01\n"
-    "                readout: {kind: rolling, row_time_s: 0.001}\n"
-    "                paths: 4\n"
-    "                bands: [{name: pan, center_um: 0.6, fwhm_um: 0.1}]\n"
-    "                detector: {quantum_efficiency: 0.5, gain_e_per_dn: 2}\n";
+// The sound platform as the one sensor of a simulation.
+std::string good_simulation() {
+  std::string text = "scene: scene.h5\nepoch: 2026-06-21T10:30:00Z\nsky: {radiance: 1}\nsensors:\n", lead = "  - ";
+  std::istringstream lines(test::kGoodPlatform);
+  for (std::string line; std::getline(lines, line); lead = "    ") text += lead + line + "\n";
+  return text;
+}
 
 struct Broken {
   const char *what, *by;     // a piece of the good text, and what stands in its place
@@ -202,7 +181,7 @@ CommandResult PlatformInput::prep_;
 
 TEST_F(PlatformInput, TheGoodOneRenders) {
   ASSERT_EQ(prep_.code, 0) << prep_.err;
-  const CommandResult r = render(kGood, "good");
+  const CommandResult r = render(good_simulation(), "good");
   EXPECT_EQ(r.code, 0) << r.err;
   EXPECT_TRUE(file_exists(*folder_ / "good/uas_0000.img"));
 }
@@ -210,7 +189,7 @@ TEST_F(PlatformInput, TheGoodOneRenders) {
 TEST_F(PlatformInput, EveryBrokenOneIsRefusedInItsPlace) {
   int n = 0;
   for (const Broken& b : kBroken) {
-    std::string text = kGood;
+    std::string text = good_simulation();
     const size_t at = text.find(b.what);
     ASSERT_NE(at, std::string::npos) << b.what;
     text.replace(at, std::string_view(b.what).size(), b.by);

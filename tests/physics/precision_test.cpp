@@ -14,24 +14,6 @@
 namespace suite::test {
 namespace {
 
-// A dome of 100 x 100 cells, 1000 m wide, sagging 50 m to its corners, around `centre`.
-Mesh dome(double width) {
-  constexpr uint32_t n = 101;
-  std::vector<Vec3> v;
-  std::vector<uint32_t> f;
-  for (uint32_t j = 0; j < n; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const double x = (i / 100.0 - 0.5) * width, y = (j / 100.0 - 0.5) * width;
-      v.push_back({x, y, -(x * x + y * y) / (10 * width)});
-    }
-  for (uint32_t j = 0; j + 1 < n; ++j)
-    for (uint32_t i = 0; i + 1 < n; ++i) {
-      const uint32_t a = j * n + i;
-      for (const uint32_t k : {a, a + 1, a + n + 1, a, a + n + 1, a + n}) f.push_back(k);
-    }
-  return mesh_of(v, f, 0);
-}
-
 struct Setting {
   const char* name;
   double distance;  // of the camera, m

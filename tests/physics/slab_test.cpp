@@ -11,38 +11,12 @@
 #include "base/error.h"
 #include "math/vec.h"
 #include "spectral/planck.h"
+#include "support/slab_kit.h"
 
 namespace suite {
 namespace {
 
-SlabLayer uniform(double thickness, double density, double specific_heat, double conductivity, int intervals = 0) {
-  SlabLayer l;
-  l.thickness = thickness;
-  l.density = density;
-  l.specific_heat = {specific_heat};
-  l.conductivity = {conductivity};
-  l.intervals = intervals;
-  return l;
-}
-SlabFace flux(double w_m2) {
-  SlabFace f;
-  f.value = [w_m2](double) { return w_m2; };
-  return f;
-}
-SlabFace held(TimeFunction kelvin) {
-  SlabFace f;
-  f.kind = SlabFace::Kind::temperature;
-  f.value = std::move(kelvin);
-  return f;
-}
-SlabFace surface(double emissivity, Loads loads, double convection = 0) {
-  SlabFace f;
-  f.kind = SlabFace::Kind::surface;
-  f.emissivity = emissivity;
-  f.convection_still = convection;
-  f.loads = std::move(loads);
-  return f;
-}
+using namespace test;
 
 // Carslaw & Jaeger, Conduction of heat in solids, 2.6: the wave that a harmonic surface temperature sends down.
 TEST(Slab, PeriodicWaveInDepth) {

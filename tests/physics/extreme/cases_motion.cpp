@@ -4,27 +4,14 @@
 #include "math/dualquat.h"
 #include "motion/jitter.h"
 #include "physics/extreme/case.h"
+#include "support/screw.h"
 
 namespace suite::extreme {
 
 namespace {
 
-struct Screw {
-  Dir axis;
-  Vec3 foot;
-  double angle, advance;
-  Pose at(double s) const {
-    const Quat q = quat_about(axis, s * angle);
-    return {q, foot - rotate(q, foot) + axis * (advance * s)};
-  }
-};
-double apart(const Pose& a, const Pose& b) {
-  double worst = 0;
-  for (const double x : {-50.0, 50.0})
-    for (const double y : {-50.0, 50.0})
-      for (const double z : {-50.0, 50.0}) worst = std::fmax(worst, length(a.point({x, y, z}) - b.point({x, y, z})));
-  return worst;
-}
+using test::apart, test::Screw;
+
 double screw_error(double angle) {
   double worst = 0;
   for (int t = 0; t < 10; ++t) {

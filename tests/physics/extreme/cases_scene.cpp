@@ -13,24 +13,6 @@ namespace {
 
 using namespace suite::test;
 
-// A dome of 100 x 100 cells, `width` wide, sagging a twentieth of that: it cannot shadow itself.
-Mesh dome(double width) {
-  constexpr uint32_t n = 101;
-  std::vector<Vec3> v;
-  std::vector<uint32_t> f;
-  for (uint32_t j = 0; j < n; ++j)
-    for (uint32_t i = 0; i < n; ++i) {
-      const double x = (i / 100.0 - 0.5) * width, y = (j / 100.0 - 0.5) * width;
-      v.push_back({x, y, -(x * x + y * y) / (10 * width)});
-    }
-  for (uint32_t j = 0; j + 1 < n; ++j)
-    for (uint32_t i = 0; i + 1 < n; ++i) {
-      const uint32_t a = j * n + i;
-      for (const uint32_t k : {a, a + 1, a + n + 1, a, a + n + 1, a + n}) f.push_back(k);
-    }
-  return mesh_of(v, f, 0);
-}
-
 // Worst of: rays missed and rays falsely shadowed (each counts as infinity), and the 99th percentile of the distance of
 // hit points from the line of sight, in units of the bound: 2 ulp of the tile's half size and what double itself
 // allows.

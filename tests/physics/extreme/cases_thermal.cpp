@@ -5,38 +5,13 @@
 
 #include "physics/extreme/case.h"
 #include "spectral/planck.h"
+#include "support/slab_kit.h"
 
 namespace suite::extreme {
 
 namespace {
 
-SlabLayer layer(double thickness, double density, double specific_heat, double conductivity, int intervals = 0) {
-  SlabLayer l;
-  l.thickness = thickness;
-  l.density = density;
-  l.specific_heat = {specific_heat};
-  l.conductivity = {conductivity};
-  l.intervals = intervals;
-  return l;
-}
-SlabFace flux(double w_m2) {
-  SlabFace f;
-  f.value = [w_m2](double) { return w_m2; };
-  return f;
-}
-SlabFace held(TimeFunction kelvin) {
-  SlabFace f;
-  f.kind = SlabFace::Kind::temperature;
-  f.value = std::move(kelvin);
-  return f;
-}
-SlabFace surface(double emissivity, Loads loads) {
-  SlabFace f;
-  f.kind = SlabFace::Kind::surface;
-  f.emissivity = emissivity;
-  f.loads = std::move(loads);
-  return f;
-}
+using namespace test;
 
 // Carslaw & Jaeger, Conduction of heat in solids, 2.6, thermal inertia 120.
 double periodic_wave(double depths) {
@@ -44,7 +19,7 @@ double periodic_wave(double depths) {
   const double conductivity = inertia * inertia / heat, depth = std::sqrt(conductivity / heat * period / kPi),
                rate = 2 * kPi / period;
   SlabSpec spec;
-  spec.layers = {layer(14 * depth, heat / 1000, 1000, conductivity, 1400)};
+  spec.layers = {uniform(14 * depth, heat / 1000, 1000, conductivity, 1400)};
   spec.top = held([rate](double t) { return 190 + 30 * std::sin(rate * t); });
   spec.bottom = flux(0);
   Slab slab(spec, {1e-4, period / 200, 1e-9, 60});
@@ -64,7 +39,7 @@ double cut_off(double inertia) {
   const double heat = 1e6, conductivity = inertia * inertia / heat;
   const double F = kStefanBoltzmann * std::pow(200.0, 4), h = 4 * F / 200, x = h * std::sqrt(50) / inertia;
   SlabSpec spec;
-  spec.layers = {layer(0.5, 1000, 1000, conductivity)};
+  spec.layers = {uniform(0.5, 1000, 1000, conductivity)};
   spec.top = surface(1, [](double) { return SurfaceLoad{}; });
   spec.bottom = flux(0);
   Slab slab(spec, {});
@@ -77,7 +52,7 @@ double cut_off(double inertia) {
 double mean_flux(double q) {
   const double period = 88775;
   SlabSpec spec;
-  spec.layers = {layer(0.1, 1200, 700, 0.05), layer(0.4, 1800, 800, 0.5)};
+  spec.layers = {uniform(0.1, 1200, 700, 0.05), uniform(0.4, 1800, 800, 0.5)};
   spec.layers[0].contact_resistance = 0.02;
   spec.top = surface(0.95, [period](double t) {
     return SurfaceLoad{600 * std::fmax(0.0, -std::cos(2 * kPi * t / period)), 0, 0, 0};
@@ -94,7 +69,7 @@ double mean_flux(double q) {
 // A film of `microns` um on a metre of concrete through a sunny day at full hours, against steps of 1 s or a quarter.
 SlabSpec film(double microns) {
   SlabSpec spec;
-  spec.layers = {layer(microns * 1e-6, 2700, 900, 0.2), layer(1, 2300, 880, 1.4)};
+  spec.layers = {uniform(microns * 1e-6, 2700, 900, 0.2), uniform(1, 2300, 880, 1.4)};
   spec.top = surface(0.9, [](double t) {
     const double phase = 2 * kPi * t / 86400, sun = std::fmax(0.0, -std::cos(phase));
     return SurfaceLoad{700 * sun * sun, 320, 288 - 5 * std::cos(phase), 2};
@@ -123,7 +98,7 @@ double film_error(const Numerics& numerics, double dt, double microns) {
 
 double huge_step(double dt) {
   SlabSpec spec;
-  spec.layers = {layer(1e-5, 2700, 900, 200), layer(0.001, 2700, 900, 0.2)};
+  spec.layers = {uniform(1e-5, 2700, 900, 200), uniform(0.001, 2700, 900, 0.2)};
   spec.top = surface(1, [](double) { return SurfaceLoad{0, 400, 0, 0}; });
   spec.bottom = flux(0);
   Slab slab(spec, {0.01, 1e9, 1e-9, 60});
@@ -136,7 +111,7 @@ double huge_step(double dt) {
 
 double steady_wall(double contrast) {
   SlabSpec wall;
-  wall.layers = {layer(0.1, 1000, 1000, 0.5), layer(0.2, 2000, 800, 0.5 * contrast)};
+  wall.layers = {uniform(0.1, 1000, 1000, 0.5), uniform(0.2, 2000, 800, 0.5 * contrast)};
   wall.layers[0].contact_resistance = 0.3;
   wall.top = held([](double) { return 300.0; });
   wall.bottom = held([](double) { return 290.0; });
