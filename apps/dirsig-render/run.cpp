@@ -74,9 +74,9 @@ std::string explain(const std::string& feature) {
 void check_step(const Scene& scene, const SourceSpecs& sources, const Sensor& sensor) {
   const std::optional<CoarseStep> found = coarse_step(scene, sources, sensor);
   if (!found) return;
-  const std::string cure = found->halvings ? strf("; set spectral_step_um to %.3g, which is fine enough",
-                                                  found->bin_um / (1 << found->halvings))
-                                           : "; no step is fine enough: the spectrum has lines";
+  const std::string cure =
+      found->halvings ? strf("; spectral_step_um: %.3g is fine enough", 0.995 * found->bin_um / (1 << found->halvings))
+                      : "; no step is fine enough: the spectrum has lines";
   warn(strf("sensor '%s': halving its spectral bins of %.3g um changes band '%s' by %.2g %% (%s); %g %% is the limit%s",
             sensor.name().c_str(), found->bin_um, found->band.c_str(), 100 * found->change, found->under.c_str(),
             100 * kStepLimit, cure.c_str()));
