@@ -41,13 +41,17 @@ MatteKernel::MatteKernel(const Surface& surface, const Optics& optics, const Env
       environment_(environment),
       options_(options),
       record_(record),
+      disk_(environment.sun && !environment.sun->collimated()),
       bins_(optics.state().size()),
       reference_bin_(optics.state().knots[0]),
+      objects_(surface.tracer().objects()),
+      meshes_(surface.tracer().scene().meshes),
       lanes_(width),
       steps_(width * static_cast<size_t>(options.max_nodes)),
       rays_(width),
       hits_(width),
       places_(width),
+      numbers_(disk_ ? width : 0),
       reach_(width, std::numeric_limits<double>::infinity()),
       blocked_(width) {
   for (uint32_t i = 0; i < surface.tracer().scene().materials.size(); ++i) {
@@ -71,7 +75,7 @@ void MatteKernel::start(Wave& wave, size_t p, const SensorRay& ray, const Sample
   Lane& lane = lanes_[p];
   lane.stream = stream;
   lane.sample = sample;
-  lane.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
+  if (surface_.tracer().has_holes()) lane.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   lane.size = 0;
   lane.origin = ray.ray.origin;
   lane.direction = ray.ray.direction;
@@ -125,10 +129,10 @@ void MatteKernel::escape(Lane& lane) const {
 // False when nothing scatters there.
 bool MatteKernel::arrive(Wave& wave, uint32_t p, const Hit& hit, Place& place) {
   Lane& lane = lanes_[p];
-  const TracedObject& object = surface_.tracer().objects()[hit.object];
+  const TracedObject& object = objects_[hit.object];
   uint32_t material;
-  if (object.mesh != kNone && surface_.tracer().scene().meshes[object.mesh].normals.empty()) {
-    material = surface_.material(hit);
+  if (object.mesh != kNone && meshes_[object.mesh].normals.empty()) {
+    material = surface_.material(object, hit);
     place.shading = hit.normal;
   } else {
     surface_.interact(hit, -lane.direction, interaction_, lane.time);
@@ -137,7 +141,6 @@ bool MatteKernel::arrive(Wave& wave, uint32_t p, const Hit& hit, Place& place) {
   }
   if (record_) record(wave, p, hit, place.shading, material);
   if (material == kNone || materials_[material].value.empty()) return false;
-  place.geometric = hit.normal;
   place.rho = &materials_[material];
   Step& step = steps(p)[lane.size++];
   step.rho = place.rho->value.data(), step.most = place.rho->most;
@@ -169,12 +172,14 @@ void MatteKernel::light(Wave& wave, int depth, TraceStatistics& statistics) {
   asked_.clear();
   for (uint32_t i = 0; i < active_.size(); ++i) {
     Lane& lane = lanes_[active_[i]];
-    Place& at = places_[i];
-    at.u = lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
-    if (!sun.collimated()) drawn = sun.sample({at.u[2], at.u[3]});
+    const Dir shading = places_[i].shading, geometric = hits_[i].normal;
+    if (disk_) {
+      numbers_[i] = lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
+      drawn = sun.sample({numbers_[i][2], numbers_[i][3]});
+    }
     // Light reaches the side that is looked at, by the geometric and by the shading normal.
-    const double in = dot(drawn.direction, at.shading), in_side = dot(drawn.direction, at.geometric);
-    const double out = -dot(lane.direction, at.shading), out_side = -dot(lane.direction, at.geometric);
+    const double in = dot(drawn.direction, shading), in_side = dot(drawn.direction, geometric);
+    const double out = -dot(lane.direction, shading), out_side = -dot(lane.direction, geometric);
     if (in_side * out_side <= 0 || in_side * in <= 0 || in * out <= 0) continue;
     const double w = std::fabs(in) / kPi;
     steps(active_[i])[lane.size - 1].sun = static_cast<float>(drawn.density > 0 ? w / (drawn.density + w) : w);
@@ -197,8 +202,9 @@ void MatteKernel::go_on(int depth) {
   for (size_t i = 0; i < active_.size(); ++i) {
     const uint32_t p = active_[i];
     Lane& lane = lanes_[p];
-    if (!environment_.sun) places_[i].u = lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
-    const double survival = scatter(lane, places_[i], hits_[i]);
+    const std::array<double, 4> u =
+        disk_ ? numbers_[i] : lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
+    const double survival = scatter(lane, {u[0], u[1]}, places_[i], hits_[i]);
     if (survival == 0) continue;
     steps(p)[lane.size - 1].bounce = static_cast<float>(1 / survival);
     active_[kept++] = p;
@@ -207,14 +213,14 @@ void MatteKernel::go_on(int depth) {
 }
 
 // Draws where a path goes from its last node. Returns the probability of getting so far, 0 when it ends there.
-double MatteKernel::scatter(Lane& lane, const Place& at, const Hit& hit) {
+double MatteKernel::scatter(Lane& lane, Vec2 u, const Place& at, const Hit& hit) {
   const double side = -dot(lane.direction, at.shading);
-  Dir in = cosine_hemisphere({at.u[0], at.u[1]});
+  Dir in = cosine_hemisphere(u);
   if (side == 0 || !(in.z > 0)) return 0;
   lane.density = in.z / kPi;
   if (side < 0) in.z = -in.z;
   const Dir direction = Frame::around(at.shading).to_world(in);
-  if (dot(direction, at.geometric) * in.z <= 0) return 0;  // would leak through the real surface
+  if (dot(direction, hit.normal) * in.z <= 0) return 0;  // would leak through the real surface
   lane.throughput *= static_cast<double>(at.rho->value[reference_bin_]);
   if (!(lane.throughput > 0) && bins_ == 1) return 0;  // nothing more can arrive
   double survival = 1;

@@ -61,11 +61,10 @@ class MatteKernel {
     double truncated = 0;
     float weight = 1, sky = 0, disk = 0;  // the sensor's; of what arrives from outside the scene
   };
-  // Where an active path is.
+  // The surface that an active path has met.
   struct Place {
-    Dir geometric, shading;
+    Dir shading;
     const Spectrum* rho;
-    std::array<double, 4> u;
   };
 
   Spectrum padded(const float* values) const;
@@ -75,7 +74,7 @@ class MatteKernel {
   bool arrive(Wave& wave, uint32_t p, const Hit& hit, Place& place);
   void record(Wave& wave, uint32_t p, const Hit& hit, Dir normal, uint32_t material) const;
   void escape(Lane& lane) const;
-  double scatter(Lane& lane, const Place& at, const Hit& hit);
+  double scatter(Lane& lane, Vec2 u, const Place& at, const Hit& hit);
   Step* steps(size_t p) { return &steps_[p * static_cast<size_t>(options_.max_nodes)]; }
   const Step* steps(size_t p) const { return &steps_[p * static_cast<size_t>(options_.max_nodes)]; }
 
@@ -83,8 +82,10 @@ class MatteKernel {
   const Optics& optics_;
   const Environment& environment_;
   const PipelineOptions options_;
-  const bool record_;
+  const bool record_, disk_;  // disk_: there is a sun that is one
   const size_t bins_, reference_bin_;
+  const std::span<const TracedObject> objects_;
+  const std::span<const Mesh> meshes_;
   std::vector<Spectrum> materials_;  // by material
   Spectrum sun_, sky_;
   std::vector<Lane> lanes_;
@@ -94,7 +95,8 @@ class MatteKernel {
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
   std::vector<Place> places_;
-  std::vector<uint32_t> asked_;  // which i have a ray towards the sun
+  std::vector<std::array<double, 4>> numbers_;  // where a disk and the continuation share them
+  std::vector<uint32_t> asked_;                 // which i have a ray towards the sun
   std::vector<double> reach_;
   std::vector<uint8_t> blocked_;
   Interaction interaction_;

@@ -119,13 +119,12 @@ constexpr uint32_t kSecondSensorBlock = 250;
 SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream,
                   uint32_t index, std::span<float> weights) {
   const size_t numbers = static_cast<size_t>(sensor.numbers());
+  std::array<double, 4> first = stream.draw(index, 0);
+  if (numbers <= 4) return sensor.ray({capture, problem, {first.data(), numbers}, weights});
   std::array<double, 8> u;
-  const std::array<double, 4> first = stream.draw(index, 0);
+  const std::array<double, 4> second = stream.draw(index, kSecondSensorBlock);
   std::copy(first.begin(), first.end(), u.begin());
-  if (numbers > 4) {
-    const std::array<double, 4> second = stream.draw(index, kSecondSensorBlock);
-    std::copy(second.begin(), second.end(), u.begin() + 4);
-  }
+  std::copy(second.begin(), second.end(), u.begin() + 4);
   return sensor.ray({capture, problem, {u.data(), numbers}, weights});
 }
 

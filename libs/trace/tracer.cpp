@@ -34,7 +34,7 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> perio
     : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter)), window) {}
 
 Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
-    : world_(std::move(world)), bounds_(world_->bounds) {
+    : world_(std::move(world)), bounds_(world_->bounds), has_holes_(world_->filter != nullptr) {
   if (world_->flat.fixed == world_->flat.objects.size()) return;
   const FlushDenormals flush;
   moving_ = std::make_unique<MovingPart>(*world_, window);

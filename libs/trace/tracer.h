@@ -98,6 +98,7 @@ class Tracer {
   Affine3 to_world(const TracedObject& object, double time) const;
   Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
   const std::optional<Periodic>& periodic() const;
+  bool has_holes() const { return has_holes_; }   // a filter decides about some surface, by Ray::draw
   const Box3& bounds() const { return bounds_; }  // ENU, all places that moving things have in the window
   size_t triangles() const;                       // instanced ones counted each time
   size_t tiles() const;
@@ -116,6 +117,7 @@ class Tracer {
   std::shared_ptr<const World> world_;
   std::unique_ptr<MovingPart> moving_;  // null when nothing moves
   Box3 bounds_;
+  bool has_holes_ = false;
 };
 
 // Hands out the tracer of a time window. What is at rest is built once; windows in which everything that could move

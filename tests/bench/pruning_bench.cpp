@@ -1,7 +1,8 @@
-// What the generality of the pipeline costs a scene that needs none of it: the terrain (Lambert, collimated sun,
-// uniform sky, one band) through the pipeline, and through a loop written by hand for nothing else: the same estimator
-// on the same sample points through the same tracer, but no records of paths, no materials, no spectra, no truth. Both
-// alternate in one process; their images must agree. Usage: pruning_bench [edge = 192] [paths = 16] [rounds = 20]
+// What generality costs a scene that needs none of it: the terrain (Lambert, collimated sun, uniform sky, one band)
+// through the pipeline's general kernel, through the one it chooses for such a scene (matte_kernel.h), and through a
+// loop written by hand for nothing else: the same estimator on the same sample points through the same tracer, but no
+// records of paths, no materials, no spectra, no truth. They alternate in one process; their images must agree. Usage:
+// pruning_bench [edge = 192] [paths = 16] [rounds = 20]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -68,7 +69,7 @@ struct Stripped {
     for (uint32_t p = 0; p < count; ++p) active.push_back(p);
     for (int depth = 0; !active.empty(); ++depth) {
       rays.clear();
-      for (const uint32_t p : active) rays.push_back({live[p].origin, live[p].direction, 0});
+      for (const uint32_t p : active) rays.emplace_back().set(live[p].origin, live[p].direction, 0, 0);
       hits.resize(rays.size());
       tracer.nearest(rays, hits, depth == 0, statistics);
       shadow.clear(), facing.clear();
@@ -83,7 +84,7 @@ struct Stripped {
         active[kept] = p;
         const Hit& hit = hits[kept++];
         if (dot(sun, hit.normal) * -dot(live[p].direction, hit.normal) <= 0) continue;
-        shadow.push_back({tracer.leave(hit, sun), sun, 0});
+        shadow.emplace_back().set(tracer.leave(hit, sun), sun, 0, 0);
         facing.push_back(static_cast<uint32_t>(kept - 1));
       }
       active.resize(kept);
@@ -157,43 +158,58 @@ int main(int argc, char** argv) {
   const Surface surface(tracer, optics);
   PipelineOptions options;
   options.max_nodes = kNodes;
-  const Pipeline pipeline(surface, optics, environment, optics.state(), projection, 0, truth, options);
+  const Pipeline matte(surface, optics, environment, optics.state(), projection, 0, truth, options);
+  options.specialise = false;
+  const Pipeline general(surface, optics, environment, optics.state(), projection, 0, truth, options);
   const std::vector<Block> blocks = blocks_of(capture);
   const std::vector<uint32_t> to(capture.problems(), paths);
-  const auto whole = [&] {
-    Accumulators sums(capture.problems(), 1, Accumulators::scrambles_for(paths), truth.slots());
-    parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
-      RunStatistics statistics;
-      for (size_t b = begin; b < end; ++b)
-        pipeline.run(sensor, capture, 0, blocks[b], to, sums, Slots::by_problem, statistics);
-    });
+  // As the scheduler runs captures whose counts are known: a block gets its sums, runs, and is done with.
+  const auto whole = [&](const Pipeline& pipeline) {
     std::vector<double> image(capture.problems());
-    double error = 0;
-    for (size_t i = 0; i < image.size(); ++i) sums.estimate(i, 0, image[i], error);
+    parallel_for(0, blocks.size(), 64, [&](size_t begin, size_t end) {
+      RunStatistics statistics;
+      Accumulators sums(kBlockEdge * kBlockEdge, 1, Accumulators::scrambles_for(paths), truth.slots());
+      for (size_t b = begin; b < end; ++b) {
+        const Block& block = blocks[b];
+        sums.clear();
+        pipeline.run(sensor, capture, 0, block, to, sums, Slots::by_place, statistics);
+        for (uint32_t i = 0; i < block.columns * block.rows; ++i) {
+          double error = 0;
+          sums.estimate(
+              i, 0, image[(size_t{block.row} + i / block.columns) * capture.columns + block.column + i % block.columns],
+              error);
+        }
+      }
+    });
     return image;
   };
-  std::vector<double> pipeline_seconds, stripped_seconds, ratios;
+  std::vector<double> seconds[3], over_hand, over_general;
   double difference = 0, mean = 0;
   for (int r = 0; r < rounds; ++r) {
-    const double a = cpu_seconds();
-    const std::vector<double> one = whole();
-    const double b = cpu_seconds();
-    const std::vector<double> other = stripped(tracer, sensor, paths);
-    const double c = cpu_seconds();
-    pipeline_seconds.push_back(b - a), stripped_seconds.push_back(c - b), ratios.push_back((b - a) / (c - b));
-    if (r == 0)
-      for (size_t i = 0; i < one.size(); ++i)
-        difference = std::max(difference, std::fabs(one[i] - other[i])),
-        mean += one[i] / static_cast<double>(one.size());
+    const double t0 = cpu_seconds();
+    const std::vector<double> one = whole(general);
+    const double t1 = cpu_seconds();
+    const std::vector<double> two = whole(matte);
+    const double t2 = cpu_seconds();
+    const std::vector<double> three = stripped(tracer, sensor, paths);
+    const double t3 = cpu_seconds();
+    seconds[0].push_back(t1 - t0), seconds[1].push_back(t2 - t1), seconds[2].push_back(t3 - t2);
+    over_hand.push_back((t2 - t1) / (t3 - t2)), over_general.push_back((t2 - t1) / (t1 - t0));
+    if (r > 0) continue;
+    for (size_t i = 0; i < one.size(); ++i) {
+      difference = std::max({difference, std::fabs(one[i] - three[i]), std::fabs(two[i] - three[i])});
+      mean += one[i] / static_cast<double>(one.size());
+    }
   }
-  for (auto* v : {&pipeline_seconds, &stripped_seconds, &ratios}) std::sort(v->begin(), v->end());
+  for (auto* v : {&seconds[0], &seconds[1], &seconds[2], &over_hand, &over_general}) std::sort(v->begin(), v->end());
   const auto middle = static_cast<size_t>(rounds / 2);
-  const double count = static_cast<double>(capture.problems()) * paths;
+  const double scale = 1e6 / (static_cast<double>(capture.problems()) * paths);
   std::printf("%u x %u pixels, %u paths, %d rounds: mean radiance %.5f, largest difference of a pixel %.2g of it\n",
               edge, edge, paths, rounds, mean, difference / mean);
-  std::printf("CPU us/path, median: pipeline %.4f, by hand %.4f; least: %.4f, %.4f\n",
-              1e6 * pipeline_seconds[middle] / count, 1e6 * stripped_seconds[middle] / count,
-              1e6 * pipeline_seconds[0] / count, 1e6 * stripped_seconds[0] / count);
-  std::printf("pipeline over by hand: median %.3f, least %.3f, most %.3f\n", ratios[middle], ratios.front(),
-              ratios.back());
+  std::printf("CPU us/path, median: general %.4f, %s %.4f, by hand %.4f; least: %.4f, %.4f, %.4f\n",
+              scale * seconds[0][middle], matte.kernel(), scale * seconds[1][middle], scale * seconds[2][middle],
+              scale * seconds[0][0], scale * seconds[1][0], scale * seconds[2][0]);
+  std::printf("%s over by hand: median %.3f, least %.3f, most %.3f; over general: median %.3f, most %.3f\n",
+              matte.kernel(), over_hand[middle], over_hand.front(), over_hand.back(), over_general[middle],
+              over_general.back());
 }
