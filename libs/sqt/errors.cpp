@@ -241,10 +241,12 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
       for (int a = 0; a < 3; ++a) {
         double peak_f = 0, peak_g = 0;
         const Dir view = dir_from_angles(kPeakAngles[a], 0);
-        for (int k = -899; k <= 899; ++k) {
-          const Dir in = dir_from_angles(k * 0.1 * kDegree, 0);
+        const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
+        for (int k = -last; k <= last; ++k) {
+          const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
+          if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
           function_.value(view, in, f);
-          if (std::isfinite(f[c]) && std::fabs(k) < 850)
+          if (std::isfinite(f[c]))
             peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
         }
         *ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;
