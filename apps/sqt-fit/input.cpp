@@ -1,5 +1,8 @@
 #include "input.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "base/files.h"
 #include "formats/measured/measured.h"
@@ -9,19 +12,50 @@
 
 namespace suite {
 
+namespace {
+
+// Rows without a value are left out, and counted.
+std::shared_ptr<const sqt::Function> interpolated(const sqt::Samples& samples, const std::string& file) {
+  const size_t channels = samples.info.wavelength_um.size();
+  size_t missing = 0;
+  for (size_t i = 0; i < samples.in.size(); ++i)
+    missing += std::any_of(&samples.value[i * channels], &samples.value[(i + 1) * channels],
+                           [](double v) { return !std::isfinite(v); });
+  if (missing == samples.in.size())
+    throw Error(Where{file, 0, 0, {}, -1}, "no pair of directions has a value in every channel",
+                "nan and inf mark missing values");
+  if (missing)
+    warn(strf("%s: %zu of %zu pairs of directions lack a value and are left out", file.c_str(), missing,
+              samples.in.size()));
+  const double longest = *std::max_element(samples.info.wavelength_um.begin(), samples.info.wavelength_um.end());
+  if (longest > 100)
+    warn(strf("%s: wavelengths reach %g um; are they in nm? columns and lists are in um", file.c_str(), longest));
+  return sqt::interpolate(samples);
+}
+
+}  // namespace
+
 FitInput load_input(const SqtFitOptions& options) {
   FitInput input;
   input.provenance.command = command_line();
   input.provenance.tool = std::string("sqt-fit ") + kVersion;
   if (!options.model.empty()) {
-    input.function = model_function(options.model);
     input.provenance.input = options.model;
+    // A long table comes from a file: tabulated:table=@mie.txt
+    const size_t at = options.model.find("table=@");
+    std::string model = options.model;
+    if (at != std::string::npos) {
+      const std::string file = options.model.substr(at + 7);
+      model = options.model.substr(0, at + 6) + read_text(file);
+      input.provenance.input_sha256 = sha256(read_bytes(file));
+    }
+    input.function = model_function(model);
   } else {
     Measured measured = read_measured(options.input);
     if (auto* function = std::get_if<0>(&measured))
       input.function = std::move(*function);
     else
-      input.function = sqt::interpolate(std::get<1>(measured));
+      input.function = interpolated(std::get<1>(measured), options.input);
     input.provenance.input = options.input;
     input.provenance.input_sha256 = sha256(read_bytes(options.input));
   }

@@ -43,9 +43,31 @@ void check_options(const SqtFitOptions& o) {
   const bool paper = o.method == "paper";
   if (paper && (o.max_error != 0 || o.max_bytes != 0))
     throw UsageError("--max-error and --max-bytes need --method aligned; see --threshold and --curve");
-  if (o.order && (o.order < (paper ? 1 : 3) || o.order > (paper ? 8 : 12))) throw UsageError("--order is out of range");
-  if (o.views && (o.views < 2 || o.views > 64)) throw UsageError("--views is out of range");
-  if (!(o.max_error >= 0) || o.max_bytes < 0 || !(o.threshold >= 0)) throw UsageError("targets must be positive");
+  if (o.order && (o.order < (paper ? 1 : 3) || o.order > (paper ? 8 : 12)))
+    throw UsageError(strf("--order %lld is out of range; give %s, or 0", o.order, paper ? "1 to 8" : "3 to 12"));
+  if (o.views && (o.views < 2 || o.views > 64))
+    throw UsageError(strf("--views %lld is out of range; give 2 to 64, or 0", o.views));
+  if (!(o.max_error >= 0) || o.max_bytes < 0 || !(o.threshold >= 0))
+    throw UsageError("--max-error, --max-bytes and --threshold must not be negative");
+}
+
+// Outputs that could not be written, or that would replace the input or each other, before any time is spent.
+void check_outputs(const SqtFitOptions& o) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  for (const std::string& f : {o.input, o.output, o.report, o.curve})
+    if (!f.empty()) files.push_back(f);
+  if (!o.curve.empty()) files.push_back(fs::path(o.curve).replace_extension(".html").string());
+  std::error_code ignored;
+  for (size_t i = 0; i < files.size(); ++i)
+    for (size_t j = i + 1; j < files.size(); ++j)
+      if (files[i] == files[j] || fs::equivalent(files[i], files[j], ignored))
+        throw UsageError("'" + files[j] + "' is named twice; inputs and outputs must be different files");
+  for (size_t i = o.input.empty() ? 0 : 1; i < files.size(); ++i) {
+    const fs::path folder = fs::path(files[i]).parent_path();
+    if (!folder.empty() && !fs::is_directory(folder, ignored))
+      throw Error(Where{files[i], 0, 0, {}, -1}, "cannot be written: there is no such folder", "make it first");
+  }
 }
 
 // Numbers about the input that no physical surface has; errors under --strict.
@@ -166,6 +188,7 @@ void write_curve(const SqtFitOptions& o, const FitInput& input, const sqt::Refer
 
 int run_sqt_fit(const SqtFitOptions& o) {
   check_options(o);
+  check_outputs(o);
   const FitInput input = load_input(o);
   const Stopwatch watch;
   Progress progress("fitting", 100, "%");
@@ -197,10 +220,12 @@ int run_sqt_fit(const SqtFitOptions& o) {
   const double seconds = watch.seconds();
   print_summary(o, out, seconds);
   if (!out.error_met || !out.bytes_met) {
-    const std::string text =
-        !out.bytes_met
-            ? strf("%lld bytes cannot be kept: the smallest file has %zu", o.max_bytes, out.file.size())
-            : strf("an error of %g cannot be kept: the best fit has %.4g", o.max_error, out.errors.back().l1);
+    std::string text;
+    if (!out.bytes_met)
+      text = strf("%lld bytes cannot be kept: the smallest file has %zu", o.max_bytes, out.file.size());
+    if (!out.error_met)
+      text += strf("%san error of %g cannot be kept: %s has %.4g", text.empty() ? "" : "; ", o.max_error,
+                   o.max_bytes ? "this fit" : "the best fit", out.errors.back().l1);
     if (o.strict)
       throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "relax the target or leave out --strict");
     warn(text);

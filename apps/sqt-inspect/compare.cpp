@@ -41,15 +41,6 @@ struct Sums {
   }
 };
 
-void require_same_channels(const sqt::Bundle& bundle, const sqt::Function::Info& data) {
-  const std::vector<double>&a = bundle.info().function.wavelength_um, &b = data.wavelength_um;
-  bool same = a.size() == b.size();
-  for (size_t c = 0; same && c < a.size(); ++c) same = std::fabs(a[c] - b[c]) < 1e-6;
-  if (!same)
-    throw Error(strf("the fit has %zu channels and the data %zu, or their wavelengths differ", a.size(), b.size()),
-                "compare with what was fitted");
-}
-
 double cosine_of(const sqt::Bundle& bundle, Dir in) { return bundle.cosine_weighted() ? std::fabs(in.z) : 1; }
 
 // Half of the points uniform, half in a lobe (1 - cos drawn as a power law around the mirror direction); the density of
@@ -87,8 +78,10 @@ void peak_ratios(const sqt::Bundle& bundle, const sqt::Function& data, Compariso
   for (const int deg : {20, 45, 70}) {
     const Dir out = dir_from_angles(deg * kDegree, 0);
     std::vector<double> top_f(n), top_g(n);
-    for (int i = -8000; i <= 8000; ++i) {
-      const Dir in = dir_from_angles(std::fabs(i * 0.01) * kDegree, i < 0 ? kPi : 0);
+    const int last = data.info().domain == sqt::Domain::sphere ? 18000 : 8000;  // hundredths of a degree
+    for (int i = -last; i <= last; ++i) {
+      const Dir in = dir_from_angles(std::abs(i) * 0.01 * kDegree, i < 0 ? kPi : 0);
+      if (bundle.cosine_weighted() && std::fabs(in.z) < kLimitCosine) continue;
       if (replaced_by_dirac(bundle, out, in)) continue;
       data.value(out, in, f);
       bundle.value(out, in, g);
@@ -120,8 +113,16 @@ Comparison gathered(const std::vector<Sums>& sums) {
 
 }  // namespace
 
+void require_same_channels(const sqt::Bundle& bundle, const sqt::Function::Info& data) {
+  const std::vector<double>&a = bundle.info().function.wavelength_um, &b = data.wavelength_um;
+  bool same = a.size() == b.size();
+  for (size_t c = 0; same && c < a.size(); ++c) same = std::fabs(a[c] - b[c]) < 1e-6;
+  if (!same)
+    throw Error(strf("the fit has %zu channels and the data %zu, or their wavelengths differ", a.size(), b.size()),
+                "compare with what was fitted");
+}
+
 Comparison compare(const sqt::Bundle& bundle, const sqt::Function& data, size_t pairs) {
-  require_same_channels(bundle, data.info());
   const bool sphere = data.info().domain == sqt::Domain::sphere, phase = data.info().quantity != sqt::Quantity::bsdf;
   const size_t n = bundle.channels();
   std::vector<Sums> sums(n);
@@ -147,12 +148,11 @@ Comparison compare(const sqt::Bundle& bundle, const sqt::Function& data, size_t 
   Comparison result = gathered(sums);
   result.pairs = pairs;
   result.invalid = invalid;
-  if (!sphere) peak_ratios(bundle, data, result);
+  peak_ratios(bundle, data, result);
   return result;
 }
 
 Comparison compare(const sqt::Bundle& bundle, const sqt::Samples& data) {
-  require_same_channels(bundle, data.info);
   const size_t n = bundle.channels();
   std::vector<Sums> sums(n);
   std::vector<double> g(n);

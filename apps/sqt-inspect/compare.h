@@ -5,7 +5,7 @@
 // data of both sides; c = |cos in|, 1 for phase functions and intensities):
 //   l1 = sum |g - f| c / sum f c, cos_rmse = sqrt(sum ((g - f) c)^2 / sum (f c)^2): polar angles up to 80 deg;
 //   rmse = sqrt(mean (g - f)^2), 1/sr, whole hemisphere; bias = sum (g - f) c / sum f c;
-//   peak_ratio_t = largest g / largest f in the plane of incidence at view t deg.
+//   peak_ratio_t = largest g / largest f in the plane of incidence at view t deg, polar angles up to 80 deg.
 #pragma once
 #include <string>
 #include <vector>
@@ -27,7 +27,10 @@ struct Comparison {
   Json json() const;
 };
 
-// Error when the channels differ. pairs: directions asked (Sobol points, half of them in a lobe around the mirror
+// Error when the channels of a fit and of data differ in number or wavelength.
+void require_same_channels(const sqt::Bundle& bundle, const sqt::Function::Info& data);
+
+// The channels must be the same. pairs: directions asked (Sobol points, half of them in a lobe around the mirror
 // direction, weighed back to the uniform measure).
 Comparison compare(const sqt::Bundle& bundle, const sqt::Function& data, size_t pairs);
 // Over the samples themselves; each pair counts once, with its cosine. No peak ratios.

@@ -18,6 +18,7 @@ AppInfo inspect_info() {
               "  sqt-inspect satin.sqt\n"
               "  sqt-inspect satin.sqt --check\n"
               "  sqt-inspect satin.sqt --map satin.png --channel 1\n"
+              "  sqt-inspect satin.sqt --map lobe.png --channel 1 --views 20,60 --zoom 20\n"
               "  sqt-inspect satin.sqt --compare satin_purple_rgb.bsdf --error-map error.png\n"
               "  sqt-inspect satin.sqt --eval 30,0,30,180,0.55\n"
               "Exit codes: 0 fine, 1 bad input or a failed check, 2 wrong usage, 3 a bug of ours."};
@@ -27,12 +28,17 @@ void declare_options(Cli& cli, InspectOptions& o) {
   cli.positional("file", o.file, "the .sqt file");
   cli.flag("--json", o.json, "print the header, the findings of --check or the figures of --compare as JSON");
   cli.flag("--check", o.check, "test values, energy, masses of cells, sampling (significance 1e-3), reciprocity");
-  cli.option("--map", o.map, "picture of the cells over the values of several slices", "PNG");
+  cli.option("--map", o.map, "picture of the cells over the values of several slices up to 80 deg", "PNG");
   cli.option("--panels", o.panels, "slices shown by --map, 1 to 24", "N");
+  cli.option("--zoom", o.zoom, "--map shows what lies within this angle of the mirror direction; 0 = the hemisphere",
+             "DEG");
   cli.flag("--no-edges", o.no_edges, "--map without the borders of the cells");
   cli.option("--slice", o.slice, "principal plane as a table", "CSV");
-  cli.option("--plot", o.plot, "principal plane as a plot", "PNG");
-  cli.option("--views", o.views, "view angles of --slice and --plot, deg, at most 6", "DEG,...");
+  cli.option("--plot", o.plot, "principal plane as a plot; with a comparison the data as dots beside it", "PNG");
+  cli.option("--views", o.views,
+             "view angles of --slice and --plot, deg, at most 6 (none given: 0,20,45,70); --map then shows the slices "
+             "nearest to them",
+             "DEG,...");
   cli.option("--compare", o.compare, "errors against a measured file", "INPUT");
   cli.option("--compare-model", o.compare_model, "errors against a scattering model", "NAME:PARAM=VALUE,...");
   cli.option("--pairs", o.pairs, "direction pairs of the comparison, 1000 to 100000000", "N");
@@ -43,7 +49,7 @@ void declare_options(Cli& cli, InspectOptions& o) {
   cli.option("--eval", o.eval, "print f, w = f |cos in|, density and total for one pair of directions",
              "THETA_O,PHI_O,THETA_I,PHI_I,UM");
   cli.option("--sphere", o.sphere, "preview of a sphere under sun and sky", "PNG");
-  cli.option("--size", o.size, "pixels of --sphere, 16 to 4096", "N");
+  cli.option("--size", o.size, "pixels of --sphere and of a slice of --map, 16 to 4096", "N");
   cli.option("--channel", o.channel, "channel of --map, --plot, --sample and --error-map, from 0", "N");
 }
 

@@ -11,7 +11,8 @@ struct InspectOptions {
   std::string file;
   bool json = false, check = false, no_edges = false;
   std::string map, slice, plot, compare, compare_model, error_map, eval, sphere;
-  std::string views = "0,20,45,70";
+  std::string views;
+  double zoom = 0;
   std::string out = "30,0";
   long long channel = 0, panels = 6, sample = 0, seed = 1, pairs = 400000, size = 512;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -47,7 +48,7 @@ std::string slice_csv(const sqt::Bundle& bundle, const std::vector<double>& view
 }
 
 Canvas slice_plot(const sqt::Bundle& bundle, const std::vector<double>& view_deg, size_t channel,
-                  const std::string& title) {
+                  const std::string& title, const sqt::Function* data) {
   static constexpr Rgb colors[] = {{31, 119, 180},  {214, 39, 40},  {44, 160, 44},
                                    {148, 103, 189}, {255, 127, 14}, {23, 190, 207}};
   const bool sphere = bundle.info().function.domain == sqt::Domain::sphere;
@@ -58,26 +59,39 @@ Canvas slice_plot(const sqt::Bundle& bundle, const std::vector<double>& view_deg
   axes.x_high = sphere ? 180 : 90;
   axes.x_low = -axes.x_high;
   axes.log_y = true;
+  axes.scale = 2;
   std::vector<PlotLine> lines;
-  double high = 0;
-  for (size_t v = 0; v < view_deg.size(); ++v) {
-    PlotLine line{strf("view %g deg", view_deg[v]), colors[v % std::size(colors)], {}, {}};
-    for (double theta = axes.x_low; theta <= axes.x_high; theta += 0.25) {
-      line.x.push_back(theta);
-      line.y.push_back(bundle.value(dir_from_angles(view_deg[v] * kDegree, 0), in_plane(theta, sphere), channel));
-      if (std::fabs(theta) <= 80 || sphere) high = std::max(high, line.y.back());
+  double high = 0, low = INFINITY;
+  // What reaches beyond 80 deg is drawn and does not set the axis.
+  auto add = [&](PlotLine line, double step, const std::function<double(Dir)>& f) {
+    for (double theta = axes.x_low; theta <= axes.x_high; theta += step) {
+      const double y = f(in_plane(theta, sphere));
+      line.x.push_back(theta), line.y.push_back(y);
+      if ((std::fabs(theta) <= 80 || sphere) && y > 0) high = std::max(high, y), low = std::min(low, y);
     }
     lines.push_back(std::move(line));
+  };
+  std::vector<double> f(bundle.channels());
+  for (size_t v = 0; v < view_deg.size(); ++v) {
+    const Dir out = dir_from_angles(view_deg[v] * kDegree, 0);
+    add({strf("view %g deg", view_deg[v]), colors[v % std::size(colors)], {}, {}, false}, 0.1,
+        [&](Dir in) { return bundle.value(out, in, channel); });
+  }
+  for (size_t v = 0; data && v < view_deg.size(); ++v) {
+    const Dir out = dir_from_angles(view_deg[v] * kDegree, 0);
+    // Dots of a darker kind, so that they show on the line of their view.
+    const Rgb c = colors[v % std::size(colors)];
+    auto dark = [](uint8_t x) { return static_cast<uint8_t>(x * 11 / 20); };
+    add({strf("data %g deg", view_deg[v]), {dark(c.r), dark(c.g), dark(c.b)}, {}, {}, true}, 1, [&](Dir in) {
+      data->value(out, in, f);
+      return f[channel];
+    });
   }
   high = std::max(high, 1e-9);
-  double low = high;
-  for (const PlotLine& line : lines)
-    for (size_t i = 0; i < line.y.size(); ++i)
-      if (line.y[i] > 0 && (std::fabs(line.x[i]) <= 80 || sphere)) low = std::min(low, line.y[i]);
   axes.y_high = std::pow(10, std::ceil(std::log10(high) + 0.02));
-  axes.y_low = std::max(axes.y_high * 1e-8, std::pow(10, std::floor(std::log10(low) - 0.02)));
-  Canvas canvas(900, 560);
-  draw_plot(canvas, 0, 0, 900, 560, axes, lines);
+  axes.y_low = std::max(axes.y_high * 1e-8, std::pow(10, std::floor(std::log10(std::min(low, high)) - 0.02)));
+  Canvas canvas(1500, 940);
+  draw_plot(canvas, 0, 0, 1500, 940, axes, lines);
   return canvas;
 }
 

@@ -11,8 +11,9 @@ namespace suite {
 // Principal plane at the view angles: CSV of theta_o_deg, theta_in_deg (positive on the side of the view direction,
 // negative on the side of the mirror), f per channel.
 std::string slice_csv(const sqt::Bundle& bundle, const std::vector<double>& view_deg);
+// data: what was fitted, drawn as dots; may be null.
 Canvas slice_plot(const sqt::Bundle& bundle, const std::vector<double>& view_deg, size_t channel,
-                  const std::string& title);
+                  const std::string& title, const sqt::Function* data);
 
 // CSV of n directions drawn for `out` in one channel: x, y, z, pdf, weight = w / pdf (a failed draw is left out).
 std::string sample_csv(const sqt::Bundle& bundle, Dir out, size_t channel, size_t n, uint64_t seed);

@@ -32,7 +32,10 @@ Layout read_header(const TextLines& lines) {
   const std::vector<std::string> known{"theta_o", "phi_o",       "theta_i",   "phi_i",       "wavelength_um",
                                        "value",   "theta_o_deg", "phi_o_deg", "theta_i_deg", "phi_i_deg"};
   for (size_t w = 0; w < lines.words(); ++w) {
-    const std::string name(lines.word(w));
+    std::string name(lines.word(w));
+    if (name.find(';') != std::string::npos)
+      throw lines.error(w, "';' between the columns", "separate columns by commas, decimals by points");
+    std::erase(name, '"');
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) throw lines.error(w, "unknown column '" + name + "'", name_hint(name, known));
     const size_t index = static_cast<size_t>(found - known.begin()), column = index < 6 ? index : index - 6;
@@ -71,7 +74,7 @@ struct Row {
 Row read_row(const TextLines& lines, const Layout& layout, sqt::Quantity quantity) {
   if (lines.words() != kColumns)
     throw lines.error(0, strf("the line has %zu values, %d are wanted", lines.words(), kColumns),
-                      "theta_o, phi_o, theta_i, phi_i, wavelength_um, value");
+                      "theta_o, phi_o, theta_i, phi_i, wavelength_um, value; nan stands for a missing value");
   Row row{};
   for (size_t a = 0; a < 4; ++a) {
     const bool polar = a % 2 == 0;

@@ -55,12 +55,72 @@ void Canvas::line(Vec2 a, Vec2 b, Rgb color, double opacity) {
   }
 }
 
+namespace {
+
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+  const double t = square > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / square, 0.0, 1.0) : 0;
+  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+bool dot(const uint8_t* glyph, int column, int row) {
+  return column >= 0 && row >= 0 && column < 5 && row < 7 && ((glyph[column] >> row) & 1);
+}
+
+// Neighbouring dots of a glyph, joined: side by side always, across a corner where no dot fills it.
+std::vector<std::pair<Vec2, Vec2>> strokes_of(const uint8_t* glyph) {
+  std::vector<std::pair<Vec2, Vec2>> list;
+  for (int c = 0; c < 5; ++c)
+    for (int r = 0; r < 7; ++r) {
+      if (!dot(glyph, c, r)) continue;
+      const Vec2 at{c + 0.5, r + 0.5};
+      bool joined = false;
+      auto join = [&](int dc, int dr) {
+        if (!dot(glyph, c + dc, r + dr)) return;
+        joined = true;
+        if (dc > 0 || (dc == 0 && dr > 0)) list.push_back({at, {at.x + dc, at.y + dr}});
+      };
+      for (const int step : {-1, 1}) join(step, 0), join(0, step);
+      for (const int dc : {-1, 1})
+        for (const int dr : {-1, 1})
+          if (!dot(glyph, c + dc, r) && !dot(glyph, c, r + dr)) join(dc, dr);
+      if (!joined) list.push_back({at, at});
+    }
+  return list;
+}
+
+}  // namespace
+
+void Canvas::stroke(Vec2 a, Vec2 b, double width, Rgb color, double opacity) {
+  if (!(std::min(a.x, b.x) > -width_ && std::max(a.x, b.x) < 2 * width_ && std::min(a.y, b.y) > -height_ &&
+        std::max(a.y, b.y) < 2 * height_))
+    return;
+  const double reach = width / 2 + 1;
+  for (int y = static_cast<int>(std::min(a.y, b.y) - reach); y <= std::max(a.y, b.y) + reach; ++y)
+    for (int x = static_cast<int>(std::min(a.x, b.x) - reach); x <= std::max(a.x, b.x) + reach; ++x) {
+      const double covered = std::clamp(width / 2 + 0.5 - distance_to_segment({x + 0.5, y + 0.5}, a, b), 0.0, 1.0);
+      if (covered > 0) blend(x, y, color, opacity * covered);
+    }
+}
+
 void Canvas::text(int x, int y, std::string_view text, Rgb color, int scale) {
   for (const char c : text) {
     const uint8_t* glyph = kFont[c >= 32 && c < 127 ? c - 32 : '?' - 32];
-    for (int column = 0; column < 5; ++column)
-      for (int row = 0; row < 7; ++row)
-        if ((glyph[column] >> row) & 1) fill(x + column * scale, y + row * scale, scale, scale, color);
+    if (scale == 1) {
+      for (int column = 0; column < 5; ++column)
+        for (int row = 0; row < 7; ++row)
+          if (dot(glyph, column, row)) set(x + column, y + row, color);
+    } else {
+      const auto strokes = strokes_of(glyph);
+      for (int j = 0; j < 8 * scale; ++j)
+        for (int i = 0; i < 6 * scale; ++i) {
+          double nearest = 10;
+          for (const auto& [a, b] : strokes)
+            nearest = std::min(nearest, distance_to_segment({(i + 0.5) / scale, (j + 0.5) / scale}, a, b));
+          const double covered = std::clamp((0.42 - nearest) * scale + 0.5, 0.0, 1.0);
+          if (covered > 0) blend(x + i, y + j, color, covered);
+        }
+    }
     x += 6 * scale;
   }
 }

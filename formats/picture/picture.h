@@ -33,7 +33,10 @@ class Canvas {
   void fill(int x, int y, int width, int height, Rgb color);
   void frame(int x, int y, int width, int height, Rgb color);  // outline, inside the rectangle
   void line(Vec2 a, Vec2 b, Rgb color, double opacity = 1);    // one pixel wide, anti-aliased
-  // ASCII in a 5 x 7 font enlarged `scale` times; (x, y) is the upper left corner. Other characters show as '?'.
+  // The same of any width in pixels, with round ends; on the canvas and up to a canvas around it.
+  void stroke(Vec2 a, Vec2 b, double width, Rgb color, double opacity = 1);
+  // ASCII in a 5 x 7 font enlarged `scale` times, its dots joined to smooth strokes from 2 on; (x, y) is the upper left
+  // corner. Other characters show as '?'.
   void text(int x, int y, std::string_view text, Rgb color = kBlack, int scale = 1);
   static int text_width(std::string_view text, int scale = 1) { return static_cast<int>(text.size()) * 6 * scale; }
   static constexpr int text_height(int scale = 1) { return 8 * scale; }
@@ -51,9 +54,10 @@ Rgb diverging(double t);
 // Linear light to 8-bit sRGB (IEC 61966-2-1); clamped.
 uint8_t srgb(double linear);
 
-// Vertical colour bar with labelled decades from low to high (log scale; 0 < low < high), `title` above.
+// Vertical colour bar with labelled decades and ends from low to high (log scale; 0 < low < high), `title` above.
+// scale: of the text.
 void draw_log_bar(Canvas& canvas, int x, int y, int width, int height, double low, double high,
-                  const std::string& title);
+                  const std::string& title, int scale = 1);
 // Position of a value on that scale, 0 to 1.
 double log_position(double value, double low, double high);
 
@@ -62,11 +66,13 @@ struct PlotLine {
   std::string name;
   Rgb color;
   std::vector<double> x, y;  // same length; NaN breaks the line
+  bool dots = false;         // points instead of a line
 };
 struct PlotAxes {
   std::string title, x_label, y_label;
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
   bool log_y = false;
+  int scale = 1;  // of text, margins and line widths
 };
 void draw_plot(Canvas& canvas, int x, int y, int width, int height, const PlotAxes& axes,
                std::span<const PlotLine> lines);

@@ -22,6 +22,28 @@ std::string power_label(int exponent) {
   return exponent >= -2 && exponent <= 3 ? strf("%g", std::pow(10.0, exponent)) : strf("1e%d", exponent);
 }
 
+std::string end_label(double value) {
+  return value >= 1e4 ? strf("%.1e", value) : value >= 10 ? strf("%.0f", value) : strf("%.2g", value);
+}
+
+// A line or points inside the axes; px and py give pixels of values.
+template <class X, class Y>
+void draw_line(Canvas& canvas, const PlotLine& line, const PlotAxes& axes, const X& px, const Y& py) {
+  const double top = py(axes.y_high), bottom = py(axes.y_low);
+  for (size_t i = 0; i < line.x.size(); ++i) {
+    const Vec2 b{px(line.x[i]), py(line.y[i])};
+    if (line.dots) {
+      if (b.y >= top && b.y <= bottom) canvas.stroke(b, b, 2.2 * axes.scale, line.color);
+      continue;
+    }
+    if (i == 0) continue;
+    const Vec2 a{px(line.x[i - 1]), py(line.y[i - 1])};
+    if (std::isnan(a.y) || std::isnan(b.y) || (a.y > bottom && b.y > bottom) || (a.y < top && b.y < top)) continue;
+    const Vec2 from{a.x, std::clamp(a.y, top, bottom)}, to{b.x, std::clamp(b.y, top, bottom)};
+    axes.scale == 1 ? canvas.line(from, to, line.color) : canvas.stroke(from, to, 0.8 * axes.scale, line.color);
+  }
+}
+
 }  // namespace
 
 double log_position(double value, double low, double high) {
@@ -30,39 +52,49 @@ double log_position(double value, double low, double high) {
 }
 
 void draw_log_bar(Canvas& canvas, int x, int y, int width, int height, double low, double high,
-                  const std::string& title) {
+                  const std::string& title, int scale) {
   SUITE_CHECK(low > 0 && low < high);
-  canvas.text(x, y - 2 * Canvas::text_height() - 2, title);
+  const int tick = 4 * scale, text = 7 * scale, up = 3 * scale;
+  canvas.text(x, y - 3 * Canvas::text_height(scale), title, kBlack, scale);
   for (int j = 0; j < height; ++j) canvas.fill(x, y + j, width, 1, viridis(1 - (j + 0.5) / height));
   canvas.frame(x, y, width, height, kBlack);
-  for (int e = static_cast<int>(std::ceil(std::log10(low) - 1e-9));
-       e <= static_cast<int>(std::floor(std::log10(high) + 1e-9)); ++e) {
-    const int at =
-        y + height - 1 - static_cast<int>(std::lround(log_position(std::pow(10.0, e), low, high) * (height - 1)));
-    canvas.fill(x + width, at, 4, 1, kBlack);
-    canvas.text(x + width + 7, at - 3, power_label(e));
-  }
-  canvas.text(x + width + 7, y - 5, strf("%.3g", high));
+  auto position = [&](double v) {
+    return y + height - 1 - static_cast<int>(std::lround(log_position(v, low, high) * (height - 1)));
+  };
+  for (int e = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, e) <= high; ++e)
+    for (int digit = 1; digit < 10; ++digit) {
+      const double value = digit * std::pow(10.0, e);
+      if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
+      const int at = position(value);
+      canvas.fill(x + width, at, digit == 1 ? tick : tick / 2, scale, kBlack);
+      // The ends have labels of their own.
+      if (digit == 1 && std::min(at - y, y + height - at) > Canvas::text_height(scale))
+        canvas.text(x + width + text, at - up, power_label(e), kBlack, scale);
+    }
+  for (const double value : {low, high})
+    canvas.text(x + width + text, position(value) - up, end_label(value), kBlack, scale);
 }
 
 void draw_plot(Canvas& canvas, int x, int y, int width, int height, const PlotAxes& axes,
                std::span<const PlotLine> lines) {
-  const int left = x + 62, right = x + width - 12, top = y + 26, bottom = y + height - 34;
+  const int s = axes.scale;
+  const int left = x + 62 * s, right = x + width - 12 * s, top = y + 28 * s, bottom = y + height - 34 * s;
   const double y_low = axes.log_y ? std::log10(axes.y_low) : axes.y_low,
                y_high = axes.log_y ? std::log10(axes.y_high) : axes.y_high;
   SUITE_CHECK(axes.x_low < axes.x_high && y_low < y_high && right > left && bottom > top);
   auto px = [&](double v) { return left + (v - axes.x_low) / (axes.x_high - axes.x_low) * (right - left); };
   auto py = [&](double v) { return bottom - (v - y_low) / (y_high - y_low) * (bottom - top); };
-  canvas.text((left + right - Canvas::text_width(axes.title)) / 2, y + 6, axes.title);
-  canvas.text((left + right - Canvas::text_width(axes.x_label)) / 2, y + height - 12, axes.x_label);
-  canvas.text(x + 2, y + 14, axes.y_label);
+  auto text = [&](int at_x, int at_y, const std::string& t) { canvas.text(at_x, at_y, t, kBlack, s); };
+  text((left + right - Canvas::text_width(axes.title, s)) / 2, y + 4 * s, axes.title);
+  text((left + right - Canvas::text_width(axes.x_label, s)) / 2, y + height - 12 * s, axes.x_label);
+  text(x + 2 * s, y + 16 * s, axes.y_label);
 
   const double step = nice_step(axes.x_high - axes.x_low, 8);
   for (double v = std::ceil(axes.x_low / step) * step; v <= axes.x_high + 1e-9 * step; v += step) {
     const std::string label = strf("%g", std::fabs(v) < 1e-9 * step ? 0.0 : v);
     const int at = static_cast<int>(std::lround(px(v)));
     canvas.fill(at, top, 1, bottom - top, kFaint);
-    canvas.text(at - Canvas::text_width(label) / 2, bottom + 6, label);
+    text(at - Canvas::text_width(label, s) / 2, bottom + 6 * s, label);
   }
   const double y_step = axes.log_y ? std::max(1.0, std::ceil((y_high - y_low) / 10)) : nice_step(y_high - y_low, 6);
   for (double v = std::ceil(y_low / y_step - 1e-9) * y_step; v <= y_high + 1e-9 * y_step; v += y_step) {
@@ -70,22 +102,21 @@ void draw_plot(Canvas& canvas, int x, int y, int width, int height, const PlotAx
         axes.log_y ? power_label(static_cast<int>(std::lround(v))) : strf("%g", std::fabs(v) < 1e-9 * y_step ? 0.0 : v);
     const int at = static_cast<int>(std::lround(py(v)));
     canvas.fill(left, at, right - left, 1, kFaint);
-    canvas.text(left - 5 - Canvas::text_width(label), at - 3, label);
+    text(left - 5 * s - Canvas::text_width(label, s), at - 3 * s, label);
   }
   canvas.frame(left, top, right - left + 1, bottom - top + 1, kBlack);
 
-  int legend = top + 6;
+  int legend = top + 6 * s;
   for (const PlotLine& line : lines) {
-    for (size_t i = 1; i < line.x.size(); ++i) {
-      const double a = axes.log_y ? std::log10(std::max(line.y[i - 1], 1e-300)) : line.y[i - 1],
-                   b = axes.log_y ? std::log10(std::max(line.y[i], 1e-300)) : line.y[i];
-      if (std::isnan(a) || std::isnan(b) || (a < y_low && b < y_low) || (a > y_high && b > y_high)) continue;
-      canvas.line({px(line.x[i - 1]), std::clamp(py(a), double(top), double(bottom))},
-                  {px(line.x[i]), std::clamp(py(b), double(top), double(bottom))}, line.color);
-    }
-    canvas.fill(right - 20 - Canvas::text_width(line.name) - 16, legend + 3, 14, 2, line.color);
-    canvas.text(right - 20 - Canvas::text_width(line.name), legend, line.name);
-    legend += 11;
+    draw_line(canvas, line, axes, px, [&](double v) { return py(axes.log_y ? std::log10(std::max(v, 1e-300)) : v); });
+    const int at = right - 20 * s - Canvas::text_width(line.name, s);
+    if (line.dots)
+      for (const int k : {15, 9, 3})
+        canvas.stroke({at - k * s * 1.0, legend + 4.0 * s}, {at - k * s * 1.0, legend + 4.0 * s}, 2.2 * s, line.color);
+    else
+      canvas.fill(at - 16 * s, legend + 3 * s, 14 * s, 2 * s, line.color);
+    text(at, legend, line.name);
+    legend += 11 * s;
   }
 }
 

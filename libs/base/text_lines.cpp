@@ -5,6 +5,11 @@
 
 namespace suite {
 
+TextLines::TextLines(std::string_view text, std::string file, bool commas)
+    : text_(text), file_(std::move(file)), commas_(commas) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+}
+
 bool TextLines::next_raw() {
   if (offset_ >= text_.size()) return false;
   const size_t end = std::min(text_.find('\n', offset_), text_.size());

@@ -12,9 +12,8 @@ class TextLines {
  public:
   // text must outlive this. Words are separated by blanks and tabs, and by commas when `commas`; "\r\n" ends a line,
   // too.
-  // '#' starts a comment that reaches to the end of the line.
-  TextLines(std::string_view text, std::string file, bool commas = false)
-      : text_(text), file_(std::move(file)), commas_(commas) {}
+  // '#' starts a comment that reaches to the end of the line. A byte order mark before UTF-8 is skipped.
+  TextLines(std::string_view text, std::string file, bool commas = false);
 
   // Moves to the next line that has words. False at the end.
   bool next();

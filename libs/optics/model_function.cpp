@@ -110,17 +110,39 @@ class PhaseModelFunction final : public sqt::Function {
   Info info_;
 };
 
-// A model, or else a phase function: 'sqt', which is both, cannot be fitted anyway.
+// A model, or else a phase function.
 bool is_phase(const std::string& name, const Where& where) {
+  if (name == "sqt") throw Error(where, "'sqt' is what a fit makes", "sqt-inspect looks into .sqt files");
   std::vector<std::string> known;
-  for (const ModelRow& row : models()) known.push_back(row.name);
+  for (const ModelRow& row : models())
+    if (row.name != "sqt") known.push_back(row.name);
   for (const PhaseRow& row : phases()) {
     if (row.name == name) return true;
-    known.push_back(row.name);
+    if (row.name != "sqt") known.push_back(row.name);
   }
   for (const std::string& k : known)
     if (k == name) return false;
   throw Error(where, "unknown model '" + name + "'", name_hint(name, known), "OP101");
+}
+
+// "param=number,param=number"; or "table=text", the text up to the end.
+void read_parameters(const std::string& text, const Where& where, ModelSpec& spec) {
+  if (text.starts_with("table=")) {
+    spec.texts["table"] = text.substr(6);
+    return;
+  }
+  for (size_t at = 0; at <= text.size();) {
+    const size_t next = std::min(text.find(',', at), text.size());
+    const std::string item = text.substr(at, next - at);
+    const size_t equals = item.find('=');
+    char* end = nullptr;
+    const double value = equals == std::string::npos ? 0 : std::strtod(item.c_str() + equals + 1, &end);
+    if (equals == std::string::npos || equals == 0 || end == item.c_str() + equals + 1 || *end || !std::isfinite(value))
+      throw Error(where, "'" + item + "' is not PARAM=NUMBER");
+    if (!spec.numbers.emplace(item.substr(0, equals), value).second)
+      throw Error(where, "'" + item.substr(0, equals) + "' is given twice");
+    at = next + 1;
+  }
 }
 
 }  // namespace
@@ -129,26 +151,23 @@ std::shared_ptr<const sqt::Function> model_function(const std::string& text) {
   ModelSpec spec;
   const size_t colon = text.find(':');
   spec.model = text.substr(0, colon);
-  const Where where{"--model " + text, 0, 0, {}, -1};
-  for (size_t at = colon; at != std::string::npos;) {
-    const size_t next = text.find(',', at + 1);
-    const std::string item = text.substr(at + 1, next == std::string::npos ? next : next - at - 1);
-    const size_t equals = item.find('=');
-    char* end = nullptr;
-    const double value = equals == std::string::npos ? 0 : std::strtod(item.c_str() + equals + 1, &end);
-    if (equals == std::string::npos || end == item.c_str() + equals + 1 || *end)
-      throw Error(where, "'" + item + "' is not PARAM=NUMBER");
-    spec.numbers[item.substr(0, equals)] = value;
-    at = next;
-  }
+  // Tables are long: messages and provenance show how they begin.
+  const std::string shown = text.size() > 120 ? text.substr(0, 120) + "..." : text;
+  const Where where{"--model " + shown, 0, 0, {}, -1};
   const bool phase = is_phase(spec.model, where);
+  if (colon != std::string::npos) read_parameters(text.substr(colon + 1), where, spec);
   phase ? check_phase(spec, where) : check_model(spec, where);
   SpectralState state;
   state.low_um = 0.5495, state.high_um = 0.5505, state.reference_um = 0.55;
   state.bins = {{0.5495, 0.5505}};
   state.knots = {0};
-  if (phase) return std::make_shared<PhaseModelFunction>(spec, state, text);
-  return std::make_shared<ModelFunction>(spec, state, text);
+  try {
+    if (phase) return std::make_shared<PhaseModelFunction>(spec, state, shown);
+    return std::make_shared<ModelFunction>(spec, state, shown);
+  } catch (const Error& e) {  // models know nothing of command lines
+    if (!e.where().file.empty()) throw;
+    throw Error(where, e.message(), e.hint(), e.code());
+  }
 }
 
 }  // namespace suite

@@ -21,10 +21,12 @@ const ModelRow& find_model(const std::string& name, const Where& where) {
 }
 
 namespace {
+// " um" of a quantity, nothing of a plain number.
+std::string unit_after(const ModelParameter& p) { return p.unit.empty() || p.unit == "1" ? "" : " " + p.unit; }
 void check_range(const char* what, const ModelSpec& spec, const ModelParameter& p, double value, const Where& where) {
   if (!(value >= p.low && value <= p.high))
     throw Error(where, strf("%s '%s': %s = %g is outside its range", what, spec.model.c_str(), p.name.c_str(), value),
-                strf("give %g to %g %s", p.low, p.high, p.unit.c_str()), "OP103");
+                strf("give %g to %g", p.low, p.high) + unit_after(p), "OP103");
 }
 }  // namespace
 
@@ -56,7 +58,7 @@ void check_parameters(ModelSpec& spec, std::span<const ModelParameter> parameter
     const bool given = spec.numbers.count(p.name) || spec.curves.count(p.name) || spec.texts.count(p.name);
     if (!given && p.required)
       throw Error(where, std::string(what) + " '" + spec.model + "' needs '" + p.name + "'",
-                  p.summary + " [" + p.unit + "]", "OP104");
+                  p.summary + (unit_after(p).empty() ? "" : " [" + p.unit + "]"), "OP104");
     if (!given && p.kind == ModelParameter::Kind::number) spec.numbers[p.name] = p.otherwise;
     if (!given && p.kind == ModelParameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
     if (p.kind == ModelParameter::Kind::number) check_range(what, spec, p, spec.numbers.at(p.name), where);

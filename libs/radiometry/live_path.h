@@ -29,4 +29,11 @@ struct LivePath {
   uint32_t scatterings = 0;                 // inside media so far
 };
 
+// What a contribution is divided by that a path got in one of two ways, an explicit sample of a source or a
+// continuation that met it: own is the density of the way it went, other that of the other one (formulas in
+// path_generator.h).
+inline double shared_density(double own, double other, bool disk) {
+  return disk ? own + other * (other / own) : own + other;
+}
+
 }  // namespace suite

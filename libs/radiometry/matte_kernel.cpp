@@ -123,7 +123,7 @@ void MatteKernel::escape(Lane& lane) const {
   if (environment_.sky) lane.sky = static_cast<float>(environment_.sky->relative(lane.direction));
   const Sun* sun = environment_.sun.get();
   if (sun && sun->contains(lane.direction))
-    lane.disk = static_cast<float>(lane.density > 0 ? 1 / (1 + sun->density() / lane.density) : 1);
+    lane.disk = static_cast<float>(lane.density > 0 ? 1 / shared_density(1, sun->density() / lane.density, true) : 1);
 }
 
 // False when nothing scatters there.
@@ -182,7 +182,8 @@ void MatteKernel::light(Wave& wave, int depth, TraceStatistics& statistics) {
     const double out = -dot(lane.direction, shading), out_side = -dot(lane.direction, geometric);
     if (in_side * out_side <= 0 || in_side * in <= 0 || in * out <= 0) continue;
     const double w = std::fabs(in) / kPi;
-    steps(active_[i])[lane.size - 1].sun = static_cast<float>(drawn.density > 0 ? w / (drawn.density + w) : w);
+    steps(active_[i])[lane.size - 1].sun =
+        static_cast<float>(drawn.density > 0 ? w / shared_density(drawn.density, w, true) : w);
     rays_[asked_.size()].set(surface_.tracer().leave(hits_[i], drawn.direction), drawn.direction, lane.time, lane.draw);
     asked_.push_back(i);
   }

@@ -6,6 +6,11 @@
 // the knot that drew it, and A = sum P_k r_k, a contribution carries the factor 1 / A. Explicit samples of a source
 // with density p_s and continuations that meet it by chance share the same heuristic:
 //   explicit:   1 / (A p_s + sum P_k r_k p_k)        by chance:   1 / (A' + A p_s / p_h),  A' after the last event.
+// Samples of the Sun's and the Moon's disk hardly vary by themselves, while a lobe a few times as wide as the disk
+// meets it rarely: what the rare continuation may bring is made small by the power heuristic (exponent 2; Veach &
+// Guibas 1995). With b = A p_s, a = sum P_k r_k p_k; B = A p_s / p_h:
+//   explicit:   b / (a^2 + b^2)                      by chance:   A' / (A'^2 + B^2).
+// Skies and lamps stay with the balance heuristic, which is the better one for densities that are alike.
 #pragma once
 #include <memory>
 

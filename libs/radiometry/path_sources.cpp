@@ -27,16 +27,17 @@ void PathGenerator::escape(Path& path, const Live& live) const {
   path.escape = live.direction;
   path.escape_factor = 1 / live.shares;
   const bool by_chance = live.last_density > 0 && options_.explicit_sources;
-  auto factor = [&](double density) {
+  auto factor = [&](double density, bool disk) {
     if (!by_chance || !(density > 0)) return path.escape_factor;
-    return paper_ ? 0 : 1 / (live.shares + live.shares_before * density / live.last_density);
+    return paper_ ? 0 : 1 / shared_density(live.shares, live.shares_before * density / live.last_density, disk);
   };
   if (environment_.sky)
-    path.sky_factor = factor(environment_.sky->tabulated() && !paper_ ? environment_.sky->density(live.direction) : 0);
+    path.sky_factor =
+        factor(environment_.sky->tabulated() && !paper_ ? environment_.sky->density(live.direction) : 0, false);
   if (environment_.sun && environment_.sun->contains(live.direction))
-    path.sun_factor = factor(environment_.sun->density());
+    path.sun_factor = factor(environment_.sun->density(), true);
   if (environment_.moon && environment_.moon->contains(live.direction))
-    path.moon_factor = factor(environment_.moon->density());
+    path.moon_factor = factor(environment_.moon->density(), true);
 }
 
 // Proposes a sample of a source: a visibility ray of the given length, or to `end` when that is given.
@@ -177,9 +178,10 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
   if (light.density > 0) {
     float pdf[kMaxKnots];
     model.pdf(out, in, {pdf, knots_});
-    denominator = live.shares * light.density;
+    double by_chance = 0;
     for (size_t k = 0; k < knots_ && !paper_; ++k)
-      denominator += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+      by_chance += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+    denominator = shared_density(live.shares * light.density, by_chance, slot <= light_moon);
   }
   const float scale = static_cast<float>(light.radiance_scale / denominator);
   const Atmosphere* air = environment_.atmosphere.get();

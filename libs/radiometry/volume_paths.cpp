@@ -202,9 +202,10 @@ void VolumePaths::light_events(Wave& wave, std::vector<LivePath>& live, RunStati
 // One sample each of sun, moon, sky and lamps.
 void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
   const Ray& own = wave.path(events_[e].path).ray;
-  const auto ask = [&](Dir direction, double density, double radiance, const float* spectrum, double distance) {
+  const auto ask = [&](Dir direction, double density, double radiance, const float* spectrum, double distance,
+                       bool disk = false) {
     if (!(radiance > 0)) return;
-    lights_.push_back({e, density, radiance, spectrum});
+    lights_.push_back({e, density, radiance, spectrum, disk});
     rays_.push_back({events_[e].place, direction, own.time, own.draw});
     wave.distance.push_back(distance);
     light_.add(live.bodies);
@@ -213,12 +214,12 @@ void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
   if (environment_.sun) {
     const std::array<double, 4> u = numbers(live, kScatterNumbers);
     const DirectionSample drawn = environment_.sun->sample({u[2], u[3]});
-    ask(drawn.direction, drawn.density, 1, environment_.sun->spectrum(), far);
+    ask(drawn.direction, drawn.density, 1, environment_.sun->spectrum(), far, true);
   }
   if (environment_.moon) {
     const std::array<double, 4> u = numbers(live, kMoonNumbers);
     const DirectionSample drawn = environment_.moon->sample({u[0], u[1]});
-    ask(drawn.direction, drawn.density, 1, environment_.moon->spectrum(), far);
+    ask(drawn.direction, drawn.density, 1, environment_.moon->spectrum(), far, true);
   }
   if (environment_.sky && environment_.sky->tabulated()) {
     const std::array<double, 4> u = numbers(live, kSkyNumbers);
@@ -245,8 +246,9 @@ void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light
   if (light.density > 0) {
     double q[kMaxKnots];
     densities(e, cosine, {q, knots});
-    denominator *= light.density;
-    for (size_t k = 0; k < knots; ++k) denominator += probability_[k] * live.relative[k] * q[k] * reach[k];
+    double by_chance = 0;
+    for (size_t k = 0; k < knots; ++k) by_chance += probability_[k] * live.relative[k] * q[k] * reach[k];
+    denominator = shared_density(live.shares * light.density, by_chance, light.disk);
   }
   const int n = wave.path(e.path).size;
   const std::span<float> beta = wave.through(e.path, n), gathered = wave.gathered(e.path, n);

@@ -55,6 +55,7 @@ class VolumePaths {
     size_t event;  // in events_
     double density, radiance;
     const float* spectrum;
+    bool disk;  // the Sun's or the Moon's
   };
   std::array<double, 4> numbers(const LivePath& live, uint32_t block) const;
   bool step(Wave& wave, size_t slot, LivePath& live, bool& moves);

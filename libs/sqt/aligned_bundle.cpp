@@ -74,19 +74,23 @@ class AlignedBundle final : public Bundle {
     if (!faces(out)) return std::nullopt;
     const Dir up = upright(out);
     const Place at = place(views_, up);
-    // Choose the slice by its blending weight, the leaf by its mass, the point of the leaf uniformly.
+    // Choose the slice by its blending weight, the side of mirrored data, the leaf by its mass, the point of the leaf
+    // uniformly. The side before the leaf: so neighbours in lobe_u are neighbours in direction, and stratified numbers
+    // stay stratified (choosing it within the leaf cost a factor of 2 to 6 in the error of 64 to 1024 Sobol samples).
     double rest = lobe_u;
     int b = 0;
     while (b < at.count - 1 && rest >= at.weight[b]) rest -= at.weight[b++];
     rest = std::clamp(rest / at.weight[b], 0.0, 0x1.fffffep-1);
     const size_t column = at.view[b] * channels() + channel;
     if (tables_.empty(column)) return std::nullopt;
+    const bool mirrored = layout_.half_stored && rest >= 0.5;
+    if (layout_.half_stored) rest = std::min(2 * rest - mirrored, 0x1.fffffep-1);
     const AlignedTables::Draw drawn = tables_.draw(column, rest);
     size_t s = tables_.sheets().size() - 1;
     while (drawn.leaf < tables_.sheets()[s].first) --s;
     const AlignedTables::Sheet& sheet = tables_.sheets()[s];
     Dir d = direction_fast(point_in(sheet.tree.cell(drawn.leaf - sheet.first), u));
-    if (layout_.half_stored && drawn.within >= 0.5) d.y = -d.y;
+    if (mirrored) d.y = -d.y;
     const LobeMap lobe = map(up, s);
     if (layout_.upper_only && lobe.cosine(d) <= 0) return std::nullopt;
     const Dir in = lobe.incident(d);

@@ -25,6 +25,12 @@ double near_height(double u) {  // 1 - z by inversion of the cumulative (1 + a) 
 }
 double near_pdf(double s) { return (1 + kNear) * kNear / ((s + kNear) * (s + kNear)) / (2 * kPi); }
 
+// Rings for totals: even in log(s + a), so that narrow lobes and wide ones have their share of them.
+constexpr double kFine = 1e-4;
+const double kRange = std::log((1 + kFine) / kFine);
+double ring_height(double u) { return kFine * std::expm1(kRange * u); }
+double ring_pdf(double s) { return 1 / ((s + kFine) * kRange * 2 * kPi); }  // per steradian
+
 }  // namespace
 
 Reference::Reference(const Function& function, size_t pairs, uint64_t seed, const std::function<void(double)>& progress)
@@ -111,8 +117,7 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
   findings_.invalid_share = all > 0 ? invalid / all : 0;
 }
 
-// Totals over an order-6 partition of half directions (lobes fall on its dense centre through the four-fold
-// sub-points).
+// Totals by the midpoint rule over half directions.
 std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& value,
                                          Dir out) const {
   std::vector<double> f(channels_), W(channels_, 0.0);
@@ -121,7 +126,7 @@ std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, D
   for (int side = 0; side < (sphere ? 2 : 1); ++side)
     for (int a = 0; a < n_r; ++a)
       for (int b = 0; b < n_phi; ++b) {
-        const double s = near_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)),
+        const double s = ring_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)),
                      phi = 2 * kPi * (b + 0.5 * (a & 1)) / n_phi;
         const Dir h{r * std::cos(phi), r * std::sin(phi), 1 - s};
         Dir in = h * (2 * dot(h, out)) - out;
@@ -129,7 +134,7 @@ std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, D
         if (side) in.z = -in.z;
         value(static_cast<size_t>((side * n_r + a) * n_phi + b), out, in, f);
         if (!std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); })) continue;
-        const double weight = 4 * dot(h, out) / near_pdf(s) / (n_r * n_phi) * (weighted_ ? std::fabs(in.z) : 1.0);
+        const double weight = 4 * dot(h, out) / ring_pdf(s) / (n_r * n_phi) * (weighted_ ? std::fabs(in.z) : 1.0);
         for (size_t c = 0; c < channels_; ++c)
           if (f[c] > 0) W[c] += weight * f[c];
       }
@@ -241,10 +246,12 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
       for (int a = 0; a < 3; ++a) {
         double peak_f = 0, peak_g = 0;
         const Dir view = dir_from_angles(kPeakAngles[a], 0);
-        for (int k = -899; k <= 899; ++k) {
-          const Dir in = dir_from_angles(k * 0.1 * kDegree, 0);
+        const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
+        for (int k = -last; k <= last; ++k) {
+          const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
+          if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
           function_.value(view, in, f);
-          if (std::isfinite(f[c]) && std::fabs(k) < 850)
+          if (std::isfinite(f[c]))
             peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
         }
         *ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;

@@ -5,7 +5,7 @@
 //   l1       = sum |g - f| cos_i / sum f cos_i, polar angles up to 80 deg
 //   cos_rmse = sqrt( sum ((g - f) cos_i)^2 / sum (f cos_i)^2 ), up to 80 deg
 //   rmse     = sqrt( mean (g - f)^2 ), 1/sr, whole hemisphere (the paper's metric)
-//   peak_ratio_20/45/70 = largest g over largest f in the plane of incidence at that view angle
+//   peak_ratio_20/45/70 = largest g over largest f in the plane of incidence at that view angle, up to 80 deg
 //   total_error = largest |W_g - W_f| / W_f over view angles up to 80 deg, W_g integrated from g where f is valid
 //   reciprocity_error = sum |g(o,i) - g(i,o)| / (2 sum g), up to 80 deg
 //   max_weight = largest w / (pdf W) met while sampling the bundle, up to 80 deg

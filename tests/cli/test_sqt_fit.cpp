@@ -111,6 +111,90 @@ TEST(SqtFitCli, RefusesBadInput) {
   EXPECT_EQ(run_command(kFit + kWard + "-q -o /nowhere/x.sqt").code, 1);
 }
 
+// A table as users have them: what is harmless is taken, what is odd is said, and a fault is shown where it is.
+TEST(SqtFitCli, TablesAsUsersHaveThem) {
+  const TempFolder folder;
+  const std::string head = "theta_o_deg,phi_o_deg,theta_i_deg,phi_i_deg,wavelength_um,value\n";
+  const std::string rows = "0,0,30,0,0.55,0.2\n40,0,20,90,0.55,0.21\n40,0,60,180,0.55,0.22\n";
+  const struct {
+    std::string text, message;
+    int code;
+  } cases[] = {
+      {head + rows, "", 0},
+      {"\xEF\xBB\xBF" + head + rows, "", 0},
+      {R"("theta_o_deg","phi_o_deg","theta_i_deg","phi_i_deg","wavelength_um","value")"
+       "\n" +
+           rows,
+       "", 0},
+      {head + "0,0,30,0,0.55,0.2\n", "", 0},  // one sample is a surface, too
+      {head + rows + "10,0,10,0,0.55,nan\n", "1 of 4 pairs of directions lack a value", 0},
+      {head + "0,0,30,0,550,0.2\n", "are they in nm?", 0},
+      {head + "0,0,30,0,0.55,inf\n", "t.csv: error: no pair of directions has a value", 1},
+      {"theta_o_deg;phi_o_deg\n0;0\n", "t.csv:1:1: error: ';' between the columns", 1},
+      {head + rows + "10,0,10,0,0.55,\n", "t.csv:5:1: error: the line has 5 values, 6 are wanted", 1},
+      {head + "0,0,200,0,0.55,0.2\n", "t.csv:2:5: error: the angle is 3.49066 rad", 1},
+      {head + "90,0,20,0,0.55,0.2\n", "t.csv:2:1: error: the outgoing direction lies on or below the horizon", 1},
+      {head, "holds no samples", 1},
+  };
+  for (const auto& c : cases) {
+    write_file(folder / "t.csv", c.text);
+    const std::string out = folder / "t.sqt";
+    const CommandResult r = run_command(kFit + (folder / "t.csv") + " -q --views 3 --order 3 -o " + out);
+    EXPECT_EQ(r.code, c.code) << c.text << r.err;
+    EXPECT_NE(r.err.find(c.message), std::string::npos) << c.text << r.err;
+    EXPECT_EQ(r.err.empty(), c.message.empty()) << c.text << r.err;
+    EXPECT_EQ(file_exists(out), c.code == 0) << c.text;
+    std::filesystem::remove(out);
+  }
+}
+
+TEST(SqtFitCli, ModelsAndTheirFaults) {
+  const TempFolder folder;
+  const std::string out = " -q --views 3 --order 4 -o " + (folder / "m.sqt");
+  write_file(folder / "mie.txt", "0 9.1\n10 3\n90 0.2\n180 0.5\n");
+  // A white Lambert surface returns all it gets and no more: its total used to be measured as 1.21.
+  for (const char* good : {"lambert:reflectance=1", "oren_nayar:reflectance=0.9,sigma=0", "ggx:roughness=0.3,f0=1"}) {
+    const CommandResult r = run_command(kFit + "--strict --model " + good + out);
+    EXPECT_EQ(r.code, 0) << good << r.err;
+  }
+  EXPECT_EQ(run_command(kFit + "--model tabulated:table=@" + (folder / "mie.txt") + out).code, 0);
+  EXPECT_EQ(run_command(kFit + "--model 'tabulated:table=0 9.1, 10 3, 180 0.5'" + out).code, 0);
+  std::filesystem::remove(folder / "m.sqt");
+  const std::pair<const char*, const char*> faults[] = {
+      {"ward:specular=.1,specular=.2", "'specular' is given twice"},
+      {"ward:diffuse=0.5,specular=0.9,roughness=0.2", "--model ward:diffuse=0.5,specular=0.9,roughness=0.2: error"},
+      {"hg:g=nan", "'g=nan' is not PARAM=NUMBER"},
+      {"hg:g=2", "give -0.9999 to 0.9999"},
+      {"lambert", "needs 'reflectance' [OP104]; hemispherical reflectance of both sides\n"},
+      {"sqt", "is what a fit makes"},
+      {"tabulated:table=@nowhere.txt", "no such file"},
+      {"tabulated:table=5", "a value expected at character 2"},
+  };
+  for (const auto& [model, message] : faults) {
+    const CommandResult r = run_command(kFit + "--model " + model + out);
+    EXPECT_EQ(r.code, 1) << model;
+    EXPECT_NE(r.err.find(message), std::string::npos) << model << r.err;
+    EXPECT_FALSE(file_exists(folder / "m.sqt"));
+  }
+}
+
+// Nothing is computed for outputs that cannot be written, and no input is replaced by its own fit.
+TEST(SqtFitCli, OutputsAreCheckedFirst) {
+  const TempFolder folder;
+  const std::string csv = folder / "t.csv", text = "0,0,0.5,0,0.55,0.2\n";
+  write_file(csv, text);
+  for (const std::string& twice :
+       {csv + " -o " + csv, csv + " -o " + (folder / "./t.csv"), csv + " -o a.sqt --report a.sqt"})
+    EXPECT_EQ(run_command("cd " + folder.path() + " && " + kFit + twice).code, 2) << twice;
+  EXPECT_EQ(read_text(csv), text);
+  for (const char* option : {"--report", "--curve"}) {
+    const CommandResult r = run_command(kFit + csv + " -o " + (folder / "o.sqt") + " " + option + " /nowhere/x.csv");
+    EXPECT_EQ(r.code, 1);
+    EXPECT_NE(r.err.find("/nowhere/x.csv: error: cannot be written"), std::string::npos) << r.err;
+    EXPECT_FALSE(file_exists(folder / "o.sqt"));
+  }
+}
+
 TEST(SqtFitCli, HelpStatesConventions) {
   const CommandResult r = run_command(kFit + "--help");
   EXPECT_EQ(r.code, 0);
