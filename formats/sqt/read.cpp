@@ -77,7 +77,7 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
     throw l.error("implausible number of leaves");
   d.sheets = sqt::decode_sheets(layout, trees, leaves);
   size_t found = 0;
-  for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.leaves.size();
+  for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.stored;
   if (found != leaves) throw Error("SQT payload is damaged: its leaves are not those announced");
   return sqt::make_bundle(std::move(d));
 }

@@ -20,6 +20,8 @@
 
 #include "sqt/bundle.h"
 #include "sqt/lobe_map.h"
+#include "sqt/log_scale.h"
+#include "sqt/vectors.h"
 
 namespace suite::sqt {
 
@@ -38,13 +40,16 @@ struct AlignedLayout {
   size_t width() const { return views() * channels; }
 };
 
-// Decoded leaves of one sheet.
+// Decoded leaves of one sheet, the coarsest divided for sampling (leaf_table.h).
 struct AlignedSheet {
   static constexpr size_t kStride = 4;
+  LogScale scale;
   std::vector<CellId> leaves;
-  // [leaf][view][channel]{value, slope x, slope y, mean}: log2 units, per cell width; mean over the leaf of 2^(value +
-  // slope . offset)
-  std::vector<float> plane;
+  size_t stored = 0;  // leaves before the coarsest were divided
+  // [leaf][channel][view]{value, slope x, slope y, mass}: numbers of the scale, slopes per cell width; the mass as
+  // leaf_table.h codes it. Some room behind.
+  UnsetVector<int16_t> plane;
+  UnsetVector<uint16_t> mass;  // the same masses, [leaf][padded_row(width)]
 };
 
 // Totals over view angle and wavelength, and the scale s of each channel, on a finer grid of view angles.
