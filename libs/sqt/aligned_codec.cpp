@@ -197,7 +197,7 @@ class SheetWalk {
         mean_(padded_row(layout.views())),
         difference_(targets ? 3 * width_ : 0),
         coefficient_(difference_.size()) {
-    if (!targets) lattice_.reserve(std::min(max_nodes, (size_t{1} << 22) / width_));
+    if (!targets) lattice_.reserve(std::min(max_nodes, (size_t{1} << 24) / width_));
   }
 
   void run() {

@@ -46,8 +46,8 @@ class BlockCode {
   std::vector<uint8_t> class_;     // room: of a row
   std::vector<uint8_t> sums_;      // room: of a row
   std::vector<uint8_t> nothing_;   // a row of zeros
-  UnsetVector<uint8_t> sizes_;     // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros
-  UnsetVector<uint16_t> counts_;   // [block][detail][channel]
+  Lent<UnsetVector<uint8_t>, BlockCode> sizes_;     // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros
+  Lent<UnsetVector<uint16_t>, BlockCode> counts_;   // [block][detail][channel]
 };
 
 }  // namespace suite::sqt

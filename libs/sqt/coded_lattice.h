@@ -66,8 +66,8 @@ class CodedLattice {
   int16_t* slope_row(size_t i, size_t axis) { return &rows_[(3 * i + 1 + axis) * row_]; }
   Region region_;
   size_t row_;
-  std::vector<Node> nodes_;
-  UnsetVector<int16_t> rows_;  // [node]{value, slope x, slope y}[row]
+  Lent<std::vector<Node>, CodedLattice> nodes_;
+  Lent<UnsetVector<int16_t>, CodedLattice> rows_;  // [node]{value, slope x, slope y}[row]
   UnsetVector<int16_t> room_;  // two rows
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace suite::sqt {
@@ -45,6 +46,26 @@ struct Unset : std::allocator<T> {
 };
 template <class T>
 using UnsetVector = std::vector<T, Unset<T>>;
+
+// A vector whose memory this thread uses again for the next one with the same Tag, unless it is large: what a decoder
+// needs on the way would otherwise be taken from and given back to the system for every file.
+template <class V, class Tag>
+class Lent : public V {
+ public:
+  Lent() : V(std::move(kept())) { V::clear(); }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  ~Lent() {
+    constexpr size_t kMost = 32 << 20;
+    if (V::capacity() * sizeof(typename V::value_type) <= kMost) kept() = std::move(static_cast<V&>(*this));
+  }
+
+ private:
+  static V& kept() {
+    static thread_local V v;
+    return v;
+  }
+};
 
 // Numbers of a row, filled up to whole vectors of sixteen.
 constexpr size_t padded_row(size_t n) { return (n + 15) / 16 * 16; }
