@@ -45,6 +45,7 @@ struct AlignedSheet {
   static constexpr size_t kStride = 4;
   LogScale scale;
   std::vector<CellId> leaves;
+  std::vector<float> inverse_area;  // 1/sr of one leaf, its mirror image counted in
   size_t stored = 0;  // leaves before the coarsest were divided
   // [leaf][channel][view]{value, slope x, slope y, mass}: numbers of the scale, slopes per cell width; the mass as
   // leaf_table.h codes it. Some room behind.

@@ -55,11 +55,7 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
     sheet.plane = std::move(s.plane);
     sheet.first = first;
     first += s.leaves.size();
-    sheet.inverse_area.reserve(s.leaves.size());
-    for (const CellId id : s.leaves) {
-      const double copies = layout.half_stored && mirrored(id) != id ? 2 : 1;
-      sheet.inverse_area.push_back(static_cast<float>(1 / (cell_solid_angle(id.order()) * copies)));
-    }
+    sheet.inverse_area = std::move(s.inverse_area);
   }
 }
 

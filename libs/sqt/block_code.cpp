@@ -21,35 +21,36 @@ constexpr size_t kLevel = 0, kLast = kLevel + kClasses * kPlaces * kBefore, kRoo
 static_assert(kSplit + 20 <= BlockCode::kContexts);
 
 // Class of the levels around: of the weighted sum of their sizes.
-constexpr std::array<uint8_t, 256> kClass = [] {
-  std::array<uint8_t, 256> table{};
-  for (int s = 0; s < 256; ++s)
-    table[static_cast<size_t>(s)] = s == 0 ? 0 : s == 1 ? 1 : s == 2 ? 2 : s <= 4 ? 3 : s <= 7 ? 4 : s <= 12 ? 5 : s <= 24 ? 6 : 7;
-  return table;
-}();
-inline uint32_t before_class(uint32_t symbol) { return (symbol > 0) + (symbol > 1) + (symbol > 4); }
+using Bytes = uint8_t __attribute__((vector_size(32)));
+Bytes class_of(Bytes s) {
+  Bytes n{};
+  for (const uint8_t bound : {0, 1, 2, 4, 7, 12, 24}) n -= reinterpret_cast<Bytes>(s > bound);
+  return n;
+}
 size_t count_class(size_t n) { return n == 0 ? 0 : n <= 2 ? 1 : n <= 6 ? 2 : n <= 12 ? 3 : 4; }
 
 // One level that is coded as `context` says.
+struct LevelSymbol {
+  uint32_t symbol, size;
+};
 template <class Coder>
-inline uint32_t code_level(Coder& coder, int32_t& level, size_t context) {
+inline LevelSymbol code_level(Coder& coder, int32_t& level, size_t context) {
   if constexpr (Coder::kEncodes) {
     const Token t = token_of(static_cast<uint32_t>(std::abs(level)), kExactLevel);
     coder.symbol(context, t.symbol);
     if (t.symbol) coder.raw(level < 0, 1);
     if (t.bits) coder.raw(t.raw, t.bits);
-    return t.symbol;
+    return {t.symbol, size_class(t.symbol)};
   } else {
     coder.fill();
     const PrefixDecoder::Entry e = coder.table(context)[coder.ahead() & PrefixDecoder::kMask];
-    const uint32_t any = e.symbol != 0;
-    const int32_t sign = -static_cast<int32_t>((coder.ahead() >> e.length) & any);
-    coder.drop(e.length + any);
+    const int32_t sign = -static_cast<int32_t>((coder.ahead() >> e.length) & (e.with_sign - e.length));
+    coder.drop(e.with_sign);
     uint32_t size = e.symbol;
     if (size >= kExactLevel) [[unlikely]]
       size = token_number(e.symbol, kExactLevel, coder.raw(0, token_bits(e.symbol, kExactLevel)));
     level = (static_cast<int32_t>(size) ^ sign) - sign;
-    return e.symbol;
+    return {e.symbol, e.size};
   }
 }
 
@@ -58,35 +59,33 @@ inline uint32_t code_level(Coder& coder, int32_t& level, size_t context) {
 BlockCode::BlockCode(const AlignedLayout& layout, const BlockTransform& transform)
     : views_(layout.views()), channels_(layout.channels), stride_((views_ + 32) / 32 * 32) {
   for (size_t k = 0; k < views_; ++k)
-    place_.push_back(transform.height(k) == 0 ? 0 : transform.height(k) < 4 ? 1 : 2);
-  class_.resize(stride_);
-  sums_.resize(stride_);
-  nothing_.assign(stride_ + 1, 0);
+    place_.push_back(static_cast<uint8_t>(kBefore * (transform.height(k) == 0 ? 0 : transform.height(k) < 4 ? 1 : 2)));
+  place_.resize(stride_);
+  context_.resize(stride_);
+  nothing_.assign(stride_ + 32, 0);
 }
 
 // Of the first n places of a row. Rows end in a zero at least, so the level one further up is always there.
-void BlockCode::find_classes(const uint8_t* up, const uint8_t* detail, const uint8_t* channel, size_t n) {
-  using Bytes = uint8_t __attribute__((vector_size(32)));
+void BlockCode::find_contexts(const uint8_t* up, const uint8_t* detail, const uint8_t* channel, size_t n) {
   for (size_t k = 0; k < n; k += 32) {
     const Bytes above = load<Bytes>(up + k);
     Bytes next{};
-    std::memcpy(&next, up + k + 1, std::min<size_t>(32, stride_ - k - 1));
-    store(&sums_[k], above + above + next + load<Bytes>(detail + k) + load<Bytes>(channel + k));
+    std::memcpy(&next, up + k + 1, sizeof next);
+    const Bytes sum = above + above + next + load<Bytes>(detail + k) + load<Bytes>(channel + k);
+    store(&context_[k], class_of(sum) * (kPlaces * kBefore) + load<Bytes>(&place_[k]));
   }
-  for (size_t k = 0; k < n; ++k) class_[k] = kClass[sums_[k]];
 }
 
 template <class Coder>
 void BlockCode::code_row(Coder& coder, int32_t* row, size_t n, uint8_t* size) {
   uint32_t before = 0;
   for (size_t k = 0; k + 1 < n; ++k) {
-    const uint32_t symbol =
-        code_level(coder, row[k], kLevel + (class_[k] * kPlaces + place_[k]) * kBefore + before);
-    before = before_class(symbol);
-    size[k] = static_cast<uint8_t>(std::min<uint32_t>(symbol, kCap));
+    const LevelSymbol s = code_level(coder, row[k], kLevel + context_[k] + before);
+    before = s.size;
+    size[k] = static_cast<uint8_t>(std::min<uint32_t>(s.symbol, kCap));
   }
-  const uint32_t symbol = code_level(coder, row[n - 1], kLast + class_[n - 1]);
-  size[n - 1] = static_cast<uint8_t>(std::min<uint32_t>(symbol, kCap));
+  const LevelSymbol s = code_level(coder, row[n - 1], kLast + context_[n - 1] / (kPlaces * kBefore));
+  size[n - 1] = static_cast<uint8_t>(std::min<uint32_t>(s.symbol, kCap));
 }
 
 template <class Coder>
@@ -117,7 +116,7 @@ void BlockCode::code_rows(Coder& coder, std::span<int32_t> levels, size_t detail
       const uint32_t n = coder.number(kCount + (c > 0 ? 6 : 0) + known, static_cast<uint32_t>(count[row] - 1), kExactCount) + 1;
       count[row] = static_cast<uint16_t>(std::min<size_t>(n, views_));
       uint8_t* size = sizes(block) + row * stride_;
-      find_classes(above >= 0 ? sizes(above) + row * stride_ : nothing_.data(),
+      find_contexts(above >= 0 ? sizes(above) + row * stride_ : nothing_.data(),
                    d > 0 ? size - channels_ * stride_ : nothing_.data(), c > 0 ? size - stride_ : nothing_.data(),
                    count[row]);
       code_row(coder, &levels[row * views_], count[row], size);
@@ -129,9 +128,9 @@ template <class Coder>
 int32_t BlockCode::code(Coder& coder, std::span<int32_t> levels, size_t details, int32_t above) {
   const size_t rows = 3 * channels_, block = counts_.size() / rows;
   counts_.resize((block + 1) * rows);
-  sizes_.resize((block + 1) * rows * stride_);
+  sizes_.resize((block + 1) * rows * stride_ + 32);
   std::fill_n(&counts_[block * rows], rows, uint16_t{0});
-  std::fill_n(&sizes_[block * rows * stride_], rows * stride_, uint8_t{0});
+  std::fill_n(&sizes_[block * rows * stride_], rows * stride_ + 32, uint8_t{0});
   uint16_t* count = &counts_[block * rows];
   if constexpr (Coder::kEncodes)
     for (size_t r = 0; r < details * channels_; ++r) {

@@ -40,13 +40,12 @@ class BlockCode {
   void code_rows(Coder& coder, std::span<int32_t> levels, size_t details, int32_t above, int32_t block);
   template <class Coder>
   void code_row(Coder& coder, int32_t* row, size_t n, uint8_t* size);
-  void find_classes(const uint8_t* up, const uint8_t* detail, const uint8_t* channel, size_t n);
+  void find_contexts(const uint8_t* up, const uint8_t* detail, const uint8_t* channel, size_t n);
   size_t views_, channels_, stride_;
-  std::vector<uint8_t> place_;     // [view frequency]: 0 the mean, 1 low, 2 high
-  std::vector<uint8_t> class_;     // room: of a row
-  std::vector<uint8_t> sums_;      // room: of a row
-  std::vector<uint8_t> nothing_;   // a row of zeros
-  Lent<UnsetVector<uint8_t>, BlockCode> sizes_;     // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros
+  std::vector<uint8_t> place_;    // [view frequency]: part of the context, how high it is
+  std::vector<uint8_t> context_;  // room: of a row
+  std::vector<uint8_t> nothing_;  // a row of zeros
+  Lent<UnsetVector<uint8_t>, BlockCode> sizes_;     // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros, and 32 more
   Lent<UnsetVector<uint16_t>, BlockCode> counts_;   // [block][detail][channel]
 };
 

@@ -74,5 +74,7 @@ double cosine_integral(CellId cell, bool both_sides = false);
 // Mirror image under y -> -y of directions (azimuth phi -> -phi).
 CellId mirrored(CellId cell);
 CellXY mirrored(CellXY cell);
+// Whether a cell is its own mirror image.
+constexpr bool on_mirror(CellXY c) { return c.x == c.y && (c.face == 4 || c.face == 6); }
 
 }  // namespace suite::sqt

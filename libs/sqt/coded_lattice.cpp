@@ -77,7 +77,13 @@ int CodedLattice::predicted(size_t i, uint32_t k, size_t column) const {
 }
 
 CodedLattice::Link CodedLattice::find_link(const Node& node, size_t edge) const {
-  CellXY there = neighbour(node.at, node.order, edge);
+  const uint32_t last = (1u << node.order) - 1;
+  CellXY there = node.at;
+  uint32_t& moving = edge < 2 ? there.x : there.y;
+  if (edge & 1 ? moving < last : moving > 0)
+    moving += edge & 1 ? 1 : -1u;
+  else
+    there = neighbour(node.at, node.order, edge);
   if (!region_.holds(there, node.order)) {
     if (!region_.half_only) return {};
     there = mirrored(there);
@@ -134,6 +140,17 @@ const int16_t* CodedLattice::across(const Node& node, size_t edge, int16_t* room
   const int16_t* v = value(i);
   if (between == 0) return v;
   const int16_t *gx = slope(i, 0), *gy = slope(i, 1);
+  const Short16 most = Short16{} + int16_t{LogScale::kMost}, least = -most;
+  if (between == 1) {  // a quarter of the slopes to either side, as below without leaving 16 bits
+    for (size_t j = 0; j < row_; j += 16) {
+      Short16 a = load<Short16>(gx + j), b = load<Short16>(gy + j);
+      a = l.x < 0 ? -a : a, b = l.y < 0 ? -b : b;
+      Short16 c = load<Short16>(v + j) + (((a >> 1) + (b >> 1) + (a & b & 1)) >> 1);
+      c = c > most ? most : c;
+      store(room + j, c < least ? least : c);
+    }
+    return room;
+  }
   const int x = l.x, y = l.y;
   for (size_t j = 0; j < row_; ++j) {
     const int n = v[j] + ((x * gx[j] + y * gy[j]) >> (between + 1));

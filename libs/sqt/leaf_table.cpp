@@ -66,6 +66,7 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
   size_t coarse = 0;  // parts that coarse leaves may have
   for (uint32_t i = 0; i < cell_count(kSampleOrder); ++i) coarse += region_.holds(CellId::of(kSampleOrder, i));
   sheet_.leaves.reserve(expected + coarse);
+  sheet_.inverse_area.reserve(expected + coarse);
   sheet_.plane.reserve((expected + coarse) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.reserve((expected + coarse) * row_);
 }
@@ -94,6 +95,7 @@ void LeafTable::add_whole(CellXY at, int order, const int16_t* value, const int1
   find_weights(at, order);
   const size_t n = sheet_.leaves.size();
   sheet_.leaves.push_back(cell_at(order, at));
+  sheet_.inverse_area.push_back(inverse_area_);
   sheet_.plane.resize((n + 1) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.resize((n + 1) * row_);
   int16_t* plane = &sheet_.plane[n * width_ * AlignedSheet::kStride];
@@ -111,11 +113,12 @@ void LeafTable::add_whole(CellXY at, int order, const int16_t* value, const int1
 void LeafTable::find_weights(CellXY at, int order) {
   const size_t views = layout_.views();
   const double area = cell_solid_angle(order), n = static_cast<double>(1u << order);
-  const double copies = layout_.half_stored && !(mirrored(at) == at) ? 2 : 1;
+  const double copies = layout_.half_stored && !on_mirror(at) ? 2 : 1;
   // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
   // the angle, and a leaf reaches about 0.8 of its width from its middle.
   const float reach = static_cast<float>(2 * std::sqrt(area));
-  const int side = order >= 6 ? 1 : 2;
+  const int side = order > kSampleOrder ? 1 : 2;
+  inverse_area_ = static_cast<float>(1 / (area * copies));
   const float share = static_cast<float>(area * copies / (side * side));
   std::fill(area_.begin(), area_.end(), 0.0f);
   for (int k = 0; k < side * side; ++k) {

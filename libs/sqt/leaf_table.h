@@ -32,6 +32,7 @@ class LeafTable {
   size_t width_, row_;
   std::unique_ptr<ViewLanes> lanes_;
   std::vector<float> area_;           // [view] room: weight of the leaf
+  float inverse_area_ = 0;        // room: of the leaf
   std::vector<int16_t> weight_;       // [channel][view] room: its logarithm
   std::vector<int16_t> part_;         // room: a part's value and slopes
 };

@@ -41,6 +41,9 @@ struct PrefixLengths {
   void code(Coder& coder, size_t contexts);
 };
 
+// How large a number a symbol stands for, roughly: 0 to 3.
+constexpr uint32_t size_class(uint32_t symbol) { return (symbol > 0) + (symbol > 1) + (symbol > 4); }
+
 class PrefixEncoder {
  public:
   static constexpr bool kEncodes = true;
@@ -102,6 +105,8 @@ class PrefixDecoder {
   // For inner loops: a symbol's entry, the bits ahead (at least 32 of them after fill), and taking some.
   struct Entry {
     uint8_t symbol, length;
+    uint8_t with_sign;  // length with the sign that follows all symbols but 0
+    uint8_t size;       // size_class
   };
   static constexpr uint32_t kMask = (1u << PrefixLengths::kMost) - 1;
   const Entry* table(size_t context) const { return &entries_[context << PrefixLengths::kMost]; }
