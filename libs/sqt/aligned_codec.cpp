@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sqt/cell_centers.h"
 #include "sqt/portable_math.h"
 
 namespace suite::sqt {
@@ -135,11 +136,8 @@ StepRule::StepRule(const AlignedLayout& layout, double reference)
   for (const float w : lanes_.weight) norm_ += w;
 }
 
-float StepRule::step(CellXY cell, int order, const float* mean) const {
+float StepRule::step(const Center& d, int order, const float* mean) const {
   constexpr double kWeightPower = 0.75, kAreaPower = 0.5;
-  const double n = static_cast<double>(1u << order);
-  const Dir center = direction_fast({cell.face, (cell.x + 0.5) / n, (cell.y + 0.5) / n});
-  const float d[3] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)};
   EightFloats sums{};
   for (size_t v = 0; v < lanes_.views; v += 8) {
     EightFloats stretch, cosine;
@@ -209,7 +207,8 @@ class SheetWalk {
         read_splits(above, begin);
         lattice_.link(begin, end);
       }
-      for (size_t i = begin; i < end; ++i) visit(i);
+      find_centers(begin, end);
+      for (size_t i = begin; i < end; ++i) visit(i, centers_[i - begin]);
       above = begin, begin = end;
     }
   }
@@ -253,17 +252,27 @@ class SheetWalk {
         if (node.child_mask & (1u << k)) lattice_.node(child++).split = (mask & (1u << k)) != 0;
     }
   }
-  void visit(size_t i) {
+  void find_centers(size_t begin, size_t end) {
+    centers_.resize((end - begin + 7) / 8 * 8);
+    for (size_t i = begin; i < end; i += 8) {
+      CellLanes cells;
+      for (size_t lane = 0; lane < std::min<size_t>(8, end - i); ++lane) cells.set(lane, lattice_.node(i + lane).at);
+      EightFloats x, y, z;
+      centers_of(cells, lattice_.node(i).order, x, y, z);
+      for (size_t lane = 0; lane < 8; ++lane) centers_[i - begin + lane] = {x[lane], y[lane], z[lane]};
+    }
+  }
+  void visit(size_t i, const Center& center) {
     lattice_.find_slopes(i);
     block_.resize(lattice_.size(), -1);
     const CodedLattice::Node& node = lattice_.node(i);
     if (!node.split) {
       if (leaves_)
-        leaves_->add(node.at, node.order, lattice_.value(i), lattice_.slope(i, 0), lattice_.slope(i, 1));
+        leaves_->add(node.at, node.order, center, lattice_.value(i), lattice_.slope(i, 0), lattice_.slope(i, 1));
       return;
     }
     if (lattice_.size() + 4 > max_nodes_) throw Error("SQT payload is damaged: more nodes than allowed");
-    const float step = steps_.step(node.at, node.order, mean_of(i));
+    const float step = steps_.step(center, node.order, mean_of(i));
     if (targets_) targets_->differences(lattice_, i, difference_);
     const int32_t block = convey(3, step, node.parent >= 0 ? block_[static_cast<size_t>(node.parent)] : -1);
     block_[i] = block;
@@ -290,11 +299,12 @@ class SheetWalk {
   const float* mean_of(size_t i) {
     const size_t views = layout_.views();
     const int16_t* value = lattice_.value(i);
-    const float unit = scale_.unit() / static_cast<float>(layout_.channels);
-    for (size_t v = 0; v < views; ++v) {
-      int sum = 0;
-      for (size_t c = 0; c < layout_.channels; ++c) sum += value[c * views + v];
-      mean_[v] = static_cast<float>(scale_.offset) + unit * static_cast<float>(sum);
+    const float unit = scale_.unit() / static_cast<float>(layout_.channels), offset = static_cast<float>(scale_.offset);
+    for (size_t v = 0; v < views; v += 8) {  // what is read behind the views counts for nothing
+      Int8 sum{};
+      for (size_t c = 0; c < layout_.channels; ++c)
+        sum += __builtin_convertvector(load<Short8>(value + c * views + v), Int8);
+      store(&mean_[v], offset + unit * __builtin_convertvector(sum, EightFloats));
     }
     return mean_.data();
   }
@@ -317,6 +327,7 @@ class SheetWalk {
   std::vector<int32_t> block_;  // [node] of divided nodes
   std::vector<int32_t> levels_;
   std::vector<int16_t> changes_;
+  std::vector<Center> centers_;  // of the level's nodes
   std::vector<float> mean_, difference_, coefficient_;
 };
 

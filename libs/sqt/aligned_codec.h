@@ -39,9 +39,9 @@ class StepRule {
  public:
   // reference: log2 of the mean weight of a cell direction.
   StepRule(const AlignedLayout& layout, double reference);
-  // mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the views counts
+  // Of a cell; mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the views counts
   // for nothing.
-  float step(CellXY cell, int order, const float* mean) const;
+  float step(const Center& center, int order, const float* mean) const;
 
  private:
   const AlignedLayout& layout_;

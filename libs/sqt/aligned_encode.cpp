@@ -26,12 +26,14 @@ std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Imp
     const Lattice::Node& node = sheet.data.node(i);
     if (node.first_child < 0) continue;
     const std::span<const float> value = sheet.data.value(i);
+    const Dir middle = center_of(node.id);
+    const Center center{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)};
     for (size_t v = 0; v < layout.views(); ++v) {
       float sum = 0;
       for (size_t c = 0; c < channels; ++c) sum += value[v * channels + c];
       mean[v] = sum / static_cast<float>(channels);
     }
-    const float step = steps.step(xy_of(node.id), node.id.order(), mean.data());
+    const float step = steps.step(center, node.id.order(), mean.data());
     const float* detail = &sheet.details[static_cast<size_t>(sheet.detail_index[i]) * 3 * width];
     double gain = 0, bits = 6;
     for (size_t j = 0; j < 3 * width; ++j) {

@@ -1,6 +1,7 @@
 #include "sqt/aligned_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -43,9 +44,7 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
   for (size_t j = 0; j < width; ++j) columns_[j].scale = sum[j] > 0 ? static_cast<float>(0x1.ff8p30 / sum[j]) : 0;
   cumulative_.resize(tiles_ * row_ * kTile);
   tile_sum_.resize(row_ * (tiles_ + 1));
-  parallel_for(0, row_ / 8, 1, [&](size_t begin, size_t end) {
-    for (size_t j = begin; j < end; ++j) accumulate(stored, 8 * j);
-  });
+  parallel_for(0, row_ / 8, (row_ / 8 + 15) / 16, [&](size_t begin, size_t end) { accumulate(stored, begin, end); });
   for (Column& c : columns_) c.inverse_total = c.total ? 1 / static_cast<float>(c.total) : 0;
   size_t first = 0;
   for (AlignedSheet& s : stored) {
@@ -79,32 +78,38 @@ std::vector<double> AlignedTables::sum_masses(const std::vector<AlignedSheet>& s
   return sum;
 }
 
-// Whole masses of eight columns and their sums.
-void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t first) {
-  EightFloats scale{};
-  for (size_t lane = 0; lane < 8; ++lane) scale[lane] = columns_[first + lane].scale;
-  Int8 running{};
-  size_t leaf = 0, sheet = 0;  // of the sheet
+// Whole masses of the columns [8 begin, 8 end) and their sums, tile by tile.
+void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t begin, size_t end) {
+  std::vector<Int8> running(end - begin, Int8{});
+  std::array<const uint16_t*, kTile> from{};  // the tile's masses; null behind the last leaf
+  size_t leaf = 0, sheet = 0;                 // of the sheet
   for (size_t t = 0; t < tiles_; ++t) {
-    int32_t* to = &cumulative_[(t * row_ + first) * kTile];
-    for (size_t lane = 0; lane < 8; ++lane) tile_sum_[(first + lane) * (tiles_ + 1) + t] = running[lane];
-    for (size_t i = 0; i < kTile; i += 8) {
-      Int8 rows[8];
-      for (Int8& row : rows) {
-        row = running;
-        while (sheet < stored.size() && leaf == stored[sheet].leaves.size()) ++sheet, leaf = 0;
-        if (sheet == stored.size()) continue;  // behind the last leaf: sums stay the total
-        const EightFloats mass = mass_of(load<Ushort8>(&stored[sheet].mass[leaf++ * row_ + first]));
-        running += __builtin_convertvector(mass * scale, Int8);
+    for (const uint16_t*& row : from) {
+      while (sheet < stored.size() && leaf == stored[sheet].leaves.size()) ++sheet, leaf = 0;
+      row = sheet < stored.size() ? &stored[sheet].mass[leaf++ * row_] : nullptr;
+    }
+    for (size_t j = begin; j < end; ++j) {
+      EightFloats scale;
+      for (size_t lane = 0; lane < 8; ++lane) {
+        scale[lane] = columns_[8 * j + lane].scale;
+        tile_sum_[(8 * j + lane) * (tiles_ + 1) + t] = running[j - begin][lane];
       }
-      transpose(rows);
-      for (size_t lane = 0; lane < 8; ++lane) store(to + lane * kTile + i, rows[lane]);
+      Int8 sum = running[j - begin];
+      for (size_t i = 0; i < kTile; i += 8) {
+        Int8 rows[8];
+        for (size_t k = 0; k < 8; ++k) {
+          rows[k] = sum;  // behind the last leaf: the total
+          if (from[i + k]) sum += __builtin_convertvector(mass_of(load<Ushort8>(from[i + k] + 8 * j)) * scale, Int8);
+        }
+        transpose(rows);
+        for (size_t lane = 0; lane < 8; ++lane)
+          store(&cumulative_[(t * row_ + 8 * j + lane) * kTile + i], rows[lane]);
+      }
+      running[j - begin] = sum;
     }
   }
-  for (size_t lane = 0; lane < 8; ++lane) {
-    columns_[first + lane].total = running[lane];
-    tile_sum_[(first + lane) * (tiles_ + 1) + tiles_] = running[lane];
-  }
+  for (size_t j = 8 * begin; j < 8 * end; ++j)
+    tile_sum_[j * (tiles_ + 1) + tiles_] = columns_[j].total = running[j / 8 - begin][j % 8];
 }
 
 AlignedTables::Draw AlignedTables::draw(size_t column, double u) const {

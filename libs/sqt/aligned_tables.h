@@ -50,7 +50,7 @@ class AlignedTables {
     int32_t total = 0;  // of the whole masses, below 2^31
   };
   std::vector<double> sum_masses(const std::vector<AlignedSheet>& sheets) const;
-  void accumulate(const std::vector<AlignedSheet>& sheets, size_t first_column);
+  void accumulate(const std::vector<AlignedSheet>& sheets, size_t begin, size_t end);
   std::vector<Sheet> sheets_;
   size_t leaves_ = 0, tiles_ = 0, row_ = 0;
   std::vector<Column> columns_;       // padded_row of them

@@ -29,29 +29,33 @@ Bytes class_of(Bytes s) {
 }
 size_t count_class(size_t n) { return n == 0 ? 0 : n <= 2 ? 1 : n <= 6 ? 2 : n <= 12 ? 3 : 4; }
 
-// One level that is coded as `context` says.
+// Codes of one kind of context, by what they take from: PrefixEncoder, or a copy of a decoder's bits.
+struct LevelReader {
+  const PrefixDecoder::Entry* codes;
+  BitReader bits;
+};
 struct LevelSymbol {
   uint32_t symbol, size;
 };
-template <class Coder>
-inline LevelSymbol code_level(Coder& coder, int32_t& level, size_t context) {
-  if constexpr (Coder::kEncodes) {
-    const Token t = token_of(static_cast<uint32_t>(std::abs(level)), kExactLevel);
-    coder.symbol(context, t.symbol);
-    if (t.symbol) coder.raw(level < 0, 1);
-    if (t.bits) coder.raw(t.raw, t.bits);
-    return {t.symbol, size_class(t.symbol)};
-  } else {
-    coder.fill();
-    const PrefixDecoder::Entry e = coder.table(context)[coder.ahead() & PrefixDecoder::kMask];
-    const int32_t sign = -static_cast<int32_t>((coder.ahead() >> e.length) & (e.with_sign - e.length));
-    coder.drop(e.with_sign);
-    uint32_t size = e.symbol;
-    if (size >= kExactLevel) [[unlikely]]
-      size = token_number(e.symbol, kExactLevel, coder.raw(0, token_bits(e.symbol, kExactLevel)));
-    level = (static_cast<int32_t>(size) ^ sign) - sign;
-    return {e.symbol, e.size};
-  }
+// One level.
+inline LevelSymbol code_level(PrefixEncoder& coder, int32_t& level, size_t context) {
+  const Token t = token_of(static_cast<uint32_t>(std::abs(level)), kExactLevel);
+  coder.symbol(context, t.symbol);
+  if (t.symbol) coder.raw(level < 0, 1);
+  if (t.bits) coder.raw(t.raw, t.bits);
+  return {t.symbol, size_class(t.symbol)};
+}
+inline LevelSymbol code_level(LevelReader& from, int32_t& level, size_t context) {
+  from.bits.fill();
+  const PrefixDecoder::Entry e =
+      from.codes[(context << PrefixLengths::kMost) + (from.bits.ahead() & PrefixDecoder::kMask)];
+  const int32_t sign = -static_cast<int32_t>((from.bits.ahead() >> e.length) & (e.with_sign - e.length));
+  from.bits.drop(e.with_sign);
+  uint32_t size = e.symbol;
+  if (size >= kExactLevel) [[unlikely]]
+    size = token_number(e.symbol, kExactLevel, from.bits.take(token_bits(e.symbol, kExactLevel)));
+  level = (static_cast<int32_t>(size) ^ sign) - sign;
+  return {e.symbol, e.size};
 }
 
 }  // namespace
@@ -76,16 +80,29 @@ void BlockCode::find_contexts(const uint8_t* up, const uint8_t* detail, const ui
   }
 }
 
-template <class Coder>
-void BlockCode::code_row(Coder& coder, int32_t* row, size_t n, uint8_t* size) {
+namespace {
+template <class From>
+inline void code_levels(From& from, int32_t* row, size_t n, const uint8_t* context, uint8_t* size) {
   uint32_t before = 0;
   for (size_t k = 0; k + 1 < n; ++k) {
-    const LevelSymbol s = code_level(coder, row[k], kLevel + context_[k] + before);
+    const LevelSymbol s = code_level(from, row[k], kLevel + context[k] + before);
     before = s.size;
     size[k] = static_cast<uint8_t>(std::min<uint32_t>(s.symbol, kCap));
   }
-  const LevelSymbol s = code_level(coder, row[n - 1], kLast + context_[n - 1] / (kPlaces * kBefore));
+  const LevelSymbol s = code_level(from, row[n - 1], kLast + context[n - 1] / (kPlaces * kBefore));
   size[n - 1] = static_cast<uint8_t>(std::min<uint32_t>(s.symbol, kCap));
+}
+}  // namespace
+
+template <class Coder>
+void BlockCode::code_row(Coder& coder, int32_t* row, size_t n, uint8_t* size) {
+  if constexpr (Coder::kEncodes) {
+    code_levels(coder, row, n, context_.data(), size);
+  } else {
+    LevelReader from{coder.table(0), coder.bits()};
+    code_levels(from, row, n, context_.data(), size);
+    coder.bits() = from.bits;
+  }
 }
 
 template <class Coder>
@@ -125,6 +142,17 @@ void BlockCode::code_rows(Coder& coder, std::span<int32_t> levels, size_t detail
 }
 
 template <class Coder>
+void BlockCode::code_root(Coder& coder, int32_t* row, size_t n) {
+  if constexpr (Coder::kEncodes) {
+    for (size_t k = 0; k < n; ++k) code_level(coder, row[k], kRootLevel + (k > 2));
+  } else {
+    LevelReader from{coder.table(0), coder.bits()};
+    for (size_t k = 0; k < n; ++k) code_level(from, row[k], kRootLevel + (k > 2));
+    coder.bits() = from.bits;
+  }
+}
+
+template <class Coder>
 int32_t BlockCode::code(Coder& coder, std::span<int32_t> levels, size_t details, int32_t above) {
   const size_t rows = 3 * channels_, block = counts_.size() / rows;
   counts_.resize((block + 1) * rows);
@@ -143,7 +171,7 @@ int32_t BlockCode::code(Coder& coder, std::span<int32_t> levels, size_t details,
   } else {
     for (size_t c = 0; c < channels_; ++c) {
       count[c] = static_cast<uint16_t>(std::min<size_t>(views_, coder.number(kRootCount, count[c], kExactCount)));
-      for (size_t k = 0; k < count[c]; ++k) code_level(coder, levels[c * views_ + k], kRootLevel + (k > 2));
+      code_root(coder, &levels[c * views_], count[c]);
     }
   }
   return static_cast<int32_t>(block);

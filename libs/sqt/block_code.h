@@ -40,6 +40,8 @@ class BlockCode {
   void code_rows(Coder& coder, std::span<int32_t> levels, size_t details, int32_t above, int32_t block);
   template <class Coder>
   void code_row(Coder& coder, int32_t* row, size_t n, uint8_t* size);
+  template <class Coder>
+  void code_root(Coder& coder, int32_t* row, size_t n);
   void find_contexts(const uint8_t* up, const uint8_t* detail, const uint8_t* channel, size_t n);
   size_t views_, channels_, stride_;
   std::vector<uint8_t> place_;    // [view frequency]: part of the context, how high it is

@@ -14,7 +14,8 @@ CodedLattice::CodedLattice(Region region, size_t width) : region_(region), row_(
     root.order = kRootOrder;
     nodes_.push_back(root);
   }
-  rows_.resize(3 * nodes_.size() * row_);
+  values_.resize(nodes_.size() * row_);
+  slopes_.resize(2 * nodes_.size() * row_);
   // Roots have no level above: whom they touch is looked for.
   for (Node& node : nodes_) {
     const auto around = edge_neighbours(node.id());
@@ -28,7 +29,8 @@ CodedLattice::CodedLattice(Region region, size_t width) : region_(region), row_(
 
 void CodedLattice::reserve(size_t nodes) {
   nodes_.reserve(nodes);
-  rows_.reserve(3 * nodes * row_);
+  values_.reserve(nodes * row_);
+  slopes_.reserve(2 * nodes * row_);
 }
 
 void CodedLattice::divide(size_t i, const int16_t* const details[3]) {
@@ -46,7 +48,8 @@ void CodedLattice::divide(size_t i, const int16_t* const details[3]) {
     parent.child_mask = static_cast<uint8_t>(parent.child_mask | (1u << k));
   }
   nodes_[i] = parent;
-  rows_.resize(3 * nodes_.size() * row_);
+  values_.resize(nodes_.size() * row_);
+  slopes_.resize(2 * nodes_.size() * row_);
   int16_t* to[4] = {};
   size_t next = first;
   for (uint32_t k = 0; k < 4; ++k)
@@ -152,9 +155,12 @@ const int16_t* CodedLattice::across(const Node& node, size_t edge, int16_t* room
     return room;
   }
   const int x = l.x, y = l.y;
-  for (size_t j = 0; j < row_; ++j) {
-    const int n = v[j] + ((x * gx[j] + y * gy[j]) >> (between + 1));
-    room[j] = static_cast<int16_t>(std::clamp(n, -LogScale::kMost, LogScale::kMost));
+  for (size_t j = 0; j < row_; j += 8) {
+    const auto wide = [j](const int16_t* from) { return __builtin_convertvector(load<Short8>(from + j), Int8); };
+    Int8 c = wide(v) + ((x * wide(gx) + y * wide(gy)) >> (between + 1));
+    c = c > LogScale::kMost ? Int8{} + LogScale::kMost : c;
+    c = c < -LogScale::kMost ? Int8{} - LogScale::kMost : c;
+    store(room + j, __builtin_convertvector(c, Short8));
   }
   return room;
 }

@@ -43,9 +43,9 @@ class CodedLattice {
   Node& node(size_t i) { return nodes_[i]; }
   const Node& node(size_t i) const { return nodes_[i]; }
   size_t row() const { return row_; }  // numbers in a padded row
-  int16_t* value(size_t i) { return &rows_[3 * i * row_]; }
-  const int16_t* value(size_t i) const { return &rows_[3 * i * row_]; }
-  const int16_t* slope(size_t i, size_t axis) const { return &rows_[(3 * i + 1 + axis) * row_]; }
+  int16_t* value(size_t i) { return &values_[i * row_]; }
+  const int16_t* value(size_t i) const { return &values_[i * row_]; }
+  const int16_t* slope(size_t i, size_t axis) const { return &slopes_[(2 * i + axis) * row_]; }
 
   void reserve(size_t nodes);
   // Appends the children of a node, with values that are its plane plus the details (x, y, xy differences; null: none).
@@ -63,11 +63,13 @@ class CodedLattice {
  private:
   Link find_link(const Node& node, size_t edge) const;
   const int16_t* across(const Node& node, size_t edge, int16_t* room) const;
-  int16_t* slope_row(size_t i, size_t axis) { return &rows_[(3 * i + 1 + axis) * row_]; }
+  int16_t* slope_row(size_t i, size_t axis) { return &slopes_[(2 * i + axis) * row_]; }
   Region region_;
   size_t row_;
   Lent<std::vector<Node>, CodedLattice> nodes_;
-  Lent<UnsetVector<int16_t>, CodedLattice> rows_;  // [node]{value, slope x, slope y}[row]
+  struct Slopes;
+  Lent<UnsetVector<int16_t>, CodedLattice> values_;  // [node][row]
+  Lent<UnsetVector<int16_t>, Slopes> slopes_;        // [node]{x, y}[row]
   UnsetVector<int16_t> room_;  // two rows
 };
 

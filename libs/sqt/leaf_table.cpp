@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sqt/view_lanes.h"
+#include "sqt/cell_centers.h"
 
 namespace suite::sqt {
 
@@ -58,7 +58,7 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
       region_{layout.upper_only, layout.half_stored},
       width_(layout.width()),
       row_(padded_row(width_)),
-      lanes_(std::make_unique<ViewLanes>(layout)),
+      lanes_(layout),
       area_(padded_row(layout.views())),
       weight_(row_ + 16),
       part_(3 * row_) {
@@ -70,11 +70,10 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
   sheet_.plane.reserve((expected + coarse) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.reserve((expected + coarse) * row_);
 }
-LeafTable::~LeafTable() = default;
 
-void LeafTable::add(CellXY at, int order, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
+void LeafTable::add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
   ++sheet_.stored;
-  if (order >= kSampleOrder) return add_whole(at, order, value, slope_x, slope_y);
+  if (order >= kSampleOrder) return add_whole(at, order, center, value, slope_x, slope_y);
   const int extra = kSampleOrder - order, side = 1 << extra;
   for (int v = 0; v < side; ++v)
     for (int u = 0; u < side; ++u) {
@@ -87,12 +86,16 @@ void LeafTable::add(CellXY at, int order, const int16_t* value, const int16_t* s
         part_[row_ + j] = static_cast<int16_t>(slope_x[j] >> extra);
         part_[2 * row_ + j] = static_cast<int16_t>(slope_y[j] >> extra);
       }
-      add_whole(part, kSampleOrder, part_.data(), &part_[row_], &part_[2 * row_]);
+      CellLanes lanes;
+      lanes.set(0, part);
+      EightFloats px, py, pz;
+      centers_of(lanes, kSampleOrder, px, py, pz);
+      add_whole(part, kSampleOrder, {px[0], py[0], pz[0]}, part_.data(), &part_[row_], &part_[2 * row_]);
     }
 }
 
-void LeafTable::add_whole(CellXY at, int order, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
-  find_weights(at, order);
+void LeafTable::add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
+  find_weights(at, order, center);
   const size_t n = sheet_.leaves.size();
   sheet_.leaves.push_back(cell_at(order, at));
   sheet_.inverse_area.push_back(inverse_area_);
@@ -109,31 +112,36 @@ void LeafTable::add_whole(CellXY at, int order, const int16_t* value, const int1
   }
 }
 
+// Adds a point's share.
+void LeafTable::add_weights(const Center& d, float share, float reach) {
+  for (size_t v = 0; v < layout_.views(); v += 8) {
+    EightFloats stretch, cosine;
+    lanes_.at(v, d, stretch, cosine);
+    const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
+    EightFloats weight = share * stretch;
+    if (layout_.cosine_weighted) weight *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
+    if (layout_.upper_only) weight = cosine < -reach ? EightFloats{} : weight;
+    store(&area_[v], load<EightFloats>(&area_[v]) + weight);
+  }
+}
+
 // Integral of |cos| stretch (or 1) over a leaf for all views, kept above a floor near the horizon.
-void LeafTable::find_weights(CellXY at, int order) {
+void LeafTable::find_weights(CellXY at, int order, const Center& center) {
   const size_t views = layout_.views();
-  const double area = cell_solid_angle(order), n = static_cast<double>(1u << order);
-  const double copies = layout_.half_stored && !on_mirror(at) ? 2 : 1;
+  const double area = cell_solid_angle(order), copies = layout_.half_stored && !on_mirror(at) ? 2 : 1;
+  inverse_area_ = static_cast<float>(1 / (area * copies));
   // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
   // the angle, and a leaf reaches about 0.8 of its width from its middle.
   const float reach = static_cast<float>(2 * std::sqrt(area));
-  const int side = order > kSampleOrder ? 1 : 2;
-  inverse_area_ = static_cast<float>(1 / (area * copies));
-  const float share = static_cast<float>(area * copies / (side * side));
   std::fill(area_.begin(), area_.end(), 0.0f);
-  for (int k = 0; k < side * side; ++k) {
-    const Dir middle =
-        direction_fast({at.face, (at.x + (k % side + 0.5) / side) / n, (at.y + (k / side + 0.5) / side) / n});
-    const float d[3] = {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)};
-    for (size_t v = 0; v < views; v += 8) {
-      EightFloats stretch, cosine;
-      lanes_->at(v, d, stretch, cosine);
-      const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
-      EightFloats weight = share * stretch;
-      if (layout_.cosine_weighted) weight *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
-      if (layout_.upper_only) weight = cosine < -reach ? EightFloats{} : weight;
-      store(&area_[v], load<EightFloats>(&area_[v]) + weight);
-    }
+  if (order > kSampleOrder) {
+    add_weights(center, static_cast<float>(area * copies), reach);
+  } else {  // by the middles of its quarters
+    CellLanes lanes;
+    for (uint32_t k = 0; k < 4; ++k) lanes.set(k, {at.face, 2 * at.x + (k & 1), 2 * at.y + (k >> 1)});
+    EightFloats x, y, z;
+    centers_of(lanes, order + 1, x, y, z);
+    for (int k = 0; k < 4; ++k) add_weights({x[k], y[k], z[k]}, static_cast<float>(0.25 * area * copies), reach);
   }
   for (size_t v = 0; v < views; v += 8) {
     const EightFloats weight = load<EightFloats>(&area_[v]);

@@ -8,29 +8,27 @@
 
 #include "sqt/aligned.h"
 #include "sqt/lattice.h"
-#include "sqt/vectors.h"
+#include "sqt/view_lanes.h"
 
 namespace suite::sqt {
-
-struct ViewLanes;
 
 class LeafTable {
  public:
   // sheet: filled by add. expected: number of leaves to make room for.
   LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& sheet, size_t expected);
-  ~LeafTable();
-  // A leaf: rows [channel][view] of values and slopes, filled up as CodedLattice does.
-  void add(CellXY at, int order, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
+  // A leaf and its middle; rows [channel][view] of values and slopes, filled up as CodedLattice does.
+  void add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
 
  private:
-  void add_whole(CellXY at, int order, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
-  void find_weights(CellXY at, int order);
+  void add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
+  void add_weights(const Center& d, float share, float reach);
+  void find_weights(CellXY at, int order, const Center& center);
   const AlignedLayout& layout_;
   LogScale scale_;
   AlignedSheet& sheet_;
   Region region_;
   size_t width_, row_;
-  std::unique_ptr<ViewLanes> lanes_;
+  ViewLanes lanes_;
   std::vector<float> area_;           // [view] room: weight of the leaf
   float inverse_area_ = 0;        // room: of the leaf
   std::vector<int16_t> weight_;       // [channel][view] room: its logarithm

@@ -156,7 +156,7 @@ PrefixDecoder::PrefixDecoder(std::span<const std::byte> bytes, size_t contexts) 
   RangeDecoder coder(bytes.subspan(2, head));
   lengths.code(coder, contexts);
   if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
-  at_ = bytes.data() + 2 + head, end_ = bytes.data() + bytes.size();
+  bits_ = BitReader(bytes.subspan(2 + head));
   // What no code leads to, in damaged files alone, reads as symbol 0.
   entries_.assign(contexts << kMost, {0, kMost, kMost, 0});
   for (size_t c = 0; c < contexts; ++c) {

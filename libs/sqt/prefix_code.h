@@ -78,53 +78,33 @@ class PrefixEncoder {
   std::vector<Note> noted_;
 };
 
-// Reads what PrefixEncoder wrote. Past the end it reads zeros; overrun() tells.
-class PrefixDecoder {
+// Bits ahead, lowest first. Past the end it reads zeros; overrun() tells. Inner loops work on a copy.
+class BitReader {
  public:
-  static constexpr bool kEncodes = false;
-  // Error: lengths that are no code.
-  PrefixDecoder(std::span<const std::byte> bytes, size_t contexts);
-  uint32_t symbol(size_t context, uint32_t = 0) {
-    fill();
-    const Entry e = table(context)[bits_ & kMask];
-    drop(e.length);
-    return e.symbol;
-  }
-  uint32_t raw(uint32_t, uint32_t bits) {  // at most 24
-    fill();
-    const uint32_t value = static_cast<uint32_t>(bits_) & ((1u << bits) - 1);
-    drop(bits);
-    return value;
-  }
-  uint32_t number(size_t context, uint32_t, uint32_t exact) {
-    const uint32_t s = symbol(context), bits = token_bits(s, exact);
-    return token_number(s, exact, bits ? raw(0, bits) : 0);
-  }
-  bool overrun() const { return missing_ * 8 > count_; }
-
-  // For inner loops: a symbol's entry, the bits ahead (at least 32 of them after fill), and taking some.
-  struct Entry {
-    uint8_t symbol, length;
-    uint8_t with_sign;  // length with the sign that follows all symbols but 0
-    uint8_t size;       // size_class
-  };
-  static constexpr uint32_t kMask = (1u << PrefixLengths::kMost) - 1;
-  const Entry* table(size_t context) const { return &entries_[context << PrefixLengths::kMost]; }
-  void fill() {
+  BitReader() = default;
+  explicit BitReader(std::span<const std::byte> bytes) : at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+  void fill() {  // at least 32 of them
     if (count_ < 32) refill();
   }
   uint64_t ahead() const { return bits_; }
   void drop(uint32_t n) { bits_ >>= n, count_ -= n; }
+  uint32_t take(uint32_t n) {  // at most 24
+    fill();
+    const uint32_t value = static_cast<uint32_t>(bits_) & ((1u << n) - 1);
+    drop(n);
+    return value;
+  }
+  bool overrun() const { return missing_ * 8 > count_; }
 
  private:
   void refill() {
     if (end_ - at_ >= 8) [[likely]] {
       uint64_t next;
       std::memcpy(&next, at_, 8);
-      bits_ |= next << count_;
       const uint32_t taken = (63 - count_) / 8;
+      bits_ |= next << count_;
       at_ += taken, count_ += 8 * taken;
-      // What the shift brought in beyond count_ is brought in again next time, the same.
+      // What the shift brought in beyond count_ comes again next time.
       bits_ &= (uint64_t{1} << count_) - 1;
     } else {
       for (; count_ <= 56; count_ += 8) {
@@ -135,11 +115,44 @@ class PrefixDecoder {
       }
     }
   }
-  std::vector<Entry> entries_;
-  const std::byte *at_, *end_;
+  const std::byte *at_ = nullptr, *end_ = nullptr;
   uint64_t bits_ = 0;
   uint32_t count_ = 0;
   size_t missing_ = 0;
+};
+
+// Reads what PrefixEncoder wrote.
+class PrefixDecoder {
+ public:
+  static constexpr bool kEncodes = false;
+  struct Entry {
+    uint8_t symbol, length;
+    uint8_t with_sign;  // length with the sign that follows all symbols but 0
+    uint8_t size;       // size_class
+  };
+  static constexpr uint32_t kMask = (1u << PrefixLengths::kMost) - 1;
+  // Error: lengths that are no code.
+  PrefixDecoder(std::span<const std::byte> bytes, size_t contexts);
+  uint32_t symbol(size_t context, uint32_t = 0) {
+    bits_.fill();
+    const Entry e = table(context)[bits_.ahead() & kMask];
+    bits_.drop(e.length);
+    return e.symbol;
+  }
+  uint32_t raw(uint32_t, uint32_t bits) { return bits_.take(bits); }
+  uint32_t number(size_t context, uint32_t, uint32_t exact) {
+    const uint32_t s = symbol(context), bits = token_bits(s, exact);
+    return token_number(s, exact, bits ? bits_.take(bits) : 0);
+  }
+  bool overrun() const { return bits_.overrun(); }
+
+  // By the bits ahead (kMask).
+  const Entry* table(size_t context) const { return &entries_[context << PrefixLengths::kMost]; }
+  BitReader& bits() { return bits_; }
+
+ private:
+  std::vector<Entry> entries_;
+  BitReader bits_;
 };
 
 }  // namespace suite::sqt
