@@ -84,9 +84,16 @@ void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t b
   std::array<const uint16_t*, kTile> from{};  // the tile's masses; null behind the last leaf
   size_t leaf = 0, sheet = 0;                 // of the sheet
   for (size_t t = 0; t < tiles_; ++t) {
-    for (const uint16_t*& row : from) {
-      while (sheet < stored.size() && leaf == stored[sheet].leaves.size()) ++sheet, leaf = 0;
-      row = sheet < stored.size() ? &stored[sheet].mass[leaf++ * row_] : nullptr;
+    for (size_t i = 0; i < kTile;) {
+      if (sheet == stored.size()) {
+        from[i++] = nullptr;
+        continue;
+      }
+      const size_t leaves = stored[sheet].leaves.size(), n = std::min(kTile - i, leaves - leaf);
+      const uint16_t* mass = stored[sheet].mass.data() + leaf * row_;
+      for (size_t k = 0; k < n; ++k) from[i + k] = mass + k * row_;
+      i += n, leaf += n;
+      if (leaf == leaves) ++sheet, leaf = 0;
     }
     for (size_t j = begin; j < end; ++j) {
       EightFloats scale;
@@ -95,6 +102,7 @@ void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t b
         tile_sum_[(8 * j + lane) * (tiles_ + 1) + t] = running[j - begin][lane];
       }
       Int8 sum = running[j - begin];
+      int32_t* to = &cumulative_[(t * row_ + 8 * j) * kTile];
       for (size_t i = 0; i < kTile; i += 8) {
         Int8 rows[8];
         for (size_t k = 0; k < 8; ++k) {
@@ -103,7 +111,7 @@ void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t b
         }
         transpose(rows);
         for (size_t lane = 0; lane < 8; ++lane)
-          store(&cumulative_[(t * row_ + 8 * j + lane) * kTile + i], rows[lane]);
+          store(to + lane * kTile + i, rows[lane]);
       }
       running[j - begin] = sum;
     }

@@ -49,13 +49,14 @@ inline LevelSymbol code_level(LevelReader& from, int32_t& level, size_t context)
   from.bits.fill();
   const PrefixDecoder::Entry e =
       from.codes[(context << PrefixLengths::kMost) + (from.bits.ahead() & PrefixDecoder::kMask)];
-  const int32_t sign = -static_cast<int32_t>((from.bits.ahead() >> e.length) & (e.with_sign - e.length));
-  from.bits.drop(e.with_sign);
-  uint32_t size = e.symbol;
+  const int32_t sign = -static_cast<int32_t>((from.bits.ahead() >> e.length()) & (e.with_sign() - e.length()));
+  from.bits.drop(e.with_sign());
+  const uint32_t symbol = e.symbol();
+  uint32_t size = symbol;
   if (size >= kExactLevel) [[unlikely]]
-    size = token_number(e.symbol, kExactLevel, from.bits.take(token_bits(e.symbol, kExactLevel)));
+    size = token_number(symbol, kExactLevel, from.bits.take(token_bits(symbol, kExactLevel)));
   level = (static_cast<int32_t>(size) ^ sign) - sign;
-  return {e.symbol, e.size};
+  return {symbol, e.size()};
 }
 
 }  // namespace

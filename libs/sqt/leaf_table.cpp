@@ -49,6 +49,17 @@ void interleave(Short16 a, Short16 b, Short16 c, Short16 d, int16_t* to) {
   store(to + 32, __builtin_shuffle(e, f, back)), store(to + 48, __builtin_shuffle(g, h, back));
 }
 
+// Middles of a cell's quarters.
+std::array<Center, 4> quarters(CellXY at, int order) {
+  CellLanes lanes;
+  for (uint32_t k = 0; k < 4; ++k) lanes.set(k, {at.face, 2 * at.x + (k & 1), 2 * at.y + (k >> 1)});
+  EightFloats x, y, z;
+  centers_of(lanes, order + 1, x, y, z);
+  std::array<Center, 4> d;
+  for (size_t k = 0; k < 4; ++k) d[k] = {x[k], y[k], z[k]};
+  return d;
+}
+
 }  // namespace
 
 LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& sheet, size_t expected)
@@ -59,10 +70,16 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
       width_(layout.width()),
       row_(padded_row(width_)),
       lanes_(layout),
-      area_(padded_row(layout.views())),
       weight_(row_ + 16),
       part_(3 * row_) {
   sheet_.scale = scale;
+  for (int order = 0; order <= kMaxOrder; ++order) {
+    const double area = cell_solid_angle(order);
+    // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
+    // the angle, and a leaf reaches about 0.8 of its width from its middle.
+    numbers_.push_back(
+        {static_cast<float>(area), static_cast<float>(1 / area), static_cast<float>(2 * std::sqrt(area))});
+  }
   size_t coarse = 0;  // parts that coarse leaves may have
   for (uint32_t i = 0; i < cell_count(kSampleOrder); ++i) coarse += region_.holds(CellId::of(kSampleOrder, i));
   sheet_.leaves.reserve(expected + coarse);
@@ -98,7 +115,6 @@ void LeafTable::add_whole(CellXY at, int order, const Center& center, const int1
   find_weights(at, order, center);
   const size_t n = sheet_.leaves.size();
   sheet_.leaves.push_back(cell_at(order, at));
-  sheet_.inverse_area.push_back(inverse_area_);
   sheet_.plane.resize((n + 1) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.resize((n + 1) * row_);
   int16_t* plane = &sheet_.plane[n * width_ * AlignedSheet::kStride];
@@ -112,46 +128,43 @@ void LeafTable::add_whole(CellXY at, int order, const Center& center, const int1
   }
 }
 
-// Adds a point's share.
-void LeafTable::add_weights(const Center& d, float share, float reach) {
-  for (size_t v = 0; v < layout_.views(); v += 8) {
-    EightFloats stretch, cosine;
-    lanes_.at(v, d, stretch, cosine);
-    const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
-    EightFloats weight = share * stretch;
-    if (layout_.cosine_weighted) weight *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
-    if (layout_.upper_only) weight = cosine < -reach ? EightFloats{} : weight;
-    store(&area_[v], load<EightFloats>(&area_[v]) + weight);
-  }
+// A point's share of the views from `first` on.
+EightFloats LeafTable::share(size_t first, const Center& d, const OrderNumbers& n) const {
+  EightFloats stretch, cosine;
+  lanes_.at(first, d, stretch, cosine);
+  const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
+  EightFloats weight = n.area * stretch;
+  if (layout_.cosine_weighted) weight *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
+  if (layout_.upper_only) weight = cosine < -n.reach ? EightFloats{} : weight;
+  return weight;
 }
 
 // Integral of |cos| stretch (or 1) over a leaf for all views, kept above a floor near the horizon.
 void LeafTable::find_weights(CellXY at, int order, const Center& center) {
   const size_t views = layout_.views();
-  const double area = cell_solid_angle(order), copies = layout_.half_stored && !on_mirror(at) ? 2 : 1;
-  inverse_area_ = static_cast<float>(1 / (area * copies));
-  // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
-  // the angle, and a leaf reaches about 0.8 of its width from its middle.
-  const float reach = static_cast<float>(2 * std::sqrt(area));
-  std::fill(area_.begin(), area_.end(), 0.0f);
-  if (order > kSampleOrder) {
-    add_weights(center, static_cast<float>(area * copies), reach);
-  } else {  // by the middles of its quarters
-    CellLanes lanes;
-    for (uint32_t k = 0; k < 4; ++k) lanes.set(k, {at.face, 2 * at.x + (k & 1), 2 * at.y + (k >> 1)});
-    EightFloats x, y, z;
-    centers_of(lanes, order + 1, x, y, z);
-    for (int k = 0; k < 4; ++k) add_weights({x[k], y[k], z[k]}, static_cast<float>(0.25 * area * copies), reach);
-  }
+  const bool twice = layout_.half_stored && !on_mirror(at);
+  const OrderNumbers& n = numbers_[static_cast<size_t>(order)];
+  sheet_.inverse_area.push_back(twice ? 0.5f * n.inverse_area : n.inverse_area);
+  std::array<Center, 4> quarter;
+  if (order <= kSampleOrder) quarter = quarters(at, order);
   for (size_t v = 0; v < views; v += 8) {
-    const EightFloats weight = load<EightFloats>(&area_[v]);
-    Int8 log = (reinterpret_cast<Int8>(weight) >> (23 - kBits)) - (127 << kBits);
+    EightFloats weight;
+    if (order > kSampleOrder) {
+      weight = share(v, center, n);
+    } else {
+      weight = EightFloats{};
+      for (const Center& d : quarter) weight += 0.25f * share(v, d, n);
+    }
+    Int8 log = (reinterpret_cast<Int8>(weight) >> (23 - kBits)) - ((127 - (twice ? 1 : 0)) << kBits);
     const Int8 f = log & 511;
     log += (((f * (511 - f)) >> 8) * 88) >> 9;  // as bend
     log = log < kLeastWeight ? Int8{} + kLeastWeight : log;
-    store(&weight_[v], __builtin_convertvector(weight > 0 ? log : Int8{} + kNothing, Short8));
+    const Short8 coded = __builtin_convertvector(weight > 0 ? log : Int8{} + kNothing, Short8);
+    store(&weight_[v], coded);
   }
-  for (size_t c = 1; c < layout_.channels; ++c) std::copy_n(weight_.data(), views, &weight_[c * views]);
+  // What the last eight hold beyond the views is written over by the next channel.
+  for (size_t c = 1; c < layout_.channels; ++c)
+    for (size_t v = 0; v < views; v += 8) store(&weight_[c * views + v], load<Short8>(&weight_[v]));
 }
 
 }  // namespace suite::sqt

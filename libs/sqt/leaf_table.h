@@ -20,8 +20,11 @@ class LeafTable {
   void add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
 
  private:
+  struct OrderNumbers {
+    float area, inverse_area, reach;
+  };
   void add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
-  void add_weights(const Center& d, float share, float reach);
+  EightFloats share(size_t first, const Center& d, const OrderNumbers& n) const;
   void find_weights(CellXY at, int order, const Center& center);
   const AlignedLayout& layout_;
   LogScale scale_;
@@ -29,10 +32,9 @@ class LeafTable {
   Region region_;
   size_t width_, row_;
   ViewLanes lanes_;
-  std::vector<float> area_;           // [view] room: weight of the leaf
-  float inverse_area_ = 0;        // room: of the leaf
-  std::vector<int16_t> weight_;       // [channel][view] room: its logarithm
-  std::vector<int16_t> part_;         // room: a part's value and slopes
+  std::vector<OrderNumbers> numbers_;  // [order]
+  std::vector<int16_t> weight_;        // [channel][view] room: logarithms of the leaf's weights
+  std::vector<int16_t> part_;          // room: a part's value and slopes
 };
 
 // What a mass's code stands for; 0 for code 0. Between 2^-51 and 2^51.

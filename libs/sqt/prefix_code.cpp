@@ -158,18 +158,19 @@ PrefixDecoder::PrefixDecoder(std::span<const std::byte> bytes, size_t contexts) 
   if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
   bits_ = BitReader(bytes.subspan(2 + head));
   // What no code leads to, in damaged files alone, reads as symbol 0.
-  entries_.assign(contexts << kMost, {0, kMost, kMost, 0});
+  entries_.assign(contexts << kMost, Entry(0, kMost));
   for (size_t c = 0; c < contexts; ++c) {
     const uint8_t* length = &lengths.of[c * kSymbols];
     if (std::all_of(length, length + kSymbols, [](uint8_t l) { return l == 0; })) continue;
     uint32_t next = 0;  // as in make_codes
+    uint32_t n = kSymbols;
+    while (n > 0 && !length[n - 1]) --n;
     for (uint32_t b = 1; b <= kMost; ++b, next <<= 1)
-      for (uint32_t s = 0; s < kSymbols; ++s) {
+      for (uint32_t s = 0; s < n; ++s) {
         if (length[s] != b) continue;
         if (next >= 1u << b) throw Error("SQT payload is damaged: lengths that make no code");
         for (uint32_t i = reversed(next, b); i <= kMask; i += 1u << b)
-          entries_[(c << kMost) + i] = {static_cast<uint8_t>(s), static_cast<uint8_t>(b),
-                                        static_cast<uint8_t>(b + (s > 0)), static_cast<uint8_t>(size_class(s))};
+          entries_[(c << kMost) + i] = {s, b};
         ++next;
       }
   }

@@ -125,10 +125,16 @@ class BitReader {
 class PrefixDecoder {
  public:
   static constexpr bool kEncodes = false;
+  // A symbol with its length, in few bytes, so that the tables stay close.
   struct Entry {
-    uint8_t symbol, length;
-    uint8_t with_sign;  // length with the sign that follows all symbols but 0
-    uint8_t size;       // size_class
+    uint16_t bits = 0;
+    Entry() = default;
+    Entry(uint32_t symbol, uint32_t length)
+        : bits(static_cast<uint16_t>((length + (symbol > 0)) | length << 4 | symbol << 8 | size_class(symbol) << 14)) {}
+    uint32_t with_sign() const { return bits & 15u; }  // length with the sign that follows all symbols but 0
+    uint32_t length() const { return (bits >> 4) & 15u; }
+    uint32_t symbol() const { return (bits >> 8) & 63u; }
+    uint32_t size() const { return bits >> 14; }  // size_class
   };
   static constexpr uint32_t kMask = (1u << PrefixLengths::kMost) - 1;
   // Error: lengths that are no code.
@@ -136,8 +142,8 @@ class PrefixDecoder {
   uint32_t symbol(size_t context, uint32_t = 0) {
     bits_.fill();
     const Entry e = table(context)[bits_.ahead() & kMask];
-    bits_.drop(e.length);
-    return e.symbol;
+    bits_.drop(e.length());
+    return e.symbol();
   }
   uint32_t raw(uint32_t, uint32_t bits) { return bits_.take(bits); }
   uint32_t number(size_t context, uint32_t, uint32_t exact) {
