@@ -154,7 +154,7 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   try {
     const std::vector<std::byte> text = sqt_file::lzma_expand(header_bytes, text_size);
     file.header.assign(reinterpret_cast<const char*>(text.data()), text.size());
-    const Params header = Params::parse_text(file.header, file_name);
+    const Params header = Params::parse_json(file.header, file_name);
     std::vector<std::byte> expanded;
     std::span<const std::byte> raw = payload;
     if (coding == sqt_file::lzma) {

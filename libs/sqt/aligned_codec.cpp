@@ -147,8 +147,7 @@ float StepRule::step(const Center& d, int order, const float* mean) const {
     if (!layout_.cosine_weighted) cosine = EightFloats{} + 1;
     sums += load<EightFloats>(&lanes_.weight[v]) * portable_exp2(load<EightFloats>(mean + v)) * cosine * stretch;
   }
-  float sum = 0;
-  for (int lane = 0; lane < 8; ++lane) sum += sums[lane];
+  const float sum = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
   const double weight = portable_log2(std::max(1e-30f, sum / norm_)) - reference_;
   const double area = -2.0 * (order - 4);  // log2, relative to order 4
   double step = log2_quality_ - kWeightPower * weight - kAreaPower * area;

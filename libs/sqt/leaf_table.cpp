@@ -129,7 +129,7 @@ void LeafTable::add_whole(CellXY at, int order, const Center& center, const int1
 }
 
 // A point's share of the views from `first` on.
-EightFloats LeafTable::share(size_t first, const Center& d, const OrderNumbers& n) const {
+inline EightFloats LeafTable::share(size_t first, const Center& d, const OrderNumbers& n) const {
   EightFloats stretch, cosine;
   lanes_.at(first, d, stretch, cosine);
   const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
