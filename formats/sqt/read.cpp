@@ -71,9 +71,9 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   if (!reader.ok()) throw Error("SQT payload is damaged: its totals end too early");
   sqt::decode_totals(totals, layout.channels, d.totals.delta_kind != sqt::Dirac::none, d.totals);
   const auto trees = reader.take(reader.left());
-  // Eight leaves to a byte is more than the coder reaches; what they need in memory is bounded as well.
+  // A divided node takes two bits at least and adds three leaves; what they need in memory is bounded as well.
   const auto leaves = static_cast<size_t>(l.integer("leaves", 1, 1 << 28));
-  if (leaves > 64 + 8 * trees.size() || leaves * layout.width() > kMaxNumbers)
+  if (leaves > 64 + 12 * trees.size() || leaves * layout.width() > kMaxNumbers)
     throw l.error("implausible number of leaves");
   d.sheets = sqt::decode_sheets(layout, trees, leaves);
   size_t found = 0;

@@ -123,9 +123,9 @@ class TreeBuilder : public YAML::EventHandler {
     top.key_line = mark.line + 1;
     top.key_column = mark.column + 1;
     if (const auto found = top.node->index.find(text); found != top.node->index.end())
-      throw Error(at(mark), "duplicate key '" + text + "'",
-                  mark.line < 0 ? "keep one"
-                                : strf("first given in line %d; keep one", top.node->entries[found->second].line));
+      throw Error(
+          at(mark), "duplicate key '" + text + "'",
+          mark.line < 0 ? "keep one" : strf("first given in line %d; keep one", top.node->entries[found->second].line));
   }
   void attach(const YAML::Mark& mark, const Node* node) {
     if (stack_.empty()) {

@@ -41,7 +41,7 @@ std::vector<double> fourier_matrix(size_t n) {
 }  // namespace
 
 BlockTransform::BlockTransform(const AlignedLayout& layout)
-    : views_(layout.views()), channels_(layout.channels), stride_(padded_row(views_)) {
+    : views_(layout.views()), channels_(layout.channels), stride_((views_ + 31) / 32 * 32) {
   const size_t nt = layout.theta.size(), np = layout.phi_count;
   const std::vector<double> t = cosine_matrix(nt), p = fourier_matrix(np), c = cosine_matrix(channels_);
   channel_.assign(c.begin(), c.end());
@@ -58,7 +58,6 @@ BlockTransform::BlockTransform(const AlignedLayout& layout)
         view_[n * stride_ + i * np + j] = static_cast<float>(t[(k / np) * nt + i] * p[(k % np) * np + j]);
   }
   mixed_.resize(channels_ * stride_);
-  sum_.resize(stride_);
 }
 
 void BlockTransform::forward(std::span<const float> values, std::span<float> out) const {
@@ -83,14 +82,14 @@ bool BlockTransform::inverse(const int32_t* levels, const uint16_t* counts, floa
   if (!channels) return false;
   for (size_t c = 0; c < channels; ++c) {
     float* to = &mixed_[c * stride_];
-    for (size_t v = 0; v < stride_; v += 16) {
-      EightFloats low{}, high{};
+    for (size_t v = 0; v < stride_; v += 32) {
+      EightFloats sum[4] = {};
       for (size_t k = 0; k < counts[c]; ++k) {
         const float a = static_cast<float>(levels[c * views_ + k]) * step;
         const float* basis = &view_[k * stride_ + v];
-        low += a * load<EightFloats>(basis), high += a * load<EightFloats>(basis + 8);
+        for (size_t part = 0; part < 4; ++part) sum[part] += a * load<EightFloats>(basis + 8 * part);
       }
-      store(to + v, low), store(to + v + 8, high);
+      for (size_t part = 0; part < 4; ++part) store(to + v + 8 * part, sum[part]);
     }
   }
   // Adding 1.5 * 2^23 leaves the nearest whole number in the low bits.
@@ -119,9 +118,7 @@ ViewLanes::ViewLanes(const AlignedLayout& layout)
     for (size_t j = 0; j < layout.phi_count; ++j) {
       // Portable, unlike the sine and cosine of the library.
       const double turn = static_cast<double>(j) / static_cast<double>(layout.phi_count);
-      const auto cosine = [](double angle) {
-        return portable_cos_pi(std::llround(angle * 0x1p40 / kPi), 1LL << 40);
-      };
+      const auto cosine = [](double angle) { return portable_cos_pi(std::llround(angle * 0x1p40 / kPi), 1LL << 40); };
       const double sine = cosine(layout.theta[i] - kPi / 2), side = layout.frame == LobeFrame::retro ? -1 : 1;
       const size_t v = i * layout.phi_count + j;
       x[v] = static_cast<float>(side * sine * cosine(2 * kPi * turn));
@@ -291,8 +288,8 @@ class SheetWalk {
   }
   int16_t* change_row(size_t d) { return &changes_[d * (lattice_.row() + 16)]; }
   bool change(size_t d, int32_t block, float step) {
-    return transform_.inverse(&levels_[d * width_], blocks_.counts(block) + d * layout_.channels,
-                              step / scale_.unit(), change_row(d));
+    return transform_.inverse(&levels_[d * width_], blocks_.counts(block) + d * layout_.channels, step / scale_.unit(),
+                              change_row(d));
   }
   // Log2 values of a node's views, averaged over channels.
   const float* mean_of(size_t i) {

@@ -31,7 +31,7 @@ class BlockTransform {
   std::vector<float> view_;     // [frequency][stride]
   std::vector<float> channel_;  // [frequency][channel]
   std::vector<int> height_;
-  mutable std::vector<float> mixed_, sum_;  // room for inverse
+  mutable std::vector<float> mixed_;  // room for inverse, which one thread at a time calls
 };
 
 // Quantisation step of the differences below a node: small where a cell weighs much in the cosine-weighted error.
@@ -39,8 +39,8 @@ class StepRule {
  public:
   // reference: log2 of the mean weight of a cell direction.
   StepRule(const AlignedLayout& layout, double reference);
-  // Of a cell; mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the views counts
-  // for nothing.
+  // Of a cell; mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the
+  // views counts for nothing.
   float step(const Center& center, int order, const float* mean) const;
 
  private:

@@ -110,8 +110,7 @@ void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t b
           if (from[i + k]) sum += __builtin_convertvector(mass_of(load<Ushort8>(from[i + k] + 8 * j)) * scale, Int8);
         }
         transpose(rows);
-        for (size_t lane = 0; lane < 8; ++lane)
-          store(to + lane * kTile + i, rows[lane]);
+        for (size_t lane = 0; lane < 8; ++lane) store(to + lane * kTile + i, rows[lane]);
       }
       running[j - begin] = sum;
     }

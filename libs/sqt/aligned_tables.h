@@ -53,9 +53,9 @@ class AlignedTables {
   void accumulate(const std::vector<AlignedSheet>& sheets, size_t begin, size_t end);
   std::vector<Sheet> sheets_;
   size_t leaves_ = 0, tiles_ = 0, row_ = 0;
-  std::vector<Column> columns_;       // padded_row of them
-  UnsetVector<int32_t> cumulative_;   // [tile][column][leaf of the tile]: mass of the leaves before
-  UnsetVector<int32_t> tile_sum_;     // [column][tile, and one more]: mass of the tiles before
+  std::vector<Column> columns_;      // padded_row of them
+  UnsetVector<int32_t> cumulative_;  // [tile][column][leaf of the tile]: mass of the leaves before
+  UnsetVector<int32_t> tile_sum_;    // [column][tile, and one more]: mass of the tiles before
 };
 
 }  // namespace suite::sqt

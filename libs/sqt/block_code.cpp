@@ -10,7 +10,7 @@ namespace suite::sqt {
 
 namespace {
 
-constexpr uint32_t kCap = 31;                                            // of what contexts see of a level
+constexpr uint32_t kCap = 31;                                              // of what contexts see of a level
 constexpr uint32_t kExactLevel = 12, kExactCount = 8, kExactChannels = 4;  // token_of
 constexpr size_t kClasses = 8, kPlaces = 3, kBefore = 4;
 
@@ -131,12 +131,13 @@ void BlockCode::code_rows(Coder& coder, std::span<int32_t> levels, size_t detail
       if (!(mask & (1u << d))) continue;
       const size_t row = d * channels_ + c;
       const size_t known = counts_above ? count_class(counts_above[row]) : 5;
-      const uint32_t n = coder.number(kCount + (c > 0 ? 6 : 0) + known, static_cast<uint32_t>(count[row] - 1), kExactCount) + 1;
+      const uint32_t n =
+          coder.number(kCount + (c > 0 ? 6 : 0) + known, static_cast<uint32_t>(count[row] - 1), kExactCount) + 1;
       count[row] = static_cast<uint16_t>(std::min<size_t>(n, views_));
       uint8_t* size = sizes(block) + row * stride_;
       find_contexts(above >= 0 ? sizes(above) + row * stride_ : nothing_.data(),
-                   d > 0 ? size - channels_ * stride_ : nothing_.data(), c > 0 ? size - stride_ : nothing_.data(),
-                   count[row]);
+                    d > 0 ? size - channels_ * stride_ : nothing_.data(), c > 0 ? size - stride_ : nothing_.data(),
+                    count[row]);
       code_row(coder, &levels[row * views_], count[row], size);
     }
   }

@@ -1,5 +1,5 @@
-// The syntax of the aligned method's symbols: which nodes are divided, and the quantised levels of a node's differences,
-// each in the context of levels that are known already. Internal to libs/sqt.
+// The syntax of the aligned method's symbols: which nodes are divided, and the quantised levels of a node's
+// differences, each in the context of levels that are known already. Internal to libs/sqt.
 //
 // A block has rows (detail x channel frequency) of levels over view frequencies. Of channels: how many have any level
 // but 0, then for each of these which details have; of a row: how many levels up to the last one that is not 0, then
@@ -47,8 +47,9 @@ class BlockCode {
   std::vector<uint8_t> place_;    // [view frequency]: part of the context, how high it is
   std::vector<uint8_t> context_;  // room: of a row
   std::vector<uint8_t> nothing_;  // a row of zeros
-  Lent<UnsetVector<uint8_t>, BlockCode> sizes_;     // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros, and 32 more
-  Lent<UnsetVector<uint16_t>, BlockCode> counts_;   // [block][detail][channel]
+  Lent<UnsetVector<uint8_t>, BlockCode>
+      sizes_;  // [block][detail][channel][stride]: |level|, at most kCap; filled up with zeros, and 32 more
+  Lent<UnsetVector<uint16_t>, BlockCode> counts_;  // [block][detail][channel]
 };
 
 }  // namespace suite::sqt

@@ -23,7 +23,7 @@ inline void centers_of(const CellLanes& cells, int order, EightFloats& dx, Eight
   const Int8 row = cells.face >> 2;  // north, belt, south
   const EightFloats ring = __builtin_convertvector(row + 2, EightFloats) - x - y;
   const Int8 longitude = 2 * (cells.face & 3) + (row == 1 ? Int8{} : Int8{} + 1);
-  const Int8 north = ring < 1, south = ring > 3, belt = ~(north | south);
+  const Int8 north = ring<1, south = ring> 3, belt = ~(north | south);
   const EightFloats one = EightFloats{} + 1;
   const EightFloats across = belt ? one : north ? ring : 4 - ring, t = across * across * (1.0f / 3);
   const EightFloats z = belt ? (2 - ring) * (2.0f / 3) : north ? 1 - t : t - 1;

@@ -14,8 +14,8 @@ CodedLattice::CodedLattice(Region region, size_t width) : region_(region), row_(
     root.order = kRootOrder;
     nodes_.push_back(root);
   }
-  values_.resize(nodes_.size() * row_);
-  slopes_.resize(2 * nodes_.size() * row_);
+  values_.resize(nodes_.size() * row_ + 16);
+  slopes_.resize(2 * nodes_.size() * row_ + 16);
   // Roots have no level above: whom they touch is looked for.
   for (Node& node : nodes_) {
     const auto around = edge_neighbours(node.id());
@@ -48,8 +48,8 @@ void CodedLattice::divide(size_t i, const int16_t* const details[3]) {
     parent.child_mask = static_cast<uint8_t>(parent.child_mask | (1u << k));
   }
   nodes_[i] = parent;
-  values_.resize(nodes_.size() * row_);
-  slopes_.resize(2 * nodes_.size() * row_);
+  values_.resize(nodes_.size() * row_ + 16);
+  slopes_.resize(2 * nodes_.size() * row_ + 16);
   int16_t* to[4] = {};
   size_t next = first;
   for (uint32_t k = 0; k < 4; ++k)

@@ -70,7 +70,7 @@ class CodedLattice {
   struct Slopes;
   Lent<UnsetVector<int16_t>, CodedLattice> values_;  // [node][row]
   Lent<UnsetVector<int16_t>, Slopes> slopes_;        // [node]{x, y}[row]
-  UnsetVector<int16_t> room_;  // two rows
+  UnsetVector<int16_t> room_;                        // two rows
 };
 
 }  // namespace suite::sqt

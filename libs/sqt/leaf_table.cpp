@@ -28,7 +28,8 @@ Ushort16 code_of(Short16 value, Short16 x, Short16 y, Short16 weight, int fracti
     const Ushort16 size = reinterpret_cast<Ushort16>(a > 255 ? Short16{} + 255 : a);
     return (((size * size) >> 8) * 213) >> 6;
   };
-  const Ushort16 log = reinterpret_cast<Ushort16>((value >> static_cast<int16_t>(fraction_bits - kBits)) + weight) + raise(x) + raise(y) + kBias;
+  const Ushort16 log = reinterpret_cast<Ushort16>((value >> static_cast<int16_t>(fraction_bits - kBits)) + weight) +
+                       raise(x) + raise(y) + kBias;
   const Ushort16 code = log - bend(log & 511);
   return weight == kNothing ? Ushort16{} : code;
 }
@@ -70,8 +71,7 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
       width_(layout.width()),
       row_(padded_row(width_)),
       lanes_(layout),
-      weight_(row_ + 16),
-      part_(3 * row_) {
+      part_(3 * row_ + 16) {
   sheet_.scale = scale;
   for (int order = 0; order <= kMaxOrder; ++order) {
     const double area = cell_solid_angle(order);
@@ -88,13 +88,15 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
   sheet_.mass.reserve((expected + coarse) * row_);
 }
 
-void LeafTable::add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
+void LeafTable::add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x,
+                    const int16_t* slope_y) {
   ++sheet_.stored;
   if (order >= kSampleOrder) return add_whole(at, order, center, value, slope_x, slope_y);
   const int extra = kSampleOrder - order, side = 1 << extra;
   for (int v = 0; v < side; ++v)
     for (int u = 0; u < side; ++u) {
-      const CellXY part{at.face, (at.x << extra) + static_cast<uint32_t>(u), (at.y << extra) + static_cast<uint32_t>(v)};
+      const CellXY part{at.face, (at.x << extra) + static_cast<uint32_t>(u),
+                        (at.y << extra) + static_cast<uint32_t>(v)};
       if (!region_.holds(part, kSampleOrder)) continue;  // across the symmetry plane or below the horizon
       const int x = 2 * u + 1 - side, y = 2 * v + 1 - side;
       for (size_t j = 0; j < row_; ++j) {
@@ -111,60 +113,53 @@ void LeafTable::add(CellXY at, int order, const Center& center, const int16_t* v
     }
 }
 
-void LeafTable::add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y) {
-  find_weights(at, order, center);
-  const size_t n = sheet_.leaves.size();
-  sheet_.leaves.push_back(cell_at(order, at));
-  sheet_.plane.resize((n + 1) * width_ * AlignedSheet::kStride + kSlack);
-  sheet_.mass.resize((n + 1) * row_);
-  int16_t* plane = &sheet_.plane[n * width_ * AlignedSheet::kStride];
-  uint16_t* mass = &sheet_.mass[n * row_];
-  for (size_t j = 0; j < width_; j += 16) {
-    const Short16 v = load<Short16>(value + j), x = load<Short16>(slope_x + j), y = load<Short16>(slope_y + j);
-    const Ushort16 code = code_of(v, x, y, load<Short16>(&weight_[j]), scale_.fraction_bits);
-    store(mass + j, code);
-    // What goes beyond the row is written over by the next.
-    interleave(v, x, y, reinterpret_cast<Short16>(code), plane + j * AlignedSheet::kStride);
-  }
-}
-
-// A point's share of the views from `first` on.
-inline EightFloats LeafTable::share(size_t first, const Center& d, const OrderNumbers& n) const {
-  EightFloats stretch, cosine;
-  lanes_.at(first, d, stretch, cosine);
-  const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
-  EightFloats weight = n.area * stretch;
-  if (layout_.cosine_weighted) weight *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
-  if (layout_.upper_only) weight = cosine < -n.reach ? EightFloats{} : weight;
-  return weight;
-}
-
-// Integral of |cos| stretch (or 1) over a leaf for all views, kept above a floor near the horizon.
-void LeafTable::find_weights(CellXY at, int order, const Center& center) {
-  const size_t views = layout_.views();
+void LeafTable::add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x,
+                          const int16_t* slope_y) {
+  const size_t views = layout_.views(), n = sheet_.leaves.size();
   const bool twice = layout_.half_stored && !on_mirror(at);
-  const OrderNumbers& n = numbers_[static_cast<size_t>(order)];
-  sheet_.inverse_area.push_back(twice ? 0.5f * n.inverse_area : n.inverse_area);
-  std::array<Center, 4> quarter;
-  if (order <= kSampleOrder) quarter = quarters(at, order);
-  for (size_t v = 0; v < views; v += 8) {
-    EightFloats weight;
-    if (order > kSampleOrder) {
-      weight = share(v, center, n);
-    } else {
-      weight = EightFloats{};
-      for (const Center& d : quarter) weight += 0.25f * share(v, d, n);
+  const OrderNumbers& numbers = numbers_[static_cast<size_t>(order)];
+  sheet_.leaves.push_back(cell_at(order, at));
+  sheet_.inverse_area.push_back(twice ? 0.5f * numbers.inverse_area : numbers.inverse_area);
+  sheet_.plane.resize((n + 1) * width_ * AlignedSheet::kStride + kSlack);
+  sheet_.mass.resize((n + 1) * row_ + 16);
+  std::array<Center, 4> points{center};
+  if (order == kSampleOrder) points = quarters(at, order);
+  // Sixteen views at a time, the last first: what goes beyond a channel is written over by the next, or by its earlier
+  // views.
+  for (size_t v = padded_row(views); v > 0;) {
+    v -= 16;
+    const Short16 weight =
+        __builtin_shufflevector(weights(v, points, numbers, twice), weights(v + 8, points, numbers, twice), 0, 1, 2, 3,
+                                4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for (size_t j = v; j < width_; j += views) {
+      const Short16 mid = load<Short16>(value + j), x = load<Short16>(slope_x + j), y = load<Short16>(slope_y + j);
+      const Ushort16 code = code_of(mid, x, y, weight, scale_.fraction_bits);
+      store(&sheet_.mass[n * row_ + j], code);
+      interleave(mid, x, y, reinterpret_cast<Short16>(code), &sheet_.plane[(n * width_ + j) * AlignedSheet::kStride]);
     }
-    Int8 log = (reinterpret_cast<Int8>(weight) >> (23 - kBits)) - ((127 - (twice ? 1 : 0)) << kBits);
-    const Int8 f = log & 511;
-    log += (((f * (511 - f)) >> 8) * 88) >> 9;  // as bend
-    log = log < kLeastWeight ? Int8{} + kLeastWeight : log;
-    const Short8 coded = __builtin_convertvector(weight > 0 ? log : Int8{} + kNothing, Short8);
-    store(&weight_[v], coded);
   }
-  // What the last eight hold beyond the views is written over by the next channel.
-  for (size_t c = 1; c < layout_.channels; ++c)
-    for (size_t v = 0; v < views; v += 8) store(&weight_[c * views + v], load<Short8>(&weight_[v]));
+}
+
+// Logarithms of the integrals of |cos| stretch (or 1) over a leaf for eight views, kept above a floor near the horizon.
+// By its middle, or by the middles of its quarters.
+inline Short8 LeafTable::weights(size_t first, const std::array<Center, 4>& points, const OrderNumbers& n,
+                                 bool twice) const {
+  EightFloats weight{};
+  const bool single = &n != &numbers_[kSampleOrder];
+  for (size_t k = 0; k < (single ? 1 : 4); ++k) {
+    EightFloats stretch, cosine;
+    lanes_.at(first, points[k], stretch, cosine);
+    const EightFloats seen = layout_.upper_only ? cosine : cosine < 0 ? -cosine : cosine;
+    EightFloats share = (single ? n.area : 0.25f * n.area) * stretch;
+    if (layout_.cosine_weighted) share *= seen > kHorizonFloor ? seen : EightFloats{} + kHorizonFloor;
+    if (layout_.upper_only) share = cosine < -n.reach ? EightFloats{} : share;
+    weight += share;
+  }
+  Int8 log = (reinterpret_cast<Int8>(weight) >> (23 - kBits)) - ((127 - (twice ? 1 : 0)) << kBits);
+  const Int8 f = log & 511;
+  log += (((f * (511 - f)) >> 8) * 88) >> 9;  // as bend
+  log = log < kLeastWeight ? Int8{} + kLeastWeight : log;
+  return __builtin_convertvector(weight > 0 ? log : Int8{} + kNothing, Short8);
 }
 
 }  // namespace suite::sqt

@@ -17,15 +17,16 @@ class LeafTable {
   // sheet: filled by add. expected: number of leaves to make room for.
   LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& sheet, size_t expected);
   // A leaf and its middle; rows [channel][view] of values and slopes, filled up as CodedLattice does.
-  void add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
+  void add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x,
+           const int16_t* slope_y);
 
  private:
   struct OrderNumbers {
     float area, inverse_area, reach;
   };
-  void add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x, const int16_t* slope_y);
-  EightFloats share(size_t first, const Center& d, const OrderNumbers& n) const;
-  void find_weights(CellXY at, int order, const Center& center);
+  void add_whole(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x,
+                 const int16_t* slope_y);
+  Short8 weights(size_t first, const std::array<Center, 4>& points, const OrderNumbers& n, bool twice) const;
   const AlignedLayout& layout_;
   LogScale scale_;
   AlignedSheet& sheet_;
@@ -33,7 +34,6 @@ class LeafTable {
   size_t width_, row_;
   ViewLanes lanes_;
   std::vector<OrderNumbers> numbers_;  // [order]
-  std::vector<int16_t> weight_;        // [channel][view] room: logarithms of the leaf's weights
   std::vector<int16_t> part_;          // room: a part's value and slopes
 };
 

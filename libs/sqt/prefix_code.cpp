@@ -169,8 +169,7 @@ PrefixDecoder::PrefixDecoder(std::span<const std::byte> bytes, size_t contexts) 
       for (uint32_t s = 0; s < n; ++s) {
         if (length[s] != b) continue;
         if (next >= 1u << b) throw Error("SQT payload is damaged: lengths that make no code");
-        for (uint32_t i = reversed(next, b); i <= kMask; i += 1u << b)
-          entries_[(c << kMost) + i] = {s, b};
+        for (uint32_t i = reversed(next, b); i <= kMask; i += 1u << b) entries_[(c << kMost) + i] = {s, b};
         ++next;
       }
   }

@@ -44,7 +44,8 @@ TEST(Params, JsonIsAcceptedAsItIs) {
 }
 
 TEST(Params, StrictJsonReadsTheSameAndNamesTheFile) {
-  const std::string text = R"({"a": [1, -2.50, 1e-7, 12345678901234567], "b": {"c": "x\n\u00e9", "d": true, "e": null}})";
+  const std::string text =
+      R"({"a": [1, -2.50, 1e-7, 12345678901234567], "b": {"c": "x\n\u00e9", "d": true, "e": null}})";
   const Params fast = Params::parse_json(text, "s.sqt"), slow = Params::parse_text(text, "s.sqt");
   EXPECT_EQ(fast.at("a").as_numbers(), slow.at("a").as_numbers());
   EXPECT_EQ(fast.at("a")[1].as_text(), slow.at("a")[1].as_text());
