@@ -182,7 +182,8 @@ void CodedLattice::find_slopes(size_t i) {
         const Short16 up = a < 0 ? -a : a, down = b < 0 ? -b : b, least = up < down ? up : down;
         const Short16 mean = (up >> 1) + (down >> 1) + (up & down & 1);
         // min(mean, 2 least) without leaving 16 bits
-        const Short16 size = (mean >> 1) < least ? mean : least + least;
+        const Short16 twice = reinterpret_cast<Short16>(reinterpret_cast<Ushort16>(least) << 1);
+        const Short16 size = (mean >> 1) < least ? mean : twice;
         const Short16 both = a ^ b;
         store(g + j, both < 0 ? Short16{} : a < 0 ? -size : size);
       } else {

@@ -14,7 +14,7 @@ constexpr int kSampleOrder = 4;
 // A cell within reach of the horizon keeps this much of its mass when cut away, so that neighbouring views can draw it.
 constexpr float kHorizonFloor = 1e-3f;
 // Logarithms of masses: nine bits behind the point; codes are larger by kBias. A weight of nothing.
-constexpr int kBits = 9, kBias = 31744, kNothing = -32768, kLeastWeight = -15360;
+constexpr int kBits = 9, kBias = 31744, kLeastWeight = -15360, kNothing = kLeastWeight - 1;
 constexpr size_t kSlack = 4 * 16;  // numbers written behind the last row
 
 // 2^f - 1 - f and its inverse on [0, 1), in units of 2^-9: 0.344 f (1 - f).
