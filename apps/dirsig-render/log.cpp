@@ -67,6 +67,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
     one.set("begin_s", c.window.begin);
     one.set("end_s", c.window.end);
     one.set("state", c.state);
+    one.set("kernel", c.kernel);
     one.set("problems", c.problems);
     one.set("seconds", c.seconds);
     one.set("median_relative_error", c.median_relative_error);

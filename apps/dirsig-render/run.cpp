@@ -20,6 +20,7 @@
 #include "radiometry/truth/truth.h"
 #include "scene/combine.h"
 #include "scheduler/features.h"
+#include "scheduler/step_check.h"
 #include "sensor/plugin.h"
 #include "study.h"
 
@@ -67,6 +68,18 @@ std::string explain(const std::string& feature) {
     for (const std::string& name : names) all += ", " + name;
     throw Error(e.message(), near.empty() ? e.hint() + all : "did you mean '" + near + "'?");
   }
+}
+
+// Warns when a sensor's spectral step is too coarse for what it looks at.
+void check_step(const Scene& scene, const SourceSpecs& sources, const Sensor& sensor) {
+  const std::optional<CoarseStep> found = coarse_step(scene, sources, sensor);
+  if (!found) return;
+  const std::string cure =
+      found->halvings ? strf("; spectral_step_um: %.3g is fine enough", 0.995 * found->bin_um / (1 << found->halvings))
+                      : "; no step is fine enough: the spectrum has lines";
+  warn(strf("sensor '%s': halving its spectral bins of %.3g um changes band '%s' by %.2g %% (%s); %g %% is the limit%s",
+            sensor.name().c_str(), found->bin_um, found->band.c_str(), 100 * found->change, found->under.c_str(),
+            100 * kStepLimit, cure.c_str()));
 }
 
 // What the sensors can see decides what is loaded.
@@ -203,6 +216,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output);
     for (const std::string& truth : sensor->truth()) find_truth(truth);
+    check_step(*scene, sim.sources, *sensor);
   }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);

@@ -141,6 +141,14 @@ struct Ray {
   double time = 0;  // s, simulation time
   uint32_t draw =
       0;  // number of the random draw this ray belongs to; surfaces with holes decide by it (trace/hit_filter.h)
+  // Member by member: a temporary would be written in small pieces and read back in large ones, for which processors
+  // wait.
+  void set(const Vec3& from, const Dir& along, double at, uint32_t number) {
+    origin = from;
+    direction = along;
+    time = at;
+    draw = number;
+  }
 };
 
 }  // namespace suite

@@ -59,6 +59,8 @@ class ScatterModel {
   virtual bool spectrally_uniform_shape() const { return false; }
   // True when sample() ignores lobe_u.
   virtual bool single_lobe() const { return false; }
+  // Reflectance per bin when the model is nothing but an opaque Lambert surface, else null.
+  virtual const float* diffuse() const { return nullptr; }
   // True when nothing ever passes to the other side.
   virtual bool opaque() const { return true; }
   // True when turning both directions about z changes nothing: the tangent of the surface does not matter.

@@ -11,9 +11,7 @@
 namespace suite {
 
 namespace {
-// Roulette and knots use hashed numbers, which take no stratification away from the others.
 constexpr uint32_t kLobes = kLobeBlock;
-constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 }  // namespace
 
 PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment,
@@ -84,9 +82,11 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
   for (int depth = 0; !wave.active.empty(); ++depth) {
     // Propagate every path to its next node or out of the scene.
     if (depth == 0) set_receivers_aside(wave);
-    wave.rays.clear();
-    for (const uint32_t p : wave.active)
-      wave.rays.push_back({live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw});
+    wave.rays.resize(wave.active.size());
+    for (size_t i = 0; i < wave.active.size(); ++i) {
+      const uint32_t p = wave.active[i];
+      wave.rays[i].set(live_[p].origin, live_[p].direction, wave.path(p).ray.time, wave.path(p).ray.draw);
+    }
     wave.hits.resize(wave.rays.size());
     surface_.tracer().nearest(wave.rays, wave.hits, depth == 0, statistics.trace);
     if (volume_) volume_->travel(wave, live_, statistics);

@@ -24,6 +24,9 @@ namespace suite {
 // kLobeBlock + n its choice of lobe (first number) and its sample of the sky (last two), kLampBlock + n of a lamp
 // (three numbers), kMoonBlock + n of the moon.
 inline constexpr uint32_t kLobeBlock = 128, kLampBlock = 512, kMoonBlock = 640;
+// Roulette and the choice of the knot use hashed numbers, which take no stratification away from the others: purpose
+// kRoulettePurpose + 16 n at node n.
+inline constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 
 class VolumePaths;
 

@@ -56,7 +56,7 @@ void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLigh
     if (!(distance > 0)) return;
     direction = way / distance;
   }
-  wave.rays.push_back({origin, direction, wave.path(p).ray.time, wave.path(p).ray.draw});
+  wave.rays.emplace_back().set(origin, direction, wave.path(p).ray.time, wave.path(p).ray.draw);
   wave.distance.push_back(distance);
   wave.owner.push_back(p);
   wave.light.push_back(slot);

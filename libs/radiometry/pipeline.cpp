@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "radiometry/many_suns.h"
+#include "radiometry/matte_kernel.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/path_processor.h"
 #include "radiometry/wave.h"
@@ -23,93 +24,6 @@ void RunStatistics::merge(const RunStatistics& o) {
   sensor_cycles += o.sensor_cycles;
   path_cycles += o.path_cycles;
   shade_cycles += o.shade_cycles;
-}
-
-Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
-    : bands_(bands),
-      scrambles_(scrambles),
-      sums_(problems * bands * static_cast<size_t>(scrambles)),
-      paths_(problems),
-      failures_(problems),
-      truncated_(problems),
-      largest_(problems),
-      truth_slots_(truth_slots),
-      truth_(problems * truth_slots) {}
-
-namespace {
-
-// How n samples share out among the scrambles, and what the squared deviation of each one's mean weighs in the variance
-// of the mean of all.
-struct Shares {
-  Shares(uint32_t n, int scrambles) {
-    double sum = 0;
-    bool half = false;
-    for (int s = 0; s < scrambles; ++s) {
-      count[s] = dealt(n, static_cast<uint32_t>(s));
-      const double share = count[s] / n;
-      used += count[s] > 0;
-      half = half || share >= 0.5;
-      weight[s] = share * share / (1 - 2 * share);
-      sum += weight[s];
-    }
-    for (int s = 0; s < scrambles; ++s) weight[s] = half ? 1.0 / (used * std::max(1, used - 1)) : weight[s] / (1 + sum);
-  }
-  double count[8], weight[8];
-  int used = 0;
-};
-
-}  // namespace
-
-void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
-  const uint32_t n = paths_[problem];
-  mean = standard_error = 0;
-  if (!n || failures_[problem] >= n) return;
-  double total = 0;
-  for (int s = 0; s < scrambles_; ++s) total += sums(problem, s)[band];
-  mean = total / (n - failures_[problem]);  // rejected samples are not averaged in
-  double square = 0;
-  const Shares shares(n, scrambles_);
-  for (int s = 0; s < scrambles_; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double d = sums(problem, s)[band] / shares.count[s] - mean;
-    square += shares.weight[s] * d * d;
-  }
-  standard_error = shares.used < 2 ? INFINITY : std::sqrt(square);  // one scramble tells nothing about its own error
-}
-
-void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
-  const uint32_t n = paths_[problem];
-  std::fill(means.begin(), means.end(), 0.0);
-  std::fill(errors.begin(), errors.end(), 0.0);
-  if (!n || failures_[problem] >= n) return;
-  double* __restrict const mean = means.data();
-  double* __restrict const square = errors.data();
-  const double accepted = n - failures_[problem];
-  for (int s = 0; s < scrambles_; ++s) {
-    const double* __restrict sum = sums(problem, s);
-    for (size_t b = 0; b < bands_; ++b) mean[b] += sum[b];
-  }
-  for (size_t b = 0; b < bands_; ++b) mean[b] /= accepted;
-  const Shares shares(n, scrambles_);
-  for (int s = 0; s < scrambles_; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double* __restrict sum = sums(problem, s);
-    const double count = shares.count[s], weight = shares.weight[s];
-    for (size_t b = 0; b < bands_; ++b) {
-      const double d = sum[b] / count - mean[b];
-      square[b] += weight * d * d;
-    }
-  }
-  for (size_t b = 0; b < bands_; ++b) square[b] = shares.used < 2 ? INFINITY : std::sqrt(square[b]);
-}
-
-void Accumulators::clear() {
-  std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(paths_.begin(), paths_.end(), 0u);
-  std::fill(failures_.begin(), failures_.end(), 0u);
-  std::fill(truncated_.begin(), truncated_.end(), 0.0f);
-  std::fill(largest_.begin(), largest_.end(), 0.0f);
-  std::fill(truth_.begin(), truth_.end(), 0.0);
 }
 
 std::vector<Block> blocks_of(const Capture& capture) {
@@ -140,6 +54,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
     throw Error(strf("%d lamps a node are not between 1 and %d", options_.lamp_draws, kLampDraws));
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes)
     throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
+  matte_ = options_.specialise && MatteKernel::serves(surface, optics, environment, options_);
 }
 
 namespace {
@@ -151,6 +66,8 @@ struct Lane {
 // Neighbours in a wave are samples of one problem as far as possible: their rays run so close together that a packet of
 // eight costs the ray tracer little more than one.
 constexpr uint32_t kTogether = 8, kWaveWidth = 64;
+// Problems of a block that take their samples before the next ones do: sums of many bands then stay in the cache.
+constexpr uint32_t kBeside = kWaveWidth / kTogether;
 
 }  // namespace
 
@@ -162,6 +79,9 @@ struct Pipeline::Workspace {
   std::vector<uint8_t> weighted;  // [path]
   std::vector<float> single;      // [bin]
   ManySuns suns;
+  std::unique_ptr<MatteKernel> matte;  // null where it does not serve
+  std::vector<uint8_t> is_matte;       // [path]: run by it, then: to be averaged in
+  std::vector<uint32_t> together;      // paths whose radiance is added up in one pass
 };
 
 Pipeline::~Pipeline() = default;
@@ -175,14 +95,18 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
       return found;
     }
   }
-  return std::unique_ptr<Workspace>(
-      new Workspace{Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
-                    PathGenerator(surface_, optics_, environment_, options_),
-                    {},
-                    std::vector<float>(kWaveWidth * state_.size()),
-                    std::vector<uint8_t>(kWaveWidth),
-                    std::vector<float>(state_.size()),
-                    ManySuns(surface_)});
+  return std::unique_ptr<Workspace>(new Workspace{
+      Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
+      PathGenerator(surface_, optics_, environment_, options_),
+      {},
+      std::vector<float>(kWaveWidth * state_.size()),
+      std::vector<uint8_t>(kWaveWidth),
+      std::vector<float>(state_.size()),
+      ManySuns(surface_),
+      matte_ ? std::make_unique<MatteKernel>(surface_, optics_, environment_, options_, truth_.wanted(), kWaveWidth)
+             : nullptr,
+      std::vector<uint8_t>(kWaveWidth),
+      {}});
 }
 
 namespace {
@@ -236,7 +160,8 @@ class Pipeline::BlockRun {
         slots_(slots),
         statistics_(statistics),
         workspace_(workspace),
-        single_(sensor.channels().size() > 1) {
+        single_(sensor.channels().size() > 1),
+        matte_(pipeline.matte_ && !single_ && capture.bin_by == Capture::BinBy::none) {
     const size_t width = size_t{block.columns} * block.rows;
     for (uint32_t i = 0; i < width; ++i) {
       next_.push_back(sums.paths(slot_of(i)));
@@ -251,13 +176,15 @@ class Pipeline::BlockRun {
     const uint32_t first = *std::min_element(next_.begin(), next_.end()),
                    last = *std::max_element(end_.begin(), end_.end());
     // A rule that looks at every sample must not be given many at a time.
-    const uint32_t together = pipeline_.options_.stop == StopRule::change ? 1 : std::max(kTogether, kWaveWidth / width);
-    for (uint32_t group = first; group < last; group += together)
-      for (uint32_t i = 0; i < width; ++i)
-        for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
-          workspace_.lanes.push_back({i, sample});
-          if (workspace_.lanes.size() == kWaveWidth) run_wave();
-        }
+    const bool watched = pipeline_.options_.stop == StopRule::change;
+    const uint32_t together = watched ? 1 : std::max(kTogether, kWaveWidth / width), beside = watched ? width : kBeside;
+    for (uint32_t begin = 0; begin < width; begin += beside)
+      for (uint32_t group = first; group < last; group += together)
+        for (uint32_t i = begin; i < std::min(begin + beside, width); ++i)
+          for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
+            workspace_.lanes.push_back({i, sample});
+            if (workspace_.lanes.size() == kWaveWidth) run_wave();
+          }
     if (!workspace_.lanes.empty()) run_wave();
   }
 
@@ -288,20 +215,31 @@ class Pipeline::BlockRun {
       const SensorRay ray =
           ask_ray(sensor_, capture_, problem_of(place), stream, number, {&workspace_.weights[p * bins], bins});
       workspace_.weighted[p] = ray.spectral;
-      workspace_.generator.start(wave, p, ray, stream, number);
+      workspace_.is_matte[p] = matte_ && !ray.spectral && ray.receiver == SensorRay::Receiver::none;
+      if (workspace_.is_matte[p])
+        workspace_.matte->start(wave, p, ray, stream, number);
+      else
+        workspace_.generator.start(wave, p, ray, stream, number);
     }
     const uint64_t started = __rdtsc();
+    if (matte_) workspace_.matte->complete(wave, statistics_);
     workspace_.generator.complete(wave, statistics_);
     const uint64_t completed = __rdtsc();
     statistics_.sensor_cycles += started - asked;
     statistics_.path_cycles += completed - started;
-    for (size_t p = 0; p < workspace_.lanes.size(); ++p) {
+    for (size_t p = 0; p < workspace_.lanes.size();) {
       const auto [place, sample] = workspace_.lanes[p];
-      if (sample >= end_[place]) continue;
-      if (capture_.bin_by == Capture::BinBy::sun)
-        accumulate_suns(p, place, sample);
-      else
-        accumulate(p, place, sample);
+      if (workspace_.is_matte[p]) {
+        p = accumulate_matte(p);
+        continue;
+      }
+      if (sample < end_[place]) {
+        if (capture_.bin_by == Capture::BinBy::sun)
+          accumulate_suns(p, place, sample);
+        else
+          accumulate(p, place, sample);
+      }
+      ++p;
     }
     statistics_.shade_cycles += __rdtsc() - completed;
     workspace_.lanes.clear();
@@ -334,7 +272,7 @@ class Pipeline::BlockRun {
     sums_.set_paths(slot, sample + 1);
     if (!good) ++statistics_.failures, ++sums_.failures(slot);
     sums_.truncated(slot) += static_cast<float>(workspace_.wave.path(p).truncated);
-    pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
   }
 
   void accumulate(size_t p, size_t place, uint32_t sample) {
@@ -365,7 +303,57 @@ class Pipeline::BlockRun {
     }
     sums_.largest(slot) = std::max(sums_.largest(slot), static_cast<float>(target[reference] - before));
     sums_.truncated(slot) += static_cast<float>(path.truncated);
-    pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+  }
+
+  // The samples of one problem that the matte kernel ran, from lane p on. Those of one scramble are added together.
+  // Returns the lane behind them.
+  size_t accumulate_matte(size_t p) {
+    const uint32_t place = workspace_.lanes[p].place;
+    size_t end = p;
+    while (end < workspace_.lanes.size() && workspace_.lanes[end].place == place && workspace_.is_matte[end]) ++end;
+    const size_t slot = slot_of(place);
+    for (size_t i = p; i < end; ++i) workspace_.is_matte[i] = take_matte(i, slot);
+    for (uint32_t scramble = 0; scramble < static_cast<uint32_t>(sums_.scrambles()); ++scramble) {
+      workspace_.together.clear();
+      for (size_t i = p; i < end; ++i)
+        if (workspace_.is_matte[i] && deal(workspace_.lanes[i].sample).scramble == scramble)
+          workspace_.together.push_back(static_cast<uint32_t>(i));
+      if (!workspace_.together.empty()) add_matte(slot, sums_.sums(slot, static_cast<int>(scramble)));
+    }
+    sums_.set_paths(slot, workspace_.lanes[end - 1].sample + 1);
+    return end;
+  }
+
+  // Counts a sample of the matte kernel. False when it must not be averaged in.
+  bool take_matte(size_t p, size_t slot) {
+    const double truncated = workspace_.matte->truncated(p);
+    ++statistics_.paths;
+    statistics_.truncated += truncated;
+    const bool direct = pipeline_.projection_.identity();  // bands are bins
+    const float radiance = workspace_.matte->radiance(p, direct ? pipeline_.reference_band_ : 0);
+    if (std::isnan(radiance)) {
+      ++statistics_.failures;
+      ++sums_.failures(slot);
+      return false;
+    }
+    sums_.truncated(slot) += static_cast<float>(truncated);
+    if (direct) sums_.largest(slot) = std::max(sums_.largest(slot), radiance);
+    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+    return true;
+  }
+
+  void add_matte(size_t slot, double* target) {
+    const BandProjection& projection = pipeline_.projection_;
+    if (projection.identity()) return workspace_.matte->add(workspace_.together, target);
+    const std::span<float> radiance = workspace_.wave.scratch2();
+    for (const uint32_t p : workspace_.together) {
+      const double before = target[pipeline_.reference_band_];
+      workspace_.matte->spectrum(p, radiance);
+      projection.add(radiance, {target, projection.bands()});
+      sums_.largest(slot) =
+          std::max(sums_.largest(slot), static_cast<float>(target[pipeline_.reference_band_] - before));
+    }
   }
 
   const Pipeline& pipeline_;
@@ -377,6 +365,7 @@ class Pipeline::BlockRun {
   RunStatistics& statistics_;
   Workspace& workspace_;
   const bool single_;
+  const bool matte_;                  // rays are given to the matte kernel
   std::vector<uint32_t> next_, end_;  // samples of each problem
   std::vector<uint64_t> keys_;        // of its sample streams
 };

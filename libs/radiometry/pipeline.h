@@ -33,7 +33,7 @@ enum class Method : uint8_t {
              // one explicit source a node out of sun, moon and all lamps, divided by its probability (the paper leaves
              // that open: here all have the same, and no lamp is left out for being far); what is asked explicitly does
              // not count when a continuation meets it; the sky is met by continuations only; directions are drawn at
-          // the reference wavelength; paths end at max_nodes. Not for media. Its rule of stopping is StopRule::change.
+  // the reference wavelength; paths end at max_nodes. Not for media. Its rule of stopping is StopRule::change.
 };
 
 struct PipelineOptions {
@@ -47,6 +47,7 @@ struct PipelineOptions {
   StopRule stop = StopRule::plan;
   uint32_t change_after = 20;  // StopRule::change: samples before the first test
   double change = 1e-3;        // StopRule::change: relative change that counts as convergence
+  bool specialise = true;      // use kernels made for what a state really contains (off only for comparisons)
 };
 
 // Samples are dealt to independent scrambles of the sequence, from whose spread the standard error comes. The rule
@@ -153,6 +154,8 @@ class Pipeline {
   // distinct blocks.
   void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
            std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
+  // The kernel that paths of this state run in: "general", or "matte" (matte_kernel.h).
+  const char* kernel() const { return matte_ ? "matte" : "general"; }
 
  private:
   const Surface& surface_;
@@ -163,6 +166,7 @@ class Pipeline {
   size_t reference_band_;
   const TruthPlan& truth_;
   PipelineOptions options_;
+  bool matte_ = false;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;
   class BlockRun;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/memory.h"
 #include "scheduler/plan.h"
 
 namespace suite {
@@ -19,11 +20,11 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   r.bins = capture.bins;
   r.truth_names = truth.columns();
   const size_t n = capture.problems(), values = r.values_per_problem();
-  r.radiance.resize(n * values);
-  r.standard_error.resize(n * values);
+  resize_large(r.radiance, n * values);
+  resize_large(r.standard_error, n * values);
   r.paths.resize(n);
   r.quality.resize(n);
-  r.truth.resize(n * r.truth_names.size());
+  resize_large(r.truth, n * r.truth_names.size());
   // Few enough that bands^2 products of each take neither time nor memory.
   const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
   correlated_every_ = std::max<size_t>(1, (n + most - 1) / most);

@@ -223,6 +223,7 @@ class Job {
     log.task = sensor.tasks()[item.task].name;
     log.capture = capture.name;
     log.state = kit.optics.state().text();
+    log.kernel = pipeline.kernel();
     log.id = item.id;
     log.window = capture.window;
     log.problems = capture.problems();

@@ -26,7 +26,8 @@ struct JobOptions {
 // What one capture took; a line of the log.
 struct CaptureLog {
   std::string sensor, task, capture, state;
-  size_t id = 0;  // number of the capture in the job, counted over sensors, tasks and captures
+  std::string kernel;  // Pipeline::kernel()
+  size_t id = 0;       // number of the capture in the job, counted over sensors, tasks and captures
   TimeWindow window;
   size_t problems = 0;
   RunStatistics statistics;

@@ -7,6 +7,9 @@
 namespace suite {
 
 namespace {
+// Of a step: overlaps and gaps that are roundings.
+constexpr double kSliver = 1e-6;
+
 void check_band(const std::string& name, double center, double width) {
   if (!(center > 0) || !std::isfinite(center))
     throw Error(strf("band '%s': centre %g um is not a wavelength", name.c_str(), center));
@@ -109,11 +112,12 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
     weight += area;
     moment += area * b.center_um;
   }
-  // Merge the supports into disjoint intervals, then cut each at multiples of the step.
+  // Merge the supports into disjoint intervals (neighbours may miss each other by a rounding), then divide each evenly
+  // into bins of at most a step: bands that stand side by side, each some steps wide, share no bin.
   std::sort(spans.begin(), spans.end());
   std::vector<std::pair<double, double>> merged;
   for (const auto& s : spans) {
-    if (!merged.empty() && s.first <= merged.back().second)
+    if (!merged.empty() && s.first <= merged.back().second + kSliver * step)
       merged.back().second = std::max(merged.back().second, s.second);
     else
       merged.push_back(s);
@@ -121,20 +125,15 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
   SpectralState state;
   state.low_um = merged.front().first;
   state.high_um = merged.back().second;
+  double count = 0;
+  for (const auto& m : merged) count += (m.second - m.first) / step + 2;
+  if (count > 100000)
+    throw Error(strf("a step of %g um needs about %.0f spectral bins, at most 100000 are carried", step, count),
+                "use a larger step or more states");
   for (const auto& [low, high] : merged) {
-    double count = 0;
-    for (const auto& m : merged) count += (m.second - m.first) / step + 2;
-    if (count > 100000)
-      throw Error(strf("a step of %g um needs about %.0f spectral bins, at most 100000 are carried", step, count),
-                  "use a larger step or more states");
-    double edge = low;
-    while (edge < high) {
-      double next = (std::floor(edge / step * (1 + 1e-12)) + 1) * step;
-      if (next - edge < 0.25 * step) next += step;  // no slivers at the start
-      if (next > high - 0.25 * step) next = high;   // nor at the end
-      state.bins.push_back({edge, next});
-      edge = next;
-    }
+    const auto n = static_cast<size_t>(std::max(1.0, std::ceil((high - low) / step - kSliver)));
+    const auto edge = [&](size_t i) { return i == n ? high : low + (high - low) * static_cast<double>(i) / n; };
+    for (size_t i = 0; i < n; ++i) state.bins.push_back({edge(i), edge(i + 1)});
   }
   state.reference_um = reference_um > 0 ? reference_um : moment / weight;
   size_t reference = 0;
@@ -164,7 +163,9 @@ BandProjection::BandProjection(const SpectralState& state, std::span<const Band>
     double sum = 0;
     for (size_t k = 0; k < state.bins.size(); ++k) {
       const Bin& bin = state.bins[k];
-      const bool inside = bin.high_um > band.low_um() && bin.low_um < band.high_um();
+      // Bins and bands that touch may overlap by a rounding.
+      const double sliver = kSliver * (bin.high_um - bin.low_um);
+      const bool inside = bin.high_um > band.low_um() + sliver && bin.low_um < band.high_um() - sliver;
       if (!inside && weights.empty()) continue;
       if (weights.empty()) first = k;
       weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);

@@ -51,10 +51,10 @@ struct SpectralState {
   std::string text() const;
 };
 
-// bins: `step_um` wide, edges at multiples of the step, only where some band responds; the first and last bin of a
-// stretch reach to its ends and are 1/4 to 5/4 of a step wide (3/2 when the stretch has one bin only). reference_um =
-// 0: the response-weighted middle of all bands. knots: `knot_count` (1..8) spread over the bins, the reference first.
-// Errors: no bands, step not positive, more than 100 000 bins.
+// bins: only where some band responds; each stretch of wavelengths is divided evenly into bins of at most
+// `step_um`, so that bands side by side that are some steps wide share no bin. reference_um = 0: the response-weighted
+// middle of all bands. knots: `knot_count` (1..8) spread over the bins, the reference first. Errors: no bands, step not
+// positive, more than 100 000 bins.
 SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
 
 // Weights that turn bin radiances into band radiances: sum over bins of weight = 1 for each band.
@@ -62,6 +62,7 @@ class BandProjection {
  public:
   BandProjection(const SpectralState& state, std::span<const Band> bands);
   size_t bands() const { return rows_.size(); }
+  bool identity() const { return identity_; }  // band b is bin b
   // out[b] = sum_k weight[b][k] in[k]; in.size() >= bins of the state
   void add(std::span<const float> in, std::span<double> sums) const;  // sums[b] += ...; the inner loop of rendering
   void apply(std::span<const double> in, std::span<double> out) const;
@@ -75,7 +76,7 @@ class BandProjection {
   };
   std::vector<Row> rows_;
   std::vector<double> weights_;
-  bool identity_ = true;  // band b is bin b
+  bool identity_ = true;
 };
 
 }  // namespace suite

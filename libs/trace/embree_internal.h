@@ -205,13 +205,27 @@ struct MovingPart {
 // them holds the object at all times (at 1: the box of the whole way). As few times as keep the boxes tight.
 std::vector<Box3> boxes_over(const MovingPart::Keys& keys, TimeSpan window, const Box3& box_in_node);
 
-// One packet against one tile.
+// One packet against one tile. Hits are noted while rays go from tile to tile and made when all of them have arrived:
+// triangles met far apart are not in the caches, and all are sent for before the first is waited for.
 class PacketTracer {
  public:
   PacketTracer(const World& world, const MovingPart* moving, std::span<const Ray> rays, std::span<double> reach,
                bool coherent, TraceStatistics& statistics)
-      : world_(world), moving_(moving), rays_(rays), reach_(reach), coherent_(coherent), statistics_(statistics) {}
-  void nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits);
+      : world_(world),
+        moving_(moving),
+        rays_(rays),
+        reach_(reach),
+        coherent_(coherent),
+        statistics_(statistics),
+        found_(kept()) {}
+  // Before the first nearest().
+  void begin() {
+    found_.resize(rays_.size());
+    for (Found& f : found_) f.object = kNone;
+  }
+  void nearest(const Tile& tile, const Packet& packet);
+  // Makes the hits that nearest() found; others stay as they are.
+  void finish(std::span<Hit> hits);
   void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
   // Surfaces without bounds; lowers reach. hit may be null.
   void unbounded(uint32_t object, uint32_t ray, Hit* hit);
@@ -219,9 +233,15 @@ class PacketTracer {
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
   TraceContext context(const Packet& packet) const;
-  void prefetch(const Tile& tile, const Packet& packet, const RTCRayHit8& rh, uint32_t* object_of) const;
-  void finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u, float v,
-              Hit& hit) const;
+  // What a ray met in a tile; object kNone: nothing.
+  struct Found {
+    const Tile* tile;
+    uint32_t object, triangle;
+    float u, v;
+    bool direct;
+  };
+  const uint32_t* corners(const Found& found) const;
+  void finish_triangle(const Found& found, const Ray& ray, Hit& hit) const;
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
 
   const World& world_;
@@ -230,6 +250,8 @@ class PacketTracer {
   std::span<double> reach_;
   bool coherent_;
   TraceStatistics& statistics_;
+  static std::vector<Found>& kept();  // the thread's memory for
+  std::vector<Found>& found_;         // what each ray met
 };
 
 }  // namespace suite

@@ -10,6 +10,11 @@
 
 namespace suite {
 
+std::vector<PacketTracer::Found>& PacketTracer::kept() {
+  thread_local std::vector<Found> found;
+  return found;
+}
+
 TraceContext PacketTracer::context(const Packet& packet) const {
   TraceContext c;
   rtcInitIntersectContext(&c);
@@ -38,29 +43,13 @@ void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int*
   }
 }
 
-// Finds the objects that were hit. Triangles met far apart are not in the caches: all are sent for before the first is
-// waited for.
-void PacketTracer::prefetch(const Tile& tile, const Packet& packet, const RTCRayHit8& rh, uint32_t* object_of) const {
-  const uint32_t* corners[kWidth];
-  for (uint32_t i = 0; i < packet.size; ++i) {
-    corners[i] = nullptr;
-    const uint32_t id = rh.hit.geomID[i];
-    if (id == RTC_INVALID_GEOMETRY_ID) continue;
-    const size_t lone = tile.direct.size();
-    object_of[i] = id < lone ? tile.direct[id] : tile.sets[id - lone]->objects[rh.hit.instID[0][i]];
-    const uint32_t mesh = world_.flat.objects[object_of[i]].mesh;
-    if (mesh == kNone) continue;
-    corners[i] = &world_.scene->meshes[mesh].indices[3 * size_t{rh.hit.primID[i]}];
-    __builtin_prefetch(corners[i]);
-  }
-  for (uint32_t i = 0; i < packet.size; ++i) {
-    if (!corners[i]) continue;
-    const Mesh& mesh = world_.scene->meshes[world_.flat.objects[object_of[i]].mesh];
-    for (int c = 0; c < 3; ++c) __builtin_prefetch(&mesh.positions[3 * size_t{corners[i][c]}]);
-  }
+// The corners of a triangle; null for exact surfaces.
+const uint32_t* PacketTracer::corners(const Found& found) const {
+  const uint32_t mesh = world_.flat.objects[found.object].mesh;
+  return mesh == kNone ? nullptr : &world_.scene->meshes[mesh].indices[3 * size_t{found.triangle}];
 }
 
-void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit> hits) {
+void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
   TraceContext c = context(packet);
   alignas(32) RTCRayHit8 rh;
   alignas(32) int valid[kWidth];
@@ -69,18 +58,36 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet, std::span<Hit
   const uint64_t start = __rdtsc();
   rtcIntersect8(valid, tile.handle.scene, &c, &rh);
   statistics_.cycles += __rdtsc() - start;
-  uint32_t object_of[kWidth];
-  prefetch(tile, packet, rh, object_of);
+  const size_t lone = tile.direct.size();
   for (uint32_t i = 0; i < packet.size; ++i) {
     const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
     if (id == RTC_INVALID_GEOMETRY_ID) continue;
     reach_[r] = packet.advance[i] + double{rh.ray.tfar[i]};
-    const bool direct = id < tile.direct.size();
-    const uint32_t object = object_of[i];
-    if (world_.flat.objects[object].mesh != kNone)
-      finish(tile, direct, rays_[r], object, rh.hit.primID[i], rh.hit.u[i], rh.hit.v[i], hits[r]);
+    Found& f = found_[r];
+    f.tile = &tile;
+    f.direct = id < lone;
+    f.object = f.direct ? tile.direct[id] : tile.sets[id - lone]->objects[rh.hit.instID[0][i]];
+    f.triangle = rh.hit.primID[i];
+    f.u = rh.hit.u[i], f.v = rh.hit.v[i];
+    if (const uint32_t* corner = corners(f)) __builtin_prefetch(corner);
+  }
+}
+
+void PacketTracer::finish(std::span<Hit> hits) {
+  for (const Found& f : found_) {
+    if (f.object == kNone) continue;
+    const uint32_t* corner = corners(f);
+    if (!corner) continue;
+    const Mesh& mesh = world_.scene->meshes[world_.flat.objects[f.object].mesh];
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[3 * size_t{corner[k]}]);
+  }
+  for (size_t r = 0; r < found_.size(); ++r) {
+    const Found& f = found_[r];
+    if (f.object == kNone) continue;
+    if (world_.flat.objects[f.object].mesh != kNone)
+      finish_triangle(f, rays_[r], hits[r]);
     else
-      finish_exact(tile.scale, rays_[r], object, reach_[r], hits[r]);
+      finish_exact(f.tile->scale, rays_[r], f.object, reach_[r], hits[r]);
   }
 }
 
@@ -104,11 +111,11 @@ static double aside(const MovingPart* moving, const TracedObject& o) {
   return o.node == kNone ? 0 : 2 * moving->nodes[o.node].bound;
 }
 
-void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_t object, uint32_t triangle, float u,
-                          float v, Hit& hit) const {
+void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit) const {
+  const auto& [tile, object, triangle, u, v, direct] = found;
   const TracedObject& o = world_.flat.objects[object];
   const Mesh& m = world_.scene->meshes[o.mesh];
-  const uint32_t* corner = &m.indices[3 * size_t{triangle}];
+  const uint32_t* corner = corners(found);
   const auto vertex = [&](uint32_t c) {
     const float* f = &m.positions[3 * size_t{corner[c]}];
     return Vec3{f[0], f[1], f[2]};
@@ -118,9 +125,9 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
   double reach = 0;  // largest coordinate that was rounded to float on the way to this hit, m
   if (direct) {
     // A translation only.
-    hit.position = p + tile.origin;
+    hit.position = p + tile->origin;
     hit.normal = normalized(across);
-    reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile.scale, 1e-6});
+    reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile->scale, 1e-6});
   } else {
     const Affine3 to_world =
         world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
@@ -134,7 +141,10 @@ void PacketTracer::finish(const Tile& tile, bool direct, const Ray& ray, uint32_
       reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y +
                                   std::fabs(to_world.a[k + 2]) * q.z);
   }
-  hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * length(hit.position) + aside(moving_, o));
+  // Of the double coordinates in the scene's frame, too (their sum bounds the length without a root).
+  const Vec3& q = hit.position;
+  const double far = std::fabs(q.x) + std::fabs(q.y) + std::fabs(q.z);
+  hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * far + aside(moving_, o));
   hit.distance = dot(hit.position - ray.origin, ray.direction);
   hit.time = ray.time;
   hit.object = object;

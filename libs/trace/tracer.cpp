@@ -168,11 +168,13 @@ void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach
     PacketTracer tracer(*world_, moving, rays, reach, coherent, s);
     for (const uint32_t object : unbounded)
       for (uint32_t i = 0; i < rays.size(); ++i) tracer.unbounded(object, i, &hits[i]);
+    tracer.begin();
     set.pass(rays, reach, [&](uint32_t index, const Packet& packet) {
       Tile& tile = *set.tiles[index];
       tile.once.run([&] { tile.build(*world_); });
-      tracer.nearest(tile, packet, hits);
+      tracer.nearest(tile, packet);
     });
+    tracer.finish(hits);
   };
   trace(world_->tiles, unbounded_of(*world_), nullptr);
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());

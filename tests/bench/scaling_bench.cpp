@@ -1,7 +1,7 @@
 // How cost grows: bands, triangles, instances, lamps, cells of a medium, threads; whole renders of the terrain, and how
 // long its scene takes to load; as CSV on standard output: bench, x, unit, value (seconds of CPU of this process),
 // extra (Mrays/s, share of Embree). Usage: scaling_bench
-// [bands|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...   (default: all)
+// [bands|bands_sqt_maps_media|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...   (default: all)
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "formats/scene_hdf/scene_hdf.h"
 #include "math/sampling.h"
 #include "tests/bench/terrain.h"
+#include "tests/support/sqt_examples.h"
 
 namespace suite::bench {
 namespace {
@@ -87,31 +88,73 @@ void lamps() {
   const auto scene = terrain_scene(100);
   for (const int n : {1, 10, 100, 1000, 10000}) per_path("lamps", n, scene, 96, 32, 1, lamps_over_terrain(n));
 }
-// A cloud of optical depth 2 over the terrain, of the same shape in grids of 8 to 128 cells a side.
+// A cloud of optical depth 2 over the terrain, of n cells a side.
+void add_cloud(Scene& scene, uint32_t n) {
+  Medium m;
+  m.id = "cloud";
+  m.absorption = Curve::constant(0.001), m.scattering = Curve::constant(0.019);
+  m.phase = {"hg", {}, {{"g", Curve::constant(0.6)}}, {}, nullptr};
+  check_medium(m);
+  scene.media = {m};
+  VoxelGrid grid;
+  grid.name = "cloud";
+  grid.cells = {n, n, n};
+  const double low = 150, high = 250;
+  grid.to_local = translation({-500, -500, low}) * scaling({1000.0 / n, 1000.0 / n, (high - low) / n});
+  grid.media = {0};
+  for (uint32_t k = 0; k < n; ++k)
+    for (uint32_t j = 0; j < n; ++j)
+      for (uint32_t i = 0; i < n; ++i)
+        grid.density.push_back(static_cast<float>(1 + std::sin(12.0 * i / n) * std::sin(9.0 * j / n)));
+  scene.grids = {std::move(grid)};
+  scene.volumes = {{0, Affine3{}}};
+}
 void media() {
   for (const uint32_t n : {8u, 32u, 128u}) {
     auto scene = terrain_scene(72);
-    Medium m;
-    m.id = "cloud";
-    m.absorption = Curve::constant(0.001), m.scattering = Curve::constant(0.019);
-    m.phase = {"hg", {}, {{"g", Curve::constant(0.6)}}, {}, nullptr};
-    check_medium(m);
-    scene->media = {m};
-    VoxelGrid grid;
-    grid.name = "cloud";
-    grid.cells = {n, n, n};
-    const double low = 150, high = 250;
-    grid.to_local = translation({-500, -500, low}) * scaling({1000.0 / n, 1000.0 / n, (high - low) / n});
-    grid.media = {0};
-    for (uint32_t k = 0; k < n; ++k)
-      for (uint32_t j = 0; j < n; ++j)
-        for (uint32_t i = 0; i < n; ++i)
-          grid.density.push_back(static_cast<float>(1 + std::sin(12.0 * i / n) * std::sin(9.0 * j / n)));
-    scene->grids = {std::move(grid)};
-    scene->volumes = {{0, Affine3{}}};
+    add_cloud(*scene, n);
     check_scene(*scene, "cloud");
     per_path("media", n, scene, 96, 16, 1);
   }
+}
+// The terrain with everything that works per wavelength: a map that mixes a fitted glossy material of four wavelengths
+// with a Lambert one of 1000 samples, under a cloud.
+std::shared_ptr<Scene> terrain_with_everything() {
+  auto scene = terrain_scene(240);
+  std::vector<double> um, rho;
+  for (int i = 0; i < 1000; ++i) um.push_back(0.4 + 0.0025 * i), rho.push_back(0.4 + 0.2 * std::sin(0.1 * i));
+  test::Analytic glossy = test::glossy(0.15, 4);
+  glossy.info().wavelength_um = {0.45, 1, 2, 2.8};
+  ModelSpec fitted, spotted;
+  fitted.model = "sqt";
+  fitted.bundle = sqt::make_bundle(test::small_fit(glossy).data);
+  spotted.model = "lambert";
+  spotted.curves["reflectance"] = Curve(um, rho, Outside::hold);
+  check_model(spotted);
+  for (const auto& [id, surface] : {std::pair{"gloss", fitted}, std::pair{"spots", spotted}}) {
+    Material m;
+    m.id = id;
+    m.surface = surface;
+    scene->materials.push_back(m);
+  }
+  PropertyMap map;
+  map.name = "mix";
+  map.width = map.height = 64, map.channels = 2;
+  for (int i = 0; i < 64 * 64; ++i) {
+    const float share = static_cast<float>(0.5 + 0.5 * std::sin(0.37 * i));
+    map.values.push_back(share), map.values.push_back(1 - share);
+  }
+  map.materials = {1, 2};
+  map.drape = {-500, 500, 1000.0 / 64, 1000.0 / 64, Drape::Extend::clamp};
+  scene->property_bindings.push_back({0, 0});
+  scene->property_maps.push_back(std::move(map));
+  add_cloud(*scene, 32);
+  check_scene(*scene, "everything");
+  return scene;
+}
+void bands_with_everything() {
+  const auto scene = terrain_with_everything();
+  for (const size_t n : {1u, 224u}) per_path("bands_sqt_maps_media", static_cast<double>(n), scene, 96, 16, n);
 }
 // Reading and checking a prepared scene, the best of five.
 void load() {
@@ -164,11 +207,15 @@ void seconds_to_1_percent() {
 
 int main(int argc, char** argv) {
   using namespace suite::bench;
-  const std::pair<const char*, void (*)()> all[] = {
-      {"bands", bands},           {"triangles", triangles},
-      {"instances", instances},   {"lamps", lamps},
-      {"media", media},           {"load", load},
-      {"threads", thread_counts}, {"seconds_to_1_percent", seconds_to_1_percent}};
+  const std::pair<const char*, void (*)()> all[] = {{"bands", bands},
+                                                    {"bands_sqt_maps_media", bands_with_everything},
+                                                    {"triangles", triangles},
+                                                    {"instances", instances},
+                                                    {"lamps", lamps},
+                                                    {"media", media},
+                                                    {"load", load},
+                                                    {"threads", thread_counts},
+                                                    {"seconds_to_1_percent", seconds_to_1_percent}};
   std::puts("bench,x,unit,value,Mrays_per_s,share_in_embree");
   for (const auto& [name, run] : all)
     if (argc == 1 ||

@@ -27,7 +27,8 @@ struct TruthContext {
   const Environment& environment;
 };
 
-// One complete path and what it met first (null = nothing).
+// One complete path and what it met first (null = nothing). Collectors may look at path.ray, path.size and the first
+// node's hit, out, optical_length, sunlit and place (`at`), which is what every kernel records.
 struct TruthSample {
   Wave& wave;  // its scratch() may be overwritten
   const Path& path;
@@ -67,6 +68,7 @@ class TruthPlan {
   // Error: an unknown name, or a scene without what a collector needs (an origin on the Earth).
   TruthPlan(std::span<const std::string> names, const TruthContext& context);
   size_t slots() const { return slots_; }
+  bool wanted() const { return !collectors_.empty(); }
   const std::vector<std::string>& columns() const { return columns_; }
   void add(Wave& wave, size_t path, double* slots) const;
   // values: columns().size() numbers.

@@ -1,0 +1,20 @@
+// Large arrays that are written once from end to end.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace suite {
+
+// Asks the system to back `bytes` bytes from `data` on, not yet touched, with large pages where it can: clearing and
+// mapping 4 kB at a time costs more than writing results does. Does nothing for less than 4 MiB.
+void expect_large(void* data, size_t bytes);
+
+// v.resize(n) of an empty vector, its memory announced by expect_large.
+template <class T>
+void resize_large(std::vector<T>& v, size_t n) {
+  v.reserve(n);
+  expect_large(v.data(), n * sizeof(T));
+  v.resize(n);
+}
+
+}  // namespace suite

@@ -1,0 +1,98 @@
+// Sums of the problems of a capture, and what follows from them.
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "radiometry/pipeline.h"
+
+namespace suite {
+
+Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots)
+    : bands_(bands),
+      scrambles_(scrambles),
+      paths_(problems),
+      failures_(problems),
+      truncated_(problems),
+      largest_(problems),
+      truth_slots_(truth_slots) {
+  resize_large(sums_, problems * bands * static_cast<size_t>(scrambles));
+  resize_large(truth_, problems * truth_slots);
+}
+
+namespace {
+
+// How n samples share out among the scrambles, and what the squared deviation of each one's mean weighs in the variance
+// of the mean of all.
+struct Shares {
+  Shares(uint32_t n, int scrambles) {
+    double sum = 0;
+    bool half = false;
+    for (int s = 0; s < scrambles; ++s) {
+      count[s] = dealt(n, static_cast<uint32_t>(s));
+      const double share = count[s] / n;
+      used += count[s] > 0;
+      half = half || share >= 0.5;
+      weight[s] = share * share / (1 - 2 * share);
+      sum += weight[s];
+    }
+    for (int s = 0; s < scrambles; ++s) weight[s] = half ? 1.0 / (used * std::max(1, used - 1)) : weight[s] / (1 + sum);
+  }
+  double count[8], weight[8];
+  int used = 0;
+};
+
+}  // namespace
+
+void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
+  const uint32_t n = paths_[problem];
+  mean = standard_error = 0;
+  if (!n || failures_[problem] >= n) return;
+  double total = 0;
+  for (int s = 0; s < scrambles_; ++s) total += sums(problem, s)[band];
+  mean = total / (n - failures_[problem]);  // rejected samples are not averaged in
+  double square = 0;
+  const Shares shares(n, scrambles_);
+  for (int s = 0; s < scrambles_; ++s) {
+    if (!(shares.count[s] > 0)) continue;
+    const double d = sums(problem, s)[band] / shares.count[s] - mean;
+    square += shares.weight[s] * d * d;
+  }
+  standard_error = shares.used < 2 ? INFINITY : std::sqrt(square);  // one scramble tells nothing about its own error
+}
+
+void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
+  const uint32_t n = paths_[problem];
+  std::fill(means.begin(), means.end(), 0.0);
+  std::fill(errors.begin(), errors.end(), 0.0);
+  if (!n || failures_[problem] >= n) return;
+  double* __restrict const mean = means.data();
+  double* __restrict const square = errors.data();
+  const double accepted = n - failures_[problem];
+  for (int s = 0; s < scrambles_; ++s) {
+    const double* __restrict sum = sums(problem, s);
+    for (size_t b = 0; b < bands_; ++b) mean[b] += sum[b];
+  }
+  for (size_t b = 0; b < bands_; ++b) mean[b] /= accepted;
+  const Shares shares(n, scrambles_);
+  for (int s = 0; s < scrambles_; ++s) {
+    if (!(shares.count[s] > 0)) continue;
+    const double* __restrict sum = sums(problem, s);
+    const double count = shares.count[s], weight = shares.weight[s];
+    for (size_t b = 0; b < bands_; ++b) {
+      const double d = sum[b] / count - mean[b];
+      square[b] += weight * d * d;
+    }
+  }
+  for (size_t b = 0; b < bands_; ++b) square[b] = shares.used < 2 ? INFINITY : std::sqrt(square[b]);
+}
+
+void Accumulators::clear() {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  std::fill(paths_.begin(), paths_.end(), 0u);
+  std::fill(failures_.begin(), failures_.end(), 0u);
+  std::fill(truncated_.begin(), truncated_.end(), 0.0f);
+  std::fill(largest_.begin(), largest_.end(), 0.0f);
+  std::fill(truth_.begin(), truth_.end(), 0.0);
+}
+
+}  // namespace suite
