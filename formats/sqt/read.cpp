@@ -71,13 +71,13 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   if (!reader.ok()) throw Error("SQT payload is damaged: its totals end too early");
   sqt::decode_totals(totals, layout.channels, d.totals.delta_kind != sqt::Dirac::none, d.totals);
   const auto trees = reader.take(reader.left());
-  // Eight leaves to a byte is more than the coder reaches; what they need in memory is bounded as well.
+  // A divided node takes two bits at least and adds three leaves; what they need in memory is bounded as well.
   const auto leaves = static_cast<size_t>(l.integer("leaves", 1, 1 << 28));
-  if (leaves > 64 + 8 * trees.size() || leaves * layout.width() > kMaxNumbers)
+  if (leaves > 64 + 12 * trees.size() || leaves * layout.width() > kMaxNumbers)
     throw l.error("implausible number of leaves");
   d.sheets = sqt::decode_sheets(layout, trees, leaves);
   size_t found = 0;
-  for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.leaves.size();
+  for (const sqt::AlignedSheet& sheet : d.sheets) found += sheet.stored;
   if (found != leaves) throw Error("SQT payload is damaged: its leaves are not those announced");
   return sqt::make_bundle(std::move(d));
 }
@@ -154,7 +154,7 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   try {
     const std::vector<std::byte> text = sqt_file::lzma_expand(header_bytes, text_size);
     file.header.assign(reinterpret_cast<const char*>(text.data()), text.size());
-    const Params header = Params::parse_text(file.header, file_name);
+    const Params header = Params::parse_json(file.header, file_name);
     std::vector<std::byte> expanded;
     std::span<const std::byte> raw = payload;
     if (coding == sqt_file::lzma) {

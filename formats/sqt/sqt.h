@@ -14,7 +14,7 @@
 
 namespace suite {
 
-inline constexpr int kSqtVersion = 2;
+inline constexpr int kSqtVersion = 3;
 
 // Where a fit came from; all of it goes into the header.
 struct SqtProvenance {

@@ -105,7 +105,7 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   layout.set("upper_only", l.upper_only);
   layout.set("sheets", l.sheets);
   size_t leaves = 0;
-  for (const sqt::AlignedSheet& sheet : fit.data.sheets) leaves += sheet.leaves.size();
+  for (const sqt::AlignedSheet& sheet : fit.data.sheets) leaves += sheet.stored;
   layout.set("leaves", leaves);
   layout.set("quality", l.quality);
   layout.set("theta", numbers(l.theta));

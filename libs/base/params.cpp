@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -122,8 +123,9 @@ class TreeBuilder : public YAML::EventHandler {
     top.key_line = mark.line + 1;
     top.key_column = mark.column + 1;
     if (const auto found = top.node->index.find(text); found != top.node->index.end())
-      throw Error(at(mark), "duplicate key '" + text + "'",
-                  strf("first given in line %d; keep one", top.node->entries[found->second].line));
+      throw Error(
+          at(mark), "duplicate key '" + text + "'",
+          mark.line < 0 ? "keep one" : strf("first given in line %d; keep one", top.node->entries[found->second].line));
   }
   void attach(const YAML::Mark& mark, const Node* node) {
     if (stack_.empty()) {
@@ -160,6 +162,35 @@ class TreeBuilder : public YAML::EventHandler {
   Params::Document& document_;
   std::vector<Open> stack_;
   std::map<YAML::anchor_t, const Node*> anchors_;
+};
+
+// Hands what the JSON parser finds to the builder; nothing has a line.
+class JsonEvents {
+ public:
+  JsonEvents(TreeBuilder& builder, const std::string& file) : builder_(builder), file_(file) {
+    mark_.line = mark_.column = -1;
+  }
+  bool null() { return builder_.OnNull(mark_, 0), true; }
+  bool boolean(bool value) { return plain(value ? "true" : "false"); }
+  bool number_integer(long long value) { return plain(std::to_string(value)); }
+  bool number_unsigned(unsigned long long value) { return plain(std::to_string(value)); }
+  bool number_float(double, const std::string& text) { return plain(text); }
+  bool string(const std::string& text) { return builder_.OnScalar(mark_, "!", 0, text), true; }
+  bool binary(const std::vector<uint8_t>&) { return false; }  // JSON has none
+  bool start_object(size_t) { return builder_.OnMapStart(mark_, "", 0, YAML::EmitterStyle::Flow), true; }
+  bool key(const std::string& text) { return string(text); }
+  bool end_object() { return builder_.OnMapEnd(), true; }
+  bool start_array(size_t) { return builder_.OnSequenceStart(mark_, "", 0, YAML::EmitterStyle::Flow), true; }
+  bool end_array() { return builder_.OnSequenceEnd(), true; }
+  bool parse_error(size_t position, const std::string&, const nlohmann::json::exception&) {
+    throw Error(Where{file_, 0, 0, {}, -1}, strf("malformed JSON at character %zu", position));
+  }
+
+ private:
+  bool plain(const std::string& text) { return builder_.OnScalar(mark_, "?", 0, text), true; }
+  TreeBuilder& builder_;
+  const std::string& file_;
+  YAML::Mark mark_;
 };
 
 const char* kind_name(Params::Kind kind) {
@@ -210,6 +241,16 @@ Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
     throw Error(document->where(e.mark.line + 1, e.mark.column + 1), "malformed YAML: " + e.msg);
   }
   if (!document->root) throw Error(Where{file_name, 0, 0, {}, -1}, "is empty", "a YAML map is expected");
+  const Node* root = document->root;
+  return Params(std::move(document), root);
+}
+
+Params Params::parse_json(std::string_view json, const std::string& file_name) {
+  auto document = std::make_shared<Document>();
+  document->file = file_name;
+  TreeBuilder builder(*document);
+  JsonEvents events(builder, file_name);
+  nlohmann::json::sax_parse(json.begin(), json.end(), &events);
   const Node* root = document->root;
   return Params(std::move(document), root);
 }

@@ -23,6 +23,9 @@ class Params {
   // Error: malformed YAML, duplicate key, nesting above 200, alias to an unfinished node, more than 50 million nodes.
   static Params parse_file(const std::string& path);
   static Params parse_text(std::string_view yaml, const std::string& file_name);
+  // The same from strict JSON that a program wrote into another file: some ten times faster, but places name the file
+  // only. Error: malformed JSON, duplicate key, nesting above 200.
+  static Params parse_json(std::string_view json, const std::string& file_name);
 
   Kind kind() const;
   Where where() const;                      // of this value

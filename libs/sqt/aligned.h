@@ -5,7 +5,8 @@
 // of lobe_map.h. s(theta) makes the integral of f |cos| equal to the total that the data had before reduction. Values
 // of a node are averages of log2 f over its cell for every view and channel; children are coded as differences from the
 // plane through their parent, transformed over views and channels (cosine transforms), quantised with a step that
-// shrinks with the weight of the cell in the cosine-weighted error, and range-coded by adaptive contexts.
+// shrinks with the weight of the cell in the cosine-weighted error, and coded by prefix codes in contexts
+// (block_code.h).
 //
 // Based on: Goodenough & Brown, section IV-D-4 (the quad-tree, totals before reduction); S. Rusinkiewicz 1998 (half
 // vector); Said & Pearlman 1996 (pyramid with prediction); rate-distortion pruning: Chou, Lookabaugh & Gray, IEEE TIT
@@ -20,6 +21,8 @@
 
 #include "sqt/bundle.h"
 #include "sqt/lobe_map.h"
+#include "sqt/log_scale.h"
+#include "sqt/vectors.h"
 
 namespace suite::sqt {
 
@@ -38,13 +41,17 @@ struct AlignedLayout {
   size_t width() const { return views() * channels; }
 };
 
-// Decoded leaves of one sheet.
+// Decoded leaves of one sheet, the coarsest divided for sampling (leaf_table.h).
 struct AlignedSheet {
   static constexpr size_t kStride = 4;
+  LogScale scale;
   std::vector<CellId> leaves;
-  // [leaf][view][channel]{value, slope x, slope y, mean}: log2 units, per cell width; mean over the leaf of 2^(value +
-  // slope . offset)
-  std::vector<float> plane;
+  std::vector<float> inverse_area;  // 1/sr of one leaf, its mirror image counted in
+  size_t stored = 0;                // leaves before the coarsest were divided
+  // [leaf][channel][view]{value, slope x, slope y, mass}: numbers of the scale, slopes per cell width; the mass as
+  // leaf_table.h codes it. Some room behind.
+  UnsetVector<int16_t> plane;
+  UnsetVector<uint16_t> mass;  // the same masses, [leaf][padded_row(width)], and some room
 };
 
 // Totals over view angle and wavelength, and the scale s of each channel, on a finer grid of view angles.

@@ -1,7 +1,6 @@
 // The runtime of the aligned method; see aligned.h. Tables are in aligned_tables.h, here they are asked.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.h"
 #include "sqt/aligned.h"
@@ -81,7 +80,7 @@ class AlignedBundle final : public Bundle {
     int b = 0;
     while (b < at.count - 1 && rest >= at.weight[b]) rest -= at.weight[b++];
     rest = std::clamp(rest / at.weight[b], 0.0, 0x1.fffffep-1);
-    const size_t column = at.view[b] * channels() + channel;
+    const size_t column = channel * layout_.views() + at.view[b];
     if (tables_.empty(column)) return std::nullopt;
     const bool mirrored = layout_.half_stored && rest >= 0.5;
     if (layout_.half_stored) rest = std::min(2 * rest - mirrored, 0x1.fffffep-1);
@@ -117,18 +116,19 @@ class AlignedBundle final : public Bundle {
     std::vector<Cell> out;
     const Bundle::View& v = info_.views[view];
     const Place at = place(fine_, dir_from_angles(v.theta, v.phi));
-    const size_t column = view * channels() + channel;
+    const size_t column = channel * layout_.views() + view;
     for (size_t s = 0; s < tables_.sheets().size(); ++s) {
       const AlignedTables::Sheet& sheet = tables_.sheets()[s];
       for (size_t i = 0; i < sheet.tree.size(); ++i) {
-        const float* p = &sheet.plane[(i * layout_.width() + column) * kStride];
-        const double g = portable_exp2(p[0] + static_cast<float>(scale(at, channel)));
+        const int16_t* p = &sheet.plane[(i * layout_.width() + column) * kStride];
+        const double g = portable_exp2(sheet.scale.value(p[0]) + static_cast<float>(scale(at, channel))),
+                     mass = tables_.probability(column, p[3]);
         const CellId id = sheet.tree.cell(i);
         if (!layout_.half_stored || mirrored(id) == id) {
-          out.push_back({id, static_cast<int>(s), g, p[3]});
+          out.push_back({id, static_cast<int>(s), g, mass});
         } else {
-          out.push_back({id, static_cast<int>(s), g, 0.5 * p[3]});
-          out.push_back({mirrored(id), static_cast<int>(s), g, 0.5 * p[3]});
+          out.push_back({id, static_cast<int>(s), g, 0.5 * mass});
+          out.push_back({mirrored(id), static_cast<int>(s), g, 0.5 * mass});
         }
       }
     }
@@ -149,7 +149,8 @@ class AlignedBundle final : public Bundle {
   struct Query {
     Place at;
     Dir up;
-    const float* leaf;  // numbers of the leaf, [view][channel]
+    const int16_t* leaf;  // numbers of the leaf, [channel][view]
+    LogScale scale;
     float dx, dy;
     double to_density;  // from the leaf's probability
   };
@@ -247,6 +248,7 @@ class AlignedBundle final : public Bundle {
     const double cells = static_cast<double>(1u << found.order), x = p.x * cells, y = p.y * cells;
     q.dx = static_cast<float>(x - std::floor(x) - 0.5);
     q.dy = static_cast<float>(y - std::floor(y) - 0.5);
+    q.scale = sheet.scale;
     q.leaf = &sheet.plane[leaf * layout_.width() * kStride];
     q.to_density = sheet.inverse_area[leaf] / stretch;
     q.at = place(views_, q.up);
@@ -255,16 +257,22 @@ class AlignedBundle final : public Bundle {
   double value_at(const Query& q, const Place& fine, size_t channel) const {
     float l = static_cast<float>(scale(fine, channel));
     if (l <= kNothing) return 0;
-    for (int b = 0; b < q.at.count; ++b) {
-      const float* p = q.leaf + (q.at.view[b] * channels() + channel) * kStride;
-      l += static_cast<float>(q.at.weight[b]) * (p[0] + q.dx * p[1] + q.dy * p[2]);
-    }
-    return portable_exp2(l);
+    using Four = float __attribute__((vector_size(16)));
+    using Numbers = int16_t __attribute__((vector_size(8)));
+    const int16_t* row = q.leaf + channel * layout_.views() * kStride;
+    Four plane{};
+    for (int b = 0; b < q.at.count; ++b)
+      plane += static_cast<float>(q.at.weight[b]) *
+               __builtin_convertvector(load<Numbers>(row + q.at.view[b] * kStride), Four);
+    return portable_exp2(l + q.scale.value(plane[0] + q.dx * plane[1] + q.dy * plane[2]));
   }
   double density(const Query& q, size_t channel) const {
     double p = 0;
-    for (int b = 0; b < q.at.count; ++b)
-      p += q.at.weight[b] * q.leaf[(q.at.view[b] * channels() + channel) * kStride + 3];
+    const size_t first = channel * layout_.views();
+    for (int b = 0; b < q.at.count; ++b) {
+      const size_t column = first + q.at.view[b];
+      p += q.at.weight[b] * tables_.probability(column, q.leaf[column * kStride + 3]);
+    }
     return p * q.to_density;
   }
 
@@ -305,11 +313,9 @@ void check(const AlignedData& d) {
   for (const float s : t.log2_scale) require(std::isfinite(s) && std::fabs(s) <= 200, "a scale is not finite");
   require(d.sheets.size() == static_cast<size_t>(l.sheets) && (l.sheets == 1 || l.sheets == 2), "number of sheets");
   for (const AlignedSheet& s : d.sheets) {
-    require(!s.leaves.empty() && s.plane.size() == s.leaves.size() * l.width() * AlignedSheet::kStride,
+    require(!s.leaves.empty() && s.plane.size() >= s.leaves.size() * l.width() * AlignedSheet::kStride &&
+                s.inverse_area.size() == s.leaves.size() && s.mass.size() >= s.leaves.size() * padded_row(l.width()),
             "number of leaf values");
-    bool finite = true;
-    for (const float v : s.plane) finite &= std::fabs(v) <= std::numeric_limits<float>::max();
-    require(finite, "a leaf value is not finite");
   }
 }
 
@@ -329,7 +335,7 @@ std::shared_ptr<const Bundle> make_bundle(AlignedData data) {
     for (size_t j = 0; j < data.layout.phi_count; ++j)
       info.views.push_back({theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(data.layout.phi_count)});
   for (const AlignedSheet& s : data.sheets) {
-    info.leaves += s.leaves.size();
+    info.leaves += s.stored;
     for (const CellId id : s.leaves) info.max_order = std::max(info.max_order, id.order());
   }
   return std::make_shared<AlignedBundle>(std::move(data), std::move(info));

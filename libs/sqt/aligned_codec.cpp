@@ -1,9 +1,11 @@
 #include "sqt/aligned_codec.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
+#include "sqt/cell_centers.h"
 #include "sqt/portable_math.h"
 
 namespace suite::sqt {
@@ -38,7 +40,8 @@ std::vector<double> fourier_matrix(size_t n) {
 
 }  // namespace
 
-BlockTransform::BlockTransform(const AlignedLayout& layout) : views_(layout.views()), channels_(layout.channels) {
+BlockTransform::BlockTransform(const AlignedLayout& layout)
+    : views_(layout.views()), channels_(layout.channels), stride_((views_ + 31) / 32 * 32) {
   const size_t nt = layout.theta.size(), np = layout.phi_count;
   const std::vector<double> t = cosine_matrix(nt), p = fourier_matrix(np), c = cosine_matrix(channels_);
   channel_.assign(c.begin(), c.end());
@@ -46,11 +49,15 @@ BlockTransform::BlockTransform(const AlignedLayout& layout) : views_(layout.view
   std::vector<std::pair<int, size_t>> order;
   for (size_t k = 0; k < views_; ++k) order.push_back({static_cast<int>(k / np + (k % np + 1) / 2), k});
   std::stable_sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first < b.first; });
-  for (const auto& [height, k] : order) {
+  view_.resize(views_ * stride_, 0.0f);
+  for (size_t n = 0; n < views_; ++n) {
+    const auto [height, k] = order[n];
     height_.push_back(height);
     for (size_t i = 0; i < nt; ++i)
-      for (size_t j = 0; j < np; ++j) view_.push_back(static_cast<float>(t[(k / np) * nt + i] * p[(k % np) * np + j]));
+      for (size_t j = 0; j < np; ++j)
+        view_[n * stride_ + i * np + j] = static_cast<float>(t[(k / np) * nt + i] * p[(k % np) * np + j]);
   }
+  mixed_.resize(channels_ * stride_);
 }
 
 void BlockTransform::forward(std::span<const float> values, std::span<float> out) const {
@@ -64,51 +71,82 @@ void BlockTransform::forward(std::span<const float> values, std::span<float> out
   for (size_t c = 0; c < channels_; ++c)
     for (size_t k = 0; k < views_; ++k) {
       float sum = 0;
-      for (size_t v = 0; v < views_; ++v) sum += view_[k * views_ + v] * mixed[c * views_ + v];
+      for (size_t v = 0; v < views_; ++v) sum += view_[k * stride_ + v] * mixed[c * views_ + v];
       out[c * views_ + k] = sum;
     }
 }
 
-void BlockTransform::inverse(std::span<const float> coefficients, std::span<float> values) const {
-  std::vector<float> mixed(views_ * channels_, 0.0f);
-  for (size_t c = 0; c < channels_; ++c)
-    for (size_t k = 0; k < views_; ++k) {
-      const float a = coefficients[c * views_ + k];
-      if (a == 0) continue;
-      for (size_t v = 0; v < views_; ++v) mixed[c * views_ + v] += a * view_[k * views_ + v];
+bool BlockTransform::inverse(const int32_t* levels, const uint16_t* counts, float step, int16_t* values) const {
+  size_t channels = channels_;
+  while (channels > 0 && counts[channels - 1] == 0) --channels;
+  if (!channels) return false;
+  for (size_t c = 0; c < channels; ++c) {
+    float* to = &mixed_[c * stride_];
+    for (size_t v = 0; v < stride_; v += 32) {
+      EightFloats sum[4] = {};
+      for (size_t k = 0; k < counts[c]; ++k) {
+        const float a = static_cast<float>(levels[c * views_ + k]) * step;
+        const float* basis = &view_[k * stride_ + v];
+        for (size_t part = 0; part < 4; ++part) sum[part] += a * load<EightFloats>(basis + 8 * part);
+      }
+      for (size_t part = 0; part < 4; ++part) store(to + v + 8 * part, sum[part]);
     }
-  std::fill(values.begin(), values.end(), 0.0f);
-  for (size_t c = 0; c < channels_; ++c)
-    for (size_t i = 0; i < channels_; ++i) {
-      const float a = channel_[c * channels_ + i];
-      for (size_t v = 0; v < views_; ++v) values[v * channels_ + i] += a * mixed[c * views_ + v];
+  }
+  // Adding 1.5 * 2^23 leaves the nearest whole number in the low bits.
+  constexpr float kRound = 12582912.0f;
+  for (size_t i = 0; i < channels_; ++i)
+    for (size_t v = 0; v < views_; v += 8) {
+      EightFloats sum = channel_[i] * load<EightFloats>(&mixed_[v]);
+      for (size_t c = 1; c < channels; ++c)
+        sum += channel_[c * channels_ + i] * load<EightFloats>(&mixed_[c * stride_ + v]);
+      const EightFloats most = EightFloats{} + static_cast<float>(LogScale::kMost), least = -most;
+      sum = sum > most ? most : sum;
+      sum = sum < least ? least : sum;
+      const Short8 whole =
+          __builtin_convertvector(reinterpret_cast<Int8>(sum + kRound) - std::bit_cast<int32_t>(kRound), Short8);
+      // The next channel, or the room behind the row, takes what goes beyond.
+      store(values + i * views_ + v, whole);
+    }
+  return true;
+}
+
+ViewLanes::ViewLanes(const AlignedLayout& layout)
+    : reflects(layout.frame == LobeFrame::half || layout.frame == LobeFrame::retro), views(layout.views()) {
+  const size_t n = padded_row(views);
+  x.resize(n, 0), y.resize(n, 0), z.resize(n, 0), weight.resize(n, 0);
+  for (size_t i = 0; i < layout.theta.size(); ++i)
+    for (size_t j = 0; j < layout.phi_count; ++j) {
+      // Portable, unlike the sine and cosine of the library.
+      const double turn = static_cast<double>(j) / static_cast<double>(layout.phi_count);
+      const auto cosine = [](double angle) { return portable_cos_pi(std::llround(angle * 0x1p40 / kPi), 1LL << 40); };
+      const double sine = cosine(layout.theta[i] - kPi / 2), side = layout.frame == LobeFrame::retro ? -1 : 1;
+      const size_t v = i * layout.phi_count + j;
+      x[v] = static_cast<float>(side * sine * cosine(2 * kPi * turn));
+      y[v] = static_cast<float>(side * sine * cosine(2 * kPi * turn - kPi / 2));
+      z[v] = static_cast<float>(cosine(layout.theta[i]));
+      weight[v] = static_cast<float>(sine + 0.05);
     }
 }
 
 StepRule::StepRule(const AlignedLayout& layout, double reference)
-    : layout_(layout), reference_(reference), log2_quality_(portable_log2(layout.quality)) {
-  for (const double theta : layout.theta)
-    for (size_t j = 0; j < layout.phi_count; ++j) {
-      const double phi = 2 * kPi * static_cast<double>(j) / static_cast<double>(layout.phi_count);
-      maps_.emplace_back(layout.frame, dir_from_angles(theta, phi), false);
-      view_weight_.push_back(static_cast<float>(std::sin(theta) + 0.05));
-    }
+    : layout_(layout), reference_(reference), log2_quality_(portable_log2(layout.quality)), lanes_(layout) {
+  for (const float w : lanes_.weight) norm_ += w;
 }
 
-float StepRule::step(CellId cell, std::span<const float> value) const {
+float StepRule::step(const Center& d, int order, const float* mean) const {
   constexpr double kWeightPower = 0.75, kAreaPower = 0.5;
-  const Dir d = center_of(cell);
-  float sum = 0, norm = 0;
-  for (size_t v = 0; v < maps_.size(); ++v) {
-    float mean = 0;
-    for (size_t c = 0; c < layout_.channels; ++c) mean += value[v * layout_.channels + c];
-    const double cosine = layout_.cosine_weighted ? std::max(0.02, std::fabs(maps_[v].cosine(d))) : 1.0;
-    sum += view_weight_[v] * portable_exp2(mean / static_cast<float>(layout_.channels)) *
-           static_cast<float>(cosine * maps_[v].stretch(d));
-    norm += view_weight_[v];
+  EightFloats sums{};
+  for (size_t v = 0; v < lanes_.views; v += 8) {
+    EightFloats stretch, cosine;
+    lanes_.at(v, d, stretch, cosine);
+    cosine = cosine < 0 ? -cosine : cosine;
+    cosine = cosine < 0.02f ? EightFloats{} + 0.02f : cosine;
+    if (!layout_.cosine_weighted) cosine = EightFloats{} + 1;
+    sums += load<EightFloats>(&lanes_.weight[v]) * portable_exp2(load<EightFloats>(mean + v)) * cosine * stretch;
   }
-  const double weight = portable_log2(std::max(1e-30f, sum / norm)) - reference_;
-  const double area = -2.0 * (cell.order() - 4);  // log2, relative to order 4
+  const float sum = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
+  const double weight = portable_log2(std::max(1e-30f, sum / norm_)) - reference_;
+  const double area = -2.0 * (order - 4);  // log2, relative to order 4
   double step = log2_quality_ - kWeightPower * weight - kAreaPower * area;
   step = std::clamp(step, -9.0, 1.0);
   // Quarter powers of two: the last bits of the weight do not matter.
@@ -129,189 +167,176 @@ int step_reference(const AlignedTotals& totals, const AlignedLayout& layout) {
       std::clamp(std::floor(4 * portable_log2(std::max(1e-9, sum / norm / area)) + 0.5), -120.0, 120.0));
 }
 
-// ---- entropy model ----
-
 namespace {
-constexpr int kViewClasses = 6, kChannelClasses = 3, kNeighbour = 3;
-int channel_class(size_t c) { return c == 0 ? 0 : c == 1 ? 1 : 2; }
-int bucket(int n) { return std::min(n, 2); }
+
+// One sheet being rebuilt, level by level.
+template <class Coder>
+class SheetWalk {
+ public:
+  SheetWalk(const AlignedLayout& layout, LogScale scale, const BlockTransform& transform, const StepRule& steps,
+            Coder& coder, Targets* targets, LeafTable* leaves, size_t max_nodes)
+      : layout_(layout),
+        scale_(scale),
+        transform_(transform),
+        steps_(steps),
+        coder_(coder),
+        targets_(targets),
+        leaves_(leaves),
+        max_nodes_(max_nodes),
+        width_(layout.width()),
+        lattice_({layout.upper_only, layout.half_stored}, width_),
+        blocks_(layout, transform),
+        levels_(3 * width_),
+        changes_(3 * (lattice_.row() + 16), int16_t{0}),
+        mean_(padded_row(layout.views())),
+        difference_(targets ? 3 * width_ : 0),
+        coefficient_(difference_.size()) {
+    if (!targets) lattice_.reserve(std::min(max_nodes, (size_t{1} << 24) / width_));
+  }
+
+  void run() {
+    roots();
+    size_t begin = 0, above = 0;
+    while (begin < lattice_.size()) {
+      const size_t end = lattice_.size();
+      if (begin > 0) {
+        read_splits(above, begin);
+        lattice_.link(begin, end);
+      }
+      find_centers(begin, end);
+      for (size_t i = begin; i < end; ++i) visit(i, centers_[i - begin]);
+      above = begin, begin = end;
+    }
+  }
+
+ private:
+  // Roots, each predicted by the one before, and which of them are divided.
+  void roots() {
+    const float step = std::min(0.25f, static_cast<float>(layout_.quality));
+    std::vector<int16_t> predicted(lattice_.row(), 0);
+    std::vector<float> known(width_);
+    for (size_t i = 0; i < lattice_.size(); ++i) {
+      if (targets_) {
+        to_source(predicted.data(), known);
+        targets_->root(i, known, {difference_.data(), width_});
+      }
+      const int32_t block = convey(1, step, -1);
+      const bool any = change(0, block, step);
+      int16_t* value = lattice_.value(i);
+      for (size_t j = 0; j < lattice_.row(); ++j) {
+        const int sum = predicted[j] + (any && j < width_ ? change_row(0)[j] : 0);
+        predicted[j] = value[j] = static_cast<int16_t>(std::clamp(sum, -LogScale::kMost, LogScale::kMost));
+      }
+    }
+    for (size_t i = 0; i < lattice_.size(); ++i)
+      lattice_.node(i).split = coder_.raw(targets_ && targets_->split(i) ? 1 : 0, 1) != 0;
+  }
+  // For the children of the nodes [begin, end).
+  void read_splits(size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const CodedLattice::Node& node = lattice_.node(i);
+      if (node.first_child < 0 || node.order + 1 >= kMaxOrder) continue;
+      uint32_t mask = 0;
+      if (targets_) {
+        size_t child = static_cast<size_t>(node.first_child);
+        for (uint32_t k = 0; k < 4; ++k)
+          if (node.child_mask & (1u << k)) mask |= targets_->split(child++) ? 1u << k : 0;
+      }
+      mask = blocks_.code_split(coder_, mask, block_[i], lattice_.divided_around(i));
+      size_t child = static_cast<size_t>(node.first_child);
+      for (uint32_t k = 0; k < 4; ++k)
+        if (node.child_mask & (1u << k)) lattice_.node(child++).split = (mask & (1u << k)) != 0;
+    }
+  }
+  void find_centers(size_t begin, size_t end) {
+    centers_.resize((end - begin + 7) / 8 * 8);
+    for (size_t i = begin; i < end; i += 8) {
+      CellLanes cells;
+      for (size_t lane = 0; lane < std::min<size_t>(8, end - i); ++lane) cells.set(lane, lattice_.node(i + lane).at);
+      EightFloats x, y, z;
+      centers_of(cells, lattice_.node(i).order, x, y, z);
+      for (size_t lane = 0; lane < 8; ++lane) centers_[i - begin + lane] = {x[lane], y[lane], z[lane]};
+    }
+  }
+  void visit(size_t i, const Center& center) {
+    lattice_.find_slopes(i);
+    block_.resize(lattice_.size(), -1);
+    const CodedLattice::Node& node = lattice_.node(i);
+    if (!node.split) {
+      if (leaves_)
+        leaves_->add(node.at, node.order, center, lattice_.value(i), lattice_.slope(i, 0), lattice_.slope(i, 1));
+      return;
+    }
+    if (lattice_.size() + 4 > max_nodes_) throw Error("SQT payload is damaged: more nodes than allowed");
+    const float step = steps_.step(center, node.order, mean_of(i));
+    if (targets_) targets_->differences(lattice_, i, difference_);
+    const int32_t block = convey(3, step, node.parent >= 0 ? block_[static_cast<size_t>(node.parent)] : -1);
+    block_[i] = block;
+    const int16_t* details[3];
+    for (size_t d = 0; d < 3; ++d) details[d] = change(d, block, step) ? change_row(d) : nullptr;
+    lattice_.divide(i, details);
+    if (targets_) targets_->divided(lattice_, i);
+  }
+  // Quantises (encoder) or not (decoder) and codes the rows of differences.
+  int32_t convey(size_t count, float step, int32_t above) {
+    if (targets_)
+      for (size_t d = 0; d < count; ++d) {
+        transform_.forward({&difference_[d * width_], width_}, {&coefficient_[d * width_], width_});
+        for (size_t j = 0; j < width_; ++j) levels_[d * width_ + j] = quantise(coefficient_[d * width_ + j] / step);
+      }
+    return blocks_.code(coder_, {levels_.data(), count * width_}, count, above);
+  }
+  int16_t* change_row(size_t d) { return &changes_[d * (lattice_.row() + 16)]; }
+  bool change(size_t d, int32_t block, float step) {
+    return transform_.inverse(&levels_[d * width_], blocks_.counts(block) + d * layout_.channels, step / scale_.unit(),
+                              change_row(d));
+  }
+  // Log2 values of a node's views, averaged over channels.
+  const float* mean_of(size_t i) {
+    const size_t views = layout_.views();
+    const int16_t* value = lattice_.value(i);
+    const float unit = scale_.unit() / static_cast<float>(layout_.channels), offset = static_cast<float>(scale_.offset);
+    for (size_t v = 0; v < views; v += 8) {  // what is read behind the views counts for nothing
+      Int8 sum{};
+      for (size_t c = 0; c < layout_.channels; ++c)
+        sum += __builtin_convertvector(load<Short8>(value + c * views + v), Int8);
+      store(&mean_[v], offset + unit * __builtin_convertvector(sum, EightFloats));
+    }
+    return mean_.data();
+  }
+  void to_source(const int16_t* row, std::span<float> values) const {
+    for (size_t v = 0; v < layout_.views(); ++v)
+      for (size_t c = 0; c < layout_.channels; ++c)
+        values[v * layout_.channels + c] = scale_.value(static_cast<float>(row[c * layout_.views() + v]));
+  }
+
+  const AlignedLayout& layout_;
+  LogScale scale_;
+  const BlockTransform& transform_;
+  const StepRule& steps_;
+  Coder& coder_;
+  Targets* targets_;
+  LeafTable* leaves_;
+  size_t max_nodes_, width_;
+  CodedLattice lattice_;
+  BlockCode blocks_;
+  std::vector<int32_t> block_;  // [node] of divided nodes
+  std::vector<int32_t> levels_;
+  std::vector<int16_t> changes_;
+  std::vector<Center> centers_;  // of the level's nodes
+  std::vector<float> mean_, difference_, coefficient_;
+};
+
 }  // namespace
 
-BlockModel::BlockModel(const AlignedLayout& layout, const BlockTransform& transform)
-    : views_(layout.views()),
-      channels_(layout.channels),
-      any_(3 * kChannelClasses * 4 * 4),
-      significant_(kViewClasses * kChannelClasses * 9),
-      last_(kViewClasses * kChannelClasses * 3),
-      split_(16 * 5 * 2),
-      magnitude_(kViewClasses * kChannelClasses * kNeighbour),
-      nothing_(views_, 0) {
-  for (size_t k = 0; k < views_; ++k) {
-    const int h = transform.height(k);
-    view_class_.push_back(h == 0 ? 0 : h == 1 ? 1 : h == 2 ? 2 : h <= 4 ? 3 : h <= 8 ? 4 : 5);
-  }
-}
-
 template <class Coder>
-bool BlockModel::code_split(Coder& coder, bool split, int order, int divided_around, bool parent_busy) {
-  return coder.bit(split_[static_cast<size_t>((std::min(order, 15) * 5 + divided_around) * 2 + (parent_busy ? 1 : 0))],
-                   split);
+void walk_sheet(const AlignedLayout& layout, LogScale scale, const BlockTransform& transform, const StepRule& steps,
+                Coder& coder, Targets* targets, LeafTable* leaves, size_t max_nodes) {
+  SheetWalk<Coder>(layout, scale, transform, steps, coder, targets, leaves, max_nodes).run();
 }
-
-// Magnitudes >= 1: unary up to 14, then Exp-Golomb.
-template <class Coder>
-int BlockModel::code_magnitude(Coder& coder, int magnitude, Magnitude& contexts) {
-  int m = 1;
-  while (m < 15) {
-    if (!coder.bit(contexts[static_cast<size_t>(m - 1)], magnitude > m)) return m;
-    ++m;
-  }
-  const uint32_t rest = static_cast<uint32_t>(magnitude - 15) + 1;
-  int bits = 0;
-  while (bits < 20 && coder.bit(contexts[static_cast<size_t>(14 + std::min(bits, 5))], (rest >> (bits + 1)) != 0))
-    ++bits;
-  uint32_t value = 1;
-  for (int b = bits - 1; b >= 0; --b) value = (value << 1) | (coder.even_bit((rest >> b) & 1) ? 1u : 0u);
-  return static_cast<int>(value) - 1 + 15;
-}
-
-template <class Coder>
-void BlockModel::code(Coder& coder, std::span<int32_t> block, size_t details, std::span<const int32_t> parent,
-                      int order) {
-  const size_t width = views_ * channels_;
-  const int depth = std::min(3, order / 2);
-  const bool has_parent = parent.size() == 3 * width;
-  int busy_before = 0;
-  for (size_t d = 0; d < details; ++d)
-    for (size_t c = 0; c < channels_; ++c) {
-      // Levels known already at the same frequencies: of the parent, of the detail and of the channel before.
-      const size_t base = d * width + c * views_;
-      int32_t* row = &block[base];
-      const int32_t* above = has_parent ? &parent[base] : nothing_.data();
-      const int32_t* detail = d > 0 ? row - width : nothing_.data();
-      const int32_t* channel = c > 0 ? row - views_ : nothing_.data();
-      // Is there anything in this row?
-      int parent_any = 0;
-      for (size_t k = 0; k < views_ && parent_any < 3; ++k) parent_any += std::min(2, std::abs(above[k]));
-      size_t end = views_;
-      if constexpr (Coder::kEncodes)
-        while (end > 0 && row[end - 1] == 0) --end;
-      const size_t any_context = static_cast<size_t>(
-          ((depth * 3 + channel_class(c)) * 4 + std::min(3, parent_any)) * 3 + std::min(2, busy_before));
-      if (!coder.bit(any_[any_context], end > 0)) {
-        std::fill_n(row, views_, int32_t{0});
-        busy_before = std::max(0, busy_before - (c + 1 == channels_ ? 1 : 0));
-        continue;
-      }
-      busy_before = std::min(2, busy_before + 1);
-      int before = 0;
-      for (size_t k = 0; k < views_; ++k) {
-        const int up = std::abs(above[k]), beside = std::abs(detail[k]) + std::abs(channel[k]) + before;
-        const size_t where = static_cast<size_t>(view_class_[k] * kChannelClasses + channel_class(c));
-        const int known = row[k];
-        if (!coder.bit(significant_[where * 9 + static_cast<size_t>(bucket(up) * 3 + bucket(beside))], known != 0)) {
-          row[k] = before = 0;
-          continue;
-        }
-        const int m =
-            code_magnitude(coder, std::abs(known),
-                           magnitude_[where * kNeighbour + static_cast<size_t>(bucket((up + beside + 1) / 2))]);
-        const bool negative = coder.even_bit(known < 0);
-        row[k] = negative ? -m : m;
-        before = m;
-        if (k + 1 < views_ && coder.bit(last_[where * 3 + static_cast<size_t>(bucket(up))], k + 1 == end)) {
-          std::fill(row + k + 1, row + views_, int32_t{0});
-          break;
-        }
-      }
-    }
-}
-
-// ---- the walk ----
-
-template <class Coder>
-Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform, const StepRule& steps, Coder& coder,
-                   Targets* targets, size_t max_nodes) {
-  const size_t width = layout.width();
-  Lattice lattice({layout.upper_only, layout.half_stored}, width);
-  if (!targets) lattice.reserve(std::min(max_nodes, (size_t{1} << 23) / width));
-  BlockModel model(layout, transform);
-  std::vector<float> predicted(width, 0.0f), difference(3 * width), coefficient(3 * width), change(3 * width);
-  std::vector<int32_t> levels(3 * width);
-  std::vector<int32_t> blocks;                           // of divided nodes, one after the other
-  std::vector<int32_t> block_above(lattice.size(), -1);  // index of the parent's block
-
-  // Quantises (encoder) or not (decoder), codes, and reconstructs `count` rows of differences.
-  auto convey = [&](size_t count, float step, std::span<const int32_t> parent, int order) {
-    if (targets)
-      for (size_t d = 0; d < count; ++d) {
-        transform.forward({&difference[d * width], width}, {&coefficient[d * width], width});
-        for (size_t j = 0; j < width; ++j) levels[d * width + j] = quantise(coefficient[d * width + j] / step);
-      }
-    model.code(coder, {levels.data(), count * width}, count, parent, order);
-    for (size_t d = 0; d < count; ++d) {
-      bool any = false;
-      for (size_t j = 0; j < width; ++j) {
-        coefficient[d * width + j] = static_cast<float>(levels[d * width + j]) * step;
-        any |= levels[d * width + j] != 0;
-      }
-      if (any)
-        transform.inverse({&coefficient[d * width], width}, {&change[d * width], width});
-      else
-        std::fill_n(&change[d * width], width, 0.0f);
-    }
-  };
-
-  const float root_step = std::min(0.25f, static_cast<float>(layout.quality));
-  for (size_t i = 0; i < lattice.size(); ++i) {
-    if (targets) targets->root(i, predicted, {difference.data(), width});
-    convey(1, root_step, {}, 0);
-    for (size_t j = 0; j < width; ++j)
-      predicted[j] = lattice.value(i)[j] = std::clamp(predicted[j] + change[j], -100.0f, 100.0f);
-  }
-  size_t begin = 0;
-  while (begin < lattice.size()) {
-    const size_t end = lattice.size();
-    lattice.compute_slopes(begin, end);
-    for (size_t i = begin; i < end; ++i) {
-      const CellId id = lattice.node(i).id;
-      if (id.order() >= kMaxOrder) continue;
-      const std::span<const int32_t> parent =
-          block_above[i] >= 0
-              ? std::span<const int32_t>(&blocks[static_cast<size_t>(block_above[i]) * 3 * width], 3 * width)
-              : std::span<const int32_t>{};
-      bool busy = false;
-      for (const int32_t l : parent) busy |= std::abs(int{l}) > 1;
-      const int around = lattice.divided_around(i);
-      if (!model.code_split(coder, targets ? targets->split(i) : false, id.order(), around, busy)) continue;
-      if (lattice.size() + 4 > max_nodes) throw Error("SQT payload is damaged: more nodes than allowed");
-      const float step = steps.step(id, lattice.value(i));
-      if (targets) targets->differences(lattice, i, difference);
-      convey(3, step, parent, id.order());
-      blocks.insert(blocks.end(), levels.begin(), levels.end());
-      lattice.divide(i);
-      block_above.resize(lattice.size(), static_cast<int32_t>(blocks.size() / (3 * width)) - 1);
-      const Lattice::Node node = lattice.node(i);
-      size_t child = static_cast<size_t>(node.first_child);
-      for (uint32_t k = 0; k < 4; ++k) {
-        if (!(node.child_mask & (1u << k))) continue;
-        const std::span<float> value = lattice.value(child++);
-        lattice.predict(i, k, value);
-        const float sx = k & 1 ? 1.0f : -1.0f, sy = k & 2 ? 1.0f : -1.0f, sxy = sx * sy;
-        for (size_t j = 0; j < width; ++j)
-          value[j] = std::clamp(value[j] + (sx * change[j] + sy * change[width + j] + sxy * change[2 * width + j]),
-                                -100.0f, 100.0f);
-      }
-      if (targets) targets->divided(lattice, i);
-    }
-    begin = end;
-  }
-  return lattice;
-}
-
-template Lattice walk_sheet<RangeEncoder>(const AlignedLayout&, const BlockTransform&, const StepRule&, RangeEncoder&,
-                                          Targets*, size_t);
-template Lattice walk_sheet<RangeDecoder>(const AlignedLayout&, const BlockTransform&, const StepRule&, RangeDecoder&,
-                                          Targets*, size_t);
+template void walk_sheet(const AlignedLayout&, LogScale, const BlockTransform&, const StepRule&, PrefixEncoder&,
+                         Targets*, LeafTable*, size_t);
+template void walk_sheet(const AlignedLayout&, LogScale, const BlockTransform&, const StepRule&, PrefixDecoder&,
+                         Targets*, LeafTable*, size_t);
 
 }  // namespace suite::sqt

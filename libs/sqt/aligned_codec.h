@@ -1,12 +1,16 @@
 // What encoder and decoder of the aligned method share: the transform over views and channels, the quantisation step,
-// and the entropy model of a block. Internal to libs/sqt; the method is described in aligned.h.
+// and the walk through a sheet. Internal to libs/sqt; the method is described in aligned.h, the syntax of a block is in
+// block_code.h.
 #pragma once
-#include <array>
 #include <vector>
 
 #include "sqt/aligned.h"
+#include "sqt/block_code.h"
+#include "sqt/coded_lattice.h"
 #include "sqt/lattice.h"
-#include "sqt/range_coder.h"
+#include "sqt/leaf_table.h"
+#include "sqt/prefix_code.h"
+#include "sqt/view_lanes.h"
 
 namespace suite::sqt {
 
@@ -14,16 +18,20 @@ namespace suite::sqt {
 class BlockTransform {
  public:
   explicit BlockTransform(const AlignedLayout& layout);
-  // values [view][channel] <-> coefficients [channel frequency][view frequency]; coefficient count = layout.width().
+  // values [view][channel] -> coefficients [channel frequency][view frequency]; layout.width() of either.
   void forward(std::span<const float> values, std::span<float> coefficients) const;
-  void inverse(std::span<const float> coefficients, std::span<float> values) const;
+  // What levels [channel frequency][view frequency] times `step` stand for, rounded: [channel][view]. counts: how many
+  // levels of each channel frequency count, those behind are 0. False when there are none; then nothing is written.
+  bool inverse(const int32_t* levels, const uint16_t* counts, float step, int16_t* values) const;
   // "How high" a view frequency is, for contexts: polar plus azimuthal wave number.
   int height(size_t view_frequency) const { return height_[view_frequency]; }
 
  private:
-  size_t views_, channels_;
-  std::vector<float> view_, channel_;  // [frequency][index]
+  size_t views_, channels_, stride_;
+  std::vector<float> view_;     // [frequency][stride]
+  std::vector<float> channel_;  // [frequency][channel]
   std::vector<int> height_;
+  mutable std::vector<float> mixed_;  // room for inverse, which one thread at a time calls
 };
 
 // Quantisation step of the differences below a node: small where a cell weighs much in the cosine-weighted error.
@@ -31,39 +39,19 @@ class StepRule {
  public:
   // reference: log2 of the mean weight of a cell direction.
   StepRule(const AlignedLayout& layout, double reference);
-  float step(CellId cell, std::span<const float> value) const;
+  // Of a cell; mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the
+  // views counts for nothing.
+  float step(const Center& center, int order, const float* mean) const;
 
  private:
   const AlignedLayout& layout_;
   double reference_, log2_quality_;
-  std::vector<LobeMap> maps_;
-  std::vector<float> view_weight_;
+  ViewLanes lanes_;
+  float norm_ = 0;
 };
 
 // Mean log2 weight that StepRule refers to, from the totals; rounded so that it can be stored in a byte.
 int step_reference(const AlignedTotals& totals, const AlignedLayout& layout);
-
-// Entropy model of all syntax elements. Coder: RangeEncoder (codes what it is given) or RangeDecoder (fills in).
-class BlockModel {
- public:
-  BlockModel(const AlignedLayout& layout, const BlockTransform& transform);
-  // block: `details` (1 for roots, 3 otherwise) x channel frequency x view frequency quantised levels; parent: the
-  // block of the node above, or empty.
-  template <class Coder>
-  void code(Coder& coder, std::span<int32_t> block, size_t details, std::span<const int32_t> parent, int order);
-  template <class Coder>
-  bool code_split(Coder& coder, bool split, int order, int divided_around, bool parent_busy);
-
- private:
-  using Magnitude = std::array<BitContext, 20>;
-  template <class Coder>
-  int code_magnitude(Coder& coder, int magnitude, Magnitude& contexts);
-  size_t views_, channels_;
-  std::vector<int> view_class_;
-  std::vector<BitContext> any_, significant_, last_, split_;
-  std::vector<Magnitude> magnitude_;
-  std::vector<int32_t> nothing_;  // a row of zeros
-};
 
 // What the encoder wants; a decoder has none. Nodes are named by their index in the lattice being rebuilt.
 class Targets {
@@ -71,16 +59,17 @@ class Targets {
   virtual ~Targets() = default;
   virtual bool split(size_t node) = 0;
   // Differences [detail][view][channel] that the block of this node should convey, given what was decoded so far.
-  virtual void differences(const Lattice& lattice, size_t node, std::span<float> details) = 0;
+  virtual void differences(const CodedLattice& lattice, size_t node, std::span<float> details) = 0;
   virtual void root(size_t node, std::span<const float> predicted, std::span<float> difference) = 0;
   // The node has been divided: children follow in the lattice's order.
-  virtual void divided(const Lattice& lattice, size_t node) = 0;
+  virtual void divided(const CodedLattice& lattice, size_t node) = 0;
 };
 
-// Rebuilds (and with targets: codes) one sheet. max_nodes bounds memory; Error when it is exceeded.
+// Rebuilds (and with targets: codes) one sheet. leaves: receives the leaves, or null. max_nodes bounds memory; Error
+// when it is exceeded.
 template <class Coder>
-Lattice walk_sheet(const AlignedLayout& layout, const BlockTransform& transform, const StepRule& steps, Coder& coder,
-                   Targets* targets, size_t max_nodes);
+void walk_sheet(const AlignedLayout& layout, LogScale scale, const BlockTransform& transform, const StepRule& steps,
+                Coder& coder, Targets* targets, LeafTable* leaves, size_t max_nodes);
 
 // Quantises x (in steps): nearest, with a dead zone that saves more bits than it costs accuracy.
 inline int32_t quantise(float x) {

@@ -2,11 +2,11 @@
 // them, which decodes. See aligned.h.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <optional>
 
 #include "base/error.h"
 #include "sqt/aligned_source.h"
-#include "sqt/portable_math.h"
+#include "sqt/range_coder.h"
 
 namespace suite::sqt {
 
@@ -18,13 +18,22 @@ std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Imp
                            const StepRule& steps) {
   constexpr double kBitPrice =
       0.14;  // squared steps per bit: 2 ln 2 / 12 at high rate, a little more with the dead zone
-  const size_t width = layout.width();
+  const size_t width = layout.width(), channels = layout.channels;
+  std::vector<float> mean(padded_row(layout.views()), 0.0f);
   std::vector<uint8_t> keep(sheet.data.size(), 0);
   std::vector<double> benefit(sheet.data.size(), 0.0);
   for (size_t i = sheet.data.size(); i-- > 0;) {
     const Lattice::Node& node = sheet.data.node(i);
     if (node.first_child < 0) continue;
-    const float step = steps.step(node.id, sheet.data.value(i));
+    const std::span<const float> value = sheet.data.value(i);
+    const Dir middle = center_of(node.id);
+    const Center center{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)};
+    for (size_t v = 0; v < layout.views(); ++v) {
+      float sum = 0;
+      for (size_t c = 0; c < channels; ++c) sum += value[v * channels + c];
+      mean[v] = sum / static_cast<float>(channels);
+    }
+    const float step = steps.step(center, node.id.order(), mean.data());
     const float* detail = &sheet.details[static_cast<size_t>(sheet.detail_index[i]) * 3 * width];
     double gain = 0, bits = 6;
     for (size_t j = 0; j < 3 * width; ++j) {
@@ -44,19 +53,25 @@ std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Imp
 
 class SourceTargets final : public Targets {
  public:
-  SourceTargets(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, std::vector<uint8_t> keep)
-      : layout_(layout), sheet_(sheet), keep_(std::move(keep)) {}
+  SourceTargets(const AlignedLayout& layout, LogScale scale, const AlignedSource::Impl::Sheet& sheet,
+                std::vector<uint8_t> keep)
+      : layout_(layout), scale_(scale), sheet_(sheet), keep_(std::move(keep)), predicted_(4 * layout.width()) {}
   bool split(size_t node) override { return keep_[source(node)] != 0; }
-  void differences(const Lattice& lattice, size_t node, std::span<float> details) override {
-    family_details(layout_, sheet_, source(node), lattice, node, details);
+  void differences(const CodedLattice& lattice, size_t node, std::span<float> details) override {
+    for (uint32_t k = 0; k < 4; ++k)
+      for (size_t v = 0; v < layout_.views(); ++v)
+        for (size_t c = 0; c < layout_.channels; ++c)
+          predicted_[k * layout_.width() + v * layout_.channels + c] =
+              scale_.value(static_cast<float>(lattice.predicted(node, k, c * layout_.views() + v)));
+    family_details(layout_, sheet_, source(node), predicted_, details);
   }
   void root(size_t node, std::span<const float> predicted, std::span<float> difference) override {
     if (source_.size() <= node) source_.push_back(node);
     const std::span<const float> value = sheet_.data.value(node);
     for (size_t j = 0; j < value.size(); ++j) difference[j] = value[j] - predicted[j];
   }
-  void divided(const Lattice& lattice, size_t node) override {
-    const Lattice::Node& here = lattice.node(node);
+  void divided(const CodedLattice& lattice, size_t node) override {
+    const CodedLattice::Node& here = lattice.node(node);
     for (int k = 0; k < here.child_count; ++k)
       source_.push_back(static_cast<size_t>(sheet_.data.node(source(node)).first_child + k));
   }
@@ -64,35 +79,14 @@ class SourceTargets final : public Targets {
  private:
   size_t source(size_t node) const { return source_[node]; }
   const AlignedLayout& layout_;
+  LogScale scale_;
   const AlignedSource::Impl::Sheet& sheet_;
   std::vector<uint8_t> keep_;
+  std::vector<float> predicted_;
   std::vector<size_t> source_;
 };
 
-AlignedSheet leaves_of(const AlignedLayout& layout, const Lattice& lattice) {
-  const size_t width = layout.width();
-  AlignedSheet sheet;
-  for (size_t i = 0; i < lattice.size(); ++i)
-    if (lattice.node(i).first_child < 0) sheet.leaves.push_back(lattice.node(i).id);
-  // Room for coarse leaves to be divided (aligned_tables.cpp), so that the numbers need not move again.
-  sheet.plane.reserve((sheet.leaves.size() + std::min<size_t>(1024, (1 << 20) / width)) * width *
-                      AlignedSheet::kStride);
-  std::vector<float> row(width * AlignedSheet::kStride);
-  for (size_t i = 0; i < lattice.size(); ++i) {
-    if (lattice.node(i).first_child >= 0) continue;
-    const float* numbers[] = {lattice.value(i).data(), lattice.slope(i, 0).data(), lattice.slope(i, 1).data()};
-    for (size_t j = 0; j < width; j += 8) {
-      EightFloats lanes[4] = {};
-      const size_t n = std::min<size_t>(8, width - j);
-      for (size_t k = 0; k < 3; ++k) std::memcpy(&lanes[k], numbers[k] + j, n * sizeof(float));
-      lanes[3] = portable_exp2(lanes[0]) * mean_exp2(lanes[1]) * mean_exp2(lanes[2]);
-      for (size_t lane = 0; lane < n; ++lane)
-        for (size_t k = 0; k < 4; ++k) row[(j + lane) * AlignedSheet::kStride + k] = lanes[k][lane];
-    }
-    sheet.plane.insert(sheet.plane.end(), row.begin(), row.end());
-  }
-  return sheet;
-}
+constexpr size_t kHeadBytes = 3;  // reference, offset, fraction bits
 
 }  // namespace
 
@@ -101,30 +95,39 @@ std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality
   layout.quality = quality;
   const AlignedSource::Impl& m = source.impl();
   const BlockTransform transform(layout);
-  RangeEncoder coder;
+  PrefixEncoder coder(BlockCode::kContexts);
   const int reference = step_reference(m.totals, layout);
-  for (int b = 7; b >= 0; --b) coder.even_bit((((reference + 128) >> b) & 1) != 0);
   const StepRule steps(layout, 0.25 * reference);
   for (const auto& sheet : m.sheets) {
-    SourceTargets targets(layout, sheet, prune(layout, sheet, steps));
-    const Lattice lattice = walk_sheet(layout, transform, steps, coder, &targets, size_t{1} << 26);
-    if (decoded) decoded->push_back(leaves_of(layout, lattice));
+    SourceTargets targets(layout, m.scale, sheet, prune(layout, sheet, steps));
+    std::optional<LeafTable> leaves;
+    if (decoded) leaves.emplace(layout, m.scale, decoded->emplace_back(), 0);
+    walk_sheet(layout, m.scale, transform, steps, coder, &targets, leaves ? &*leaves : nullptr, size_t{1} << 26);
   }
-  return coder.finish();
+  std::vector<std::byte> bytes{static_cast<std::byte>(reference + 128), static_cast<std::byte>(m.scale.offset + 128),
+                               static_cast<std::byte>(m.scale.fraction_bits)};
+  const std::vector<std::byte> coded = coder.finish();
+  bytes.insert(bytes.end(), coded.begin(), coded.end());
+  return bytes;
 }
 
 std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
                                         size_t max_leaves) {
-  RangeDecoder coder(payload);
-  int reference = -128;
-  for (int b = 7; b >= 0; --b) reference += coder.even_bit() ? 1 << b : 0;
+  if (payload.size() < kHeadBytes) throw Error("SQT payload is damaged: it ends too early");
+  const int reference = std::to_integer<int>(payload[0]) - 128;
+  const LogScale scale{std::to_integer<int>(payload[1]) - 128, std::to_integer<int>(payload[2])};
+  if (std::abs(scale.offset) > LogScale::kMostOffset || scale.fraction_bits < LogScale::kLeastBits ||
+      scale.fraction_bits > LogScale::kMostBits)
+    throw Error("SQT payload is damaged: a scale that does not exist");
+  PrefixDecoder coder(payload.subspan(kHeadBytes), BlockCode::kContexts);
   const BlockTransform transform(layout);
   const StepRule steps(layout, 0.25 * reference);
-  std::vector<AlignedSheet> sheets;
-  for (int s = 0; s < layout.sheets; ++s)
-    sheets.push_back(
-        leaves_of(layout, walk_sheet(layout, transform, steps, coder, nullptr, max_leaves + max_leaves / 2 + 64)));
-  if (coder.overrun() > 8) throw Error("SQT payload is damaged: it ends too early");
+  std::vector<AlignedSheet> sheets(static_cast<size_t>(layout.sheets));
+  for (AlignedSheet& sheet : sheets) {
+    LeafTable leaves(layout, scale, sheet, max_leaves);
+    walk_sheet(layout, scale, transform, steps, coder, nullptr, &leaves, max_leaves + max_leaves / 2 + 64);
+  }
+  if (coder.overrun()) throw Error("SQT payload is damaged: it ends too early");
   return sheets;
 }
 

@@ -69,9 +69,10 @@ std::vector<TotalView> total_views(const AlignedLayout& layout, const AlignedTot
 // Adds a leaf's share of the integral of f |cos| to every view: integral[view][channel].
 class LeafIntegral {
  public:
-  LeafIntegral(const AlignedLayout& layout, const std::vector<TotalView>& views) : layout_(layout), views_(views) {}
+  LeafIntegral(const AlignedLayout& layout, LogScale scale, const std::vector<TotalView>& views)
+      : layout_(layout), scale_(scale), views_(views) {}
 
-  void add(CellId id, size_t sheet, const float* leaf, std::vector<double>& integral) {
+  void add(CellId id, size_t sheet, const int16_t* leaf, std::vector<double>& integral) {
     const double copies = layout_.half_stored && mirrored(id) != id ? 2 : 1;
     const int extra = std::max(0, kPartOrder - id.order());
     const uint32_t side = 1u << extra;
@@ -84,7 +85,7 @@ class LeafIntegral {
   }
 
  private:
-  void add(const LeafPart& part, double copies, size_t sheet, const float* leaf, std::vector<double>& integral) {
+  void add(const LeafPart& part, double copies, size_t sheet, const int16_t* leaf, std::vector<double>& integral) {
     const int order = part.id.order();
     const double width = std::sqrt(cell_solid_angle(order));
     const int usual = order >= 7 ? 1 : order == 6 ? 2 : 4;
@@ -102,8 +103,8 @@ class LeafIntegral {
     }
   }
   void add(const LeafGrid& grid, double width, double area, const TotalView& view, const LobeMap& map,
-           const float* leaf, double* integral) {
-    const size_t channels = layout_.channels, points = grid.direction.size();
+           const int16_t* leaf, double* integral) {
+    const size_t views = layout_.views(), channels = layout_.channels, points = grid.direction.size();
     weight_.resize(points);
     bool any = false;
     for (size_t k = 0; k < points; ++k) {
@@ -117,10 +118,11 @@ class LeafIntegral {
     if (!any) return;
     const float spacing = static_cast<float>(width / grid.side);
     for (size_t c = 0; c < channels; ++c) {
-      const float* a = leaf + (view.low * channels + c) * kStride;
-      const float* b = leaf + (view.high * channels + c) * kStride;
-      const float v = view.w0 * a[0] + view.w1 * b[0], gx = view.w0 * a[1] + view.w1 * b[1],
-                  gy = view.w0 * a[2] + view.w1 * b[2];
+      const int16_t* a = leaf + (c * views + view.low) * kStride;
+      const int16_t* b = leaf + (c * views + view.high) * kStride;
+      const float unit = scale_.unit();
+      const float v = scale_.value(view.w0 * a[0] + view.w1 * b[0]), gx = unit * (view.w0 * a[1] + view.w1 * b[1]),
+                  gy = unit * (view.w0 * a[2] + view.w1 * b[2]);
       float sum = 0;
       for (size_t k = 0; k < points; ++k) sum += weight_[k] * portable_exp2(v + grid.dx[k] * gx + grid.dy[k] * gy);
       integral[c] += static_cast<double>(sum * mean_exp2(gx * spacing) * mean_exp2(gy * spacing)) * area /
@@ -128,6 +130,7 @@ class LeafIntegral {
     }
   }
   const AlignedLayout& layout_;
+  LogScale scale_;
   const std::vector<TotalView>& views_;
   std::array<LeafGrid, 4> grids_;
   std::vector<float> weight_;
@@ -146,7 +149,7 @@ std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<Alig
     const size_t blocks = (sheet.leaves.size() + kBlock - 1) / kBlock;
     std::vector<std::vector<double>> partial(blocks);
     parallel_for(0, blocks, 1, [&](size_t begin, size_t end) {
-      LeafIntegral leaf_integral(layout, views);
+      LeafIntegral leaf_integral(layout, sheet.scale, views);
       for (size_t b = begin; b < end; ++b) {
         partial[b].assign(integral.size(), 0.0);
         for (size_t i = b * kBlock; i < std::min(sheet.leaves.size(), (b + 1) * kBlock); ++i)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "base/error.h"
@@ -195,6 +196,14 @@ AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& 
   return sheet;
 }
 
+LogScale scale_of(const std::vector<AlignedSource::Impl::Sheet>& sheets) {
+  float low = std::numeric_limits<float>::max(), high = -low;
+  for (const auto& sheet : sheets)
+    for (size_t i = 0; i < sheet.data.size(); ++i)
+      for (const float v : sheet.data.value(i)) low = std::min(low, v), high = std::max(high, v);
+  return LogScale::of(low, high);
+}
+
 // Transformed differences of every divided node from the plane of the data.
 void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet) {
   const size_t width = layout.width();
@@ -206,9 +215,10 @@ void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& 
       sheet.detail_index[i] = static_cast<int32_t>(divided.size()), divided.push_back(i);
   sheet.details.resize(divided.size() * 3 * width);
   parallel_for(0, divided.size(), 64, [&](size_t begin, size_t end) {
-    std::vector<float> details(3 * width);
+    std::vector<float> details(3 * width), predicted(4 * width);
     for (size_t n = begin; n < end; ++n) {
-      family_details(layout, sheet, divided[n], sheet.data, divided[n], details);
+      for (uint32_t k = 0; k < 4; ++k) sheet.data.predict(divided[n], k, {&predicted[k * width], width});
+      family_details(layout, sheet, divided[n], predicted, details);
       for (size_t d = 0; d < 3; ++d)
         transform.forward({&details[d * width], width}, {&sheet.details[(n * 3 + d) * width], width});
     }
@@ -218,11 +228,9 @@ void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& 
 }  // namespace
 
 void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
-                    const Lattice& plane, size_t node, std::span<float> details) {
+                    std::span<const float> predicted, std::span<float> details) {
   const size_t views = layout.views(), channels = layout.channels, width = layout.width();
   const Lattice::Node& family = sheet.data.node(source);
-  std::vector<float> predicted(4 * width);
-  for (uint32_t k = 0; k < 4; ++k) plane.predict(node, k, {&predicted[k * width], width});
   std::vector<int> known(views, 0);
   for (size_t v = 0; v < views; ++v) {
     unsigned present = 0;
@@ -374,6 +382,7 @@ AlignedSource::AlignedSource(const Function& function, const Options& asked,
     leaves.push_back(leaves_of(layout, m.sheets.back()));
     transform_details(layout, m.sheets.back());
   }
+  m.scale = scale_of(m.sheets);
   survey_totals(function, layout, leaves, m.sheets, m.totals);
   survey_dirac(function, layout, m.totals);
   if (surface)  // no surface returns more than it receives

@@ -18,11 +18,12 @@ struct AlignedSource::Impl {
     std::vector<float> details;
   };
   std::vector<Sheet> sheets;
+  LogScale scale;  // that holds the averages
 };
 
-// Differences [3][view][channel] of a family of the data from the plane of a node (of the data or of what was decoded).
+// Differences [3][view][channel] of a family of the data from predictions of the four children, [4][view][channel].
 void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
-                    const Lattice& plane, size_t node, std::span<float> details);
+                    std::span<const float> predicted, std::span<float> details);
 // Rows [view][channel]: views that are not known take the values of the nearest known view of the same azimuth.
 void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::span<float> rows, size_t count);
 

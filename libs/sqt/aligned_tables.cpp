@@ -1,177 +1,144 @@
 #include "sqt/aligned_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
-#include "sqt/lattice.h"
-#include "sqt/portable_math.h"
 
 namespace suite::sqt {
 
 namespace {
 
-// Leaves are divided at least to this order for sampling, so that cosine and stretch vary little within one.
-constexpr int kSampleOrder = 4;
-// A cell within reach of the horizon keeps this much of its mass when cut away, so that neighbouring views can draw it.
-constexpr float kHorizonFloor = 1e-3f;
-constexpr size_t kStride = AlignedSheet::kStride;
-
-// Divides coarse leaves, the planes go on: the first part takes the place of the leaf, the others follow at the end.
-void refine(AlignedSheet& sheet, const Region& region, size_t width) {
-  const size_t row = width * kStride, stored = sheet.leaves.size();
-  for (size_t i = 0; i < stored; ++i) {
-    const CellId id = sheet.leaves[i];
-    const int extra = kSampleOrder - id.order();
-    if (extra <= 0) continue;
-    const std::vector<float> whole(sheet.plane.begin() + static_cast<ptrdiff_t>(i * row),
-                                   sheet.plane.begin() + static_cast<ptrdiff_t>((i + 1) * row));
-    const uint32_t side = 1u << extra;
-    const float scale = 1 / static_cast<float>(side);
-    bool first = true;
-    for (uint32_t k = 0; k < side * side; ++k) {
-      const CellId part = CellId::of(kSampleOrder, (id.index() << (2 * extra)) + k);
-      if (!region.holds(part)) continue;  // across the symmetry plane or below the horizon
-      const size_t n = first ? i : sheet.leaves.size();
-      if (!first) sheet.leaves.push_back(part), sheet.plane.resize(sheet.leaves.size() * row);
-      sheet.leaves[n] = part;
-      first = false;
-      const CellXY at = xy_of(part);
-      const float dx = (static_cast<float>(at.x % side) + 0.5f) * scale - 0.5f,
-                  dy = (static_cast<float>(at.y % side) + 0.5f) * scale - 0.5f;
-      float* q = &sheet.plane[n * row];
-      for (size_t j = 0; j < row; j += kStride) {
-        q[j] = whole[j] + dx * whole[j + 1] + dy * whole[j + 2];
-        q[j + 1] = whole[j + 1] * scale, q[j + 2] = whole[j + 2] * scale;
-        q[j + 3] = portable_exp2(q[j]) * mean_exp2(q[j + 1]) * mean_exp2(q[j + 2]);
-      }
-    }
+// Columns to rows.
+void transpose(Int8 (&r)[8]) {
+  const Int8 even{0, 8, 1, 9, 4, 12, 5, 13}, odd{2, 10, 3, 11, 6, 14, 7, 15};
+  Int8 a[8], b[8];
+  for (int i = 0; i < 8; i += 2) {
+    a[i] = __builtin_shuffle(r[i], r[i + 1], even);     // columns 0 1 | 4 5 of two rows
+    a[i + 1] = __builtin_shuffle(r[i], r[i + 1], odd);  // columns 2 3 | 6 7
+  }
+  const Int8 low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
+  for (int i = 0; i < 8; i += 4) {
+    b[i] = __builtin_shuffle(a[i], a[i + 2], low);           // columns 0 | 4 of four rows
+    b[i + 1] = __builtin_shuffle(a[i], a[i + 2], high);      // 1 | 5
+    b[i + 2] = __builtin_shuffle(a[i + 1], a[i + 3], low);   // 2 | 6
+    b[i + 3] = __builtin_shuffle(a[i + 1], a[i + 3], high);  // 3 | 7
+  }
+  const Int8 front{0, 1, 2, 3, 8, 9, 10, 11}, back{4, 5, 6, 7, 12, 13, 14, 15};
+  for (int i = 0; i < 4; ++i) {
+    r[i] = __builtin_shuffle(b[i], b[i + 4], front);
+    r[i + 4] = __builtin_shuffle(b[i], b[i + 4], back);
   }
 }
-
-// Integral of |cos| stretch (or 1) over a leaf for all views at once, kept above a floor near the horizon.
-class LeafWeights {
- public:
-  explicit LeafWeights(const AlignedLayout& layout) : layout_(layout) {
-    for (const double theta : layout.theta)
-      for (size_t j = 0; j < layout.phi_count; ++j) {
-        Dir out = dir_from_angles(theta, 2 * kPi * static_cast<double>(j) / static_cast<double>(layout.phi_count));
-        if (layout.frame == LobeFrame::retro) out.x = -out.x, out.y = -out.y;
-        x_.push_back(static_cast<float>(out.x));
-        y_.push_back(static_cast<float>(out.y));
-        z_.push_back(static_cast<float>(out.z));
-      }
-  }
-  // weight: one number per view.
-  void of(CellId id, double copies, std::span<float> weight) const {
-    const double area = cell_solid_angle(id.order());
-    const bool reflects = layout_.frame == LobeFrame::half || layout_.frame == LobeFrame::retro;
-    if (!layout_.cosine_weighted && !reflects) {
-      std::fill(weight.begin(), weight.end(), static_cast<float>(area * copies));
-      return;
-    }
-    // As far below the horizon as a point may be while a part of its leaf is above: the cosine changes by at most twice
-    // the angle, and a leaf reaches about 0.8 of its width from its middle.
-    const float reach = static_cast<float>(2 * std::sqrt(area));
-    const int side = id.order() >= 6 ? 1 : 2;
-    const float share = static_cast<float>(area * copies / (side * side));
-    std::fill(weight.begin(), weight.end(), 0.0f);
-    for (int k = 0; k < side * side; ++k) {
-      const Dir d = direction_fast(point_in(id, {(k % side + 0.5) / side, (k / side + 0.5) / side}));
-      const float dx = static_cast<float>(d.x), dy = static_cast<float>(d.y), dz = static_cast<float>(d.z);
-      for (size_t v = 0; v < weight.size(); ++v) {
-        const float along = dx * x_[v] + dy * y_[v] + dz * z_[v];
-        const float stretch = reflects ? 4 * std::fabs(along) : 1;
-        const float cosine = reflects ? 2 * (dz > 0 ? along : std::max(along, 0.0f)) * dz - z_[v] : dz;
-        const float seen = layout_.upper_only ? cosine : std::fabs(cosine);
-        const float counted = layout_.cosine_weighted ? (seen > kHorizonFloor ? seen : kHorizonFloor) : 1;
-        weight[v] += layout_.upper_only && cosine < -reach ? 0 : share * stretch * counted;
-      }
-    }
-  }
-
- private:
-  const AlignedLayout& layout_;
-  std::vector<float> x_, y_, z_;
-};
 
 }  // namespace
 
-AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedSheet> stored) {
+AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedSheet> stored)
+    : row_(padded_row(layout.width())) {
   const size_t width = layout.width();
+  for (const AlignedSheet& s : stored) leaves_ += s.leaves.size();
+  tiles_ = (leaves_ + kTile - 1) / kTile;
+  const std::vector<double> sum = sum_masses(stored);
+  columns_.resize(row_);
+  for (size_t j = 0; j < width; ++j) columns_[j].scale = sum[j] > 0 ? static_cast<float>(0x1.ff8p30 / sum[j]) : 0;
+  cumulative_.resize(tiles_ * row_ * kTile);
+  tile_sum_.resize(row_ * (tiles_ + 1));
+  parallel_for(0, row_ / 8, (row_ / 8 + 15) / 16, [&](size_t begin, size_t end) { accumulate(stored, begin, end); });
+  for (Column& c : columns_) c.inverse_total = c.total ? 1 / static_cast<float>(c.total) : 0;
+  size_t first = 0;
   for (AlignedSheet& s : stored) {
-    refine(s, {layout.upper_only, layout.half_stored}, width);
-    sheets_.push_back({Tree(s.leaves), std::move(s.plane), {}, leaves_});
-    leaves_ += s.leaves.size();
+    Sheet& sheet = sheets_.emplace_back();
+    sheet.tree = Tree(s.leaves);
+    sheet.scale = s.scale;
+    sheet.plane = std::move(s.plane);
+    sheet.first = first;
+    first += s.leaves.size();
+    sheet.inverse_area = std::move(s.inverse_area);
   }
-  std::vector<double> sum(width, 0.0);
-  weigh(layout, sum);
-  accumulate(width, sum);
 }
 
-// Unnormalised masses into the planes, their sums per column.
-void AlignedTables::weigh(const AlignedLayout& layout, std::vector<double>& sum) {
-  const size_t width = layout.width(), channels = layout.channels;
-  const LeafWeights weights(layout);
-  constexpr size_t kBlock = 256;
-  for (Sheet& s : sheets_) {
-    const size_t blocks = (s.tree.size() + kBlock - 1) / kBlock;
-    s.inverse_area.resize(s.tree.size());
-    std::vector<double> partial(blocks * width, 0.0);
-    parallel_for(0, blocks, 1, [&](size_t begin, size_t end) {
-      std::vector<float> weight(layout.views()), spread(width);
-      for (size_t i = begin * kBlock; i < std::min(s.tree.size(), end * kBlock); ++i) {
-        const CellId id = s.tree.cell(i);
-        const double copies = layout.half_stored && mirrored(id) != id ? 2 : 1;
-        s.inverse_area[i] = static_cast<float>(1 / (cell_solid_angle(id.order()) * copies));
-        weights.of(id, copies, weight);
-        for (size_t v = 0; v < weight.size(); ++v)
-          for (size_t c = 0; c < channels; ++c) spread[v * channels + c] = weight[v];
-        float* plane = &s.plane[i * width * kStride];
-        double* total = &partial[i / kBlock * width];
-        for (size_t j = 0; j < width; ++j) total[j] += plane[j * kStride + 3] *= spread[j];
+// Of every column. Tiles first, so that neither the number of leaves nor that of threads matters.
+std::vector<double> AlignedTables::sum_masses(const std::vector<AlignedSheet>& stored) const {
+  std::vector<double> sum(row_, 0.0);
+  for (const AlignedSheet& s : stored) {
+    const size_t leaves = s.leaves.size(), tiles = (leaves + kTile - 1) / kTile;
+    std::vector<float> partial(tiles * row_, 0.0f);
+    parallel_for(0, tiles, 16, [&](size_t begin, size_t end) {
+      for (size_t i = begin * kTile; i < std::min(leaves, end * kTile); ++i) {
+        float* to = &partial[i / kTile * row_];
+        const uint16_t* mass = &s.mass[i * row_];
+        for (size_t j = 0; j < row_; j += 8)
+          store(to + j, load<EightFloats>(to + j) + mass_of(load<Ushort8>(mass + j)));
       }
     });
-    for (size_t b = 0; b < blocks; ++b)
-      for (size_t j = 0; j < width; ++j) sum[j] += partial[b * width + j];
+    for (size_t t = 0; t < tiles; ++t)
+      for (size_t j = 0; j < row_; ++j) sum[j] += partial[t * row_ + j];
   }
+  return sum;
 }
 
-// Masses to integers that sum to 2^32, and probabilities to what those integers say.
-void AlignedTables::accumulate(size_t width, std::span<const double> sum) {
-  cumulative_.resize(width * leaves_);
-  guide_.resize(width * (kGuide + 1));
-  for (size_t j = 0; j < width; ++j) empty_.push_back(!(sum[j] > 0));
-  constexpr size_t kColumns = 16;  // one line of cache of the planes' masses serves four of them
-  parallel_for(0, (width + kColumns - 1) / kColumns, 1, [&](size_t begin, size_t end) {
-    const size_t first = begin * kColumns, last = std::min(width, end * kColumns), n = last - first;
-    std::vector<double> running(n, 0.0), scale(n);
-    std::vector<uint32_t> before(n, 0);
-    for (size_t j = 0; j < n; ++j) scale[j] = empty_[first + j] ? 0 : 0x1p32 / sum[first + j];
-    for (Sheet& s : sheets_)
-      for (size_t i = 0; i < s.tree.size(); ++i) {
-        float* p = &s.plane[(i * width + first) * kStride];
-        const bool final = s.first + i + 1 == leaves_;
-        uint32_t* to = &cumulative_[first * leaves_ + s.first + i];
-        for (size_t j = 0; j < n; ++j, p += kStride) {
-          to[j * leaves_] = before[j];
-          running[j] += p[3];
-          const int64_t next =
-              final ? int64_t{1} << 32 : std::min<int64_t>(0xFFFFFFFF, static_cast<int64_t>(running[j] * scale[j]));
-          p[3] = empty_[first + j] ? 0 : static_cast<float>(next - before[j]) * 0x1p-32f;
-          before[j] = static_cast<uint32_t>(next);
-        }
+// Whole masses of the columns [8 begin, 8 end) and their sums, tile by tile.
+void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t begin, size_t end) {
+  std::vector<Int8> running(end - begin, Int8{});
+  std::array<const uint16_t*, kTile> from{};  // the tile's masses; null behind the last leaf
+  size_t leaf = 0, sheet = 0;                 // of the sheet
+  for (size_t t = 0; t < tiles_; ++t) {
+    for (size_t i = 0; i < kTile;) {
+      if (sheet == stored.size()) {
+        from[i++] = nullptr;
+        continue;
       }
-    for (size_t column = first; column < last; ++column) {
-      const uint32_t* c = &cumulative_[column * leaves_];
-      uint32_t* guide = &guide_[column * (kGuide + 1)];
-      // Leaf i is the answer for targets from its sum to the next leaf's.
-      size_t g = 0;
-      for (size_t i = 0; i + 1 < leaves_; ++i)
-        for (; g <= kGuide && (uint64_t{g} << kGuideShift) < c[i + 1]; ++g) guide[g] = static_cast<uint32_t>(i);
-      for (; g <= kGuide; ++g) guide[g] = static_cast<uint32_t>(leaves_ - 1);
+      const size_t leaves = stored[sheet].leaves.size(), n = std::min(kTile - i, leaves - leaf);
+      const uint16_t* mass = stored[sheet].mass.data() + leaf * row_;
+      for (size_t k = 0; k < n; ++k) from[i + k] = mass + k * row_;
+      i += n, leaf += n;
+      if (leaf == leaves) ++sheet, leaf = 0;
     }
-  });
+    for (size_t j = begin; j < end; ++j) {
+      EightFloats scale;
+      for (size_t lane = 0; lane < 8; ++lane) {
+        scale[lane] = columns_[8 * j + lane].scale;
+        tile_sum_[(8 * j + lane) * (tiles_ + 1) + t] = running[j - begin][lane];
+      }
+      Int8 sum = running[j - begin];
+      int32_t* to = &cumulative_[(t * row_ + 8 * j) * kTile];
+      for (size_t i = 0; i < kTile; i += 8) {
+        Int8 rows[8];
+        for (size_t k = 0; k < 8; ++k) {
+          rows[k] = sum;  // behind the last leaf: the total
+          if (from[i + k]) sum += __builtin_convertvector(mass_of(load<Ushort8>(from[i + k] + 8 * j)) * scale, Int8);
+        }
+        transpose(rows);
+        for (size_t lane = 0; lane < 8; ++lane) store(to + lane * kTile + i, rows[lane]);
+      }
+      running[j - begin] = sum;
+    }
+  }
+  for (size_t j = 8 * begin; j < 8 * end; ++j)
+    tile_sum_[j * (tiles_ + 1) + tiles_] = columns_[j].total = running[j / 8 - begin][j % 8];
+}
+
+AlignedTables::Draw AlignedTables::draw(size_t column, double u) const {
+  const double at = u * columns_[column].total;
+  const int32_t target = static_cast<int32_t>(at);
+  // The last tile whose sum does not exceed the target, then the last leaf in it.
+  const int32_t* tiles = &tile_sum_[column * (tiles_ + 1)];
+  size_t tile = 0, count = tiles_;
+  while (count > 64) {
+    const size_t half = count / 2;
+    tile += tiles[tile + half] <= target ? half : 0;
+    count -= half;
+  }
+  int below = 0;
+  for (size_t i = 0; i < count; ++i) below += tiles[tile + i] <= target;
+  tile += static_cast<size_t>(below - 1);
+  const int32_t* sum = &cumulative_[(tile * row_ + column) * kTile];
+  below = 0;
+  for (size_t i = 0; i < kTile; ++i) below += sum[i] <= target;
+  const size_t leaf = static_cast<size_t>(below - 1);
+  const int32_t next = leaf + 1 < kTile ? sum[leaf + 1] : tiles[tile + 1];
+  return {tile * kTile + leaf, (at - sum[leaf]) / (next - sum[leaf])};
 }
 
 }  // namespace suite::sqt

@@ -1,14 +1,16 @@
-// What the runtime of the aligned method looks up: leaves with their planes and probabilities, cumulative masses to
-// draw from. Built once from decoded trees. Internal to libs/sqt; the method is described in aligned.h.
+// What the runtime of the aligned method looks up: leaves with their planes and masses, cumulative masses to draw from.
+// Built once from decoded trees. Internal to libs/sqt; the method is described in aligned.h.
 //
-// Leaf, view and channel share four numbers (value, two slopes, probability), so that eval and pdf touch the same
-// lines of cache. Probabilities are differences of the cumulative masses, which are integers: pdf is what sample does.
+// Leaf, channel and view share four numbers (value, two slopes, mass), so that eval and pdf touch the same lines of
+// cache. Of a column (channel, view), the mass of a leaf is a whole number that follows from its code and the column's
+// scale; cumulative masses are sums of the same numbers: pdf is what sample does.
 #pragma once
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sqt/aligned.h"
+#include "sqt/leaf_table.h"
 #include "sqt/tree.h"
 
 namespace suite::sqt {
@@ -17,7 +19,8 @@ class AlignedTables {
  public:
   struct Sheet {
     Tree tree;
-    std::vector<float> plane;         // [leaf][view][channel]{value, slope x, slope y, probability}
+    LogScale scale;
+    UnsetVector<int16_t> plane;       // [leaf][channel][view]{value, slope x, slope y, mass}
     std::vector<float> inverse_area;  // 1/sr of one leaf, its mirror image counted in
     size_t first = 0;                 // index of the first leaf among all sheets
   };
@@ -27,36 +30,32 @@ class AlignedTables {
   const std::vector<Sheet>& sheets() const { return sheets_; }
   size_t leaves() const { return leaves_; }
 
-  // Drawing a leaf of a column (view x channels + channel).
+  // Probability of a leaf, from the code of its mass; column: channel x views + view.
+  float probability(size_t column, int16_t code) const {
+    const Column& c = columns_[column];
+    return static_cast<float>(static_cast<int32_t>(mass_of(static_cast<uint16_t>(code)) * c.scale)) * c.inverse_total;
+  }
+  bool empty(size_t column) const { return columns_[column].total == 0; }
+  // Drawing a leaf.
   struct Draw {
     size_t leaf;    // among all sheets
-    double within;  // where in the leaf's share `target` fell, [0, 1)
+    double within;  // where in the leaf's share `u` fell, [0, 1)
   };
-  bool empty(size_t column) const { return empty_[column]; }
-  Draw draw(size_t column, double u) const {  // u in [0, 1); the column is not empty
-    const uint32_t* sum = &cumulative_[column * leaves_];
-    const uint32_t* guide = &guide_[column * (kGuide + 1)];
-    const uint32_t target = static_cast<uint32_t>(u * 0x1p32);
-    size_t low = guide[target >> kGuideShift], count = guide[(target >> kGuideShift) + 1] + 1 - low;
-    while (count > 1) {  // the last leaf whose sum does not exceed the target
-      const size_t half = count / 2;
-      low += sum[low + half] <= target ? half : 0;
-      count -= half;
-    }
-    const double mass = (low + 1 < leaves_ ? static_cast<double>(sum[low + 1]) : 0x1p32) - sum[low];
-    return {low, (u * 0x1p32 - sum[low]) / mass};
-  }
+  Draw draw(size_t column, double u) const;  // u in [0, 1); the column is not empty
 
  private:
-  static constexpr int kGuideShift = 23;
-  static constexpr size_t kGuide = size_t{1} << (32 - kGuideShift);
-  void weigh(const AlignedLayout& layout, std::vector<double>& sum);
-  void accumulate(size_t width, std::span<const double> sum);
+  static constexpr size_t kTile = 64;  // leaves whose sums lie together
+  struct Column {
+    float scale = 0, inverse_total = 0;
+    int32_t total = 0;  // of the whole masses, below 2^31
+  };
+  std::vector<double> sum_masses(const std::vector<AlignedSheet>& sheets) const;
+  void accumulate(const std::vector<AlignedSheet>& sheets, size_t begin, size_t end);
   std::vector<Sheet> sheets_;
-  size_t leaves_ = 0;
-  std::vector<uint32_t> cumulative_;  // [column][leaf]: mass of the leaves before, in units of 2^-32
-  std::vector<uint32_t> guide_;       // [column]: the leaf in which each 1/512 begins
-  std::vector<uint8_t> empty_;        // [column]: nothing scatters
+  size_t leaves_ = 0, tiles_ = 0, row_ = 0;
+  std::vector<Column> columns_;      // padded_row of them
+  UnsetVector<int32_t> cumulative_;  // [tile][column][leaf of the tile]: mass of the leaves before
+  UnsetVector<int32_t> tile_sum_;    // [column][tile, and one more]: mass of the tiles before
 };
 
 }  // namespace suite::sqt

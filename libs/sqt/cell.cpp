@@ -184,23 +184,24 @@ const std::array<Across, 48>& edges() {
 
 }  // namespace
 
+CellXY neighbour(CellXY c, int order, size_t e) {
+  const uint32_t last = (1u << order) - 1;
+  const uint32_t moving = e < 2 ? c.x : c.y, along = e < 2 ? c.y : c.x;
+  const bool plus = e & 1;
+  if (plus ? moving < last : moving > 0) {
+    const uint32_t to = plus ? moving + 1 : moving - 1;
+    return e < 2 ? CellXY{c.face, to, c.y} : CellXY{c.face, c.x, to};
+  }
+  const Across& a = edges()[4 * static_cast<size_t>(c.face) + e];
+  const uint32_t side = a.edge & 1 ? last : 0, run = a.reversed ? last - along : along;
+  return a.edge < 2 ? CellXY{a.face, side, run} : CellXY{a.face, run, side};
+}
+
 std::array<CellId, 4> edge_neighbours(CellId cell) {
   const int order = cell.order();
-  const uint32_t last = (1u << order) - 1;
   const CellXY c = xy_of(cell);
   std::array<CellId, 4> out;
-  for (int e = 0; e < 4; ++e) {
-    const uint32_t moving = e < 2 ? c.x : c.y, along = e < 2 ? c.y : c.x;
-    const bool plus = e & 1;
-    if (plus ? moving < last : moving > 0) {
-      const uint32_t to = plus ? moving + 1 : moving - 1;
-      out[static_cast<size_t>(e)] = cell_at(order, e < 2 ? CellXY{c.face, to, c.y} : CellXY{c.face, c.x, to});
-      continue;
-    }
-    const Across& a = edges()[static_cast<size_t>(4 * c.face + e)];
-    const uint32_t side = a.edge & 1 ? last : 0, run = a.reversed ? last - along : along;
-    out[static_cast<size_t>(e)] = cell_at(order, a.edge < 2 ? CellXY{a.face, side, run} : CellXY{a.face, run, side});
-  }
+  for (size_t e = 0; e < 4; ++e) out[e] = cell_at(order, neighbour(c, order, e));
   return out;
 }
 
@@ -237,11 +238,11 @@ double cosine_integral(CellId cell, bool both_sides) {
   return kFaceSolidAngle * sum;
 }
 
-CellId mirrored(CellId cell) {
+CellXY mirrored(CellXY c) {
   // phi -> -phi exchanges x and y; polar faces 0..3 go to 3..0, the belt's 4 and 6 stay, 5 and 7 change places.
-  const CellXY c = xy_of(cell);
   const int face = c.face < 4 ? 3 - c.face : c.face >= 8 ? 19 - c.face : 4 + (4 - (c.face - 4)) % 4;
-  return cell_at(cell.order(), {face, c.y, c.x});
+  return {face, c.y, c.x};
 }
+CellId mirrored(CellId cell) { return cell_at(cell.order(), mirrored(xy_of(cell))); }
 
 }  // namespace suite::sqt

@@ -51,6 +51,7 @@ inline double cell_solid_angle(int order) { return kFaceSolidAngle / static_cast
 struct CellXY {
   int face = 0;
   uint32_t x = 0, y = 0;
+  constexpr bool operator==(const CellXY&) const = default;
 };
 CellXY xy_of(CellId cell);
 CellId cell_at(int order, CellXY at);
@@ -62,8 +63,9 @@ FacePoint point_in(CellId cell, Vec2 u);
 inline Dir direction_in(CellId cell, Vec2 u) { return direction(point_in(cell, u)); }
 inline Dir center_of(CellId cell) { return direction_in(cell, {0.5, 0.5}); }
 
-// The four cells of the same order across the edges: -x, +x, -y, +y.
+// The four cells of the same order across the edges: -x, +x, -y, +y; or one of them (edge 0..3).
 std::array<CellId, 4> edge_neighbours(CellId cell);
+CellXY neighbour(CellXY cell, int order, size_t edge);
 
 // Integral of max(cos theta, 0), or of |cos theta| with both_sides, over a cell, sr; exact (z depends on x + y alone
 // and is piecewise quadratic in it).
@@ -71,5 +73,8 @@ double cosine_integral(CellId cell, bool both_sides = false);
 
 // Mirror image under y -> -y of directions (azimuth phi -> -phi).
 CellId mirrored(CellId cell);
+CellXY mirrored(CellXY cell);
+// Whether a cell is its own mirror image.
+constexpr bool on_mirror(CellXY c) { return c.x == c.y && (c.face == 4 || c.face == 6); }
 
 }  // namespace suite::sqt

@@ -20,7 +20,8 @@ namespace suite::sqt {
 struct Region {
   bool upper_only = true;  // only cells that reach above z = 0
   bool half_only = true;   // only cells that reach azimuths in [0, pi]; the others are their mirror images
-  bool holds(CellId id) const;
+  bool holds(CellId id) const { return holds(xy_of(id), id.order()); }
+  bool holds(CellXY cell, int order) const;
 };
 
 class Lattice {

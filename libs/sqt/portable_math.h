@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sqt/vectors.h"
+
 namespace suite::sqt {
 
 // 2^x for -120 <= x <= 120 (clamped); relative error below 2e-7. Remez-like quintic on [-0.5, 0.5].
@@ -19,7 +21,6 @@ inline float portable_exp2(float x) {
 }
 
 // The same for eight numbers at once; the same bits.
-using EightFloats = float __attribute__((vector_size(32)));
 inline EightFloats portable_exp2(EightFloats x) {
   using EightInts = int32_t __attribute__((vector_size(32)));
   x = x < -120 ? EightFloats{} - 120 : x > 120 ? EightFloats{} + 120 : x;
@@ -34,11 +35,6 @@ inline EightFloats portable_exp2(EightFloats x) {
 // 1e-4).
 inline float mean_exp2(float slope) {
   const float a2 = std::min(8.0f, slope * slope * 0.120113254f);
-  return 1 + a2 * (1.0f / 6) * (1 + a2 * (1.0f / 20) * (1 + a2 * (1.0f / 42) * (1 + a2 * (1.0f / 72))));
-}
-
-inline EightFloats mean_exp2(EightFloats slope) {
-  const EightFloats square = slope * slope * 0.120113254f, a2 = square < 8 ? square : EightFloats{} + 8;
   return 1 + a2 * (1.0f / 6) * (1 + a2 * (1.0f / 20) * (1 + a2 * (1.0f / 42) * (1 + a2 * (1.0f / 72))));
 }
 

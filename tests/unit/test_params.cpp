@@ -43,6 +43,25 @@ TEST(Params, JsonIsAcceptedAsItIs) {
   p.reject_unread();
 }
 
+TEST(Params, StrictJsonReadsTheSameAndNamesTheFile) {
+  const std::string text =
+      R"({"a": [1, -2.50, 1e-7, 12345678901234567], "b": {"c": "x\n\u00e9", "d": true, "e": null}})";
+  const Params fast = Params::parse_json(text, "s.sqt"), slow = Params::parse_text(text, "s.sqt");
+  EXPECT_EQ(fast.at("a").as_numbers(), slow.at("a").as_numbers());
+  EXPECT_EQ(fast.at("a")[1].as_text(), slow.at("a")[1].as_text());
+  EXPECT_EQ(fast.at("b").text("c"), slow.at("b").text("c"));
+  EXPECT_EQ(fast.at("b").at("d").as_bool(), true);
+  EXPECT_EQ(fast.at("b").at("e").kind(), Params::Kind::null);
+  for (const char* bad : {"", "{", "{\"a\": 1,}", "{\"a\": 1, \"a\": 2}", "{\"a\": 1} x", "{a: 1}", "[nan]"}) try {
+      Params::parse_json(bad, "s.sqt");
+      ADD_FAILURE() << bad << " was accepted";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.where().file, "s.sqt") << bad;
+    }
+  std::string deep(100000, '[');
+  EXPECT_THROW(Params::parse_json(deep, "s.sqt"), Error);
+}
+
 TEST(Params, FaultsCarryPlaceSourceLineAndCaret) {
   const Params p = parse("camera:\n  width: wide\n");
   EXPECT_EQ(message_of([&] { p.at("camera").number("width"); }),
