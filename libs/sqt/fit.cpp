@@ -103,25 +103,41 @@ FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& refere
   return result;
 }
 
+bool better(const FitResult& a, const FitResult& b, const FitTarget& target) {
+  if (a.bytes_met != b.bytes_met) return a.bytes_met;
+  if (a.error_met != b.error_met) return a.error_met;
+  return target.max_l1 > 0 && a.error_met ? bytes_of(a.fit) < bytes_of(b.fit) : a.l1 < b.l1;
+}
+
 }  // namespace
 
 FitResult fit_to(const Function& function, const Reference& reference, const AlignedSource::Options& options,
                  const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,
                  const std::function<void(double)>& progress) {
-  auto part = [&](double share) {
-    return [&progress, share](double fraction) {
-      if (progress) progress(share * fraction);
-    };
-  };
+  double left = 1;  // of the progress
   auto fit = [&](const AlignedSource::Options& o, double share) {
-    return fit_from(std::make_unique<AlignedSource>(function, o, part(0.5 * share)), reference, target, container,
-                    part(0.5 * share));
+    const std::function<void(double)> part = [&progress, share](double fraction) {
+      if (progress) progress(0.5 * share * fraction);
+    };
+    left -= share;
+    return fit_from(std::make_unique<AlignedSource>(function, o, part), reference, target, container, part);
   };
-  if (target.max_l1 > 0) return fit(suited(options, target.max_l1), 1);
-  if (!target.max_bytes) return fit(options, 1);
-  FitResult plain = fit(options, 0.5);
-  FitResult other = fit(suited(options, plain.l1), 0.5);
-  return other.bytes_met >= plain.bytes_met && other.l1 < plain.l1 ? std::move(other) : std::move(plain);
+  if (target.max_l1 <= 0 && !target.max_bytes) return fit(options, 1);
+  FitResult best = fit(target.max_l1 > 0 ? suited(options, target.max_l1) : options, 1.0 / 3);
+  const double l1 = target.max_l1 > 0 ? target.max_l1 : best.l1;
+  auto consider = [&](const AlignedSource::Options& o) {
+    FitResult other = fit(o, left / 2);
+    if (better(other, best, target)) best = std::move(other);
+  };
+  if (target.max_l1 <= 0) consider(suited(options, l1));
+  if (!options.frame && best.source->function().quantity == Quantity::bsdf &&
+      best.source->layout().frame != LobeFrame::half) {
+    AlignedSource::Options half = suited(options, l1);
+    half.frame = LobeFrame::half;
+    consider(half);
+  }
+  if (progress) progress(left);
+  return best;
 }
 
 }  // namespace suite::sqt

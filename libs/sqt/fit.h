@@ -29,6 +29,8 @@ AlignedSource::Options suited(AlignedSource::Options options, double l1);
 
 // No target: the default quality. max_l1: the smallest file found whose l1 keeps it, from a source suited to it.
 // max_bytes: the best that fits, from the better of a source of `options` and one suited to the error reached with it.
+// Where a surface codes best in another frame than that of half vectors, that one is tried as well: tables over half
+// vectors (MERL) have steps there that cost most in others once the error asked is about as small as they are.
 // Both: the smallest file that keeps the error, if it also keeps the size; else the best that fits, error_met = false.
 // A promise that cannot be kept gives the nearest result and the flag.
 // container: bytes a file takes beside trees and totals. progress(fraction) may be null.
