@@ -39,6 +39,7 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
   const size_t width = layout.width();
   for (const AlignedSheet& s : stored) leaves_ += s.leaves.size();
   tiles_ = (leaves_ + kTile - 1) / kTile;
+  put_in_order(stored);
   const std::vector<double> sum = sum_masses(stored);
   columns_.resize(row_);
   for (size_t j = 0; j < width; ++j) columns_[j].scale = sum[j] > 0 ? static_cast<float>(0x1.ff8p30 / sum[j]) : 0;
@@ -55,6 +56,21 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
     sheet.first = first;
     first += s.leaves.size();
     sheet.inverse_area = std::move(s.inverse_area);
+  }
+}
+
+// Along a curve that fills the sphere: neighbours in u are neighbours in direction then, and points that are well spread
+// in u are so on the sphere.
+void AlignedTables::put_in_order(const std::vector<AlignedSheet>& stored) {
+  std::vector<std::pair<uint32_t, uint32_t>> along;
+  order_.reserve(leaves_);
+  for (const AlignedSheet& s : stored) {
+    const auto first = static_cast<uint32_t>(order_.size());
+    along.clear();
+    for (const CellId id : s.leaves)
+      along.emplace_back(id.index() << 2 * (kMaxOrder - id.order()), first + static_cast<uint32_t>(along.size()));
+    std::sort(along.begin(), along.end());
+    for (const auto& [place, leaf] : along) order_.push_back(leaf);
   }
 }
 
@@ -82,18 +98,12 @@ std::vector<double> AlignedTables::sum_masses(const std::vector<AlignedSheet>& s
 void AlignedTables::accumulate(const std::vector<AlignedSheet>& stored, size_t begin, size_t end) {
   std::vector<Int8> running(end - begin, Int8{});
   std::array<const uint16_t*, kTile> from{};  // the tile's masses; null behind the last leaf
-  size_t leaf = 0, sheet = 0;                 // of the sheet
+  size_t sheet = 0, first = 0;                // that the leaf is of, and its first leaf
   for (size_t t = 0; t < tiles_; ++t) {
-    for (size_t i = 0; i < kTile;) {
-      if (sheet == stored.size()) {
-        from[i++] = nullptr;
-        continue;
-      }
-      const size_t leaves = stored[sheet].leaves.size(), n = std::min(kTile - i, leaves - leaf);
-      const uint16_t* mass = stored[sheet].mass.data() + leaf * row_;
-      for (size_t k = 0; k < n; ++k) from[i + k] = mass + k * row_;
-      i += n, leaf += n;
-      if (leaf == leaves) ++sheet, leaf = 0;
+    for (size_t i = 0; i < kTile; ++i) {
+      const size_t n = t * kTile + i;
+      if (n < leaves_ && n - first == stored[sheet].leaves.size()) first += stored[sheet++].leaves.size();
+      from[i] = n < leaves_ ? stored[sheet].mass.data() + (order_[n] - first) * row_ : nullptr;
     }
     for (size_t j = begin; j < end; ++j) {
       EightFloats scale;
@@ -138,7 +148,7 @@ AlignedTables::Draw AlignedTables::draw(size_t column, double u) const {
   for (size_t i = 0; i < kTile; ++i) below += sum[i] <= target;
   const size_t leaf = static_cast<size_t>(below - 1);
   const int32_t next = leaf + 1 < kTile ? sum[leaf + 1] : tiles[tile + 1];
-  return {tile * kTile + leaf, (at - sum[leaf]) / (next - sum[leaf])};
+  return {order_[tile * kTile + leaf], (at - sum[leaf]) / (next - sum[leaf])};
 }
 
 }  // namespace suite::sqt

@@ -49,10 +49,12 @@ class AlignedTables {
     float scale = 0, inverse_total = 0;
     int32_t total = 0;  // of the whole masses, below 2^31
   };
+  void put_in_order(const std::vector<AlignedSheet>& sheets);
   std::vector<double> sum_masses(const std::vector<AlignedSheet>& sheets) const;
   void accumulate(const std::vector<AlignedSheet>& sheets, size_t begin, size_t end);
   std::vector<Sheet> sheets_;
   size_t leaves_ = 0, tiles_ = 0, row_ = 0;
+  std::vector<uint32_t> order_;      // leaves as they are drawn
   std::vector<Column> columns_;      // padded_row of them
   UnsetVector<int32_t> cumulative_;  // [tile][column][leaf of the tile]: mass of the leaves before
   UnsetVector<int32_t> tile_sum_;    // [column][tile, and one more]: mass of the tiles before
