@@ -52,6 +52,9 @@ MatteKernel::MatteKernel(const Surface& surface, const Optics& optics, const Env
       hits_(width),
       places_(width),
       numbers_(disk_ ? width : 0),
+      x_((width + 3) / 4 * 4),
+      y_(x_.size()),
+      z_(x_.size()),
       reach_(width, std::numeric_limits<double>::infinity()),
       blocked_(width) {
   for (uint32_t i = 0; i < surface.tracer().scene().materials.size(); ++i) {
@@ -199,13 +202,18 @@ void MatteKernel::light(Wave& wave, int depth, TraceStatistics& statistics) {
 }
 
 void MatteKernel::go_on(int depth) {
+  for (size_t i = 0; i < active_.size(); ++i) {
+    const Lane& lane = lanes_[active_[i]];
+    const std::array<double, 4> u =
+        disk_ ? numbers_[i] : lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
+    x_[i] = u[0], y_[i] = u[1];
+  }
+  cosine_hemispheres(active_.size(), x_.data(), y_.data(), z_.data());
   size_t kept = 0;
   for (size_t i = 0; i < active_.size(); ++i) {
     const uint32_t p = active_[i];
     Lane& lane = lanes_[p];
-    const std::array<double, 4> u =
-        disk_ ? numbers_[i] : lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
-    const double survival = scatter(lane, {u[0], u[1]}, places_[i], hits_[i]);
+    const double survival = scatter(lane, {x_[i], y_[i], z_[i]}, places_[i], hits_[i]);
     if (survival == 0) continue;
     steps(p)[lane.size - 1].bounce = static_cast<float>(1 / survival);
     active_[kept++] = p;
@@ -213,10 +221,10 @@ void MatteKernel::go_on(int depth) {
   active_.resize(kept);
 }
 
-// Draws where a path goes from its last node. Returns the probability of getting so far, 0 when it ends there.
-double MatteKernel::scatter(Lane& lane, Vec2 u, const Place& at, const Hit& hit) {
+// Takes a path on from its last node, along `in` about the normal. Returns the probability of getting so far, 0 when it
+// ends there.
+double MatteKernel::scatter(Lane& lane, Dir in, const Place& at, const Hit& hit) {
   const double side = -dot(lane.direction, at.shading);
-  Dir in = cosine_hemisphere(u);
   if (side == 0 || !(in.z > 0)) return 0;
   lane.density = in.z / kPi;
   if (side < 0) in.z = -in.z;

@@ -74,7 +74,7 @@ class MatteKernel {
   bool arrive(Wave& wave, uint32_t p, const Hit& hit, Place& place);
   void record(Wave& wave, uint32_t p, const Hit& hit, Dir normal, uint32_t material) const;
   void escape(Lane& lane) const;
-  double scatter(Lane& lane, Vec2 u, const Place& at, const Hit& hit);
+  double scatter(Lane& lane, Dir in, const Place& at, const Hit& hit);
   Step* steps(size_t p) { return &steps_[p * static_cast<size_t>(options_.max_nodes)]; }
   const Step* steps(size_t p) const { return &steps_[p * static_cast<size_t>(options_.max_nodes)]; }
 
@@ -96,6 +96,7 @@ class MatteKernel {
   std::vector<Hit> hits_;
   std::vector<Place> places_;
   std::vector<std::array<double, 4>> numbers_;  // where a disk and the continuation share them
+  std::vector<double> x_, y_, z_;               // the points of the continuations, then their directions
   std::vector<uint32_t> asked_;                 // which i have a ray towards the sun
   std::vector<double> reach_;
   std::vector<uint8_t> blocked_;

@@ -34,6 +34,18 @@ double power_102(double x) { return std::pow(x, 1.02); }
 
 }  // namespace
 
+TEST(CosineHemisphere, ManyAreTheSameBitsAsOne) {
+  std::vector<double> x{0.5, 0.5, 0, 1, 0, 0.25, 0.75}, y{0.5, 0, 0.5, 1, 0, 0.75, 0.25};
+  Pcg32 random(4);
+  while (x.size() < 4097) x.push_back(random.uniform()), y.push_back(random.uniform());
+  const size_t count = x.size();
+  x.resize(4100), y.resize(4100);
+  const std::vector<double> u = x, v = y;
+  std::vector<double> z(4100);
+  cosine_hemispheres(count, x.data(), y.data(), z.data());
+  for (size_t i = 0; i < count; ++i) EXPECT_EQ(cosine_hemisphere({u[i], v[i]}), (Dir{x[i], y[i], z[i]})) << i;
+}
+
 TEST(Warps, DiskIsUniform) {
   const auto place = [](Vec2 u) {
     const Vec2 d = disk_from_square(u);
