@@ -11,6 +11,8 @@ namespace {
 
 // Leaves are divided at least to this order.
 constexpr int kSampleOrder = 4;
+// Cells up to this order are weighed by the middles of their quarters, smaller ones by their own.
+constexpr int kQuarteredOrder = 4;
 // A cell within reach of the horizon keeps this much of its mass when cut away, so that neighbouring views can draw it.
 constexpr float kHorizonFloor = 1e-3f;
 // Logarithms of masses: nine bits behind the point; codes are larger by kBias. A weight of nothing.
@@ -123,7 +125,7 @@ void LeafTable::add_whole(CellXY at, int order, const Center& center, const int1
   sheet_.plane.resize((n + 1) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.resize((n + 1) * row_ + 16);
   std::array<Center, 4> points{center};
-  if (order <= 5) points = quarters(at, order);
+  if (order <= kQuarteredOrder) points = quarters(at, order);
   // Sixteen views at a time, the last first: what goes beyond a channel is written over by the next, or by its earlier
   // views.
   for (size_t v = padded_row(views); v > 0;) {
@@ -145,7 +147,7 @@ void LeafTable::add_whole(CellXY at, int order, const Center& center, const int1
 inline Short8 LeafTable::weights(size_t first, const std::array<Center, 4>& points, const OrderNumbers& n,
                                  bool twice) const {
   EightFloats weight{};
-  const bool single = &n > &numbers_[5];
+  const bool single = &n > &numbers_[kQuarteredOrder];
   for (size_t k = 0; k < (single ? 1 : 4); ++k) {
     EightFloats stretch, cosine;
     lanes_.at(first, points[k], stretch, cosine);
