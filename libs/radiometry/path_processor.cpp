@@ -90,12 +90,12 @@ void add_segment(Wave& wave, size_t p, int n, std::span<float> radiance) {
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
   const Path& path = wave.path(p);
   from_outside(path, environment, radiance);
-  const Atmosphere* air = environment.atmosphere.get();
+  const bool media = wave.has_media();
+  const Atmosphere* air = media ? nullptr : environment.atmosphere.get();  // flights through media have it in them
   auto start_of = [&](int n) { return n == 0 ? path.ray.origin : wave.node(p, n - 1).at.position; };
   if (air && path.end == PathEnd::escaped)
     through_air(*air, start_of(path.size), path.escape, std::numeric_limits<double>::infinity(), path.escape_factor,
                 wave, radiance);
-  const bool media = wave.has_media();
   // A path that did not go on from its last node has no segment behind it.
   if (media && (path.size == 0 || wave.node(p, path.size - 1).continues)) add_segment(wave, p, path.size, radiance);
   for (int n = path.size - 1; n >= 0; --n) {
@@ -117,9 +117,10 @@ void process_single(Wave& wave, size_t p, const Environment& environment, std::s
     return;
   }
   add_node(wave, p, 0, false, single);
-  if (wave.has_media()) add_segment(wave, p, 0, single);
   const Node& first = wave.node(p, 0);
-  if (const Atmosphere* air = environment.atmosphere.get())
+  if (wave.has_media())
+    add_segment(wave, p, 0, single);
+  else if (const Atmosphere* air = environment.atmosphere.get())
     through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
   if (path.weight != 1)
     for (float& x : single) x *= static_cast<float>(path.weight);

@@ -45,9 +45,6 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
       reference_band_(reference_band),
       truth_(truth),
       options_(options) {
-  if (!optics.media().empty() && environment.atmosphere)
-    throw Error("layers of air and media in the scene cannot be combined",
-                "let a clear sky stand for the air, or leave the media out");
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
   if (options_.lamp_draws < 1 || options_.lamp_draws > kLampDraws)

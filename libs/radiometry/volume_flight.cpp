@@ -9,7 +9,8 @@ namespace {
 constexpr double kEndless = 1e30;  // stands for an infinite way: finite when multiplied, opaque for any coefficient
 }  // namespace
 
-Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability)
+Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability,
+                 const Atmosphere* air)
     : field_(field),
       optics_(optics),
       media_(optics.media()),
@@ -17,7 +18,8 @@ Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const
       probability_(knot_probability.begin(), knot_probability.end()),
       depth_(media_.size()),
       tau_(optics.state().size()),
-      emission_(optics.state().size()) {
+      emission_(optics.state().size()),
+      air_(air, field, optics, knot_probability) {
   for (const BakedMedium& m : media_) {
     any_emission_ = any_emission_ || !m.blackbody.empty();
     absorbs_.push_back(std::any_of(m.absorption.begin(), m.absorption.end(), [](float a) { return a > 0; }));
@@ -40,12 +42,13 @@ void Flights::pass_run() {
   run_.clear();
 }
 
-Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec2 u,
+Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec3 u,
                               std::span<float> beta, std::span<float> gathered) {
   const size_t own = bins_of_knots_[static_cast<size_t>(knot)];
   std::fill(depth_.begin(), depth_.end(), 0.0);
   run_.clear();
   normalise(live, beta);
+  if (air_.any()) air_.begin(live);
   double left = -std::log1p(-u.x);
   Arrival arrival{false, length};
   walk_.start(field_, live.origin, live.direction, length, background, time);
@@ -67,12 +70,14 @@ Flights::Arrival Flights::fly(LivePath& live, int knot, double length, uint32_t 
         emit(live, u.y, beta, gathered);
       pass_run();
       for (const Constituent& c : contents) run_.push_back({c.medium, 0, c.kelvin});
+      run_begin_ = walk_.begin();
     }
     for (size_t c = 0; c < contents.size(); ++c) run_[c].density += contents[c].density * way;
   }
   if (any_emission_ && std::any_of(run_.begin(), run_.end(), [&](const Constituent& c) { return emits(c); }))
     emit(live, u.y, beta, gathered);
   pass_run();
+  if (air_.any()) air_.finish(arrival.distance, depth_, background, time, u.z, beta, gathered);
   weigh(live, knot, arrival.scattered, beta);
   return arrival;
 }
@@ -93,6 +98,7 @@ void Flights::emit(const LivePath& live, double u, std::span<const float> beta, 
       if (hot) emission_[i] += tau * (own ? m.index_squared[i] * field_.blackbody(i, c.kelvin) : m.blackbody[i]);
     }
   }
+  const std::span<const float> dimmed = air_.any() ? air_.reference(run_begin_) : std::span<const float>{};
   const size_t knots = bins_of_knots_.size();
   double before[kMaxKnots] = {}, within[kMaxKnots] = {};
   if (optics_.spectral_flights())
@@ -115,6 +121,7 @@ void Flights::emit(const LivePath& live, double u, std::span<const float> beta, 
         mixture += probability_[k] * live.relative[k] * std::exp(scattered - before[k] - share * within[k]);
       ratio = 1 / mixture;
     }
+    if (!dimmed.empty()) ratio *= dimmed[i];
     gathered[i] += static_cast<float>(double{beta[i]} * std::exp(-absorbed) * reached / tau * emission_[i] * ratio);
   }
 }

@@ -17,6 +17,7 @@
 #include <span>
 
 #include "radiometry/live_path.h"
+#include "radiometry/volume_air.h"
 #include "radiometry/volume_field.h"
 #include "surface/optics.h"
 
@@ -24,8 +25,9 @@ namespace suite {
 
 class Flights {
  public:
-  // Keeps references. knot_probability: P_k.
-  Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability);
+  // Keeps references. knot_probability: P_k. air: null where there is none.
+  Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability,
+          const Atmosphere* air = nullptr);
 
   struct Arrival {
     bool scattered = false;
@@ -33,8 +35,8 @@ class Flights {
   };
   // Flies path `live` from its origin along its direction to at most `length` in `background`. beta: the path's weight
   // per bin since its last node, updated (without the scattering coefficient of the bin where it is scattered);
-  // gathered: receives emission. u: two numbers in [0, 1). time: s, of the ray.
-  Arrival fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec2 u, std::span<float> beta,
+  // gathered: receives emission. u: numbers in [0, 1) for the way, for emission and for the air. time: s, of the ray.
+  Arrival fly(LivePath& live, int knot, double length, uint32_t background, double time, Vec3 u, std::span<float> beta,
               std::span<float> gathered);
   // Where the last flight was scattered.
   const std::vector<Constituent>& contents() const { return walk_.contents(); }
@@ -64,6 +66,8 @@ class Flights {
   std::vector<double> depth_;          // per medium: density integrated so far
   std::vector<Constituent> run_;       // stretches alike in a row; density holds the integral
   std::vector<float> tau_, emission_;  // per bin, scratch
+  double run_begin_ = 0;               // m
+  FlightAir air_;
 };
 
 }  // namespace suite

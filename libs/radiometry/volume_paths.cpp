@@ -24,7 +24,7 @@ VolumePaths::VolumePaths(const Surface& surface, const Optics& optics, const Env
       probability_(knot_probability.begin(), knot_probability.end()),
       field_(surface.tracer().scene(), optics.state(), surface.tracer().periodic()),
       bodies_(surface),
-      flights_(field_, optics, knot_probability),
+      flights_(field_, optics, knot_probability, environment.atmosphere.get()),
       light_(surface, bodies_, flights_, optics.media().size()),
       spectrum_(optics.state().size()),
       transmission_(optics.state().size()),
@@ -111,8 +111,9 @@ bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
   if (!hit.hit() && environment_.earth)
     if (const auto met = environment_.earth->meet(live.origin, live.direction, length)) length = met->distance;
   const std::array<double, 4> u = numbers(live, kFlightNumbers);
-  const Flights::Arrival arrival = flights_.fly(live, path.knot, length, live.bodies.medium(ambient_), path.ray.time,
-                                                {u[0], u[1]}, wave.through(p, path.size), wave.gathered(p, path.size));
+  const Flights::Arrival arrival =
+      flights_.fly(live, path.knot, length, live.bodies.medium(ambient_), path.ray.time, {u[0], u[1], u[3]},
+                   wave.through(p, path.size), wave.gathered(p, path.size));
   if (arrival.scattered) {
     live.length += arrival.distance;
     if (path.size == path.first_met()) path.scattered_first = true;
@@ -255,6 +256,10 @@ void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light
   const float scale = static_cast<float>(light.radiance / denominator);
   if (dim)
     for (size_t i = 0; i < beta.size(); ++i) spectrum_[i] *= transmission_[i];
+  if (environment_.atmosphere) {
+    environment_.atmosphere->transmittance(e.place, direction, wave.distance[ray], phase_);
+    for (size_t i = 0; i < beta.size(); ++i) spectrum_[i] *= phase_[i];
+  }
   const float* source = light.spectrum;
   if (!source) {  // the sky's, whose shape changes with wavelength
     std::fill(phase_.begin(), phase_.end(), 0.0f);

@@ -59,8 +59,8 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
   }
 }
 
-// Along a curve that fills the sphere: neighbours in u are neighbours in direction then, and points that are well spread
-// in u are so on the sphere.
+// Along a curve that fills the sphere: neighbours in u are neighbours in direction then, and points that are well
+// spread in u are so on the sphere.
 void AlignedTables::put_in_order(const std::vector<AlignedSheet>& stored) {
   std::vector<std::pair<uint32_t, uint32_t>> along;
   order_.reserve(leaves_);

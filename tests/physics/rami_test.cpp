@@ -175,9 +175,8 @@ TEST_P(Hom03Canopy, AgreesWithAnotherTracer) {
   const int layouts = thorough ? 6 : 1;
   std::map<double, Layouts> views;
   for (int layout = 0; layout < layouts; ++layout) {
-    const Views v =
-        render(canopy(6.25, radius, h.rho, h.tau, h.soil, 7 + static_cast<uint64_t>(layout)), 6.25,
-               text + "by_reciprocity: true\nstrata: 32\nplanes: [principal]\n", h.sun);
+    const Views v = render(canopy(6.25, radius, h.rho, h.tau, h.soil, 7 + static_cast<uint64_t>(layout)), 6.25,
+                           text + "by_reciprocity: true\nstrata: 32\nplanes: [principal]\n", h.sun);
     for (const auto& [zenith, value] : v.principal) views[zenith].add(value[0], value[1]);
   }
   double sum = 0, worst = 0, worst_at = 0, own = 0, spread = 0;
