@@ -252,12 +252,14 @@ float MatteKernel::radiance(size_t p, size_t bin) const {
   const Lane& lane = lanes_[p];
   const Step* step = steps(p);
   const float sun = sun_.value[bin];
-  float L = lane.sky * sky_.value[bin] + lane.disk * sun, most = lane.sky * sky_.most + lane.disk * sun_.most;
-  for (int n = lane.size - 1; n >= 0; --n) {
-    L = step[n].rho[bin] * (step[n].sun * sun + step[n].bounce * L);
-    most = step[n].most * (step[n].sun * sun_.most + step[n].bounce * most);
+  float L = lane.sky * sky_.value[bin] + lane.disk * sun;
+  for (int n = lane.size - 1; n >= 0; --n) L = step[n].rho[bin] * (step[n].sun * sun + step[n].bounce * L);
+  float most = L;
+  if (bins_ > 1) {
+    most = lane.sky * sky_.most + lane.disk * sun_.most;
+    for (int n = lane.size - 1; n >= 0; --n) most = step[n].most * (step[n].sun * sun_.most + step[n].bounce * most);
   }
-  const bool good = lane.weight >= 0 && lane.weight * most < kLargest;
+  const bool good = lane.weight >= 0 && L >= 0 && lane.weight * most < kLargest;
   return good ? lane.weight * L : std::numeric_limits<float>::quiet_NaN();
 }
 

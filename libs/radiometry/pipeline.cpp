@@ -78,6 +78,7 @@ struct Pipeline::Workspace {
   ManySuns suns;
   std::unique_ptr<MatteKernel> matte;  // null where it does not serve
   std::vector<uint8_t> is_matte;       // [path]: run by it, then: to be averaged in
+  std::vector<float> seen;             // [path]: its radiance in the reference band, or else in the first bin
   std::vector<uint32_t> together;      // paths whose radiance is added up in one pass
 };
 
@@ -103,6 +104,7 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
       matte_ ? std::make_unique<MatteKernel>(surface_, optics_, environment_, options_, truth_.wanted(), kWaveWidth)
              : nullptr,
       std::vector<uint8_t>(kWaveWidth),
+      std::vector<float>(kWaveWidth),
       {}});
 }
 
@@ -333,6 +335,7 @@ class Pipeline::BlockRun {
       ++sums_.failures(slot);
       return false;
     }
+    workspace_.seen[p] = radiance;
     sums_.truncated(slot) += static_cast<float>(truncated);
     if (direct) sums_.largest(slot) = std::max(sums_.largest(slot), radiance);
     if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
@@ -341,6 +344,10 @@ class Pipeline::BlockRun {
 
   void add_matte(size_t slot, double* target) {
     const BandProjection& projection = pipeline_.projection_;
+    if (projection.identity() && projection.bands() == 1) {
+      for (const uint32_t p : workspace_.together) target[0] += static_cast<double>(workspace_.seen[p]);
+      return;
+    }
     if (projection.identity()) return workspace_.matte->add(workspace_.together, target);
     const std::span<float> radiance = workspace_.wave.scratch2();
     for (const uint32_t p : workspace_.together) {
