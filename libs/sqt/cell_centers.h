@@ -1,7 +1,7 @@
 // Middles of cells, eight at a time, in single precision and the same on every machine. Internal to libs/sqt.
 // Based on: as cell.h (Gorski et al. 2005).
 #pragma once
-#include <cmath>
+#include <immintrin.h>
 
 #include "sqt/cell.h"
 #include "sqt/vectors.h"
@@ -27,8 +27,7 @@ inline void centers_of(const CellLanes& cells, int order, EightFloats& dx, Eight
   const EightFloats one = EightFloats{} + 1;
   const EightFloats across = belt ? one : north ? ring : 4 - ring, t = across * across * (1.0f / 3);
   const EightFloats z = belt ? (2 - ring) * (2.0f / 3) : north ? 1 - t : t - 1;
-  EightFloats s = belt ? (1 - z) * (1 + z) : t * (2 - t);
-  for (int lane = 0; lane < 8; ++lane) s[lane] = std::sqrt(s[lane]);
+  const EightFloats s = _mm256_sqrt_ps(belt ? (1 - z) * (1 + z) : t * (2 - t));
   const EightFloats eighths = __builtin_convertvector(longitude, EightFloats) + (x - y) / across;
   // Cosine and sine of the nearest multiple of pi/4, turned by the rest (at most pi/8, Taylor).
   constexpr float h = 0.70710678f;
