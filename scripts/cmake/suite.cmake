@@ -92,4 +92,6 @@ function(suite_fuzz name)
   suite_test(${name} LABEL fuzz ${ARGN})
   add_test(NAME ${name}_long COMMAND ${name})
   set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 600 ENVIRONMENT "SUITE_FUZZ_SECONDS=30")
+  set_property(TEST ${name} ${name}_long APPEND PROPERTY ENVIRONMENT
+    "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/fuzz/leaks_of_libraries.txt:print_suppressions=0")
 endfunction()
