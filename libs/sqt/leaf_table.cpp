@@ -11,8 +11,9 @@ namespace {
 
 // Leaves are divided at least to this order.
 constexpr int kSampleOrder = 4;
-// Cells up to this order are weighed by the middles of their quarters, smaller ones by their own.
-constexpr int kQuarteredOrder = 4;
+// Cells up to this order are weighed by the middles of their quarters, smaller ones by their own: with 4, weights of
+// samples near the horizon grew to ten.
+constexpr int kQuarteredOrder = 5;
 // A cell within reach of the horizon keeps this much of its mass when cut away, so that neighbouring views can draw it.
 constexpr float kHorizonFloor = 1e-3f;
 // Logarithms of masses: nine bits behind the point; codes are larger by kBias. A weight of nothing.
