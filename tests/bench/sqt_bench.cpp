@@ -81,12 +81,13 @@ void total(benchmark::State& state) {
   benchmark::DoNotOptimize(sum);
 }
 void load(benchmark::State& state) {
+  const Fitted& f = fitted();
   set_threads(1);
-  for (auto _ : state) benchmark::DoNotOptimize(parse_sqt(fitted().file, "satin.sqt").bundle);
+  for (auto _ : state) benchmark::DoNotOptimize(parse_sqt(f.file, "satin.sqt").bundle);
   state.counters["per_100kB"] =
-      benchmark::Counter(static_cast<double>(fitted().file.size()) / 100e3,
+      benchmark::Counter(static_cast<double>(f.file.size()) / 100e3,
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  state.counters["bytes"] = static_cast<double>(fitted().file.size());
+  state.counters["bytes"] = static_cast<double>(f.file.size());
 }
 
 BENCHMARK(eval);
