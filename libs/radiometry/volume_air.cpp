@@ -5,18 +5,14 @@
 
 namespace suite {
 
-namespace {
-constexpr double kEndless = 1e30;  // as in volume_flight.cpp
-}  // namespace
-
 FlightAir::FlightAir(const Atmosphere* air, const VolumeField& field, const Optics& optics,
                      std::span<const double> knot_probability)
     : air_(air), field_(field), optics_(optics), probability_(knot_probability.begin(), knot_probability.end()) {
   if (!air) return;
   const size_t bins = optics.state().size();
-  before_.resize(optics.media().size());
+  before_.resize(optics.media().size()), there_.resize(optics.media().size());
   whole_.resize(bins), to_.resize(bins), c_.resize(bins);
-  T_.resize(bins), S_.resize(bins), reference_.resize(bins);
+  T_.resize(bins), S_.resize(bins), reference_.resize(bins), behind_.resize(bins);
 }
 
 std::span<const float> FlightAir::reference(double distance) {
@@ -36,15 +32,16 @@ bool FlightAir::dimmed(std::span<const double> depth) const {
   return false;
 }
 
-// Of what media of these densities weaken, per bin: absorption, and scattering where it depends on wavelength.
+// What weakens a bin in a medium: absorption, and scattering where it depends on wavelength; 1/m at density 1.
+double FlightAir::coefficient(size_t medium, size_t bin) const {
+  const BakedMedium& m = optics_.media()[medium];
+  return double{m.absorption[bin]} + (optics_.spectral_flights() ? double{m.scattering[bin]} : 0);
+}
 void FlightAir::depths_of_bins(std::span<const double> media, std::span<double> bins) const {
   std::fill(bins.begin(), bins.end(), 0.0);
-  for (size_t m = 0; m < media.size(); ++m) {
-    if (!(media[m] > 0)) continue;
-    const BakedMedium& medium = optics_.media()[m];
-    for (size_t i = 0; i < bins.size(); ++i)
-      bins[i] += media[m] * (double{medium.absorption[i]} + (optics_.spectral_flights() ? medium.scattering[i] : 0));
-  }
+  for (size_t m = 0; m < media.size(); ++m)
+    if (media[m] > 0)
+      for (size_t i = 0; i < bins.size(); ++i) bins[i] += media[m] * coefficient(m, i);
 }
 
 // sum P_k r_k exp(-t_k) = sum * exp(-offset), with the least t_k for an offset.
@@ -69,76 +66,63 @@ FlightAir::Mixture FlightAir::mixture(std::span<const double> media, std::span<c
 
 void FlightAir::finish(double distance, std::span<const double> depth, uint32_t background, double time, double u,
                        std::span<float> beta, std::span<float> gathered) {
-  air_->path(live_->origin, live_->direction, distance, T_, S_);
+  air_->path(live_->origin, live_->direction, distance, behind_, S_);
   const size_t n = beta.size();
   if (!dimmed(depth)) {
-    for (size_t i = 0; i < n; ++i) gathered[i] += beta[i] * S_[i], beta[i] *= T_[i];
+    for (size_t i = 0; i < n; ++i) gathered[i] += beta[i] * S_[i], beta[i] *= behind_[i];
     return;
   }
   depths_of_bins(depth, whole_);
   const Mixture all = mixture(depth, {});
   for (size_t i = 0; i < n; ++i)
     gathered[i] += static_cast<float>(double{beta[i]} * S_[i] * std::exp(all.offset - whole_[i]) / all.sum);
-
-  // The bin whose absorption chooses the place.
-  const auto count = static_cast<double>(std::count_if(whole_.begin(), whole_.end(), [](double w) { return w > 0; }));
-  if (count > 0) {
-    size_t left = static_cast<size_t>(u * count), bin = 0;
-    while (!(whole_[bin] > 0) || left-- > 0) ++bin;
-    const double within = u * count - std::floor(u * count);
-    const Place place = draw(bin, -std::log1p(within * std::expm1(-whole_[bin])), distance, background, time);
-    if (!place.contents.empty()) add_place(place, beta, gathered);
-  }
-  air_->path(live_->origin, live_->direction, distance, T_, S_);
-  for (size_t i = 0; i < n; ++i) beta[i] *= T_[i];
+  if (draw(distance, background, time, u)) add_place(beta, gathered);
+  for (size_t i = 0; i < n; ++i) beta[i] *= behind_[i];
 }
 
-// Where the bin's depth reaches the target; before_ gets the media's up to there.
-FlightAir::Place FlightAir::draw(size_t bin, double target, double length, uint32_t background, double time) {
+// A place where something weakens, into place_, before_ and there_; false when nothing does.
+bool FlightAir::draw(double length, uint32_t background, double time, double u) {
+  weakened_ = static_cast<size_t>(std::count_if(whole_.begin(), whole_.end(), [](double w) { return w > 0; }));
+  if (weakened_ == 0) return false;
+  // The bin whose depth chooses the place, and the depth.
+  const double scaled = u * static_cast<double>(weakened_);
+  size_t left = static_cast<size_t>(scaled), bin = 0;
+  while (!(whole_[bin] > 0) || left-- > 0) ++bin;
+  const double target = -std::log1p((scaled - std::floor(scaled)) * std::expm1(-whole_[bin]));
   std::fill(before_.begin(), before_.end(), 0.0);
-  Place place{0, {}};
+  contents_.clear();
   walk_.start(field_, live_->origin, live_->direction, length, background, time);
   double passed = 0;
-  while (walk_.next()) {
+  for (bool here = false; !here && walk_.next();) {
     double rate = 0, way = std::min(walk_.end() - walk_.begin(), kEndless);
-    for (const Constituent& c : walk_.contents()) {
-      const BakedMedium& m = optics_.media()[c.medium];
-      rate += c.density * (double{m.absorption[bin]} + (optics_.spectral_flights() ? m.scattering[bin] : 0));
-    }
-    const bool here = passed + rate * way >= target;
-    if (here && rate > 0) way = std::min(way, std::max(0.0, (target - passed) / rate));
+    for (const Constituent& c : walk_.contents()) rate += c.density * coefficient(c.medium, bin);
+    here = rate > 0 && passed + rate * way >= target;
+    if (here) way = std::min(way, (target - passed) / rate);
     for (const Constituent& c : walk_.contents()) before_[c.medium] += c.density * way;
     passed += rate * way;
-    if (rate > 0) place = {walk_.begin() + way, walk_.contents()};  // rounding may leave the last one short of it
-    if (here) break;
+    if (rate > 0) place_ = walk_.begin() + way, contents_ = walk_.contents();  // rounding may leave the last one short
   }
-  return place;
+  return !contents_.empty();
 }
 
-void FlightAir::add_place(const Place& place, std::span<const float> beta, std::span<float> gathered) {
+void FlightAir::add_place(std::span<const float> beta, std::span<float> gathered) {
   const size_t n = beta.size();
-  std::vector<double> there(before_.size(), 0.0);
-  for (const Constituent& c : place.contents) there[c.medium] += c.density;
+  std::fill(there_.begin(), there_.end(), 0.0);
+  for (const Constituent& c : contents_) there_[c.medium] += c.density;
   depths_of_bins(before_, to_);
-  depths_of_bins(there, c_);
-  double density = 0, count = 0;
-  for (size_t i = 0; i < n; ++i) {
-    if (!(whole_[i] > 0)) continue;
-    density += c_[i] * std::exp(-to_[i]) / -std::expm1(-whole_[i]);
-    ++count;
-  }
-  density /= count;
+  depths_of_bins(there_, c_);
+  double density = 0;  // of the place, 1/m
+  for (size_t i = 0; i < n; ++i)
+    if (whole_[i] > 0) density += c_[i] * std::exp(-to_[i]) / -std::expm1(-whole_[i]);
+  density /= static_cast<double>(weakened_);
   if (!(density > 0)) return;
-  const Mixture all = mixture(before_, there);
-  air_->path(live_->origin, live_->direction, place.distance, T_, S_);
+  const Mixture all = mixture(before_, there_);
+  air_->path(live_->origin, live_->direction, place_, T_, S_);
   for (size_t i = 0; i < n; ++i) {
     double emitted = 0;
-    for (const Constituent& c : place.contents) {
+    for (const Constituent& c : contents_) {
       const BakedMedium& m = optics_.media()[c.medium];
-      if (c.kelvin > 0)
-        emitted += c.density * double{m.absorption[i]} * double{m.index_squared[i]} * field_.blackbody(i, c.kelvin);
-      else if (!m.blackbody.empty())
-        emitted += c.density * double{m.absorption[i]} * m.blackbody[i];
+      emitted += c.density * double{m.absorption[i]} * field_.source(m, c.kelvin, i);
     }
     const double weight = std::exp(all.offset - to_[i]) / all.sum;
     const double dimmer = emits_ ? double{T_[i]} - reference_[i] : 0;

@@ -40,19 +40,16 @@ class FlightAir {
               std::span<float> beta, std::span<float> gathered);
 
  private:
-  struct Place {
-    double distance;
-    std::vector<Constituent> contents;
-  };
   bool dimmed(std::span<const double> depth) const;
+  double coefficient(size_t medium, size_t bin) const;
   void depths_of_bins(std::span<const double> media, std::span<double> bins) const;
   struct Mixture {
     double sum, offset;
     double fall;  // -d/ds of its logarithm, where the scattering rates of the place are given, 1/m
   };
   Mixture mixture(std::span<const double> media, std::span<const double> rates) const;
-  Place draw(size_t bin, double target, double length, uint32_t background, double time);
-  void add_place(const Place& place, std::span<const float> beta, std::span<float> gathered);
+  bool draw(double length, uint32_t background, double time, double u);
+  void add_place(std::span<const float> beta, std::span<float> gathered);
 
   const Atmosphere* air_;
   const VolumeField& field_;
@@ -61,9 +58,12 @@ class FlightAir {
   const LivePath* live_ = nullptr;
   bool emits_ = false;
   FieldWalk walk_;
-  std::vector<double> before_;          // per medium: depth up to the place
-  std::vector<double> whole_, to_, c_;  // per bin: depths of the flight and up to the place; attenuation there, 1/m
-  std::vector<float> T_, S_, reference_;
+  double place_ = 0;                    // the place drawn, m from the start
+  std::vector<Constituent> contents_;   // there
+  std::vector<double> before_, there_;  // per medium: depth up to the place; density there
+  size_t weakened_ = 0;                 // bins with a depth
+  std::vector<double> whole_, to_, c_;  // per bin: depths of the flight and up to the place; the latter's slope
+  std::vector<float> T_, S_, reference_, behind_;  // of the air; behind_: T of the whole flight
 };
 
 }  // namespace suite

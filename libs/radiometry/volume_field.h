@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "motion/track.h"
+#include "optics/medium.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
 #include "trace/tracer.h"
@@ -48,6 +49,12 @@ class VolumeField {
   // Planck radiance (vacuum) of bin i at a voxel's temperature, kelvin in the range of the scene's voxels.
   // Interpolated between log-spaced temperatures, ln B linearly in 1/T; relative error below 1e-4.
   float blackbody(size_t bin, double kelvin) const;
+  // What a medium emits over what it absorbs, n^2 B(T), at a voxel's temperature or, where that is 0, its own; 0 at
+  // none.
+  float source(const BakedMedium& m, double kelvin, size_t bin) const {
+    if (kelvin > 0) return m.index_squared[bin] * blackbody(bin, kelvin);
+    return m.blackbody.empty() ? 0 : m.blackbody[bin];
+  }
 
  private:
   void repeat_at_sides(const Placed& p);
@@ -67,6 +74,8 @@ struct Constituent {
   double kelvin;  // 0 = the medium's own temperature
   bool operator==(const Constituent& o) const { return medium == o.medium && kelvin == o.kelvin; }
 };
+
+inline constexpr double kEndless = 1e30;  // m, for an infinite way: finite when multiplied, opaque for any coefficient
 
 // Walks a ray through the field, nearest stretch first.
 class FieldWalk {

@@ -5,10 +5,6 @@
 
 namespace suite {
 
-namespace {
-constexpr double kEndless = 1e30;  // stands for an infinite way: finite when multiplied, opaque for any coefficient
-}  // namespace
-
 Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability,
                  const Atmosphere* air)
     : field_(field),
@@ -91,11 +87,10 @@ void Flights::emit(const LivePath& live, double u, std::span<const float> beta, 
   for (const Constituent& c : run_) {
     const BakedMedium& m = media_[c.medium];
     const float amount = static_cast<float>(c.density);
-    const bool own = c.kelvin > 0, hot = own || !m.blackbody.empty();
     for (size_t i = 0; i < n; ++i) {
       const float tau = amount * m.absorption[i];
       tau_[i] += tau;
-      if (hot) emission_[i] += tau * (own ? m.index_squared[i] * field_.blackbody(i, c.kelvin) : m.blackbody[i]);
+      emission_[i] += tau * field_.source(m, c.kelvin, i);
     }
   }
   const std::span<const float> dimmed = air_.any() ? air_.reference(run_begin_) : std::span<const float>{};
