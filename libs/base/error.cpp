@@ -27,11 +27,22 @@ size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string excerpt(const Where& where) {
-  if (where.source_line.empty() || where.column < 1) return {};
-  std::string line = where.source_line.substr(0, 200);
-  std::string caret;
-  for (int i = 0; i + 1 < where.column && i < static_cast<int>(line.size()); ++i) caret += line[i] == '\t' ? '\t' : ' ';
-  return "\n  " + line + "\n  " + caret + "^";
+  const std::string_view line = where.source_line.view();
+  if (line.empty() || where.column < 1) return {};
+  // A window of a long line, whose ends do not cut a character in two.
+  constexpr size_t kBefore = 100, kWidth = 160;
+  const auto inside = [&](size_t at) { return at < line.size() && (line[at] & 0xc0) == 0x80; };
+  const size_t column = std::min(static_cast<size_t>(where.column) - 1, line.size());
+  size_t begin = line.size() > kWidth && column > kBefore ? column - kBefore : 0;
+  while (inside(begin)) ++begin;
+  size_t end = std::min(line.size(), begin + kWidth);
+  while (inside(end)) --end;
+  const std::string head = begin > 0 ? "... " : "", tail = end < line.size() ? " ..." : "";
+  std::string caret(head.size(), ' ');
+  const std::string before = printable_lines(line.substr(begin, std::max(begin, column) - begin));
+  for (const char c : before)
+    if ((c & 0xc0) != 0x80) caret += c == '\t' ? '\t' : ' ';
+  return "\n  " + head + printable_lines(line.substr(begin, end - begin)) + tail + "\n  " + caret + "^";
 }
 
 std::string to_text(const Where& where) {
@@ -45,10 +56,10 @@ std::string to_text(const Where& where) {
 Error::Error(Where where, std::string what, std::string hint, std::string code)
     : where_(std::move(where)), message_(std::move(what)), hint_(std::move(hint)), code_(std::move(code)) {
   const std::string place = to_text(where_);
-  text_ = place.empty() ? "error: " : place + ": error: ";
-  text_ += message_;
+  text_ = place.empty() ? "error: " : printable(place) + ": error: ";
+  text_ += printable(message_);
   if (!code_.empty()) text_ += " [" + code_ + "]";
-  if (!hint_.empty()) text_ += "; " + hint_;
+  if (!hint_.empty()) text_ += "; " + printable(hint_);
   text_ += excerpt(where_);
 }
 

@@ -2,6 +2,7 @@
 // Our own mistakes are CHECKs (check.h); "there is nothing" is std::optional.
 #pragma once
 #include <exception>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,12 +10,35 @@
 
 namespace suite {
 
+// No number of a text is larger in size: its square and its cube are still far from the ends of a double.
+inline constexpr double kLargestNumber = 1e30;
+
+// A line of a text, for the caret under a fault. Many places share one copy of their text, so that a place costs the
+// same whatever the length of its line.
+class SourceLine {
+ public:
+  SourceLine() = default;
+  // A line by itself, which is copied.
+  SourceLine(std::string_view line) : text_(std::make_shared<const std::string>(line)), length_(line.size()) {}
+  // `length` bytes of `text` from `begin` on; within the text.
+  SourceLine(std::shared_ptr<const std::string> text, size_t begin, size_t length)
+      : text_(std::move(text)), begin_(begin), length_(length) {}
+  // Without its end; empty when there is none. Valid while this lives.
+  std::string_view view() const {
+    return text_ ? std::string_view(*text_).substr(begin_, length_) : std::string_view{};
+  }
+
+ private:
+  std::shared_ptr<const std::string> text_;
+  size_t begin_ = 0, length_ = 0;
+};
+
 // A place in a file. line and column count from 1; 0 means "the file as a whole" (binary files use byte_offset).
 struct Where {
   std::string file;
   int line = 0;
   int column = 0;
-  std::string source_line;     // text of that line, for the caret; may be empty
+  SourceLine source_line;      // text of that line, for the caret; may be empty
   long long byte_offset = -1;  // position in a binary file, or -1
 };
 
@@ -43,8 +67,16 @@ class Error : public std::exception {
 std::string to_text(const Where& where);
 
 // The source line of a place with a caret under the column, each on a new line and indented; empty when there is none.
-// Tabs are kept, so that the caret stands right in a terminal.
+// Of a long line 160 bytes around the column are shown. Tabs are kept, so that the caret stands right in a terminal.
 std::string excerpt(const Where& where);
+
+// A text from outside as it may be shown in a terminal: control characters, what is not UTF-8, and characters that
+// change the direction of writing are shown as \n, \t, \xHH or \u{HHHH}.
+std::string printable(std::string_view text);
+// The same for a whole message, whose line ends and tabs are its own.
+std::string printable_lines(std::string_view text);
+// Bytes of the longest beginning that is UTF-8, without surrogates and overlong forms.
+size_t utf8_bytes(std::string_view text);
 
 // The known name nearest to `name` (Damerau-Levenshtein distance at most max(1, length/3)), or empty.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);

@@ -3,14 +3,19 @@
 #include <fcntl.h>
 #include <openssl/sha.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.h"
+#include "base/inputs.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
 
 namespace suite {
 
@@ -46,6 +51,7 @@ template <class Container>
 Container read_all(const std::string& path, size_t max_bytes) {
   const Descriptor d{open_checked(path)};
   const size_t size = checked_size(d.fd, path);
+  note_input(path);
   if (size > max_bytes) fail(path, strf("has %zu bytes, at most %zu are accepted here", size, max_bytes));
   Container data;
   data.resize(size);
@@ -80,6 +86,7 @@ bool file_exists(const std::string& path) {
 RandomAccessFile::RandomAccessFile(std::string path) : path_(std::move(path)) {
   Descriptor d{open_checked(path_)};
   size_ = checked_size(d.fd, path_);
+  note_input(path_);
   std::swap(descriptor_, d.fd);
 }
 
@@ -102,7 +109,11 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   struct stat info {};
   if (::stat(path_.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) fail(path_, "is a directory", "name an output file");
+  if (const std::string input = input_at(path_); !input.empty())
+    fail(path_, "would replace an input of this run" + (input == path_ ? std::string() : ", read as '" + input + "'"),
+         "give the output another name");
   temporary_ = path_ + strf(".part-%d-%u", static_cast<int>(::getpid()), counter++);
+  guard_ = std::make_unique<Temporary>(temporary_.c_str());
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     fail(path_, strf("cannot be written: %s", std::strerror(errno)), "the folder must exist and be writable");
@@ -111,6 +122,17 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!done_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::reserve(size_t bytes) {
+  int status;
+  do status = ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes));
+  while (status != 0 && errno == EINTR);
+  if (status != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT))
+    fail(path_,
+         strf("cannot be written: %s: it takes %s", std::strerror(errno),
+              human_bytes(static_cast<double>(bytes)).c_str()),
+         "make room, or write elsewhere");
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -154,6 +176,12 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
 }
 void write_file(const std::string& path, std::string_view text) {
   write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+size_t free_bytes(const std::string& folder) {
+  struct statvfs info {};
+  if (::statvfs(folder.c_str(), &info) != 0 || info.f_blocks == 0) return std::numeric_limits<size_t>::max();
+  return static_cast<size_t>(info.f_bavail) * info.f_frsize;
 }
 
 void make_folder(const std::string& path) {

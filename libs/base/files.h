@@ -2,11 +2,14 @@
 // renamed when complete, so that a file is there whole or not at all.
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace suite {
+
+class Temporary;
 
 // Bytes of a regular file. Error: missing, a directory, unreadable, or larger than max_bytes.
 std::vector<std::byte> read_bytes(const std::string& path, size_t max_bytes = size_t{8} << 30);
@@ -33,12 +36,15 @@ class RandomAccessFile {
 // Reserves `path`: data goes to a temporary sibling until commit(). Destroyed without commit, it leaves nothing behind.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::string path);  // Error when the folder is missing or not writable, or path is a directory
+  // Error when the folder is missing or not writable, path is a directory or an input of this run (inputs.h).
+  explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   const std::string& temporary() const { return temporary_; }  // write here (any library), then commit()
-  void write(std::span<const std::byte> bytes);                // append
+  // Takes `bytes` bytes of the disk for what will be written. Error when they are not there.
+  void reserve(size_t bytes);
+  void write(std::span<const std::byte> bytes);  // append
   void write(std::string_view text);
   void write_at(size_t offset,
                 std::span<const std::byte> bytes);  // anywhere; gaps read as zero; leaves the end of write() alone
@@ -47,12 +53,16 @@ class AtomicFile {
 
  private:
   std::string path_, temporary_;
+  std::unique_ptr<Temporary> guard_;  // it vanishes also when a signal ends the program
   int descriptor_ = -1;
   bool done_ = false;
 };
 
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 void write_file(const std::string& path, std::string_view text);
+
+// Bytes that may still be written to the file system of `folder`; the largest number when it does not tell.
+size_t free_bytes(const std::string& folder);
 
 // Creates a folder (and parents). Error when that fails or a file stands there.
 void make_folder(const std::string& path);

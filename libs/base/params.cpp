@@ -3,6 +3,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <deque>
@@ -34,19 +35,31 @@ struct Params::Node {
 
 struct Params::Document {
   std::string file;
-  std::vector<std::string> lines;
+  std::shared_ptr<const std::string> text;  // the whole, which every place shares
+  std::vector<size_t> lines;                // where each begins, and the end
   std::deque<Node> nodes;
   const Node* root = nullptr;
 
   Where where(int line, int column) const {
     Where w{file, line, column, {}, -1};
-    if (line >= 1 && line <= static_cast<int>(lines.size())) w.source_line = lines[line - 1];
+    if (line < 1 || line >= static_cast<int>(lines.size())) return w;
+    const size_t begin = lines[static_cast<size_t>(line) - 1];
+    size_t end = lines[static_cast<size_t>(line)];
+    while (end > begin && ((*text)[end - 1] == '\n' || (*text)[end - 1] == '\r')) --end;
+    w.source_line = SourceLine(text, begin, end - begin);
     return w;
+  }
+  void keep(std::string_view whole) {
+    text = std::make_shared<const std::string>(whole);
+    lines = {0};
+    for (size_t at = 0; (at = text->find('\n', at)) != std::string::npos;) lines.push_back(++at);
+    if (lines.back() != text->size()) lines.push_back(text->size());
   }
 };
 
 namespace {
 
+constexpr size_t kLongestName = 100;
 constexpr int kMaxDepth = 200;
 constexpr size_t kMaxNodes = 50'000'000;
 
@@ -222,15 +235,17 @@ Params Params::parse_file(const std::string& path) { return parse_text(read_text
 Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
   auto document = std::make_shared<Document>();
   document->file = file_name;
-  const std::string text(yaml);
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    document->lines.push_back(line);
-  }
+  document->keep(yaml);
+  const std::string& text = *document->text;
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
     throw Error(Where{file_name, 0, 0, {}, static_cast<long long>(zero)}, "is not a text file",
                 "YAML or JSON is expected");
+  if (const size_t good = utf8_bytes(text); good < text.size()) {
+    const auto line = std::upper_bound(document->lines.begin(), document->lines.end() - 1, good);
+    throw Error(
+        document->where(static_cast<int>(line - document->lines.begin()), static_cast<int>(good - line[-1]) + 1),
+        "this is not UTF-8", "save the text as UTF-8");
+  }
   try {
     std::istringstream in(text);
     YAML::Parser parser(in);
@@ -319,7 +334,20 @@ std::vector<Params> Params::items() const {
 
 std::string Params::as_text() const {
   if (node_->kind != Kind::scalar) throw error(strf("expected a text, found %s", kind_name(node_->kind)));
+  for (const char c : node_->scalar)
+    if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' && c != '\r') || c == 0x7f)
+      throw error("a text with the control character " + printable({&c, 1}), "leave it out");
   return node_->scalar;
+}
+std::string Params::as_name() const {
+  const std::string name = as_text();
+  const char* const right = "1 to 100 bytes without '/' and control characters, not beginning with a dot";
+  if (name.empty() || name.size() > kLongestName || name.front() == '.' || name.find('/') != std::string::npos ||
+      printable(name) != name)
+    throw error("the name '" + name.substr(0, kLongestName) + (name.size() > kLongestName ? "..." : "") +
+                    "' cannot be part of a file name",
+                right);
+  return name;
 }
 double Params::as_number() const {
   double value = 0;
@@ -327,6 +355,8 @@ double Params::as_number() const {
     throw error(strf("expected a finite number, found %s", node_->kind == Kind::scalar
                                                                ? ("'" + node_->scalar.substr(0, 60) + "'").c_str()
                                                                : kind_name(node_->kind)));
+  if (std::fabs(value) > kLargestNumber)
+    throw error(strf("%g is too large", value), strf("give a number of at most %g in size", kLargestNumber));
   return value;
 }
 double Params::as_number_in(double low, double high, const char* unit) const {
@@ -377,6 +407,13 @@ std::array<double, 3> Params::as_vec3() const {
   const std::vector<double> v = as_numbers();
   if (v.size() != 3) throw error(strf("expected three numbers, found %zu", v.size()));
   return {v[0], v[1], v[2]};
+}
+std::array<double, 3> Params::as_direction() const {
+  const std::array<double, 3> v = as_vec3();
+  const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+  if (!(largest >= 1 / kLargestNumber)) throw error("a direction of no length", "three numbers, not all 0");
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return {v[0] / length, v[1] / length, v[2] / length};
 }
 std::string Params::as_path() const { return resolve_path(file(), as_text()); }
 

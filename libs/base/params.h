@@ -20,7 +20,8 @@ class Params {
  public:
   enum class Kind { null, scalar, list, map };
 
-  // Error: malformed YAML, duplicate key, nesting above 200, alias to an unfinished node, more than 50 million nodes.
+  // Error: not UTF-8, malformed YAML, duplicate key, nesting above 200, alias to an unfinished node, more than 50
+  // million nodes.
   static Params parse_file(const std::string& path);
   static Params parse_text(std::string_view yaml, const std::string& file_name);
   // The same from strict JSON that a program wrote into another file: some ten times faster, but places name the file
@@ -43,15 +44,19 @@ class Params {
   std::vector<Params> items() const;  // of a list; a single scalar or map counts as a list of one
 
   // Scalars. Error with place and expectation when the value is of another kind or outside [low, high].
-  std::string as_text() const;
-  double as_number() const;  // finite
+  std::string as_text() const;  // without control characters but line ends and tabs
+  // A name that may become part of a file name: 1 to 100 bytes, without '/' and control characters, not beginning with
+  // a dot.
+  std::string as_name() const;
+  double as_number() const;  // finite, at most kLargestNumber in size
   double as_number_in(double low, double high, const char* unit) const;
   long long as_integer(long long low, long long high) const;
   bool as_bool() const;  // true/false/yes/no/on/off
   size_t as_choice(std::initializer_list<const char*> names) const;
   std::vector<double> as_numbers() const;  // list of finite numbers
   std::array<double, 3> as_vec3() const;
-  std::string as_path() const;  // resolved against the folder of this file
+  std::array<double, 3> as_direction() const;  // three numbers, not all 0, made a unit vector
+  std::string as_path() const;                 // resolved against the folder of this file
 
   // Shorthands: required, and with a default.
   std::string text(std::string_view key) const { return at(key).as_text(); }

@@ -68,11 +68,11 @@ std::string Report::text() const {
   for (const auto& [key, entry] : entries_) {
     if (muted_.count(key.first)) continue;
     const IssueKind& k = kind(key.first);
-    out += strf("%s: %s [%s] x%zu: %s\n", key.second.c_str(), to_text(k.severity), k.code.c_str(), entry.count,
-                k.summary.c_str());
+    out += strf("%s: %s [%s] x%zu: %s\n", printable(key.second).c_str(), to_text(k.severity), k.code.c_str(),
+                entry.count, k.summary.c_str());
     for (const Finding& f : entry.examples) {
-      const std::string place = to_text(f.where);
-      out += "    " + (place.empty() ? "" : place + ": ") + f.message + excerpt(f.where) + "\n";
+      const std::string place = printable(to_text(f.where));
+      out += "    " + (place.empty() ? "" : place + ": ") + printable(f.message) + excerpt(f.where) + "\n";
     }
     if (!k.hint.empty()) out += "    hint: " + k.hint + "\n";
   }

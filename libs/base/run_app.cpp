@@ -9,6 +9,8 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/inputs.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 
@@ -86,8 +88,8 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
     message = given.rfind('-', 0) == 0 ? "unknown option '" + given + "'" : "unexpected argument '" + given + "'";
     if (const std::string near = nearest_name(given, known); !near.empty()) message += "; did you mean '" + near + "'?";
   }
-  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), message.c_str(), info.name.c_str(),
-               info.name.c_str());
+  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), printable_lines(message).c_str(),
+               info.name.c_str(), info.name.c_str());
   return 2;
 }
 
@@ -95,12 +97,15 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
 
 const std::string& command_line() { return g_command_line; }
 
-void note(const std::string& text) { logger()->info("{}", text); }
-void warn(const std::string& text) { logger()->warn("warning: {}", text); }
+void note(const std::string& text) { logger()->info("{}", printable_lines(text)); }
+void warn(const std::string& text) { logger()->warn("warning: {}", printable_lines(text)); }
 
 int run_app(const AppInfo& info, int argc, const char* const* argv, const std::function<void(Cli&)>& declare,
             const std::function<int(Cli&)>& run) {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, which is told
+  end_on_signals(info.name.c_str());
+  track_inputs();
   remember_command_line(info.name, argc, argv);
   if (!__builtin_cpu_supports("avx2")) {
     std::fprintf(stderr, "%s: error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n",
@@ -141,8 +146,8 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
     std::fprintf(stderr, "%s: error: out of memory\n", info.name.c_str());
     return 1;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(), e.what(),
-                 g_command_line.c_str());
+    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(),
+                 printable_lines(e.what()).c_str(), printable(g_command_line).c_str());
     return 3;
   }
 }

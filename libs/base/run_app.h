@@ -1,5 +1,5 @@
 // The shell of every executable: options, --help, --version, --threads, --quiet; the one catch; the exit codes.
-// 0 fine, 1 bad input, 2 bad usage, 3 our bug.
+// 0 fine, 1 bad input, 2 bad usage, 3 our bug, 128 + n ended by signal n (130: Ctrl-C).
 #pragma once
 #include <functional>
 #include <memory>
@@ -55,7 +55,8 @@ struct AppInfo {
   std::string footer;       // examples and conventions at the end of --help
 };
 
-// declare() adds options, run() does the work and returns 0 or 1. run() is not called for --help and --version.
+// declare() adds options, run() does the work and returns 0, 1 or, stopped in good order by a signal (interrupt.h), 128
+// + n. run() is not called for --help and --version.
 int run_app(const AppInfo& info, int argc, const char* const* argv, const std::function<void(Cli&)>& declare,
             const std::function<int(Cli&)>& run);
 

@@ -17,6 +17,7 @@ bool TextLines::next_raw() {
   if (line_.ends_with('\r')) line_.remove_suffix(1);
   offset_ = end + 1;
   ++number_;
+  shared_ = {};
   words_.clear();
   const size_t hash = line_.find('#');
   comment_ = hash == std::string_view::npos ? std::string_view{} : line_.substr(hash + 1);
@@ -40,7 +41,9 @@ bool TextLines::next() {
 Where TextLines::where(size_t word) const {
   const int column = word < words_.size() ? static_cast<int>(words_[word].data() - line_.data()) + 1
                                           : static_cast<int>(line_.size()) + 1;
-  return {file_, number_, column, std::string(line_.substr(0, 200)), -1};
+  // Copied once, however many places of one line are kept.
+  if (shared_.view().data() == nullptr) shared_ = SourceLine(line_);
+  return {file_, number_, column, shared_, -1};
 }
 
 double TextLines::number(size_t i, const char* what, bool allow_nan) const {
@@ -54,6 +57,8 @@ double TextLines::number(size_t i, const char* what, bool allow_nan) const {
     throw error(i, strf("'%s' is not a number", std::string(words_[i].substr(0, 40)).c_str()),
                 strf("%s is wanted here", what));
   if (!allow_nan && !std::isfinite(value)) throw error(i, strf("%s is not finite", what));
+  if (std::isfinite(value) && std::fabs(value) > kLargestNumber)
+    throw error(i, strf("%s = %g is too large", what, value), strf("at most %g in size", kLargestNumber));
   return value;
 }
 
