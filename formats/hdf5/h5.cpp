@@ -1,12 +1,17 @@
 #include "formats/hdf5/h5.h"
 
 #include <hdf5.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
 
 #include "base/files.h"
+#include "base/inputs.h"
+#include "base/memory.h"
+#include "base/progress.h"
 
 namespace suite::h5 {
 
@@ -93,8 +98,23 @@ bool get_text(hid_t object, const std::string& name, std::string& text) {
 
 // --- Writer ---------------------------------------------------------------------------------------------------------
 
+// What the library still holds back it writes when the file is closed, or when the program ends; refused there, it
+// crashes. So the rest goes to a file in memory, which nobody sees.
+void Writer::give_up() const {
+  void* descriptor = nullptr;
+  if (file_ < 0 || H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) < 0 || !descriptor) return;
+  const int nowhere = ::memfd_create("given up", MFD_CLOEXEC);
+  if (nowhere < 0) return;
+  ::dup2(nowhere, *static_cast<int*>(descriptor));
+  ::close(nowhere);
+}
+
 void Writer::fail(const std::string& what) const {
-  throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what, "is the disk full?");
+  give_up();
+  const size_t slash = path_.rfind('/'),
+               room = free_bytes(slash == std::string::npos ? "." : path_.substr(0, slash + 1));
+  throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what,
+              "is the disk full? " + human_bytes(static_cast<double>(room)) + " are free there");
 }
 
 Writer::Writer(const std::string& temporary, const std::string& path, PackLevel level)
@@ -184,7 +204,7 @@ void Writer::attribute(const std::string& name, std::span<const double> values) 
   if (a < 0 || H5Awrite(a, H5T_IEEE_F64LE, values.data()) < 0) fail("attribute '" + name + "'");
 }
 void Writer::close() {
-  if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("flushing");
+  if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("its last part");
   file_ = Handle();
 }
 
@@ -195,6 +215,7 @@ void Reader::fail(const std::string& what) const { throw Error(Where{path_, 0, 0
 Reader::Reader(const std::string& path, std::string hint) : path_(path), hint_(std::move(hint)) {
   silence();
   file_size(path);
+  note_input(path);
   // The signature and a checksummed superblock (version 3) are looked at here; older layouts are followed unchecked by
   // the library and none of ours.
   char head[9] = {};
@@ -256,6 +277,10 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
   const hsize_t there = H5Dget_storage_size(d.dataset), limit = file_size(path_);
   if (d.packed ? there > limit || bytes / kBestRatio > there : there != bytes || bytes > limit)
     fail("dataset '" + name + "' is not whole");
+  // A packed dataset may be a thousand times the size of its file.
+  if (const double memory = available_memory(); d.packed && static_cast<double>(bytes) > 0.9 * memory)
+    fail("dataset '" + name + "' unpacks to " + human_bytes(static_cast<double>(bytes)) + ", and " +
+         human_bytes(memory) + " of memory are available");
   d.count = dims[0] * width;
   return d;
 }

@@ -85,6 +85,7 @@ class Writer {
   void make_groups(const std::string& name);
   Handle make(const std::string& name, Id type, size_t count, size_t width, const char* units);
   [[noreturn]] void fail(const std::string& what) const;
+  void give_up() const;
   std::string path_;
   PackLevel level_;
   Handle file_;

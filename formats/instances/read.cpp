@@ -85,7 +85,7 @@ std::vector<Affine3> read_csv(const std::string& path) {
     start = end + 1;
     ++line_no;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    const auto where = [&] { return Where{path, line_no, 1, std::string(line.substr(0, 200)), -1}; };
+    const auto where = [&] { return Where{path, line_no, 1, line.substr(0, 200), -1}; };
     if (line.empty() || line.front() == '#') continue;
     if (columns.empty()) {
       columns = read_header(line, where());

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/files.h"
+#include "base/inputs.h"
 #include "formats/render_state/internal.h"
 
 namespace suite {
@@ -99,12 +100,14 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
     }
     w.close();
   }
+  file.reserve(file_size(file.temporary()));  // the holes too: a disk that fills up later does not stop the run
   file.commit();
 }
 
 }  // namespace render_state
 
 Budget read_state_budget(const std::string& path, const StateIdentity& identity) {
+  const OwnResults own;
   h5::Reader reader(path, render_state::kHint);
   render_state::check_identity(reader, path, identity);
   return render_state::read_budget(reader);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/files.h"
+#include "base/inputs.h"
 #include "formats/render_state/internal.h"
 
 namespace suite {
@@ -29,6 +30,7 @@ class StateFile final : public StateStore {
 
   void begin(const std::vector<CaptureShape>& shapes) override {
     {
+      const OwnResults own;
       h5::Reader reader(path_, kHint);
       check_identity(reader, path_, identity_);
       read_budget(reader);
@@ -47,15 +49,7 @@ class StateFile final : public StateStore {
   void load(size_t capture, Accumulators& sums, std::vector<double>& needs) override {
     const Columns& c = columns_.at(capture);
     const size_t n = c.shape.problems(), wide = c.shape.values * static_cast<size_t>(c.shape.scrambles);
-    uint8_t piloted = 0;
-    get(c.piloted, &piloted, 1);
-    needs.clear();
-    if (piloted) {
-      needs.resize(n);
-      get(c.needs, needs.data(), n * sizeof(double));
-      if (std::any_of(needs.begin(), needs.end(), [](double x) { return !(x >= 0); }))
-        fail("holds needs that cannot be");
-    }
+    load_needs(c, needs);
     std::vector<uint8_t> valid(ranges_of(c.shape));
     get(c.valid, valid.data(), valid.size());
     for (size_t r = 0; r < valid.size(); ++r) {
@@ -82,6 +76,19 @@ class StateFile final : public StateStore {
         sums.largest(first + i) = largest[i];
       }
       get(c.truth + first * c.shape.truth_slots * 8, sums.truth(first), count * c.shape.truth_slots * 8);
+    }
+  }
+
+  void load_paths(size_t capture, std::vector<uint32_t>& paths, std::vector<double>& needs) override {
+    const Columns& c = columns_.at(capture);
+    load_needs(c, needs);
+    paths.assign(c.shape.problems(), 0);
+    std::vector<uint8_t> valid(ranges_of(c.shape));
+    get(c.valid, valid.data(), valid.size());
+    for (size_t r = 0; r < valid.size(); ++r) {
+      if (!valid[r]) continue;
+      const size_t first = r * kRangeRows * c.shape.columns;
+      get(c.paths + first * 4, &paths[first], std::min(paths.size() - first, size_t{kRangeRows} * c.shape.columns) * 4);
     }
   }
 
@@ -135,6 +142,14 @@ class StateFile final : public StateStore {
   }
 
  private:
+  void load_needs(const Columns& c, std::vector<double>& needs) const {
+    uint8_t piloted = 0;
+    get(c.piloted, &piloted, 1);
+    needs.assign(piloted ? c.shape.problems() : 0, 0.0);
+    if (!piloted) return;
+    get(c.needs, needs.data(), needs.size() * sizeof(double));
+    if (std::any_of(needs.begin(), needs.end(), [](double x) { return !(x >= 0); })) fail("holds needs that cannot be");
+  }
   static Columns columns_of(h5::Reader& r, size_t capture, const CaptureShape& wanted) {
     const std::string g = group_of(capture);
     Columns c;
@@ -192,6 +207,7 @@ class StateFile final : public StateStore {
 };
 
 bool roomy(const std::string& path, const std::vector<CaptureShape>& shapes) {
+  const OwnResults own;
   h5::Reader reader(path, kHint);
   for (size_t c = 0; c < shapes.size(); ++c)
     if (static_cast<int>(reader.get<uint32_t>(group_of(c) + "/shape", "1", 1, 5)[3]) < shapes[c].scrambles)
@@ -245,6 +261,9 @@ class PreparedState final : public StateStore {
   }
   void load(size_t capture, Accumulators& sums, std::vector<double>& needs) override {
     file_.load(capture, sums, needs);
+  }
+  void load_paths(size_t capture, std::vector<uint32_t>& paths, std::vector<double>& needs) override {
+    file_.load_paths(capture, paths, needs);
   }
   void save_needs(size_t capture, std::span<const double> needs) override { file_.save_needs(capture, needs); }
   void save(size_t capture, size_t first, size_t count, const Accumulators& sums) override {

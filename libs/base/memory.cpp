@@ -1,11 +1,33 @@
 #include "base/memory.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdint>
 
 namespace suite {
+
+double available_memory() {
+  double bytes = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  std::ifstream info("/proc/meminfo");
+  for (std::string word; info >> word;)
+    if (double kilobytes = 0; word == "MemAvailable:" && info >> kilobytes) bytes = std::min(bytes, 1024 * kilobytes);
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    double pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const double used = pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    bytes = std::min(bytes, std::max(0.0, static_cast<double>(limit.rlim_cur) - used));
+  }
+  return bytes;
+}
 
 void expect_large(void* data, size_t bytes) {
   if (bytes < (size_t{4} << 20)) return;

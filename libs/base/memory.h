@@ -1,9 +1,12 @@
-// Large arrays that are written once from end to end.
+// Memory: how much there is, and large arrays that are written once from end to end.
 #pragma once
 #include <cstddef>
 #include <vector>
 
 namespace suite {
+
+// Bytes that this process may still use without harm: what the system has available, within the process's own limits.
+double available_memory();
 
 // Asks the system to back `bytes` bytes from `data` on, not yet touched, with large pages where it can: clearing and
 // mapping 4 kB at a time costs more than writing results does. Does nothing for less than 4 MiB.

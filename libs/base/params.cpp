@@ -59,7 +59,8 @@ struct Params::Document {
 
 namespace {
 
-constexpr size_t kLongestName = 100;
+constexpr size_t kLongestName = 48;  // five in a row, with an ending, are a file name
+constexpr const char* kGoodName = "1 to 48 bytes without '/' and control characters, not beginning with a dot";
 constexpr int kMaxDepth = 200;
 constexpr size_t kMaxNodes = 50'000'000;
 
@@ -230,6 +231,17 @@ bool parse_double(const std::string& text, double& value) {
 
 }  // namespace
 
+std::string fault_of_name(const std::string& name) {
+  if (name.empty()) return "is empty";
+  if (name.size() > kLongestName)
+    return "'" + name.substr(0, utf8_bytes(name.substr(0, kLongestName))) + "...' " +
+           strf("has %zu bytes", name.size());
+  if (name.front() == '.') return "'" + name + "' begins with a dot";
+  if (name.find('/') != std::string::npos) return "'" + name + "' has a '/'";
+  if (printable(name) != name) return "'" + name + "' has control characters";
+  return {};
+}
+
 Params Params::parse_file(const std::string& path) { return parse_text(read_text(path, size_t{256} << 20), path); }
 
 Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
@@ -341,12 +353,8 @@ std::string Params::as_text() const {
 }
 std::string Params::as_name() const {
   const std::string name = as_text();
-  const char* const right = "1 to 100 bytes without '/' and control characters, not beginning with a dot";
-  if (name.empty() || name.size() > kLongestName || name.front() == '.' || name.find('/') != std::string::npos ||
-      printable(name) != name)
-    throw error("the name '" + name.substr(0, kLongestName) + (name.size() > kLongestName ? "..." : "") +
-                    "' cannot be part of a file name",
-                right);
+  if (const std::string fault = fault_of_name(name); !fault.empty())
+    throw error("the name " + fault + "; it becomes part of file names", kGoodName);
   return name;
 }
 double Params::as_number() const {
@@ -420,6 +428,10 @@ std::string Params::as_path() const { return resolve_path(file(), as_text()); }
 std::string Params::text(std::string_view key, const std::string& otherwise) const {
   const auto found = find(key);
   return found ? found->as_text() : otherwise;
+}
+std::string Params::name(std::string_view key, const std::string& otherwise) const {
+  const auto found = find(key);
+  return found ? found->as_name() : otherwise;
 }
 double Params::number(std::string_view key, double otherwise) const {
   const auto found = find(key);

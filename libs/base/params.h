@@ -15,6 +15,9 @@ namespace suite {
 
 class Report;
 
+// Empty when a text may become part of a file name, as as_name() has it; else what is wrong with it.
+std::string fault_of_name(const std::string& name);
+
 // A handle to one node of a parsed document (cheap to copy; keeps the document alive). Asking marks keys as read.
 class Params {
  public:
@@ -45,8 +48,8 @@ class Params {
 
   // Scalars. Error with place and expectation when the value is of another kind or outside [low, high].
   std::string as_text() const;  // without control characters but line ends and tabs
-  // A name that may become part of a file name: 1 to 100 bytes, without '/' and control characters, not beginning with
-  // a dot.
+  // A name that may become part of a file name: 1 to 48 bytes, without '/' and control characters, not beginning with a
+  // dot.
   std::string as_name() const;
   double as_number() const;  // finite, at most kLargestNumber in size
   double as_number_in(double low, double high, const char* unit) const;
@@ -61,6 +64,7 @@ class Params {
   // Shorthands: required, and with a default.
   std::string text(std::string_view key) const { return at(key).as_text(); }
   std::string text(std::string_view key, const std::string& otherwise) const;
+  std::string name(std::string_view key, const std::string& otherwise) const;  // as_name
   double number(std::string_view key) const { return at(key).as_number(); }
   double number(std::string_view key, double otherwise) const;
   double number_in(std::string_view key, double low, double high, const char* unit) const;

@@ -6,6 +6,7 @@
 #include "motion/track.h"
 #include "scene/baker.h"
 #include "scene/curvature.h"
+#include "scene/unfolded.h"
 
 namespace suite {
 
@@ -271,6 +272,25 @@ TimeSpan Baker::time_window() {
   return common;
 }
 
+// Copies of copies multiply: a short text can ask for more than any memory holds. Filed at the innermost group that is
+// too large by itself.
+void Baker::count_unfolded(const std::vector<size_t>& order) {
+  const std::vector<double> counts = unfolded(scene_.groups);
+  if (counts.empty() || counts.front() <= kMostUnfolded) return;
+  size_t at = 0;
+  for (bool deeper = true; deeper;) {
+    deeper = false;
+    for (const Placement& p : scene_.groups[at].placements)
+      if (p.kind == TargetKind::group && counts[p.target] > kMostUnfolded) {
+        at = p.target, deeper = true;
+        break;
+      }
+  }
+  const DraftGroup& group = draft_.groups[order[at]];
+  add("SP411", group.placements.empty() ? group.where : group.placements.front().where,
+      strf("'%s' unfolds into %.3g placements, the scene into %.3g", group.name.c_str(), counts[at], counts.front()));
+}
+
 void Baker::groups() {
   const std::vector<size_t> order = group_order();
   for (size_t i = 0; i < order.size(); ++i) group_ids_[draft_.groups[order[i]].name] = static_cast<uint32_t>(i);
@@ -280,6 +300,7 @@ void Baker::groups() {
     for (const DraftPlacement& p : draft_.groups[g].placements) place(p, group, g == 0);
     scene_.groups.push_back(std::move(group));
   }
+  count_unfolded(order);
   const bool media = !draft_.volumes.empty() || draft_.ambient.given();
   if (!draft_.failed_placements && (scene_.groups.empty() || (draft_.groups.front().placements.empty() && !media)))
     add("SP406", {draft_.file, 0, 0, {}, -1}, "'world' is empty");

@@ -54,6 +54,7 @@ class Baker {
   Built build_terrain(const DraftGeometry& g);
   Built build_primitive(const DraftGeometry& g);
   void groups();
+  void count_unfolded(const std::vector<size_t>& order);
   std::vector<size_t> group_order();
   std::optional<Built> target(const Reference& ref);
   std::vector<Affine3> transforms(const DraftPlacement& p);

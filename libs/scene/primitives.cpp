@@ -4,6 +4,24 @@
 
 namespace suite {
 
+namespace {
+
+constexpr double kMostWaves = 1e5;  // across a sinusoid: a ray along the surface looks at each of them
+
+void check_terms(const Primitive& p, size_t fixed, const Where& where) {
+  const auto& a = p.parameters;
+  for (size_t i = fixed; i < a.size(); i += 4) {
+    const std::string term = strf("sinusoid '%s', term %zu: ", p.name.c_str(), (i - fixed) / 4 + 1);
+    const double waves = (std::fabs(a[i + 1]) * a[0] + std::fabs(a[i + 2]) * a[1]) / (2 * kPi);
+    if (!(std::fabs(a[i]) <= 1e9)) throw Error(where, term + strf("an amplitude of %g m", a[i]), "at most 1e9 m");
+    if (!(waves <= kMostWaves))
+      throw Error(where, term + strf("%.3g waves fit across the surface", waves),
+                  strf("at most %g: lower kx and ky (1/m), or the extent", kMostWaves));
+  }
+}
+
+}  // namespace
+
 std::span<const PrimitiveRow> primitive_rows() {
   constexpr double tiny = 1e-9, huge = 1e9;
   static const std::vector<PrimitiveRow> rows{
@@ -66,6 +84,7 @@ void check_primitive(const Primitive& p, const Where& where) {
                               i < fixed ? row.parameters[i].name.c_str() : "a term", v));
   }
   const auto& a = p.parameters;
+  if (terms) check_terms(p, fixed, where);
   if (p.kind == PrimitiveKind::plane && (a[0] == 0) != (a[1] == 0))
     throw Error(where, "plane '" + p.name + "': give both width and depth, or neither for an infinite one");
   if (p.kind == PrimitiveKind::box && !(a[0] < a[3] && a[1] < a[4] && a[2] < a[5]))

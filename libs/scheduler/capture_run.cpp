@@ -55,6 +55,8 @@ class Saver {
   Clock::time_point last_ = Clock::now();
 };
 
+bool stops(const CaptureWork& work) { return work.stop && work.stop(); }
+
 // Continues all problems up to their planned counts. Returns the paths that were run.
 double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint32_t> to, Accumulators& sums,
                  RunStatistics& statistics, bool save) {
@@ -73,7 +75,7 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
   double paths = 0;
   std::mutex mutex;
   parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t b = begin; b < end; ++b) {
+    for (size_t b = begin; b < end && !stops(work); ++b) {
       RunStatistics mine;
       work.pipeline.run(work.sensor, work.capture, stream, blocks[b], to, sums, Slots::by_problem, mine);
       {
@@ -86,14 +88,10 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
     }
   });
   saver.flush();
+  if (stops(work)) throw Stopped{};
   return paths;
 }
 
-std::vector<uint32_t> most_of(const CaptureWork& work) {
-  std::vector<uint32_t> paths(work.capture.problems());
-  for (size_t i = 0; i < paths.size(); ++i) paths[i] = work.goals.of(i).max_paths;
-  return paths;
-}
 std::vector<uint32_t> pilot_of(const CaptureWork& work) {
   std::vector<uint32_t> paths(work.capture.problems());
   for (size_t i = 0; i < paths.size(); ++i) paths[i] = work.goals.of(i).min_paths;
@@ -104,7 +102,7 @@ std::vector<uint32_t> pilot_of(const CaptureWork& work) {
 void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result,
                   RunStatistics& statistics) {
   const std::vector<Block> blocks = blocks_of(work.capture);
-  const std::vector<uint32_t> to = most_of(work);
+  const std::vector<uint32_t> to = plan_of(work.capture, work.goals, {});
   std::mutex mutex;
   std::vector<std::unique_ptr<Accumulators>> idle;
   parallel_for(0, blocks.size(), 1, [&](size_t begin, size_t end) {
@@ -116,7 +114,7 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
     if (!sums)
       sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values,
                                             Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
-    for (size_t b = begin; b < end; ++b) {
+    for (size_t b = begin; b < end && !stops(work); ++b) {
       const Block& block = blocks[b];
       RunStatistics mine;
       sums->clear();
@@ -131,9 +129,17 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(sums));
   });
+  if (stops(work)) throw Stopped{};
 }
 
 }  // namespace
+
+std::vector<uint32_t> plan_of(const Capture& capture, const Goals& goals, std::span<const double> needs) {
+  if (!needs.empty()) return paths_for(needs, goals);
+  std::vector<uint32_t> paths(capture.problems());
+  for (size_t i = 0; i < paths.size(); ++i) paths[i] = goals.of(i).max_paths;
+  return paths;
+}
 
 void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBuilder& result,
                  RunStatistics& statistics) {
@@ -160,8 +166,8 @@ void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBui
     if (work.store) work.store->save_needs(work.id, needs);
     if (work.after_pilot) work.after_pilot(work, needs, paths, seconds_since(start));
   }
-  const std::vector<uint32_t> plan = piloted ? paths_for(needs, work.goals) : most_of(work);
-  run_stage(work, work.id, plan, sums, statistics, true);
+  run_stage(work, work.id, plan_of(work.capture, work.goals, piloted ? needs : std::vector<double>{}), sums, statistics,
+            true);
   parallel_for(0, problems, 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) result.take(i, sums, i);
   });

@@ -113,10 +113,16 @@ class Job {
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     if (options_.store) options_.store->begin(shapes(items));
+    if (options_.store && options_.begun) options_.begun(stored_work(items));
+    report_.captures_asked = items.size();
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
-    for (const Item& item : items) run_item(item);
+    try {
+      for (const Item& item : items) run_item(item);
+    } catch (const Stopped&) {
+      report_.stopped = true;
+    }
     if (progress_) progress_->finish();
     finish();
     return std::move(report_);
@@ -166,6 +172,25 @@ class Job {
     return all;
   }
 
+  // How far the store has each capture.
+  StoredWork stored_work(const std::vector<Item>& items) {
+    StoredWork work{items.size(), 0, 0};
+    if (!cap_) cap_ = options_.store->cap();
+    for (const Item& item : items) {
+      std::vector<uint32_t> paths;
+      std::vector<double> needs;
+      options_.store->load_paths(item.id, paths, needs);
+      const Capture& capture = capture_of(item);
+      const Goals goals = goals_of(*sensors_[item.sensor], capture, budget());
+      const bool piloted = goals.all.relative_error > 0 || (options_.budget.seconds > 0 && !cap_);
+      const std::vector<uint32_t> plan = plan_of(capture, goals, piloted ? needs : std::vector<double>{});
+      work.finished += (!piloted || !needs.empty()) && std::equal(paths.begin(), paths.end(), plan.begin(),
+                                                                  [](uint32_t a, uint32_t b) { return a >= b; });
+      for (const uint32_t p : paths) work.paths += p;
+    }
+    return work;
+  }
+
   StateKit& kit_of(const Item& item, CaptureLog& log) {
     const size_t state = capture_of(item).state;
     std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
@@ -205,7 +230,8 @@ class Job {
                      judged_bands(capture, kit),
                      options_.store,
                      progress_.get(),
-                     {}};
+                     {},
+                     options_.stop};
     if (options_.budget.seconds > 0 && !cap_)
       work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
         fix_cap(w, needs, paths, seconds);
@@ -214,7 +240,12 @@ class Job {
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
     ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
     sensors_[item.sensor]->begin(capture);
-    run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
+    try {
+      run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
+    } catch (const Stopped&) {
+      report_.statistics.merge(log.statistics);
+      throw;
+    }
     CaptureResult result = builder.finish();
     result.task = item.task;
     result.capture = item.capture;

@@ -15,12 +15,22 @@
 
 namespace suite {
 
+// What a store held when a job began.
+struct StoredWork {
+  size_t captures = 0, finished = 0;  // of the job; of them those that are computed to their plan
+  double paths = 0;                   // that need not be run again
+};
+
 struct JobOptions {
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;
   StateStore* store = nullptr;  // keeps what is needed to continue; null = nothing is kept
   bool progress = true;
+  // Asked between blocks of problems: true ends the job in good order, with all that is finished in the store. Empty =
+  // never.
+  std::function<bool()> stop;
+  std::function<void(const StoredWork&)> begun;  // called once, before the first capture of a job that has a store
 };
 
 // What one capture took; a line of the log.
@@ -45,7 +55,9 @@ struct WorstProblem {
 
 struct JobReport {
   RunStatistics statistics;
-  size_t captures = 0, problems = 0;
+  size_t captures = 0, problems = 0;  // that were finished and delivered
+  size_t captures_asked = 0;
+  bool stopped = false;  // JobOptions::stop ended the job; statistics count what the unfinished capture took, too
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
   double seconds = 0, build_seconds = 0;
   double deliver_seconds = 0;        // sensors taking their results

@@ -26,6 +26,8 @@ class StateStore {
   // What is stored of a capture. sums comes in empty and of the capture's size. needs stays
   // empty unless the capture's pilot was finished.
   virtual void load(size_t capture, Accumulators& sums, std::vector<double>& needs) = 0;
+  // Of the same only the paths of each problem (0 where nothing is stored) and the needs.
+  virtual void load_paths(size_t capture, std::vector<uint32_t>& paths, std::vector<double>& needs) = 0;
   // The pilot of a capture is finished.
   virtual void save_needs(size_t capture, std::span<const double> needs) = 0;
   // The problems [first, first + count) of a capture stand still: all of them have their samples up to paths(problem).

@@ -92,7 +92,7 @@ Band band_of(const suite_band& b) {
 class PluginSensor final : public Sensor {
  public:
   PluginSensor(const suite_sensor_plugin& plugin, const Params& params, const SensorContext& context)
-      : deliver_(context.deliver), kind_(plugin.kind), name_(params.text("name", plugin.kind)) {
+      : deliver_(context.deliver), kind_(plugin.kind), name_(params.name("name", plugin.kind)) {
     Making making{params, {}, {}};
     const suite_host host{sizeof(suite_host), SUITE_SENSOR_ABI, &making,  host_number,
                           host_numbers,       host_text,        host_fail};

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
+#include "scene/unfolded.h"
+
 namespace suite {
 
 namespace {
@@ -57,6 +60,12 @@ struct Walk {
 }  // namespace
 
 Flattened flatten(const Scene& scene, size_t limit) {
+  // An object, its transform, and what the tracer keeps of it.
+  constexpr double bytes = 2 * (sizeof(TracedObject) + sizeof(Affine3));
+  const double count = unfolded(scene.groups).front(), most = std::min(kMostUnfolded, available_memory() / bytes);
+  if (count > most && count > 1e6)
+    throw Error(strf("the scene unfolds into %.3g placements, at most %.3g can be held", count, most),
+                "place fewer copies");
   Flattened flat;
   if (scene.groups.size() == 1) flat.objects.reserve(scene.groups[0].placements.size());
   Walk{scene, limit, flat}.group(0, {});

@@ -105,6 +105,9 @@ class Dying final : public StateStore {
   Dying(StateStore& store, int saves) : store_(store), saves_(saves) {}
   void begin(const std::vector<CaptureShape>& shapes) override { store_.begin(shapes); }
   void load(size_t c, Accumulators& sums, std::vector<double>& needs) override { store_.load(c, sums, needs); }
+  void load_paths(size_t c, std::vector<uint32_t>& paths, std::vector<double>& needs) override {
+    store_.load_paths(c, paths, needs);
+  }
   void save_needs(size_t c, std::span<const double> needs) override { count(), store_.save_needs(c, needs); }
   void save(size_t c, size_t first, size_t n, const Accumulators& sums) override {
     count(), store_.save(c, first, n, sums);

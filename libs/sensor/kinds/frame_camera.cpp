@@ -14,7 +14,7 @@ namespace {
 class FrameCamera final : public Sensor {
  public:
   FrameCamera(const Params& p, const SensorContext& context)
-      : deliver_(context.deliver), name_(p.text("name", "camera")) {
+      : deliver_(context.deliver), name_(p.name("name", "camera")) {
     bands_ = read_bands(p.at("bands"), context);
     state_ = read_state(p, bands_);
     truth_ = read_truth(p);

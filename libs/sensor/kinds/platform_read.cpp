@@ -198,7 +198,7 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
 void read_instrument(const Params& p, const std::vector<Attachment>& carrier, PlatformSpec& spec,
                      const SensorContext& context, uint64_t seed) {
   const size_t number = spec.instruments.size();
-  Instrument instrument{p.text("name", strf("instrument_%zu", number + 1)), {}, carrier, p, {}};
+  Instrument instrument{p.name("name", strf("instrument_%zu", number + 1)), {}, carrier, p, {}};
   for (const Instrument& other : spec.instruments)
     if (other.name == instrument.name)
       throw p.error("two instruments are named '" + instrument.name + "'", "give each its own name");
@@ -227,7 +227,7 @@ void read_instrument(const Params& p, const std::vector<Attachment>& carrier, Pl
   const Params list = p.at("arrays");
   std::set<std::string> names;
   for (const Params& array : list.items()) {
-    const std::string own = array.text("name", strf("array_%zu", names.size() + 1));
+    const std::string own = array.name("name", strf("array_%zu", names.size() + 1));
     if (!names.insert(own).second) throw array.error("two arrays are named '" + own + "'", "give each its own name");
     read_array(array, number, list.items().size() > 1 ? own : "", spec, context);
   }
@@ -264,7 +264,7 @@ DetectorPlace place_of(const FocalArray& array, uint32_t column, uint32_t row, d
 
 PlatformSpec read_platform(const Params& params, const SensorContext& context) {
   PlatformSpec spec;
-  spec.name = params.text("name", "platform");
+  spec.name = params.name("name", "platform");
   uint64_t seed = static_cast<uint64_t>(params.integer("seed", 0, 1LL << 53, 1));
   if (!context.track || !context.jitter || !context.time) throw params.error("motions cannot be read here");
   spec.track = context.track(params.at("motion"));

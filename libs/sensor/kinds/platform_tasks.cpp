@@ -117,7 +117,7 @@ void plan_captures(PlatformSpec& spec, const Params& params, const SensorContext
   std::vector<uint64_t> event(spec.arrays.size(), 0);
   for (const Params& p : list.items()) {
     Task task;
-    task.name = p.text("name", strf("task_%zu", spec.tasks.size() + 1));
+    task.name = p.name("name", strf("task_%zu", spec.tasks.size() + 1));
     for (const Task& other : spec.tasks)
       if (other.name == task.name) throw p.error("two tasks are named '" + task.name + "'", "give each its own name");
     task.window.begin = context.time(p.at("start"));

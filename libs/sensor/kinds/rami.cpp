@@ -62,8 +62,8 @@ class Rami final : public SimpleSensor {
       capture_.rows = 1;
     }
     capture_.neighbours = false;
-    model_ = p.text("model", "suite");
-    experiment_ = p.text("experiment", "");
+    model_ = p.name("model", "suite");
+    experiment_ = p.name("experiment", "");
     if (!experiment_.empty() && bands_.size() > 1)
       throw p.at("experiment").error("an experiment has one band", "give each band a sensor of its own");
     done();

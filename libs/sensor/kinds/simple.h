@@ -9,7 +9,7 @@ class SimpleSensor : public Sensor {
  public:
   SimpleSensor(const Params& p, const SensorContext& context, const std::string& default_name)
       : deliver_(context.deliver),
-        name_(p.text("name", default_name)),
+        name_(p.name("name", default_name)),
         bands_(read_bands(p.at("bands"), context)),
         truth_(read_truth(p)) {
     states_.push_back(read_state(p, bands_));
