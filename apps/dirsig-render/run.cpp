@@ -7,12 +7,15 @@
 #include <filesystem>
 
 #include "base/files.h"
+#include "base/inputs.h"
+#include "base/interrupt.h"
 #include "base/progress.h"
 #include "budget_options.h"
 #include "continued.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
+#include "guard.h"
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
@@ -161,6 +164,29 @@ void tell(const JobReport& r) {
               static_cast<unsigned long long>(r.statistics.failures)));
 }
 
+// Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
+JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options,
+                     const std::string& folder, const size_t& delivered) {
+  const StopInGoodOrder signals;
+  options.stop = [] { return stop_signal() != 0; };
+  options.begun = [&](const StoredWork& w) {
+    if (w.paths > 0)
+      note(strf("the state holds %zu of %zu captures whole and %s paths, which are not run again", w.finished,
+                w.captures, human_count(w.paths).c_str()));
+  };
+  try {
+    return run_job(scene, sim.sources, sim.sensors, options);
+  } catch (const Error& e) {
+    if (!e.where().file.starts_with(folder + "/")) throw;
+    size_t captures = 0;
+    for (const auto& sensor : sim.sensors)
+      for (const Task& task : sensor->tasks()) captures += task.captures.size();
+    throw Error(e.where(), e.message(),
+                (e.hint().empty() ? "" : e.hint() + "; ") +
+                    what_is_left(folder, delivered, captures, options.store != nullptr));
+  }
+}
+
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
@@ -176,18 +202,19 @@ int run_render(const Cli& cli, const RenderOptions& o) {
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
+  size_t delivered = 0;         // captures whose results were handed over
   StudyImage* study = nullptr;  // where captures go while a study runs
   callbacks.deliver = [&](const Delivery& delivery) {
-    if (study)
-      append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
-    else
-      writer->take(delivery);
+    if (study) return append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    writer->take(delivery);
+    ++delivered;
   };
   // The first scene gives a simulation its frame.
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
   Simulation sim = read_simulation(o.simulation, callbacks);
+  for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -222,17 +249,20 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   make_folder(o.output);
+  check_folder(o.output, sim);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
-  const JobReport report = run_job(scene, sim.sources, sim.sensors, options);
+  const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());
   write_log(o.output + "/render.json", report, options);
   for (const auto& sensor : sim.sensors)
     for (const TextFile& log : sensor->logs()) writer->write_text(log);
-  return 0;
+  if (!report.stopped) return 0;
+  warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options.store != nullptr));
+  return 128 + stop_signal();
 }
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "base/files.h"
+#include "base/inputs.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/envi/envi.h"
@@ -113,6 +114,7 @@ StudyImage reference_for(const RenderOptions& o, const std::shared_ptr<const Sce
     return image;
   }
   if (kept && file_exists(file) && file_exists(errors)) {
+    const OwnResults own;
     read_series(file, image, false, size.pixels, size.bands);
     read_series(errors, image, true, size.pixels, size.bands);
     image.degrees = 7;
@@ -151,10 +153,15 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene is empty: there is nothing to study");
   const Size size = size_of(sim);
   make_folder(o.study);
+  check_outputs({table, o.study + "/study.json", o.study + "/study.html", o.study + "/reference.img",
+                 o.study + "/reference_error.img"});
   const std::string table = o.study + "/study.csv", identity = identity_of(o, sim, options);
   const bool kept = file_exists(table);
   std::vector<StudyRow> rows;
-  if (kept) rows = rows_from_csv(read_text(table), identity, table);
+  if (kept) {
+    const OwnResults own;
+    rows = rows_from_csv(read_text(table), identity, table);
+  }
   write_file(table, rows_to_csv(rows, identity));  // an unwritable folder is refused before rendering
   note(strf("%zu budgets, %d seeds: %s %s", plan.budgets.size(), plan.seeds,
             human_count(forecast_paths_per_problem(plan, o.reference.empty()) *

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "base/files.h"
+#include "base/inputs.h"
 #include "base/params.h"
 #include "base/progress.h"
 #include "base/report.h"
@@ -74,12 +75,19 @@ bool up_to_date(const ScenePrepOptions& o) {
   if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output) || program_is_newer(o.output))
     return false;
   try {
-    const Provenance p = read_provenance(o.output);
+    const Provenance p = [&] {
+      const OwnResults own;
+      return read_provenance(o.output);
+    }();
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
            inputs_unchanged(o.input, {o.search}, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
+}
+
+std::string page_of_report(const ScenePrepOptions& o) {
+  return o.report.empty() || o.report == "-" ? "" : std::filesystem::path(o.report).replace_extension(".html").string();
 }
 
 // What each step of the preparation took, as a page beside the report: memory against seconds, and what was found.
@@ -100,10 +108,9 @@ class Steps {
       end = std::min(text.find('\n', at), text.size());
       head += "# " + text.substr(at, end - at) + "\n";
     }
-    const std::string page = std::filesystem::path(o.report).replace_extension(".html").string();
-    write_file(page, html_of(page_of_csv(head + "step,seconds,seconds_in_all,peak_bytes\n" + csv_,
-                                         "Preparation of " + o.input + ": memory against seconds", {"seconds_in_all"},
-                                         {"peak_bytes"}, "", o.report)));
+    write_file(page_of_report(o), html_of(page_of_csv(head + "step,seconds,seconds_in_all,peak_bytes\n" + csv_,
+                                                      "Preparation of " + o.input + ": memory against seconds",
+                                                      {"seconds_in_all"}, {"peak_bytes"}, "", o.report)));
   }
 
  private:
@@ -124,6 +131,9 @@ Compression compression_of(const ScenePrepOptions& o) {
 
 int prepare(const ScenePrepOptions& o) {
   const Compression compression = compression_of(o);
+  const std::vector<std::string> outputs{o.output, o.report, page_of_report(o)};
+  note_input(o.input);
+  check_outputs(outputs);
   if (up_to_date(o)) {
     note(o.output + " is up to date: inputs, options and version are unchanged (--force prepares it again)");
     return 0;
@@ -133,6 +143,7 @@ int prepare(const ScenePrepOptions& o) {
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
   Draft draft = read_scene_text(o.input, {o.search}, report);
+  check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
   check.self_intersections = !o.quick;
@@ -187,6 +198,8 @@ int inspect(const ScenePrepOptions& o) {
         "--output, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
         "scene text, not with questions about a prepared scene");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
+  note_input(o.input);
+  check_outputs({o.export_obj, o.quick_look});
   LoadReport stored;
   const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));
   if (o.summary) print_summary(o, *scene, stored);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/inputs.h"
 #include "base/progress.h"
 #include "input.h"
 #include "page/page.h"
@@ -52,21 +53,18 @@ void check_options(const SqtFitOptions& o) {
 }
 
 // Outputs that could not be written, or that would replace the input or each other, before any time is spent.
-void check_outputs(const SqtFitOptions& o) {
+void check_places(const SqtFitOptions& o) {
   namespace fs = std::filesystem;
-  std::vector<std::string> files;
-  for (const std::string& f : {o.input, o.output, o.report, o.curve})
-    if (!f.empty()) files.push_back(f);
+  std::vector<std::string> files{o.output, o.report, o.curve};
   if (!o.curve.empty()) files.push_back(fs::path(o.curve).replace_extension(".html").string());
+  note_input(o.input);
+  if (const size_t at = o.model.find("table=@"); at != std::string::npos) note_input(o.model.substr(at + 7));
+  check_outputs(files);
   std::error_code ignored;
-  for (size_t i = 0; i < files.size(); ++i)
-    for (size_t j = i + 1; j < files.size(); ++j)
-      if (files[i] == files[j] || fs::equivalent(files[i], files[j], ignored))
-        throw UsageError("'" + files[j] + "' is named twice; inputs and outputs must be different files");
-  for (size_t i = o.input.empty() ? 0 : 1; i < files.size(); ++i) {
-    const fs::path folder = fs::path(files[i]).parent_path();
+  for (const std::string& file : files) {
+    const fs::path folder = fs::path(file).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
-      throw Error(Where{files[i], 0, 0, {}, -1}, "cannot be written: there is no such folder", "make it first");
+      throw Error(Where{file, 0, 0, {}, -1}, "cannot be written: there is no such folder", "make it first");
   }
 }
 
@@ -188,7 +186,7 @@ void write_curve(const SqtFitOptions& o, const FitInput& input, const sqt::Refer
 
 int run_sqt_fit(const SqtFitOptions& o) {
   check_options(o);
-  check_outputs(o);
+  check_places(o);
   const FitInput input = load_input(o);
   const Stopwatch watch;
   Progress progress("fitting", 100, "%");

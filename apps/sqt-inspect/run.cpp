@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/inputs.h"
 #include "check.h"
 #include "compare.h"
 #include "formats/measured/measured.h"
@@ -125,6 +126,8 @@ void run_sample(const InspectOptions& o, const sqt::Bundle& bundle) {
 }  // namespace
 
 int inspect(const Cli&, const InspectOptions& o) {
+  for (const std::string& input : {o.file, o.compare}) note_input(input);
+  check_outputs({o.map, o.slice, o.plot, o.sphere, o.error_map});
   const SqtFile file = read_sqt(o.file);
   const sqt::Bundle& bundle = *file.bundle;
   check_usage(o, bundle);

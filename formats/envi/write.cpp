@@ -139,6 +139,7 @@ struct EnviWriter::Impl {
 EnviWriter::EnviWriter(const std::string& path, EnviHeader header) {
   check_header(path, header);
   impl_ = std::make_unique<Impl>(path, std::move(header));
+  impl_->image.reserve(impl_->header.values() * size_of(impl_->header.type));
 }
 EnviWriter::~EnviWriter() = default;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "formats/voxel/vdb_check.h"
 #include "formats/voxel/voxel.h"
 
 namespace suite {
@@ -21,7 +22,11 @@ openvdb::FloatGrid::Ptr float_grid(openvdb::io::File& file, const std::string& n
     there = there || at.gridName() == name;
   }
   if (!there) throw Error(where, "has no grid '" + name + "'", "it has: " + (known.empty() ? "none" : known));
-  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
+  // What is not of floats has not been looked at and is not read.
+  const auto head = file.readGridMetadata(name);
+  auto grid = head && head->type() == openvdb::FloatGrid::gridType()
+                  ? openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name))
+                  : nullptr;
   if (!grid) throw Error(where, "grid '" + name + "' is not one of floats", "fog volumes of floats are read");
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
     throw Error(where, "grid '" + name + "' is a level set",
@@ -59,7 +64,7 @@ bool reads_vdb() { return true; }
 
 VoxelData read_vdb(const std::string& path, const std::string& density, const std::string& temperature) {
   const Where where{path, 0, 0, {}, -1};
-  file_size(path);  // tells missing files and directories apart
+  check_vdb(path, {density, temperature});
   try {
     openvdb::initialize();
     openvdb::io::File file(path);
@@ -70,6 +75,10 @@ VoxelData read_vdb(const std::string& path, const std::string& density, const st
     const double cells = double(box.dim().x()) * box.dim().y() * box.dim().z();
     if (!(cells <= kMostVdbCells))
       throw Error(where, strf("grid '%s' covers %g cells", density.c_str(), cells), "at most 2^28");
+    // A box far larger than what is in it is a wrong place of a node rather than a cloud.
+    if (const auto active = static_cast<double>(fog->activeVoxelCount()); cells > 1e6 && cells > 1e5 * active)
+      throw Error(where, strf("grid '%s': %g active voxels stand in a box of %g cells", density.c_str(), active, cells),
+                  "at least one in 100000");
     VoxelData data;
     data.cells = {static_cast<uint32_t>(box.dim().x()), static_cast<uint32_t>(box.dim().y()),
                   static_cast<uint32_t>(box.dim().z())};

@@ -19,6 +19,8 @@ class SourceLine {
  public:
   SourceLine() = default;
   // A line by itself, which is copied.
+  SourceLine(const char* line) : SourceLine(std::string_view(line)) {}
+  SourceLine(const std::string& line) : SourceLine(std::string_view(line)) {}
   SourceLine(std::string_view line) : text_(std::make_shared<const std::string>(line)), length_(line.size()) {}
   // `length` bytes of `text` from `begin` on; within the text.
   SourceLine(std::shared_ptr<const std::string> text, size_t begin, size_t length)

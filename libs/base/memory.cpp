@@ -1,16 +1,13 @@
 #include "base/memory.h"
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <string>
-
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstdint>
 
 namespace suite {
 

@@ -343,7 +343,9 @@ class Job {
     if (with_target_ > 0) report_.share_at_target = at_target_ / with_target_;
     if (report_.problems) report_.share_flagged = flagged_ / static_cast<double>(report_.problems);
     std::string& s = report_.stopped_by;
-    if (options_.pipeline.stop == StopRule::change)
+    if (report_.stopped)
+      s = strf("stopped from outside after %zu of %zu captures", report_.captures, report_.captures_asked);
+    else if (options_.pipeline.stop == StopRule::change)
       s = strf(
           "each problem stopped when one more path changed its mean by less than %g of it, which is biased low where "
           "rare events carry the light",

@@ -76,3 +76,38 @@ TEST(RunApp, AClosedPipeDoesNotKillTheProgramSilently) {
       run_command("bash -c '" + std::string(SUITE_TOY_APP) + " fine | true; exit ${PIPESTATUS[0]}'");
   EXPECT_EQ(r.code, 0);
 }
+
+namespace {
+// Starts the toy, waits until its unfinished file is there, and sends it a signal.
+CommandResult signalled(const TempFolder& folder, const std::string& what, const std::string& signal) {
+  return run_command("bash -c \"set -m; " + std::string(SUITE_TOY_APP) + " " + what + " --name " + (folder / "x") +
+                     " & pid=\\$!; while [ -z \\\"\\$(ls " + folder.path() +
+                     ")\\\" ]; do sleep 0.02; done; sleep 0.2; kill -" + signal + " \\$pid; wait \\$pid\"");
+}
+}  // namespace
+
+TEST(RunApp, ASignalEndsItAtOnceWithoutAPartialFile) {
+  for (const auto& [signal, code] : {std::pair<std::string, int>{"INT", 130}, {"TERM", 143}}) {
+    const TempFolder folder;
+    const CommandResult r = signalled(folder, "write", signal);
+    EXPECT_EQ(r.code, code);
+    EXPECT_THAT(r.err, HasSubstr("unfinished files were removed"));
+    EXPECT_EQ(folder.entries(), 0u);
+  }
+}
+
+TEST(RunApp, ASignalAsksForAnEndInGoodOrder) {
+  const TempFolder folder;
+  const CommandResult r = signalled(folder, "stop", "INT");
+  EXPECT_EQ(r.code, 130);
+  EXPECT_THAT(r.err, HasSubstr("stopping in good order; once more to end at once"));
+  EXPECT_EQ(folder.entries(), 1u);  // whole, without its temporary
+}
+
+// Escape sequences of an input once reached the terminal as they were.
+TEST(RunApp, ControlCharactersOfArgumentsAreShown) {
+  const CommandResult r = toy("echo --name \"$(printf 'a\\033[31mb')\"");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("error: a\\x1b[31mb\n"));
+  EXPECT_EQ(r.err.find('\x1b'), std::string::npos);
+}

@@ -1,10 +1,15 @@
 // The smallest executable with the suite's shell around it: does what its argument says, so that every way out of an
 // executable can be tested.
+#include <chrono>
 #include <cstdio>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/run_app.h"
 
@@ -31,6 +36,16 @@ int main(int argc, char** argv) {
         if (what == "memory") throw std::bad_alloc();
         if (what == "usage") throw UsageError("--name and --strict contradict each other");
         if (what == "refuse") return 1;
+        if (what == "echo") throw Error(name);
+        if (what == "write" || what == "stop") {
+          AtomicFile file(name);
+          file.write(std::string_view("half of it"));
+          std::optional<StopInGoodOrder> order;
+          if (what == "stop") order.emplace();
+          for (int i = 0; i < 3000 && !stop_signal(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+          file.commit();
+          return stop_signal() ? 128 + stop_signal() : 0;
+        }
         std::printf("name=%s size=%g strict=%d given=%d threads=%d command=%s\n", name.c_str(), size, strict,
                     cli.given("--size"), threads(), command_line().c_str());
         return 0;

@@ -1,6 +1,8 @@
 // Damaged ENVI headers: a header or one Error, never anything else.
+#include "base/files.h"
 #include "formats/envi/envi.h"
 #include "support/fuzz.h"
+#include "support/temp_folder.h"
 
 namespace suite {
 
@@ -39,6 +41,23 @@ TEST(Fuzz, EnviHeader) {
   };
   test::fuzz(test::bytes_of(valid), read, 1, 20000, 4, words);
   EXPECT_GT(accepted, 100u);  // the loop gets past the first check
+}
+
+// An image and its header together: values or one Error.
+TEST(Fuzz, EnviImage) {
+  const TempFolder folder;
+  EnviHeader header;
+  header.samples = 7, header.lines = 5, header.bands = 3, header.type = EnviType::float32;
+  std::vector<double> values(105);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+  write_envi(folder / "a.img", header, values);
+  test::fuzz(read_bytes(folder / "a.img.hdr"),
+             [&](std::span<const std::byte> b) {
+               write_file(folder / "a.img.hdr", b);
+               const EnviImage image(folder / "a.img");
+               EXPECT_EQ(image.read_all().size(), image.header().values());
+             },
+             2, 20000, 4, {"=", "{", "}", "-1", "999999999", "bsq", "bip", "data type = 5", "header offset = 8"});
 }
 
 }  // namespace suite

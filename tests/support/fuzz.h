@@ -55,10 +55,11 @@ class Mutator {
       case 2:
         overwrite(b, at);
         break;
-      case 3:
-        b.insert(b.begin() + static_cast<std::ptrdiff_t>(at), b.begin(),
-                 b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), below(64))));
+      case 3: {
+        const Bytes head(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), below(64))));
+        b.insert(b.begin() + static_cast<std::ptrdiff_t>(at), head.begin(), head.end());
         break;
+      }
       case 4:
         b.erase(b.begin() + static_cast<std::ptrdiff_t>(at),
                 b.begin() + static_cast<std::ptrdiff_t>(std::min(b.size(), at + 1 + below(64))));

@@ -1,0 +1,95 @@
+#include "guard.h"
+
+#include <sys/resource.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+#include "base/inputs.h"
+#include "base/progress.h"
+#include "base/run_app.h"
+
+namespace suite {
+
+namespace {
+
+// Names that the files of a sensor can have; what is said too often only forbids an input of that name.
+bool may_be_result(const std::string& file, const std::string& sensor) {
+  if (!file.starts_with(sensor)) return false;
+  const std::string rest = file.substr(sensor.size());
+  if (!rest.starts_with(".") && !rest.starts_with("_")) return false;
+  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr"})
+    if (rest.ends_with(ending)) return true;
+  for (const char* whole : {".csv", ".rawbh", "_brf.csv", "_fluxes.csv"})
+    if (rest == whole) return true;
+  return rest.ends_with("_error_correlation.csv");
+}
+
+void check_inputs(const std::string& folder, const Simulation& sim) {
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    bool result = name == "render.json" || name == "result.state.h5";
+    for (const auto& sensor : sim.sensors) result = result || may_be_result(name, sensor->name());
+    if (result) check_outputs({entry.path().string()});
+  }
+}
+
+struct Room {
+  double whole = 0, largest = 0;  // bytes: of all images, of the largest file
+};
+
+// What radiance, error and truth take; products of the sensors come on top.
+Room room_for(const Simulation& sim) {
+  Room room;
+  const double value = sim.output.type == OutputSpec::Type::float64  ? 8
+                       : sim.output.type == OutputSpec::Type::uint16 ? 2
+                                                                     : 4;
+  for (const auto& sensor : sim.sensors) {
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) {
+        if (c.bin_by == Capture::BinBy::escape) continue;  // becomes a table
+        const double values = static_cast<double>(c.problems()) * static_cast<double>(sensor->bands(c.state).size()) *
+                              static_cast<double>(sensor->channels().size()) * c.bins;
+        const double truth = 8.0 * static_cast<double>(c.problems()) * static_cast<double>(sensor->truth().size());
+        room.whole += values * (value + std::max(value, 4.0)) + truth;
+        room.largest = std::max({room.largest, values * value, truth});
+      }
+  }
+  return room;
+}
+
+void check_room(const std::string& folder, const Simulation& sim) {
+  const Room room = room_for(sim);
+  const auto there = static_cast<double>(free_bytes(folder));
+  if (room.whole > there)
+    throw Error(
+        Where{folder, 0, 0, {}, -1},
+        strf("the images take %s, and %s are free here", human_bytes(room.whole).c_str(), human_bytes(there).c_str()),
+        "make room, or give another folder with -o");
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+      room.largest > static_cast<double>(limit.rlim_cur))
+    throw Error(Where{folder, 0, 0, {}, -1},
+                strf("an image takes %s, and files may have %s (ulimit -f)", human_bytes(room.largest).c_str(),
+                     human_bytes(static_cast<double>(limit.rlim_cur)).c_str()),
+                "raise the limit");
+}
+
+}  // namespace
+
+void check_folder(const std::string& folder, const Simulation& sim) {
+  check_inputs(folder, sim);
+  check_room(folder, sim);
+}
+
+std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state) {
+  std::string text = strf("%zu of %zu captures are complete", finished, captures);
+  if (finished) text += " in " + folder;
+  return text + (state ? "; " + folder +
+                             "/result.state.h5 holds all that was computed: the same command with --resume "
+                             "in place of --state and its budget goes on from there"
+                       : "; without --state the rest is lost");
+}
+
+}  // namespace suite

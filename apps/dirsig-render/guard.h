@@ -1,0 +1,17 @@
+// What keeps a run from doing harm or being lost: no input is replaced, there is room for the results, and a run that
+// is cut short says what it left behind.
+#pragma once
+#include <string>
+
+#include "formats/sim_text/sim_text.h"
+
+namespace suite {
+
+// Refuses, before anything is rendered, a folder in which results of these sensors would replace inputs of the run
+// (UsageError), or that has no room for their images (Error).
+void check_folder(const std::string& folder, const Simulation& simulation);
+
+// One sentence: how many captures are whole in the folder, and how the run goes on. state: --state keeps one.
+std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state);
+
+}  // namespace suite
