@@ -46,7 +46,7 @@ void list_models() {
 
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
 std::string canonical_arguments(const ScenePrepOptions& o) {
-  std::string text = std::filesystem::path(o.input).filename().string();
+  std::string text = printable(std::filesystem::path(o.input).filename().string());
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
   if (o.repair) text += " --repair";
@@ -173,13 +173,13 @@ namespace {
 
 void print_summary(const ScenePrepOptions& o, const Scene& scene, const LoadReport& stored) {
   const Provenance p = read_provenance(o.input);
-  std::printf("%s", summary_text(scene).c_str());
+  std::printf("%s", printable_lines(summary_text(scene)).c_str());
   for (const LoadRow& row : stored.rows)
     if (row.stored)
       std::printf("%-13s %s, loaded when needed (--explain '%s')\n", "stored",
                   (row.feature + " " + human_bytes(static_cast<double>(row.stored))).c_str(), row.feature.c_str());
-  std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", p.generator.c_str(), p.arguments.c_str(),
-              p.inputs.size(), p.input_sha256.c_str());
+  std::printf("made by       %s: %s\ninputs        %zu files, sha256 %s\n", printable(p.generator).c_str(),
+              printable(p.arguments).c_str(), p.inputs.size(), printable(p.input_sha256).c_str());
 }
 
 Ray parse_ray(const std::string& text) {
@@ -208,7 +208,7 @@ int inspect(const ScenePrepOptions& o) {
   if (o.raycast.empty() && o.quick_look.empty()) return 0;
   const double time = time_of_all(*scene);
   const Tracer tracer(scene, std::nullopt, {time, time});
-  if (!o.raycast.empty()) std::fputs(describe_hit(tracer, parse_ray(o.raycast)).c_str(), stdout);
+  if (!o.raycast.empty()) std::fputs(printable_lines(describe_hit(tracer, parse_ray(o.raycast))).c_str(), stdout);
   if (!o.quick_look.empty()) {
     const View view = view_from_above(tracer, static_cast<int>(o.pixels));
     write_png(o.quick_look, view.width, view.height, view.rgb, command_line());

@@ -146,7 +146,8 @@ int inspect(const Cli&, const InspectOptions& o) {
   else if (o.sample > 0)
     run_sample(o, bundle);
   else if (o.json || (o.map + o.slice + o.plot + o.sphere).empty())
-    std::fputs((o.json ? header_json(file, o.file).text() : header_text(file, o.file)).c_str(), stdout);
+    std::fputs((o.json ? header_json(file, o.file).text() : printable_lines(header_text(file, o.file))).c_str(),
+               stdout);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/interrupt.h"
 #include "formats/render_state/internal.h"
 
 namespace suite {
@@ -238,12 +239,16 @@ void extend_state(const std::string& path, const StateIdentity& identity, const 
     return;
   }
   const std::string wider = path + ".wider";
-  create_state(wider, identity, budget, shapes);
-  {
+  const Temporary guard(wider.c_str());
+  try {
+    create_state(wider, identity, budget, shapes);
     StateFile from(path, identity), to(wider, identity);
     from.begin(shapes);
     to.begin(shapes);
     copy_state(from, to, shapes);
+  } catch (...) {
+    ::unlink(wider.c_str());
+    throw;
   }
   if (std::rename(wider.c_str(), path.c_str()) != 0)
     throw Error(Where{path, 0, 0, {}, -1}, "cannot be replaced", kHint);

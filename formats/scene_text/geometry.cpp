@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "formats/envi/envi.h"
@@ -117,13 +118,27 @@ void Reader::read_heights(const std::string& path, std::optional<double> no_data
                                                                                                : static_cast<float>(h));
 }
 
+namespace {
+
+// The mark of a gap is any number: rasters use the ends of their types, beyond what a quantity may be.
+double mark_of(const Params& p) {
+  const std::string text = p.as_text();
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, value);
+  if (code != std::errc() || stop != end) throw p.error("expected a number, found '" + text.substr(0, 60) + "'");
+  return value;
+}
+
+}  // namespace
+
 void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   g.kind = DraftGeometry::Kind::terrain;
   if (!g.material.given()) throw p.error("terrain '" + g.name + "' needs a 'material'");
   g.tile_m = p.number_in("tile_m", 1, 1e6, "m", 4000);
   const std::string path = input(p.at("terrain"));
   std::optional<double> no_data;
-  if (const auto value = p.find("no_data")) no_data = value->as_number();
+  if (const auto value = p.find("no_data")) no_data = mark_of(*value);
   if (const auto local = p.find("local")) {
     g.terrain.place = local_grid(*local);
   } else {

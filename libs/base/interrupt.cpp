@@ -4,14 +4,15 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
+#include <string>
 
 namespace suite {
 
-// A list that only grows: a signal handler may walk it at any moment.
+// A list that only grows, of texts that never change: a signal handler may walk it at any moment.
 struct Temporary::Slot {
-  std::atomic<char*> path{nullptr};
+  std::string path;
+  std::atomic<bool> there{true};
   Slot* next = nullptr;
 };
 
@@ -19,7 +20,6 @@ namespace {
 
 const char* g_name = "";
 std::atomic<int> g_signal{0}, g_ordered{0};
-std::atomic<bool> g_ending{false};
 
 void say(const char* text) {
   if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // nobody listens
@@ -30,9 +30,8 @@ std::atomic<void*> g_slots{nullptr};  // Temporary::Slot
 }  // namespace
 
 void end_now(int signal) {
-  g_ending = true;
   for (auto* s = static_cast<Temporary::Slot*>(g_slots.load()); s; s = s->next)
-    if (const char* path = s->path.load()) ::unlink(path);
+    if (s->there) ::unlink(s->path.c_str());
   say(g_name);
   say(signal == SIGINT ? ": interrupted; unfinished files were removed\n"
                        : ": terminated; unfinished files were removed\n");
@@ -66,26 +65,13 @@ StopInGoodOrder::StopInGoodOrder() { ++g_ordered; }
 StopInGoodOrder::~StopInGoodOrder() { --g_ordered; }
 int stop_signal() { return g_signal; }
 
-Temporary::Temporary(const char* path) {
-  char* copy = ::strdup(path);
-  for (auto* s = static_cast<Slot*>(g_slots.load()); s; s = s->next) {
-    char* empty = nullptr;
-    if (s->path.compare_exchange_strong(empty, copy)) {
-      slot_ = s;
-      return;
-    }
-  }
-  slot_ = new Slot;
-  slot_->path = copy;
+Temporary::Temporary(const char* path) : slot_(new Slot) {
+  slot_->path = path;
   void* head = g_slots.load();
   do slot_->next = static_cast<Slot*>(head);
   while (!g_slots.compare_exchange_weak(head, slot_));
 }
 
-Temporary::~Temporary() {
-  // The handler may be looking at the text in another thread; then the program ends before it can be missed.
-  char* path = slot_->path.exchange(nullptr);
-  if (!g_ending) std::free(path);
-}
+Temporary::~Temporary() { slot_->there = false; }
 
 }  // namespace suite

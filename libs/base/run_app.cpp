@@ -68,7 +68,7 @@ std::shared_ptr<spdlog::logger> logger() {
 void remember_command_line(const std::string& name, int argc, const char* const* argv) {
   g_command_line = name;
   for (int i = 1; i < argc; ++i) {
-    const std::string a = argv[i];
+    const std::string a = printable(argv[i]);  // headers of results are lines of UTF-8
     const bool plain =
         !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") ==
                           std::string::npos;

@@ -57,7 +57,8 @@ double TextLines::number(size_t i, const char* what, bool allow_nan) const {
     throw error(i, strf("'%s' is not a number", std::string(words_[i].substr(0, 40)).c_str()),
                 strf("%s is wanted here", what));
   if (!allow_nan && !std::isfinite(value)) throw error(i, strf("%s is not finite", what));
-  if (std::isfinite(value) && std::fabs(value) > kLargestNumber)
+  // Where NaN is allowed a huge number may mark what is missing.
+  if (!allow_nan && std::fabs(value) > kLargestNumber)
     throw error(i, strf("%s = %g is too large", what, value), strf("at most %g in size", kLargestNumber));
   return value;
 }

@@ -23,7 +23,7 @@ class TextLines {
   std::string_view comment() const { return comment_; }  // after '#', of this line
   size_t words() const { return words_.size(); }
   std::string_view word(size_t i) const { return words_[i]; }
-  // Word i as a number. Error when there is no such word, it is not a number, (without allow_nan) not finite, or larger
+  // Word i as a number. Error when there is no such word, it is not a number, (without allow_nan) not finite or larger
   // than kLargestNumber in size.
   double number(size_t i, const char* what, bool allow_nan = false) const;
   double number_in(size_t i, const char* what, double low, double high) const;

@@ -184,9 +184,12 @@ std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
       add("SP405", p.on.where, "'" + p.on.name + "' is no terrain and no mesh");
       return all;
     }
-    for (const Affine3& row :
-         scatter(std::span(scene_.meshes).subspan(ground->second.first, ground->second.count), *p.scatter))
-      all.push_back(row * p.to_parent);
+    try {
+      all = scatter(std::span(scene_.meshes).subspan(ground->second.first, ground->second.count), *p.scatter);
+    } catch (const Error& e) {
+      add("SP411", p.where, e.message() + "; " + e.hint());
+    }
+    for (Affine3& t : all) t = t * p.to_parent;
     return all;
   }
   if (!p.table) all.push_back(p.to_parent);

@@ -73,7 +73,7 @@ std::vector<IssueKind> scene_issues() {
       {"SP409", warning, "edges are too long to follow the curvature", "cut the mesh into smaller triangles"},
       {"SP410", info, "motions are not laid onto the curved Earth",
        "their positions count in the scene's tangent frame; geodetic, UTM and ECEF places are right anywhere"},
-      {"SP411", error, "copies of copies are too many", "all levels together unfold into at most 2^28 placements"},
+      {"SP411", error, "copies are too many", "all levels of groups together unfold into at most 2^28 placements"},
       {"SP501", error, "a map is described wrongly", ""},
       {"SP502", error, "a map holds a class that has no material", "list a material for it"},
       {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "math/sampling.h"
 
 namespace suite {
@@ -30,7 +31,10 @@ std::vector<Affine3> scatter(std::span<const Mesh> meshes, const ScatterRule& ru
     }
   Pcg32 random(rule.seed);
   const double expected = total * rule.density_per_m2;
-  if (!(expected < 2147483648.0)) throw Error(strf("%g scattered placements", expected), "lower the density");
+  // As matrices here, as placements in the scene, and while a table of them grows.
+  constexpr double bytes = 3 * sizeof(Affine3) + 2 * sizeof(Placement);
+  if (const double most = std::min(2147483648.0, available_memory() / bytes); !(expected < most))
+    throw Error(strf("%.3g scattered placements", expected), strf("lower the density: %.3g can be held here", most));
   const auto count = static_cast<size_t>(std::floor(expected + random.uniform()));
   std::vector<Affine3> out;
   out.reserve(count);

@@ -233,13 +233,16 @@ void World::repeat_at_sides() {
     const Box3 b = transformed(local_box(o), *o.place);
     if (b.empty()) continue;
     const auto reach = [](double low, double high, double from, double size) {
-      return std::pair{static_cast<long>(std::floor((low - from) / size)),
-                       static_cast<long>(std::ceil((high - from) / size)) - 1};
+      const double first = std::floor((low - from) / size), last = std::ceil((high - from) / size) - 1;
+      if (!(last - first <= 64))
+        throw Error("an object is more than 64 times as wide as the cell of the periodic scene",
+                    "make the cell larger");
+      if (!(std::fabs(first) < 0x1p52))
+        throw Error("an object lies too many cells away from the cell of the periodic scene", "make the cell larger");
+      return std::pair{static_cast<long>(first), static_cast<long>(last)};
     };
     const auto [x0, x1] = reach(b.low.x, b.high.x, cell.low.x, cell.size.x);
     const auto [y0, y1] = reach(b.low.y, b.high.y, cell.low.y, cell.size.y);
-    if (x1 - x0 > 64 || y1 - y0 > 64)
-      throw Error("an object is more than 64 times as wide as the cell of the periodic scene", "make the cell larger");
     for (long x = x0; x <= std::max(x0, x1); ++x)
       for (long y = y0; y <= std::max(y0, y1); ++y) {
         TracedObject copy = o;
