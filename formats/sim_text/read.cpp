@@ -59,8 +59,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
     const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();
     if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
     if (!(size[0] > 0 && size[1] > 0)) throw p->at("size_m").error("the cell needs a positive size");
-    if (!sim.sources.lamps.empty() || sim.sources.earth)
-      throw p->error("a scene that repeats itself has no lamps and no earth under it", "drop one of them");
+    if (sim.sources.earth) throw p->error("a scene that repeats itself has no earth under it", "drop one of them");
     sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
   }
   if (const auto output = root.find("output")) read_output(*output, sim.output);
