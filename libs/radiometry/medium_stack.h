@@ -5,9 +5,9 @@
 // one for the side that is entered on, if that side has a medium; so nested, touching and overlapping bodies need no
 // order. A body that is entered again before it was left (one mesh that overlaps itself, an open one that a path goes
 // round) is counted, so the stack never holds more entries than there are sides of bodies. There is no limit of depth:
-// the first entries stand in the object itself, more take memory, which is kept, so that copies into a stack that was as
-// deep before take none. Entries are sorted by priority, then by order of entering: the last one holds. Based on:
-// C. Schmidt & B. Budge, "Simple nested dielectrics in ray traced images", JGT 7(2), 2002 (priorities).
+// the first entries stand in the object itself, more take memory, which is kept, so that copies into a stack that was
+// as deep before take none. Entries are sorted by priority, then by order of entering: the last one holds. Based on: C.
+// Schmidt & B. Budge, "Simple nested dielectrics in ray traced images", JGT 7(2), 2002 (priorities).
 #pragma once
 #include <algorithm>
 #include <array>

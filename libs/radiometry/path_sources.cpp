@@ -102,8 +102,7 @@ void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
   // Strata of the choice; the place on each lamp is the first one's, turned round.
   const auto turned = [](double u, int k) { return u + k * (1.0 / kLampDraws) - (u + k * (1.0 / kLampDraws) >= 1); };
   for (int k = 0; k < draws; ++k) {
-    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)},
-                                             turned(v[3], k));
+    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)}, turned(v[3], k));
     if (!lamp) continue;
     if (lamp->density > 0)
       lamp->density *= draws;

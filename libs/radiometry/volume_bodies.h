@@ -27,8 +27,8 @@ class Bodies {
     Vec3 start;  // of the next ray to be traced
     double gap;  // m along the ray from the boundary to there
   };
-  // Puts a hit of `ray` on the ray, of which rounding moves it along its surface, and adds `gap` to its distance: errors
-  // of hundreds of boundaries then do not add up.
+  // Puts a hit of `ray` on the ray, of which rounding moves it along its surface, and adds `gap` to its distance:
+  // errors of hundreds of boundaries then do not add up.
   void settle(Hit& hit, const Ray& ray, double gap) const;
   // Takes a ray through the boundary at `hit`, `run` m behind its start, and through all others that lie where the next
   // ray cannot see them. Nothing when a surface that is no boundary lies there: it is put into hit.

@@ -42,7 +42,7 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
     for (size_t i = 0; i < rays_.size(); ++i) {
       const uint32_t r = owner_[i];
       Hit& hit = hits_[i];
-      body_rules_.settle(hit, rays_[i], gap_[r]);
+      if (gap_[r] > 0) body_rules_.settle(hit, rays_[i], gap_[r]);
       const double left = distance[r] - travelled_[r];
       const bool met = hit.hit() && hit.distance < left;
       const uint32_t material = met ? surface_.material(hit) : kNone;

@@ -96,7 +96,7 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
     surface_.tracer().nearest(rays_, hits_, false, statistics.trace);
     for (size_t i = 0; i < moving_.size(); ++i) {
       wave.hits[moving_[i]] = hits_[i];
-      bodies_.settle(wave.hits[moving_[i]], rays_[i], start_[moving_[i]].gap);
+      if (const double gap = start_[moving_[i]].gap; gap > 0) bodies_.settle(wave.hits[moving_[i]], rays_[i], gap);
     }
     std::swap(pending_, moving_);
   }

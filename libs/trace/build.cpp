@@ -61,9 +61,9 @@ void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, 
 
 RTCScene new_scene(bool all_hits) {
   RTCScene s = rtcNewScene(device());
-  rtcSetSceneFlags(s, all_hits ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
-                                                            RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION)
-                               : RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(s, all_hits
+                          ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION)
+                          : RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
   return s;
 }

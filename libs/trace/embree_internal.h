@@ -89,7 +89,7 @@ struct TraceContext : RTCIntersectContext {
   const Packet* packet = nullptr;  // lanes are the ids of the float rays
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
-  uint32_t object = kNone;  // the instance that rays are inside of; kNone = in the tile itself
+  uint32_t object = kNone;                    // the instance that rays are inside of; kNone = in the tile itself
   std::vector<Gathered>* gathered = nullptr;  // all hits go here, and none ends a ray
   const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
 };
@@ -157,7 +157,7 @@ struct World {
   std::vector<uint32_t> unbounded;  // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                      // of what is at rest
   size_t triangles = 0;
-  bool all_hits = false;            // some surface bounds a medium: Tracer::all may be asked
+  bool all_hits = false;           // some surface bounds a medium: Tracer::all may be asked
   std::vector<char> may_pass;      // objects with holes; empty without a filter
   std::vector<char> holed_meshes;  // meshes that some such object shows; empty without a filter
 

@@ -89,7 +89,7 @@ TEST(CutSlab, AbsorbsAsTheSumOfItsSheets) {
                                   {{0.3, 0.1, 3}, -slant, 0},
                                   {{0.3, 0.1, -3}, slant, 0},
                                   {{0.3, 0.1, -3}, flat, 0},
-                                  {{0.3, 0.1, double{n / 2} / n + 1e-5}, {0, 0, 1}, 0}};  // from inside
+                                  {{0.3, 0.1, 1.0 * (n / 2) / n + 1e-5}, {0, 0, 1}, 0}};  // from inside
       const auto r = look(cut_slab(media, 1, cut), bright(), rays, 2);
       const double expected[] = {tau, tau / slant.z, tau / slant.z, tau / flat.z, half};
       for (size_t i = 0; i < rays.size(); ++i) {
@@ -145,7 +145,7 @@ TEST(NestedBodies, ConcentricSpheres) {
     // From outside through the middle, from the middle, and beside the middle at half the radius, in closed form.
     double chord = 0;
     for (uint32_t i = 0; i < n; ++i) {
-      const double inner = double{i} / n, outer = (i + 1.0) / n;
+      const double inner = 1.0 * i / n, outer = (i + 1.0) / n;
       const auto half = [](double r) { return std::sqrt(std::max(0.0, r * r - 0.5 * 0.5)); };
       chord += 2 * (0.3 + i % 4 * 0.2) * (half(outer) - half(inner));
     }
@@ -166,8 +166,8 @@ TEST(NestedBodies, ConcentricSpheres) {
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.1, 0.05, -1}), 0});
   const Repeated whole = over_problems(look(spheres({gas}), sources, rays, 1 << 11), 0);
   for (const uint32_t n : {16u, 64u, 200u}) {
-    const Repeated got = over_problems(
-        look(spheres(std::vector<Medium>(n, gas)), sources, rays, n > 100 ? 1 << 7 : 1 << 9, {}, n), 0);
+    const Repeated got =
+        over_problems(look(spheres(std::vector<Medium>(n, gas)), sources, rays, n > 100 ? 1 << 7 : 1 << 9, {}, n), 0);
     std::printf("%u spheres, scattering: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, got.mean, got.error, whole.mean,
                 whole.error);
     expect_alike(got, whole, 0.05);
@@ -274,7 +274,9 @@ TEST(Earth, LetsLightThroughBesideAMedium) {
   const auto r = look(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}, {{80, 0.1, 40}, {0, 0, -1}, 0}}, 64);
   for (const double L : r.radiance) EXPECT_GT(L, 0.1);
   scene->materials[1].inside = 0;
-  EXPECT_THAT(message_of([&] { look(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}}, 1); }),
+  EXPECT_THAT(message_of([&] {
+                look(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}}, 1);
+              }),
               testing::HasSubstr("bounds a medium"));
 }
 

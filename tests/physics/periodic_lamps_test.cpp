@@ -1,5 +1,5 @@
-// Lamps in scenes that repeat themselves: against sums over endless grids of lamps, against the same scene laid out cell
-// by cell, and explicit samples against light met by chance.
+// Lamps in scenes that repeat themselves: against sums over endless grids of lamps, against the same scene laid out
+// cell by cell, and explicit samples against light met by chance.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,8 +53,8 @@ std::shared_ptr<Scene> level_floor(double reflectance) {
   return scene;
 }
 
-// Sum over an endless grid of I h / (r^2 + h^2)^(3/2), by Poisson's summation formula: 2 pi I / A times the sum over the
-// reciprocal grid of exp(-|k| h) cos(k r).
+// Sum over an endless grid of I h / (r^2 + h^2)^(3/2), by Poisson's summation formula: 2 pi I / A times the sum over
+// the reciprocal grid of exp(-|k| h) cos(k r).
 double grid_irradiance(double intensity, double h, double x, double y) {
   double sum = 0;
   constexpr int n = 400;
@@ -67,7 +67,8 @@ double grid_irradiance(double intensity, double h, double x, double y) {
 }
 
 TEST(PeriodicLamps, EndlessGridOverAPlane) {
-  // The lamp's own position does not matter by whole cells; low ones, where few count, and high ones, where very many do.
+  // The lamp's own position does not matter by whole cells; low ones, where few count, and high ones, where very many
+  // do.
   const auto scene = level_floor(0.5);
   for (const double h : {0.5, 4.0, 60.0})
     for (const Vec3 at : {Vec3{0.4, 2, 0}, Vec3{4.9, 5.9, 0}}) {

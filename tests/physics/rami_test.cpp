@@ -109,8 +109,8 @@ TEST(Rami, BareLambertGroundHasItsReflectanceEverywhere) {
 
 // Regression: a ground of reflectance 0 lost its fluxes without a word, and `planes: []` was refused.
 TEST(Rami, ABlackGroundHasItsFluxesAlone) {
-  // Leaves that only absorb: what comes down is the sum over their shadows, which a sun straight from above shows as the
-  // area that no disc covers; nothing comes up. The same light over a grey ground, where nothing comes back down.
+  // Leaves that only absorb: what comes down is the sum over their shadows, which a sun straight from above shows as
+  // the area that no disc covers; nothing comes up. The same light over a grey ground, where nothing comes back down.
   auto scene = canopy(2, 0.2, 0, 0, 0);
   const std::string alone = instrument(2, 2, 0, 0, 1 << 12) + "planes: []\n";
   const Views black = render(scene, 2, alone, 0);

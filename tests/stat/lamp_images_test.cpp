@@ -46,8 +46,7 @@ TEST(LampImages, FrequenciesFollowTheProbabilities) {
     double sum = 0;
     for (int x = -reach; x <= reach; ++x)
       for (int y = -reach; y <= reach; ++y) {
-        const double p =
-            images.probability(c.from, {(own[0] + x) * c.cell.size.x, (own[1] + y) * c.cell.size.y, 0});
+        const double p = images.probability(c.from, {(own[0] + x) * c.cell.size.x, (own[1] + y) * c.cell.size.y, 0});
         EXPECT_GT(p, 0);
         sum += p;
         expected[static_cast<size_t>((x + reach) * (2 * reach + 1) + y + reach)] = p * static_cast<double>(n);
@@ -66,8 +65,8 @@ TEST(LampImages, AllTogetherMakeOne) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const LampImages images(c.cell, c.lamps);
-    const Vec3 whole = images.whole({c.from.x - c.cell.low.x - 0.5 * c.cell.size.x,
-                                     c.from.y - c.cell.low.y - 0.5 * c.cell.size.y, 0});
+    const Vec3 whole =
+        images.whole({c.from.x - c.cell.low.x - 0.5 * c.cell.size.x, c.from.y - c.cell.low.y - 0.5 * c.cell.size.y, 0});
     const double sx = std::round(std::max(c.cell.size.x, c.cell.size.y) / c.cell.size.x),
                  sy = std::round(std::max(c.cell.size.x, c.cell.size.y) / c.cell.size.y);
     const auto p = [&](double x, double y) {

@@ -90,7 +90,8 @@ uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
     if (scene.materials[i].id == spec.material && scene.materials[i].bounds_medium())
-      throw Error(spec.where, "the Earth: the material '" + spec.material + "' bounds a medium, and the Earth is no body",
+      throw Error(spec.where,
+                  "the Earth: the material '" + spec.material + "' bounds a medium, and the Earth is no body",
                   "name a material without inside and outside");
     if (scene.materials[i].id == spec.material && !scene.materials[i].surface.model.empty()) return i;
     names.push_back(scene.materials[i].id);

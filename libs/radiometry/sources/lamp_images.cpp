@@ -24,16 +24,16 @@ LampImages::Place LampImages::at(Vec3 from) const {
   const double f[2] = {from.x, from.y};
   for (int a = 0; a < 2; ++a) p.cell[a] = std::floor((f[a] - low_[a]) / size_[a]);
   // Of lamps at height h endlessly side by side, those farther than R give h / sqrt(R^2 + h^2) of the light.
-  const double height = std::max({lamps_.low.z - from.z, from.z - lamps_.high.z, 0.0}) +
-                        0.25 * (lamps_.high.z - lamps_.low.z);
+  const double height =
+      std::max({lamps_.low.z - from.z, from.z - lamps_.high.z, 0.0}) + 0.25 * (lamps_.high.z - lamps_.low.z);
   const double around = std::hypot(1.5 * widest_, height);
   p.beyond = std::clamp(height / around, kLeastBeyond, kMostBeyond);
   p.softness = around / widest_;
   const double least = 0.01 * size_[0] * size_[1] + height * height;
   double sum = 0;
   for (int i = 0; i < 9; ++i) {
-    const double n[2] = {i / 3 - 1.0, i % 3 - 1.0}, box[2][2] = {{lamps_.low.x, lamps_.high.x},
-                                                                {lamps_.low.y, lamps_.high.y}};
+    const double n[2] = {i / 3 - 1.0, i % 3 - 1.0},
+                 box[2][2] = {{lamps_.low.x, lamps_.high.x}, {lamps_.low.y, lamps_.high.y}};
     double d2 = least;
     for (int a = 0; a < 2; ++a) {
       const double shift = (p.cell[a] + n[a]) * size_[a];
@@ -95,8 +95,7 @@ double LampImages::probability(Vec3 from, Vec3 shift) const {
   if (m <= 1) return p.near[static_cast<int>(n[0] + 1) * 3 + static_cast<int>(n[1] + 1)];
   const double k = m - 2;
   if (k > kMostRings) return 0;
-  const double upper = p.softness / (k + p.softness),
-               lower = k < kMostRings ? p.softness / (k + 1 + p.softness) : 0;
+  const double upper = p.softness / (k + p.softness), lower = k < kMostRings ? p.softness / (k + 1 + p.softness) : 0;
   return p.beyond * (upper - lower) / (cells_to(m) - cells_to(m - 1));
 }
 

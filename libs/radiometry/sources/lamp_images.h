@@ -1,7 +1,7 @@
 // Which of the images of a lamp a place asks: in a scene that repeats itself every lamp stands in every cell.
 //
-// One image of the cell is drawn, then a lamp in it. The 3 x 3 cells around the place are weighed by how far their lamps
-// are; those beyond are drawn in rings with a tail as that of the light that lamps at one height send on a level
+// One image of the cell is drawn, then a lamp in it. The 3 x 3 cells around the place are weighed by how far their
+// lamps are; those beyond are drawn in rings with a tail as that of the light that lamps at one height send on a level
 // surface (per lamp as r^-3). Every image has a positive probability, known exactly, so the choice is unbiased for any
 // light. Internal to lamps.
 #pragma once

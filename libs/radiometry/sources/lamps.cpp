@@ -203,7 +203,9 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
   const double reach = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z), 1e-3});
   const auto instance = [&](uint32_t o) { return tracer.objects()[o].instance; };
-  shape->step = hit.hit() && instance(hit.object) == instance(object) ? hit.step : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
+  shape->step = hit.hit() && instance(hit.object) == instance(object)
+                    ? hit.step
+                    : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
   return add(*shape, bounds_of(*shape));
 }
 
@@ -325,9 +327,7 @@ std::optional<LampSample> Lamps::sample_here(uint32_t lamp, double probability, 
   return r;
 }
 
-bool Lamps::draws(const Hit& hit) const {
-  return core_->shape_at(hit) != kNone;
-}
+bool Lamps::draws(const Hit& hit) const { return core_->shape_at(hit) != kNone; }
 
 double Lamps::density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const {
   const uint32_t index = core_->shape_at(hit);

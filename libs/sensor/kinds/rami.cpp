@@ -181,8 +181,7 @@ class Rami final : public SimpleSensor {
     if (ground_reflectance_.empty()) return;
     const double taken = 1 - ground_reflectance_[b];
     line("absorbed_by_ground", taken * ground.value, taken * ground.error);
-    line("absorbed_by_canopy", 1 - albedo.value - taken * ground.value,
-         std::hypot(albedo.error, taken * ground.error));
+    line("absorbed_by_canopy", 1 - albedo.value - taken * ground.value, std::hypot(albedo.error, taken * ground.error));
   }
 
   Patch patch_;
