@@ -15,15 +15,14 @@ constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
 enum class Cut { planes, boxes, meshes };
 const char* name_of(Cut cut) { return cut == Cut::planes ? "planes" : cut == Cut::boxes ? "boxes" : "meshes"; }
 
-// The slab 0 < z < thickness, cut into equal sheets: sheet i has medium media[i].
-std::shared_ptr<Scene> cut_slab(const std::vector<Medium>& media, double thickness, Cut cut) {
-  const auto n = static_cast<uint32_t>(media.size());
+// The slab 0 < z < thickness, cut into n equal sheets that take turns with the media.
+std::shared_ptr<Scene> cut_slab(const std::vector<Medium>& media, uint32_t n, double thickness, Cut cut) {
   auto scene = std::make_shared<Scene>();
   scene->groups.push_back({"root", {}});
   scene->media = media;
   const auto height = [&](uint32_t i) { return thickness * i / n; };
   for (uint32_t i = 0; i < n; ++i) {
-    scene->materials.push_back(boundary(i));
+    scene->materials.push_back(boundary(i % static_cast<uint32_t>(media.size())));
     const Vec3 low{-50, -50, height(i)}, high{50, 50, height(i + 1)};
     if (cut == Cut::boxes) {
       place(*scene, PrimitiveKind::box, {low.x, low.y, low.z, high.x, high.y, high.z}, i);
@@ -38,7 +37,7 @@ std::shared_ptr<Scene> cut_slab(const std::vector<Medium>& media, double thickne
     nothing.id = "void";
     nothing.priority = 1;
     scene->media.push_back(nothing);
-    scene->materials.push_back(boundary(n));
+    scene->materials.push_back(boundary(static_cast<uint32_t>(media.size())));
     place(*scene, PrimitiveKind::plane, {0, 0}, n);
   }
   check_scene(*scene, "cut slab");
@@ -90,7 +89,7 @@ TEST(CutSlab, AbsorbsAsTheSumOfItsSheets) {
                                   {{0.3, 0.1, -3}, slant, 0},
                                   {{0.3, 0.1, -3}, flat, 0},
                                   {{0.3, 0.1, 1.0 * (n / 2) / n + 1e-5}, {0, 0, 1}, 0}};  // from inside
-      const auto r = look(cut_slab(media, 1, cut), bright(), rays, 2);
+      const auto r = look(cut_slab(media, n, 1, cut), bright(), rays, 2);
       const double expected[] = {tau, tau / slant.z, tau / slant.z, tau / flat.z, half};
       for (size_t i = 0; i < rays.size(); ++i) {
         const double off = r.radiance[i] / std::exp(-expected[i]) - 1;
@@ -106,26 +105,24 @@ TEST(CutSlab, ScattersAsTheUncut) {
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.3, 0.2, -1}), 0});
-  const Repeated whole = over_problems(look(cut_slab({gas}, 1, Cut::planes), sources, rays, 1 << 11), 0);
+  const Repeated whole = over_problems(look(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
   for (const Cut cut : kCuts)
     for (const uint32_t n : {2u, 16u, 200u}) {
       SCOPED_TRACE(std::string(name_of(cut)) + ' ' + std::to_string(n));
-      const uint32_t paths = n > 100 ? 1 << 7 : 1 << 9;
-      const Repeated got =
-          over_problems(look(cut_slab(std::vector<Medium>(n, gas), 1, cut), sources, rays, paths, {}, n), 0);
+      const uint32_t paths = n > 100 ? 1 << 6 : 1 << 9;
+      const Repeated got = over_problems(look(cut_slab({gas}, n, 1, cut), sources, rays, paths, {}, n), 0);
       std::printf("cut slab, scattering, %u %s: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, name_of(cut), got.mean,
                   got.error, whole.mean, whole.error);
-      expect_alike(got, whole, 0.05);
+      expect_alike(got, whole, n > 40 ? 0.1 : 0.04);
     }
 }
 
-// n spheres in each other of radii 1/n, 2/n ... 1.
-std::shared_ptr<Scene> spheres(const std::vector<Medium>& media) {
+// n spheres in each other of radii 1/n, 2/n ... 1, that take turns with the media.
+std::shared_ptr<Scene> spheres(const std::vector<Medium>& media, uint32_t n) {
   auto scene = std::make_shared<Scene>();
   scene->media = media;
-  const auto n = static_cast<uint32_t>(media.size());
   for (uint32_t i = 0; i < n; ++i) {
-    scene->materials.push_back(boundary(i));
+    scene->materials.push_back(boundary(i % static_cast<uint32_t>(media.size())));
     place(*scene, PrimitiveKind::sphere, {(i + 1.0) / n}, i);
   }
   check_scene(*scene, "spheres");
@@ -151,7 +148,7 @@ TEST(NestedBodies, ConcentricSpheres) {
     }
     const Dir d = normalized(Vec3{0.3, -0.5, 0.7});
     const Vec3 aside = cross(d, normalized(Vec3{1, 1, 0})), off = normalized(aside) * 0.5;
-    const auto r = look(spheres(media), bright(), {{d * -4.0, d, 0}, {{0, 0, 0}, d, 0}, {off - d * 4.0, d, 0}}, 2);
+    const auto r = look(spheres(media, n), bright(), {{d * -4.0, d, 0}, {{0, 0, 0}, d, 0}, {off - d * 4.0, d, 0}}, 2);
     const double expected[] = {2 * radius, radius, chord};
     for (size_t i = 0; i < 3; ++i) {
       const double relative = r.radiance[i] / std::exp(-expected[i]) - 1;
@@ -164,13 +161,12 @@ TEST(NestedBodies, ConcentricSpheres) {
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.1, 0.05, -1}), 0});
-  const Repeated whole = over_problems(look(spheres({gas}), sources, rays, 1 << 11), 0);
+  const Repeated whole = over_problems(look(spheres({gas}, 1), sources, rays, 1 << 11), 0);
   for (const uint32_t n : {16u, 64u, 200u}) {
-    const Repeated got =
-        over_problems(look(spheres(std::vector<Medium>(n, gas)), sources, rays, n > 100 ? 1 << 7 : 1 << 9, {}, n), 0);
+    const Repeated got = over_problems(look(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 9, {}, n), 0);
     std::printf("%u spheres, scattering: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, got.mean, got.error, whole.mean,
                 whole.error);
-    expect_alike(got, whole, 0.05);
+    expect_alike(got, whole, n > 40 ? 0.1 : 0.04);
   }
 }
 
@@ -180,7 +176,7 @@ TEST(TouchingBodies, SlabOnTheGround) {
   const double a = 0.7, rho = 0.5, m0 = std::cos(0.5), m = 0.8;
   for (const Cut cut : {Cut::boxes, Cut::meshes})
     for (const uint32_t n : {1u, 2u, 40u}) {
-      auto scene = cut_slab(std::vector<Medium>(n, medium(Curve::constant(a), Curve::constant(0))), 1, cut);
+      auto scene = cut_slab({medium(Curve::constant(a), Curve::constant(0))}, n, 1, cut);
       scene->materials.push_back(material("ground", lambert(rho)));
       place(*scene, PrimitiveKind::plane, {100, 100}, n);
       check_scene(*scene, "slab on the ground");
