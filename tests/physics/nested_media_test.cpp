@@ -107,13 +107,13 @@ TEST(CutSlab, ScattersAsTheUncut) {
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.3, 0.2, -1}), 0});
   const Repeated whole = over_problems(look(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
   for (const Cut cut : kCuts)
-    for (const uint32_t n : {2u, 16u, 200u}) {
+    for (const uint32_t n : {2u, 16u, cut == Cut::planes ? 64u : 200u}) {
       SCOPED_TRACE(std::string(name_of(cut)) + ' ' + std::to_string(n));
-      const uint32_t paths = n > 100 ? 1 << 6 : 1 << 9;
+      const uint32_t paths = n > 40 ? 1 << 6 : 1 << 8;
       const Repeated got = over_problems(look(cut_slab({gas}, n, 1, cut), sources, rays, paths, {}, n), 0);
       std::printf("cut slab, scattering, %u %s: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, name_of(cut), got.mean,
                   got.error, whole.mean, whole.error);
-      expect_alike(got, whole, n > 40 ? 0.1 : 0.04);
+      expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
     }
 }
 
@@ -162,11 +162,11 @@ TEST(NestedBodies, ConcentricSpheres) {
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.1, 0.05, -1}), 0});
   const Repeated whole = over_problems(look(spheres({gas}, 1), sources, rays, 1 << 11), 0);
-  for (const uint32_t n : {16u, 64u, 200u}) {
-    const Repeated got = over_problems(look(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 9, {}, n), 0);
+  for (const uint32_t n : {16u, 64u}) {  // every ray is asked for all of them: no box parts spheres in each other
+    const Repeated got = over_problems(look(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 8, {}, n), 0);
     std::printf("%u spheres, scattering: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, got.mean, got.error, whole.mean,
                 whole.error);
-    expect_alike(got, whole, n > 40 ? 0.1 : 0.04);
+    expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
   }
 }
 

@@ -73,8 +73,10 @@ TEST(PeriodicLamps, EndlessGridOverAPlane) {
   for (const double h : {0.5, 4.0, 60.0})
     for (const Vec3 at : {Vec3{0.4, 2, 0}, Vec3{4.9, 5.9, 0}}) {
       const Vec3 lamp{1.0 + 3 * 7, 3.0 - 2 * 5, h}, from = at + Vec3{0.02, 0.01, 0.03};
+      PipelineOptions other;  // other numbers for every case
+      other.seed = static_cast<uint64_t>(10 * h + at.x);
       const Repeated got =
-          render_mean(scene, {point_lamp({lamp}, 3)}, {from, normalized(at - from), 0}, 1 << 10, kCell);
+          render_mean(scene, {point_lamp({lamp}, 3)}, {from, normalized(at - from), 0}, 1 << 11, kCell, other);
       const double truth = 0.5 / kPi * grid_irradiance(3, h, at.x - lamp.x, at.y - lamp.y);
       EXPECT_NEAR(got.mean, truth, kSigmas * got.error + 1e-5 * truth) << h << ' ' << at.x;
       EXPECT_LT(got.error, 4e-3 * truth) << h << ' ' << at.x;
@@ -148,9 +150,9 @@ TEST(PeriodicLamps, ExplicitAndChanceLightAgree) {
     SCOPED_TRACE(l.name);
     const auto scene = yard(l.kind, l.parameters, l.where, 0, l.tilt);
     const auto both = render_mean(scene, {glow(4, true)}, kLook, 1 << 9, kCell),
-               alone = render_mean(scene, {glow(4, true)}, kLook, 1 << 12, kCell, chance);
+               alone = render_mean(scene, {glow(4, true)}, kLook, 1 << 13, kCell, chance);
     EXPECT_NEAR(both.mean, alone.mean, kSigmas * std::hypot(both.error, alone.error));
-    EXPECT_LT(alone.error, 0.01 * alone.mean);
+    EXPECT_LT(kSigmas * alone.error, 0.06 * alone.mean) << "6 % would not be seen";
     EXPECT_LT(both.error, alone.error);
   }
 }
@@ -192,14 +194,14 @@ TEST(PeriodicLamps, InFog) {
   const Ray look{{1, 3, 6}, normalized(Vec3{0.5, 0.2, -1}), 0};
   PipelineOptions chance;
   chance.explicit_sources = false;
-  const auto one = render_mean(foggy(0), {glow(4)}, look, 1 << 9, kCell),
+  const auto one = render_mean(foggy(0), {glow(4)}, look, 1 << 10, kCell),
              alone = render_mean(foggy(0), {glow(4)}, look, 1 << 12, kCell, chance),
              many = render_mean(foggy(8), {glow(4)}, look, 1 << 9, {});
   std::printf("fog: periodic %.5f +- %.5f, by chance %.5f +- %.5f, 17 x 17 cells %.5f +- %.5f\n", one.mean, one.error,
               alone.mean, alone.error, many.mean, many.error);
   EXPECT_NEAR(one.mean, alone.mean, kSigmas * std::hypot(one.error, alone.error));
   EXPECT_NEAR(one.mean, many.mean, kSigmas * std::hypot(one.error, many.error) + 3e-3 * many.mean);
-  EXPECT_LT(one.error, 0.01 * one.mean);
+  EXPECT_LT(kSigmas * one.error, 0.06 * one.mean) << "6 % would not be seen";
 }
 
 }  // namespace
