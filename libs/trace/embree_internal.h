@@ -248,6 +248,7 @@ class PacketTracer {
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
+  void send(const Tile& tile, const Packet& packet, TraceContext& context, RTCRayHit8& rays);
   TraceContext context(const Packet& packet) const;
   // What a ray met in a tile; object kNone: nothing.
   struct Found {

@@ -49,15 +49,19 @@ const uint32_t* PacketTracer::corners(const Found& found) const {
   return mesh == kNone ? nullptr : &world_.scene->meshes[mesh].indices[3 * size_t{found.triangle}];
 }
 
-void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
-  TraceContext c = context(packet);
-  alignas(32) RTCRayHit8 rh;
+void PacketTracer::send(const Tile& tile, const Packet& packet, TraceContext& c, RTCRayHit8& rh) {
   alignas(32) int valid[kWidth];
   load(tile, packet, rh.ray, valid);
   for (uint32_t i = 0; i < kWidth; ++i) rh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   const uint64_t start = __rdtsc();
   rtcIntersect8(valid, tile.handle.scene, &c, &rh);
   statistics_.cycles += __rdtsc() - start;
+}
+
+void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
+  TraceContext c = context(packet);
+  alignas(32) RTCRayHit8 rh;
+  send(tile, packet, c, rh);
   const size_t lone = tile.direct.size();
   for (uint32_t i = 0; i < packet.size; ++i) {
     const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
@@ -98,12 +102,7 @@ void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>&
   c.filter = gather_triangles;
   c.gathered = &gathered;
   alignas(32) RTCRayHit8 rh;
-  alignas(32) int valid[kWidth];
-  load(tile, packet, rh.ray, valid);
-  for (uint32_t i = 0; i < kWidth; ++i) rh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-  const uint64_t start = __rdtsc();
-  rtcIntersect8(valid, tile.handle.scene, &c, &rh);
-  statistics_.cycles += __rdtsc() - start;
+  send(tile, packet, c, rh);
   const Ray& ray = rays_[packet.ray[0]];
   for (const Gathered& g : gathered) {
     Hit& hit = hits.emplace_back();

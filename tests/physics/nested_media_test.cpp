@@ -52,18 +52,6 @@ SourceSpecs bright() {
   sources.sky = uniform_sky(1, true);
   return sources;
 }
-CaptureResult look(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::vector<Ray> rays,
-                   uint32_t paths, const std::optional<Periodic>& cell = std::nullopt, uint64_t seed = 1) {
-  JobOptions job;
-  job.progress = false;
-  job.periodic = cell;
-  job.pipeline.seed = seed;
-  std::vector<std::unique_ptr<Sensor>> sensors;
-  sensors.push_back(std::make_unique<RaySensor>(std::move(rays), one_band(), paths));
-  const JobReport report = run_job(scene, sources, sensors, job);
-  EXPECT_EQ(report.statistics.failures, 0u);
-  return std::move(static_cast<RaySensor&>(*sensors[0]).result);
-}
 void expect_alike(const Repeated& a, const Repeated& b, double least) {
   EXPECT_NEAR(a.mean, b.mean, kSigmas * std::hypot(a.error, b.error));
   EXPECT_LT(kSigmas * std::hypot(a.error, b.error), least * b.mean) << "that would not be seen";
@@ -89,7 +77,7 @@ TEST(CutSlab, AbsorbsAsTheSumOfItsSheets) {
                                   {{0.3, 0.1, -3}, slant, 0},
                                   {{0.3, 0.1, -3}, flat, 0},
                                   {{0.3, 0.1, 1.0 * (n / 2) / n + 1e-5}, {0, 0, 1}, 0}};  // from inside
-      const auto r = look(cut_slab(media, n, 1, cut), bright(), rays, 2);
+      const auto r = render_cell(cut_slab(media, n, 1, cut), bright(), rays, 2);
       const double expected[] = {tau, tau / slant.z, tau / slant.z, tau / flat.z, half};
       for (size_t i = 0; i < rays.size(); ++i) {
         const double off = r.radiance[i] / std::exp(-expected[i]) - 1;
@@ -105,12 +93,12 @@ TEST(CutSlab, ScattersAsTheUncut) {
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.3, 0.2, -1}), 0});
-  const Repeated whole = over_problems(look(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
+  const Repeated whole = over_problems(render_cell(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
   for (const Cut cut : kCuts)
     for (const uint32_t n : {2u, 16u, cut == Cut::planes ? 64u : 200u}) {
       SCOPED_TRACE(std::string(name_of(cut)) + ' ' + std::to_string(n));
       const uint32_t paths = n > 40 ? 1 << 6 : 1 << 8;
-      const Repeated got = over_problems(look(cut_slab({gas}, n, 1, cut), sources, rays, paths, {}, n), 0);
+      const Repeated got = over_problems(render_cell(cut_slab({gas}, n, 1, cut), sources, rays, paths, {}, n), 0);
       std::printf("cut slab, scattering, %u %s: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, name_of(cut), got.mean,
                   got.error, whole.mean, whole.error);
       expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
@@ -148,7 +136,8 @@ TEST(NestedBodies, ConcentricSpheres) {
     }
     const Dir d = normalized(Vec3{0.3, -0.5, 0.7});
     const Vec3 aside = cross(d, normalized(Vec3{1, 1, 0})), off = normalized(aside) * 0.5;
-    const auto r = look(spheres(media, n), bright(), {{d * -4.0, d, 0}, {{0, 0, 0}, d, 0}, {off - d * 4.0, d, 0}}, 2);
+    const auto r =
+        render_cell(spheres(media, n), bright(), {{d * -4.0, d, 0}, {{0, 0, 0}, d, 0}, {off - d * 4.0, d, 0}}, 2);
     const double expected[] = {2 * radius, radius, chord};
     for (size_t i = 0; i < 3; ++i) {
       const double relative = r.radiance[i] / std::exp(-expected[i]) - 1;
@@ -161,9 +150,10 @@ TEST(NestedBodies, ConcentricSpheres) {
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.1, 0.05, -1}), 0});
-  const Repeated whole = over_problems(look(spheres({gas}, 1), sources, rays, 1 << 11), 0);
+  const Repeated whole = over_problems(render_cell(spheres({gas}, 1), sources, rays, 1 << 11), 0);
   for (const uint32_t n : {16u, 64u}) {  // every ray is asked for all of them: no box parts spheres in each other
-    const Repeated got = over_problems(look(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 8, {}, n), 0);
+    const Repeated got =
+        over_problems(render_cell(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 8, {}, n), 0);
     std::printf("%u spheres, scattering: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, got.mean, got.error, whole.mean,
                 whole.error);
     expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
@@ -182,7 +172,8 @@ TEST(TouchingBodies, SlabOnTheGround) {
       check_scene(*scene, "slab on the ground");
       SourceSpecs sources;
       sources.sun = SunSpec{dir_from_angles(0.5, 0.3), 0, Curve::constant(2)};
-      const auto r = look(scene, sources, {{{0.2, 0.1, 3}, {0.6, 0, -0.8}, 0}, {{0.2, 0.1, 3}, {0, 0, -1}, 0}}, 4);
+      const auto r =
+          render_cell(scene, sources, {{{0.2, 0.1, 3}, {0.6, 0, -0.8}, 0}, {{0.2, 0.1, 3}, {0, 0, -1}, 0}}, 4);
       const double ground = rho / kPi * 2 * m0 * std::exp(-a / m0);
       EXPECT_NEAR(r.radiance[0] / (ground * std::exp(-a / m)), 1, 1e-4) << name_of(cut) << n;
       EXPECT_NEAR(r.radiance[1] / (ground * std::exp(-a)), 1, 1e-4) << name_of(cut) << n;
@@ -206,8 +197,8 @@ TEST(TouchingBodies, GlassOnASheet) {
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 4}, {0, 0, -1}, 0});
   SourceSpecs below;  // bright below the horizon only: what is reflected upwards sees nothing
   below.sky = SkySpec{Curve::constant(1), {0, 0, 1}, 3, 1, true};
-  const Repeated with = over_problems(look(scene_with_sheet(true), below, rays, 1 << 8), 0),
-                 without = over_problems(look(scene_with_sheet(false), below, rays, 1 << 8), 0);
+  const Repeated with = over_problems(render_cell(scene_with_sheet(true), below, rays, 1 << 8), 0),
+                 without = over_problems(render_cell(scene_with_sheet(false), below, rays, 1 << 8), 0);
   // Light that is reflected inside the plate leaves it downwards as well: every path passes the sheet once.
   EXPECT_NEAR(with.mean / without.mean, std::exp(-0.9),
               kSigmas * std::hypot(with.error / with.mean, without.error / without.mean) + 1e-4);
@@ -229,7 +220,7 @@ TEST(TouchingBodies, LayerAsWideAsThePeriod) {
     rays.push_back({{0.3, 4, 3}, {-level * 0.28, level * 0.96, -z}, 0});
   }
   rays.push_back({{0.3, 4, 1.5}, {0.8, 0, 0.6}, 0});
-  const auto r = look(scene, bright(), rays, 2, cell);
+  const auto r = render_cell(scene, bright(), rays, 2, cell);
   for (size_t i = 0; i < steep.size(); ++i)
     for (const size_t k : {2 * i, 2 * i + 1})
       EXPECT_NEAR(r.radiance[k] / std::exp(-0.05 / steep[i]), 1, 1e-4) << steep[i];
@@ -252,7 +243,7 @@ TEST(TouchingBodies, ABodyThatOverlapsItselfIsCounted) {
   scene->meshes.push_back(one);
   scene->groups[0].placements.push_back({{}, TargetKind::mesh, 0, kNone, kNone});
   check_scene(*scene, "boxes");
-  const auto r = look(scene, bright(), {{{0.3, 0.1, 5}, {0, 0, -1}, 0}, {{0.3, 0.1, -5}, {0, 0, 1}, 0}}, 2);
+  const auto r = render_cell(scene, bright(), {{{0.3, 0.1, 5}, {0, 0, -1}, 0}, {{0.3, 0.1, -5}, {0, 0, 1}, 0}}, 2);
   for (const double L : r.radiance) EXPECT_NEAR(L, std::exp(-0.4 * 3), 1e-5);
 }
 
@@ -267,11 +258,11 @@ TEST(Earth, LetsLightThroughBesideAMedium) {
   SourceSpecs sources = bright();
   sources.earth = EarthSpec{"leaf", 0.0, {}};
   sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
-  const auto r = look(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}, {{80, 0.1, 40}, {0, 0, -1}, 0}}, 64);
+  const auto r = render_cell(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}, {{80, 0.1, 40}, {0, 0, -1}, 0}}, 64);
   for (const double L : r.radiance) EXPECT_GT(L, 0.1);
   scene->materials[1].inside = 0;
   EXPECT_THAT(message_of([&] {
-                look(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}}, 1);
+                render_cell(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}}, 1);
               }),
               testing::HasSubstr("bounds a medium"));
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
 namespace suite::test {
@@ -12,23 +13,6 @@ namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
 const Periodic kCell{{-2, 1}, {7, 5}};
-
-LampSpec point_lamp(std::vector<Vec3> positions, double intensity) {
-  LampSpec lamp;
-  lamp.name = "point";
-  lamp.positions = std::move(positions);
-  lamp.intensity = Curve::constant(intensity);
-  return lamp;
-}
-LampSpec glow(double radiance, bool both_sides = false) {
-  LampSpec lamp;
-  lamp.kind = LampSpec::Kind::surface;
-  lamp.name = "glow";
-  lamp.material = "lamp";
-  lamp.radiance = Curve::constant(radiance);
-  lamp.both_sides = both_sides;
-  return lamp;
-}
 
 Repeated render_mean(const std::shared_ptr<const Scene>& scene, const std::vector<LampSpec>& lamps, const Ray& ray,
                      uint32_t paths, const std::optional<Periodic>& cell, PipelineOptions pipeline = {}) {
@@ -131,9 +115,12 @@ std::vector<Laid> surfaces() {
 TEST(PeriodicLamps, GlowingSurfacesAreTheSceneLaidOut) {
   for (const Laid& l : surfaces()) {
     SCOPED_TRACE(l.name);
-    const auto one = render_mean(yard(l.kind, l.parameters, l.where, 0, l.tilt), {glow(4)}, kLook, 1 << 9, kCell),
-               many = render_mean(yard(l.kind, l.parameters, l.where, 14, l.tilt), {glow(4)}, kLook, 1 << 9, {}),
-               alone = render_mean(yard(l.kind, l.parameters, l.where, 0, l.tilt), {glow(4)}, kLook, 1 << 8, {});
+    const auto one =
+                   render_mean(yard(l.kind, l.parameters, l.where, 0, l.tilt), {glow("lamp", 4)}, kLook, 1 << 9, kCell),
+               many =
+                   render_mean(yard(l.kind, l.parameters, l.where, 14, l.tilt), {glow("lamp", 4)}, kLook, 1 << 9, {}),
+               alone =
+                   render_mean(yard(l.kind, l.parameters, l.where, 0, l.tilt), {glow("lamp", 4)}, kLook, 1 << 8, {});
     std::printf("%s: periodic %.5f +- %.5f, 29 x 29 cells %.5f +- %.5f, one %.5f\n", l.name, one.mean, one.error,
                 many.mean, many.error, alone.mean);
     EXPECT_NEAR(one.mean, many.mean, kSigmas * std::hypot(one.error, many.error) + 3e-3 * many.mean);
@@ -149,8 +136,8 @@ TEST(PeriodicLamps, ExplicitAndChanceLightAgree) {
   for (const Laid& l : surfaces()) {
     SCOPED_TRACE(l.name);
     const auto scene = yard(l.kind, l.parameters, l.where, 0, l.tilt);
-    const auto both = render_mean(scene, {glow(4, true)}, kLook, 1 << 9, kCell),
-               alone = render_mean(scene, {glow(4, true)}, kLook, 1 << 13, kCell, chance);
+    const auto both = render_mean(scene, {glow("lamp", 4, true)}, kLook, 1 << 9, kCell),
+               alone = render_mean(scene, {glow("lamp", 4, true)}, kLook, 1 << 13, kCell, chance);
     EXPECT_NEAR(both.mean, alone.mean, kSigmas * std::hypot(both.error, alone.error));
     EXPECT_LT(kSigmas * alone.error, 0.06 * alone.mean) << "6 % would not be seen";
     EXPECT_LT(both.error, alone.error);
@@ -194,9 +181,9 @@ TEST(PeriodicLamps, InFog) {
   const Ray look{{1, 3, 6}, normalized(Vec3{0.5, 0.2, -1}), 0};
   PipelineOptions chance;
   chance.explicit_sources = false;
-  const auto one = render_mean(foggy(0), {glow(4)}, look, 1 << 10, kCell),
-             alone = render_mean(foggy(0), {glow(4)}, look, 1 << 12, kCell, chance),
-             many = render_mean(foggy(8), {glow(4)}, look, 1 << 9, {});
+  const auto one = render_mean(foggy(0), {glow("lamp", 4)}, look, 1 << 10, kCell),
+             alone = render_mean(foggy(0), {glow("lamp", 4)}, look, 1 << 12, kCell, chance),
+             many = render_mean(foggy(8), {glow("lamp", 4)}, look, 1 << 9, {});
   std::printf("fog: periodic %.5f +- %.5f, by chance %.5f +- %.5f, 17 x 17 cells %.5f +- %.5f\n", one.mean, one.error,
               alone.mean, alone.error, many.mean, many.error);
   EXPECT_NEAR(one.mean, alone.mean, kSigmas * std::hypot(one.error, alone.error));
