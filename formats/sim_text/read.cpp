@@ -60,8 +60,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
     if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
     for (const double s : size)
       if (!(s >= 1e-6 && s <= 1e9)) throw p->at("size_m").error("the cell needs a positive size", "1e-6 to 1e9 m");
-    if (!sim.sources.lamps.empty() || sim.sources.earth)
-      throw p->error("a scene that repeats itself has no lamps and no earth under it", "drop one of them");
+    if (sim.sources.earth) throw p->error("a scene that repeats itself has no earth under it", "drop one of them");
     sim.periodic = Periodic{{low[0], low[1]}, {size[0], size[1]}};
   }
   if (const auto output = root.find("output")) read_output(*output, sim.output);

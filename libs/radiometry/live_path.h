@@ -24,6 +24,7 @@ struct LivePath {
   MediumStack bodies;                    // that the next segment starts in
   bool scattered = false;                // the last event was a scattering in a medium, at:
   Vec3 place;
+  double length_at_place = 0;               // optical length there
   const BakedMaterial* receiver = nullptr;  // that the path starts at
   uint32_t flights = 0;                     // through media so far
   uint32_t scatterings = 0;                 // inside media so far

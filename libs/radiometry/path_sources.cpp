@@ -102,7 +102,7 @@ void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
   // Strata of the choice; the place on each lamp is the first one's, turned round.
   const auto turned = [](double u, int k) { return u + k * (1.0 / kLampDraws) - (u + k * (1.0 / kLampDraws) >= 1); };
   for (int k = 0; k < draws; ++k) {
-    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)});
+    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)}, turned(v[3], k));
     if (!lamp) continue;
     if (lamp->density > 0)
       lamp->density *= draws;
@@ -132,7 +132,7 @@ void PathGenerator::ask_one(Wave& wave, uint32_t p) {
   if (chosen < lamps)
     return ask_lamp(wave, p, 0,
                     environment_.lamps->sample_one(static_cast<uint32_t>(chosen), 1.0 / static_cast<double>(sources),
-                                                   wave.node(p, n).at.position, {v[1], v[2]}));
+                                                   wave.node(p, n).at.position, {v[1], v[2]}, v[3]));
   chosen -= lamps;
   const uint8_t slot = chosen == 0 && disks[0] ? light_sun : light_moon;
   const Sun& disk = slot == light_sun ? *disks[0] : *disks[1];
@@ -157,9 +157,13 @@ void PathGenerator::meet_glow(Wave& wave, uint32_t p) {
   }
   const LightReceiver from = live.scattered ? LightReceiver{live.place, {}, true} : receiver_of(wave.node(p, n - 1));
   // Boundaries of media may have been passed on the way.
-  const double distance = volume_ ? length(node.hit.position - from.position) : node.hit.distance;
+  double distance = node.hit.distance;
+  if (volume_ && surface_.tracer().periodic())
+    distance = node.optical_length - (live.scattered ? live.length_at_place : wave.node(p, n - 1).optical_length);
+  else if (volume_)
+    distance = length(node.hit.position - from.position);
   const int draws = live.scattered ? 1 : lamp_draws(n - 1);
-  const double density = draws * environment_.lamps->density(from, node.hit, distance, cosine);
+  const double density = draws * environment_.lamps->density(from, node.hit, -node.out, distance, cosine);
   if (density > 0) node.glow_factor = 1 / (live.shares + live.shares_before * density / live.last_density);
 }
 

@@ -5,10 +5,10 @@
 namespace suite {
 
 namespace {
-constexpr int kMostBoundaries = 4096;  // on one way to a source; then it counts as blocked
+constexpr int kMostBoundaries = 1 << 20;  // on one way to a source; then it counts as blocked
 }  // namespace
 
-VolumeLight::VolumeLight(const Surface& surface, const Bodies& bodies, Flights& flights, size_t media)
+VolumeLight::VolumeLight(const Surface& surface, Bodies& bodies, Flights& flights, size_t media)
     : surface_(surface),
       body_rules_(bodies),
       flights_(flights),
@@ -31,6 +31,7 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
                                        std::span<uint8_t> blocked, TraceStatistics& statistics) {
   rays_.assign(rays.begin(), rays.end());
   travelled_.assign(rays.size(), 0);
+  gap_.assign(rays.size(), 0);
   owner_.resize(rays.size());
   for (size_t i = 0; i < owner_.size(); ++i) owner_[i] = static_cast<uint32_t>(i);
   std::fill(blocked.begin(), blocked.end(), uint8_t{0});
@@ -40,7 +41,8 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
     size_t kept = 0;
     for (size_t i = 0; i < rays_.size(); ++i) {
       const uint32_t r = owner_[i];
-      const Hit& hit = hits_[i];
+      Hit& hit = hits_[i];
+      if (gap_[r] > 0) body_rules_.settle(hit, rays_[i], gap_[r]);
       const double left = distance[r] - travelled_[r];
       const bool met = hit.hit() && hit.distance < left;
       const uint32_t material = met ? surface_.material(hit) : kNone;
@@ -50,12 +52,20 @@ void VolumeLight::look_past_boundaries(std::span<const Ray> rays, std::span<cons
       }
       if (!hit.hit()) body_rules_.leave_scene(bodies_at_[r]);
       const double way = met ? hit.distance : left;
-      flights_.add_depths(rays_[i], way, bodies_at_[r].medium(ambient_), {&depths_[r * media_], media_});
+      Ray ray = rays_[i];
+      ray.origin -= ray.direction * gap_[r];
+      flights_.add_depths(ray, way, bodies_at_[r].medium(ambient_), {&depths_[r * media_], media_});
       if (!met) continue;
-      body_rules_.cross(bodies_at_[r], hit, material, rays_[i].direction);
+      const auto onward = body_rules_.pass(bodies_at_[r], hit, ray, way - gap_[r], statistics);
+      if (!onward && hit.distance < left) {
+        blocked[r] = 1;
+        continue;
+      }
+      if (!onward) continue;
       travelled_[r] += way;
-      rays_[kept] = {surface_.tracer().leave(hit, rays_[i].direction), rays_[i].direction, rays_[i].time,
-                     rays_[i].draw};
+      gap_[r] = onward->gap;
+      ray.origin = onward->start;
+      rays_[kept] = ray;
       owner_[kept++] = r;
     }
     rays_.resize(kept);

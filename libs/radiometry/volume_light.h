@@ -13,11 +13,14 @@ namespace suite {
 class VolumeLight {
  public:
   // Keeps references.
-  VolumeLight(const Surface& surface, const Bodies& bodies, Flights& flights, size_t media);
+  VolumeLight(const Surface& surface, Bodies& bodies, Flights& flights, size_t media);
 
   // The bodies that ray i starts in; call once for each ray of the list that look() will get, in its order.
-  void clear() { bodies_at_.clear(); }
-  void add(const MediumStack& stack) { bodies_at_.push_back(stack); }
+  void clear() { added_ = 0; }
+  MediumStack& add(const MediumStack& stack) {
+    if (added_ == bodies_at_.size()) bodies_at_.emplace_back();
+    return bodies_at_[added_++] = stack;
+  }
   // As Tracer::occluded; afterwards depths(i) holds the integrated densities on the way of every ray that is not
   // blocked.
   void look(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
@@ -28,12 +31,13 @@ class VolumeLight {
   void look_past_boundaries(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
                             TraceStatistics& statistics);
   const Surface& surface_;
-  const Bodies& body_rules_;
+  Bodies& body_rules_;
   Flights& flights_;
   size_t media_;
   uint32_t ambient_;
-  std::vector<MediumStack> bodies_at_;
-  std::vector<double> depths_, travelled_;
+  std::vector<MediumStack> bodies_at_;  // the first added_ of them; the others keep their memory
+  size_t added_ = 0;
+  std::vector<double> depths_, travelled_, gap_;
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
   std::vector<uint32_t> owner_;

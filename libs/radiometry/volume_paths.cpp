@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace suite {
 
@@ -51,8 +52,11 @@ void VolumePaths::open(Wave& wave, uint32_t p) {
 }
 
 void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics) {
+  statistics.trace.rays += std::exchange(crossing_.rays, 0);
+  statistics.trace.cycles += std::exchange(crossing_.cycles, 0);
   pending_.resize(wave.active.size());
   ended_.assign(wave.active.size(), 0);
+  start_.assign(wave.active.size(), {});
   for (size_t s = 0; s < wave.active.size(); ++s) {
     pending_[s] = s;
     open(wave, wave.active[s]);
@@ -63,7 +67,7 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
     event_count_ = 0;
     for (const size_t s : pending_) {
       bool moves = false;
-      if (!step(wave, s, live[wave.active[s]], moves))
+      if (!step(wave, s, live[wave.active[s]], moves, statistics.trace))
         ended_[s] = 1;
       else if (moves)
         moving_.push_back(s);
@@ -72,10 +76,12 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
     light_events(wave, live, statistics);
     for (size_t e = 0; e < event_count_; ++e) {
       LivePath& l = live[events_[e].path];
-      if (scatter(wave, events_[e], l))
+      if (scatter(wave, events_[e], l)) {
         moving_.push_back(events_[e].slot);
-      else
+        start_[events_[e].slot] = {l.origin, 0};
+      } else {
         ended_[events_[e].slot] = 1;
+      }
     }
     statistics.nodes += event_count_;
     // See what those that go on will meet.
@@ -83,11 +89,15 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
     for (const size_t s : moving_) {
       LivePath& l = live[wave.active[s]];
       ++l.flights;
-      rays_.push_back({l.origin, l.direction, wave.path(wave.active[s]).ray.time, wave.path(wave.active[s]).ray.draw});
+      const Ray& own = wave.path(wave.active[s]).ray;
+      rays_.push_back({start_[s].from, l.direction, own.time, own.draw});
     }
     hits_.resize(rays_.size());
     surface_.tracer().nearest(rays_, hits_, false, statistics.trace);
-    for (size_t i = 0; i < moving_.size(); ++i) wave.hits[moving_[i]] = hits_[i];
+    for (size_t i = 0; i < moving_.size(); ++i) {
+      wave.hits[moving_[i]] = hits_[i];
+      if (const double gap = start_[moving_[i]].gap; gap > 0) bodies_.settle(wave.hits[moving_[i]], rays_[i], gap);
+    }
     std::swap(pending_, moving_);
   }
   size_t kept = 0;
@@ -102,10 +112,10 @@ void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics&
 }
 
 // One flight. False when the path ends in it; moves: it goes on behind a boundary. A scattered path is remembered.
-bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
+bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves, TraceStatistics& statistics) {
   const uint32_t p = wave.active[slot];
   Path& path = wave.path(p);
-  const Hit& hit = wave.hits[slot];
+  Hit& hit = wave.hits[slot];
   if (!hit.hit()) bodies_.leave_scene(live.bodies);
   double length = hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
   if (!hit.hit() && environment_.earth)
@@ -128,9 +138,12 @@ bool VolumePaths::step(Wave& wave, size_t slot, LivePath& live, bool& moves) {
     path.truncated = live.throughput[0] / live.shares;
     return false;
   }
+  const auto onward = bodies_.pass(live.bodies, hit, {live.origin, live.direction, path.ray.time, path.ray.draw},
+                                   hit.distance - start_[slot].gap, statistics);
+  if (!onward) return true;
   live.length += hit.distance;
-  bodies_.cross(live.bodies, hit, material, live.direction);
-  live.origin = surface_.tracer().leave(hit, live.direction);
+  live.origin = hit.position;
+  start_[slot] = {onward->start, onward->gap};
   moves = true;
   return true;
 }
@@ -230,8 +243,13 @@ void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
   }
   if (environment_.lamps) {
     const std::array<double, 4> u = numbers(live, kLampNumbers);
-    const auto lamp = environment_.lamps->sample({events_[e].place, {}, true}, u[0], {u[1], u[2]});
-    if (lamp) ask(lamp->direction, lamp->density, lamp->scale, lamp->spectrum, lamp->distance);
+    const auto lamp = environment_.lamps->sample({events_[e].place, {}, true}, u[0], {u[1], u[2]}, u[3]);
+    if (lamp) {
+      // The ray ends just in front of the lamp, not on it.
+      const Vec3 way = lamp->end - events_[e].place;
+      if (const double distance = length(way); distance > 0)
+        ask(way / distance, lamp->density, lamp->scale, lamp->spectrum, distance);
+    }
   }
 }
 
@@ -312,6 +330,7 @@ bool VolumePaths::scatter(Wave& wave, const Scattering& e, LivePath& live) {
   live.last_density = own;
   live.direction = scattered_direction(out, cosine, u[1]);
   live.origin = live.place = e.place;
+  live.length_at_place = live.length;
   live.scattered = true;
   brightest /= live.shares;
   if (!(brightest > 0) && knots == 1 && optics_.state().size() == 1) return false;
@@ -338,10 +357,10 @@ void VolumePaths::look(Wave& wave, const std::vector<LivePath>& live, RunStatist
   for (size_t i = 0; i < wave.rays.size(); ++i) {
     const uint32_t p = wave.owner[i];
     const Node& node = wave.node(p, wave.path(p).size - 1);
-    MediumStack stack = live[p].bodies;
+    MediumStack& stack = light_.add(live[p].bodies);
     const double to_light = dot(wave.rays[i].direction, node.hit.normal), to_viewer = dot(node.out, node.hit.normal);
-    if (to_light * to_viewer < 0) bodies_.cross(stack, node.hit, node.at.material, wave.rays[i].direction);
-    light_.add(stack);
+    if (to_light * to_viewer < 0)
+      bodies_.transmit(stack, node.hit, node.at.material, wave.rays[i].direction, statistics.trace);
   }
   light_.look(wave.rays, wave.distance, wave.blocked, statistics.trace);
 }

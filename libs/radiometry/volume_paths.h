@@ -32,8 +32,8 @@ class VolumePaths {
   // Starts the segment behind the path's last node: everything that arrives passes, nothing is gathered yet.
   static void open(Wave& wave, uint32_t p);
   // A path goes on through a surface to the other side.
-  void cross(LivePath& live, const Node& node) const {
-    bodies_.cross(live.bodies, node.hit, node.at.material, node.in);
+  void cross(LivePath& live, const Node& node) {
+    bodies_.transmit(live.bodies, node.hit, node.at.material, node.in, crossing_);
   }
 
   // Visibility of sources from nodes: as Tracer::occluded for wave.rays of the paths wave.owner, asked at their last
@@ -58,7 +58,12 @@ class VolumePaths {
     bool disk;  // the Sun's or the Moon's
   };
   std::array<double, 4> numbers(const LivePath& live, uint32_t block) const;
-  bool step(Wave& wave, size_t slot, LivePath& live, bool& moves);
+  // How a path goes on after an event of travel().
+  struct Start {
+    Vec3 from;       // of the ray that looks for what the path will meet
+    double gap = 0;  // m from live.origin to there
+  };
+  bool step(Wave& wave, size_t slot, LivePath& live, bool& moves, TraceStatistics& statistics);
   void remember(Wave& wave, size_t slot, Vec3 place);
   void light_events(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics);
   void ask_sources(Wave& wave, size_t event, const LivePath& live);
@@ -81,6 +86,8 @@ class VolumePaths {
   size_t event_count_ = 0;
   std::vector<Light> lights_;
   std::vector<uint8_t> ended_;            // per slot
+  std::vector<Start> start_;              // per slot
+  TraceStatistics crossing_;              // of rays at nodes, until travel() reports them
   std::vector<size_t> pending_, moving_;  // slots
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;

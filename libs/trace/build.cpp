@@ -59,9 +59,11 @@ void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, 
 
 }  // namespace
 
-RTCScene new_scene() {
+RTCScene new_scene(bool all_hits) {
   RTCScene s = rtcNewScene(device());
-  rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(s, all_hits
+                          ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION)
+                          : RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
   return s;
 }
@@ -89,7 +91,7 @@ void Tile::build(const World& world) {
       else
         world.scene->meshes[world.flat.objects[direct[i - meshes.size()]].mesh].require();
   });
-  handle.scene = new_scene();
+  handle.scene = new_scene(world.all_hits);
   for (uint32_t id = 0; id < direct.size(); ++id)
     attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id,
                 world.filter && world.may_pass[direct[id]], direct[id]);
@@ -111,7 +113,7 @@ void TileSet::close(const World& world) {
 RTCScene World::mesh_scene(uint32_t mesh) const {
   MeshEntry& entry = meshes[mesh];
   entry.once.run([&] {
-    entry.handle.scene = new_scene();
+    entry.handle.scene = new_scene(all_hits);
     attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, filter && holed_meshes[mesh]);
     rtcCommitScene(entry.handle.scene);
   });
@@ -134,7 +136,9 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       periodic(cell),
       filter(std::move(holes)),
       flat(flatten(*scene)),
-      meshes(new MeshEntry[scene->meshes.size()]) {
+      meshes(new MeshEntry[scene->meshes.size()]),
+      all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
+                           [](const Material& m) { return m.bounds_medium(); })) {
   const FlushDenormals flush;
   std::vector<bool> used(scene->meshes.size(), false);
   for (const TracedObject& o : flat.objects)

@@ -24,7 +24,8 @@ inline constexpr uint32_t kWidth = 8;  // rays in a packet
 
 // One device per process, its instruction set pinned: other sets give other last bits.
 RTCDevice device();
-RTCScene new_scene();
+// all_hits: Tracer::all may be asked of it.
+RTCScene new_scene(bool all_hits);
 
 struct SceneHandle {
   RTCScene scene = nullptr;
@@ -75,13 +76,21 @@ struct Packet {
 struct MovingPart;
 struct World;
 
+// One of all the hits of a ray. exact: of an exact surface, whose t counts from the ray's origin in m.
+struct Gathered {
+  uint32_t object, triangle;
+  float u, v;
+  std::optional<LocalHit> exact;
+};
+
 // Handed to Embree and by it to the callbacks: the unrounded rays.
 struct TraceContext : RTCIntersectContext {
   const Ray* rays = nullptr;
   const Packet* packet = nullptr;  // lanes are the ids of the float rays
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
-  uint32_t object = kNone;  // the instance that rays are inside of; kNone = in the tile itself
+  uint32_t object = kNone;                    // the instance that rays are inside of; kNone = in the tile itself
+  std::vector<Gathered>* gathered = nullptr;  // all hits go here, and none ends a ray
   const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
 };
 
@@ -133,6 +142,8 @@ struct TileSet {
 
 // Embree's filter for triangles of meshes that may have holes.
 void filter_triangles(const RTCFilterFunctionNArguments* args);
+// The filter of contexts that gather: notes the triangle and lets the ray pass.
+void gather_triangles(const RTCFilterFunctionNArguments* args);
 
 // What does not change with the window.
 struct World {
@@ -146,6 +157,7 @@ struct World {
   std::vector<uint32_t> unbounded;  // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                      // of what is at rest
   size_t triangles = 0;
+  bool all_hits = false;           // some surface bounds a medium: Tracer::all may be asked
   std::vector<char> may_pass;      // objects with holes; empty without a filter
   std::vector<char> holed_meshes;  // meshes that some such object shows; empty without a filter
 
@@ -153,7 +165,8 @@ struct World {
   bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position,
              Vec3 normal = {}) const;
   // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
-  // through; its t counts from there.
+  // through; its t counts from there, and again(t) is where to look for the next.
+  static double again(double t) { return t + 1e-12 * std::max(1.0, std::fabs(t)); }
   std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
                                double t_max) const;
   RTCScene mesh_scene(uint32_t mesh) const;        // built on the first call
@@ -226,12 +239,16 @@ class PacketTracer {
   void nearest(const Tile& tile, const Packet& packet);
   // Makes the hits that nearest() found; others stay as they are.
   void finish(std::span<Hit> hits);
+  // Adds all hits of a packet of one ray.
+  void all(const Tile& tile, const Packet& packet, std::vector<Hit>& hits);
+  void all_unbounded(uint32_t object, std::vector<Hit>& hits);
   void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
   // Surfaces without bounds; lowers reach. hit may be null.
   void unbounded(uint32_t object, uint32_t ray, Hit* hit);
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
+  void send(const Tile& tile, const Packet& packet, TraceContext& context, RTCRayHit8& rays);
   TraceContext context(const Packet& packet) const;
   // What a ray met in a tile; object kNone: nothing.
   struct Found {
@@ -243,6 +260,8 @@ class PacketTracer {
   const uint32_t* corners(const Found& found) const;
   void finish_triangle(const Found& found, const Ray& ray, Hit& hit) const;
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
+  void place_exact(double scale, const Ray& ray, uint32_t object, const Affine3& to_world, const LocalHit& found,
+                   Hit& hit) const;
 
   const World& world_;
   const MovingPart* moving_;

@@ -31,17 +31,32 @@ std::optional<LocalHit> World::meet(const Ray& ray, uint32_t object, const Affin
   if (!filter || !may_pass[object]) return found;
   while (found && !keeps(ray, object, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t),
                          to_world.normal(found->normal)))
-    found = intersect(primitive, origin, direction, found->t + 1e-12 * std::max(1.0, std::fabs(found->t)), t_max);
+    found = intersect(primitive, origin, direction, again(found->t), t_max);
   return found;
+}
+
+namespace {
+// In the tile itself the geometry knows whose it is.
+uint32_t object_of(const RTCFilterFunctionNArguments* args) {
+  const uint32_t inside = static_cast<const TraceContext*>(args->context)->object;
+  return inside != kNone ? inside : static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
+}
+}  // namespace
+
+void gather_triangles(const RTCFilterFunctionNArguments* args) {
+  auto& gathered = *static_cast<const TraceContext*>(args->context)->gathered;
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    gathered.push_back({object_of(args), RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                        RTCHitN_v(args->hit, args->N, i), std::nullopt});
+    args->valid[i] = 0;
+  }
 }
 
 void filter_triangles(const RTCFilterFunctionNArguments* args) {
   const auto& context = *static_cast<const TraceContext*>(args->context);
   const World& world = *context.world;
-  // In the tile itself the geometry knows whose it is.
-  const uint32_t object = context.object != kNone
-                              ? context.object
-                              : static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
+  const uint32_t object = object_of(args);
   if (!world.may_pass[object]) return;
   const TracedObject& o = world.flat.objects[object];
   const Mesh& m = world.scene->meshes[o.mesh];

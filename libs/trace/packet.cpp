@@ -49,15 +49,19 @@ const uint32_t* PacketTracer::corners(const Found& found) const {
   return mesh == kNone ? nullptr : &world_.scene->meshes[mesh].indices[3 * size_t{found.triangle}];
 }
 
-void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
-  TraceContext c = context(packet);
-  alignas(32) RTCRayHit8 rh;
+void PacketTracer::send(const Tile& tile, const Packet& packet, TraceContext& c, RTCRayHit8& rh) {
   alignas(32) int valid[kWidth];
   load(tile, packet, rh.ray, valid);
   for (uint32_t i = 0; i < kWidth; ++i) rh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   const uint64_t start = __rdtsc();
   rtcIntersect8(valid, tile.handle.scene, &c, &rh);
   statistics_.cycles += __rdtsc() - start;
+}
+
+void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
+  TraceContext c = context(packet);
+  alignas(32) RTCRayHit8 rh;
+  send(tile, packet, c, rh);
   const size_t lone = tile.direct.size();
   for (uint32_t i = 0; i < packet.size; ++i) {
     const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
@@ -89,6 +93,36 @@ void PacketTracer::finish(std::span<Hit> hits) {
     else
       finish_exact(f.tile->scale, rays_[r], f.object, reach_[r], hits[r]);
   }
+}
+
+void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>& hits) {
+  thread_local std::vector<Gathered> gathered;
+  gathered.clear();
+  TraceContext c = context(packet);
+  c.filter = gather_triangles;
+  c.gathered = &gathered;
+  alignas(32) RTCRayHit8 rh;
+  send(tile, packet, c, rh);
+  const Ray& ray = rays_[packet.ray[0]];
+  for (const Gathered& g : gathered) {
+    Hit& hit = hits.emplace_back();
+    const TracedObject& o = world_.flat.objects[g.object];
+    if (g.exact) {
+      place_exact(tile.scale, ray, g.object, moving_ ? moving_->to_world(o, ray.time) : *o.place, *g.exact, hit);
+    } else {
+      const bool direct = std::find(tile.direct.begin(), tile.direct.end(), g.object) != tile.direct.end();
+      finish_triangle({&tile, g.object, g.triangle, g.u, g.v, direct}, ray, hit);
+    }
+  }
+}
+
+void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
+  const Ray& ray = rays_[0];
+  const TracedObject& o = world_.flat.objects[object];
+  const Affine3 to_world = o.node == kNone ? *o.place : moving_->to_world(o, ray.time);
+  for (auto found = world_.meet(ray, object, to_world, 0, 0, reach_[0]); found;
+       found = world_.meet(ray, object, to_world, 0, World::again(found->t), reach_[0]))
+    place_exact(0, ray, object, to_world, *found, hits.emplace_back());
 }
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
@@ -167,18 +201,23 @@ void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, d
     hit = Hit{};
     return;
   }
-  hit.distance = found->t;
-  hit.position = ray.origin + ray.direction * found->t;
-  hit.normal = normalized(to_world.normal(found->normal));
+  place_exact(scale, ray, object, to_world, *found, hit);
+}
+
+void PacketTracer::place_exact(double scale, const Ray& ray, uint32_t object, const Affine3& to_world,
+                               const LocalHit& found, Hit& hit) const {
+  hit.distance = found.t;
+  hit.position = ray.origin + ray.direction * found.t;
+  hit.normal = normalized(to_world.normal(found.normal));
   if (to_world.determinant() < 0) hit.normal = -hit.normal;
   // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
   const double step =
       scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
-  hit.step = static_cast<float>(step + aside(moving_, o));
+  hit.step = static_cast<float>(step + aside(moving_, world_.flat.objects[object]));
   hit.time = ray.time;
   hit.object = object;
   hit.triangle = 0;
-  hit.u = static_cast<float>(found->u), hit.v = static_cast<float>(found->v);
+  hit.u = static_cast<float>(found.u), hit.v = static_cast<float>(found.v);
 }
 
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {

@@ -69,12 +69,10 @@ bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray
 }
 
 // Where the unrounded ray meets an exact surface, from the packet's start on.
-std::optional<double> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near,
-                           double far) {
+std::optional<LocalHit> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near,
+                             double far) {
   const TracedObject& o = set.world->flat.objects[object];
-  const auto found =
-      set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
-  return found ? std::optional<double>(found->t) : std::nullopt;
+  return set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
 }
 
 // The rays of a packet that enter one instance.
@@ -144,10 +142,15 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(outer, args->N, i);
-    const auto t = meet(set, o, context->rays[context->packet->ray[lane]], context->packet->advance[lane],
-                        RTCRayN_tnear(outer, args->N, i), RTCRayN_tfar(outer, args->N, i));
-    if (!t) continue;
-    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(*t);
+    const Ray& ray = context->rays[context->packet->ray[lane]];
+    const double advance = context->packet->advance[lane], far = RTCRayN_tfar(outer, args->N, i);
+    auto found = meet(set, o, ray, advance, RTCRayN_tnear(outer, args->N, i), far);
+    for (; context->gathered && found; found = meet(set, o, ray, advance, World::again(found->t), far)) {
+      context->gathered->push_back({o, 0, 0, 0, found});
+      context->gathered->back().exact->t += advance;
+    }
+    if (!found) continue;
+    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(found->t);
     RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
     RTCHitN_primID(hit, args->N, i) = 0;
     RTCHitN_geomID(hit, args->N, i) = args->geomID;

@@ -242,6 +242,53 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits, bool cohere
   if (!world_->unbounded.empty()) nearest_unbounded(rays, hits, s);
 }
 
+void Tracer::add_all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& s) const {
+  ++s.rays;
+  double reach = length;
+  const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
+    PacketTracer tracer(*world_, moving, {&ray, 1}, {&reach, 1}, false, s);
+    for (const uint32_t object : unbounded) tracer.all_unbounded(object, hits);
+    set.pass({&ray, 1}, {&reach, 1}, [&](uint32_t index, const Packet& packet) {
+      Tile& tile = *set.tiles[index];
+      tile.once.run([&] { tile.build(*world_); });
+      tracer.all(tile, packet, hits);
+    });
+  };
+  trace(world_->tiles, unbounded_of(*world_), nullptr);
+  if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
+}
+
+// Rays that end on the far side of a cell meet what stands at the near side of the next one, too.
+void Tracer::all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& s) const {
+  SUITE_CHECK(world_->all_hits);
+  hits.clear();
+  add_all(ray, length, hits, s);
+  if (world_->periodic) {
+    const Periodic& cell = *world_->periodic;
+    const double low[2] = {cell.low.x, cell.low.y}, size[2] = {cell.size.x, cell.size.y};
+    double shift[2][2] = {};  // [axis]: none, and the one that brings it to the other side
+    for (int a = 0; a < 2; ++a) {
+      const double b = ray.origin[a], e = b + ray.direction[a] * length,
+                   slack = 1e-6 * size[a] + 1e-6 * std::fabs(low[a]);
+      if (std::min(b, e) <= low[a] + slack) shift[a][1] = size[a];
+      if (std::max(b, e) >= low[a] + size[a] - slack) shift[a][1] = -size[a];
+    }
+    for (int x = 0; x < 2; ++x)
+      for (int y = 0; y < 2; ++y) {
+        if ((!x && !y) || (x && shift[0][1] == 0) || (y && shift[1][1] == 0)) continue;
+        Ray moved = ray;
+        moved.origin += Vec3{shift[0][x], shift[1][y], 0};
+        add_all(moved, length, hits, s);
+      }
+    double reach = length;
+    PacketTracer tracer(*world_, nullptr, {&ray, 1}, {&reach, 1}, false, s);
+    for (const uint32_t object : world_->unbounded) tracer.all_unbounded(object, hits);
+  }
+  std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.object < b.object;
+  });
+}
+
 void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
                       bool coherent, TraceStatistics& s) const {
   thread_local std::vector<double> reach;

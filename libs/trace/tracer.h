@@ -86,6 +86,11 @@ class Tracer {
   void occluded(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked, bool coherent,
                 TraceStatistics& statistics) const;
 
+  // Everything that a short ray meets within `length` (m, finite), nearest first, surfaces that lie in each other and
+  // both triangles of an edge included; what has holes as nearest() sees it. Distances are measured as those of
+  // nearest(). Replaces the contents of hits.
+  void all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
+
   // Where a ray that leaves `hit` to the side of `direction` must start so as not to meet the same surface again: a few
   // units of the last float place of the tile's or instance's size off the surface, along the geometric normal.
   Vec3 leave(const Hit& hit, Dir direction) const {
@@ -114,6 +119,7 @@ class Tracer {
   void nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& statistics) const;
   void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent,
                          TraceStatistics& statistics) const;
+  void add_all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
   std::unique_ptr<MovingPart> moving_;  // null when nothing moves
   Box3 bounds_;

@@ -8,28 +8,12 @@
 
 #include "math/sampling.h"
 #include "scene/primitives.h"
+#include "tests/support/lamps_kit.h"
 #include "tests/support/message_of.h"
-#include "tests/support/radiometry_kit.h"
 
 namespace suite::test {
 namespace {
 
-LampSpec point_lamp(std::vector<Vec3> positions, double intensity) {
-  LampSpec lamp;
-  lamp.name = "point";
-  lamp.positions = std::move(positions);
-  lamp.intensity = Curve::constant(intensity);
-  return lamp;
-}
-LampSpec glow(const std::string& material, double radiance, bool both_sides = false) {
-  LampSpec lamp;
-  lamp.kind = LampSpec::Kind::surface;
-  lamp.name = "glow";
-  lamp.material = material;
-  lamp.radiance = Curve::constant(radiance);
-  lamp.both_sides = both_sides;
-  return lamp;
-}
 SourceSpecs lit_by(std::vector<LampSpec> lamps) {
   SourceSpecs s;
   s.lamps = std::move(lamps);

@@ -16,18 +16,6 @@ namespace {
 
 constexpr double kSigmas = 4.5;  // less than 1e-5 a comparison by chance
 
-CaptureResult render_cell(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, std::vector<Ray> rays,
-                          uint32_t paths, const std::optional<Periodic>& cell, uint64_t seed = 1) {
-  JobOptions job;
-  job.progress = false;
-  job.periodic = cell;
-  job.pipeline.seed = seed;
-  std::vector<std::unique_ptr<Sensor>> sensors;
-  sensors.push_back(std::make_unique<RaySensor>(std::move(rays), one_band(), paths));
-  run_job(scene, sources, sensors, job);
-  return std::move(static_cast<RaySensor&>(*sensors[0]).result);
-}
-
 const Periodic kCell{{-2, 1}, {7, 5}};
 
 // A turned grid that sticks out of the cell, over a ground; `copies` of the whole on every side.

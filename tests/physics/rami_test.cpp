@@ -1,15 +1,18 @@
 // The RAMI instrument: closed forms over a bare ground, conservation, and the homogeneous canopy HOM03 against another
 // tracer's table (its noise is 0.3 %, its discs are other random ones).
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include "math/sampling.h"
+#include "support/message_of.h"
 #include "support/platform_kit.h"
 
 namespace suite {
@@ -102,6 +105,49 @@ TEST(Rami, BareLambertGroundHasItsReflectanceEverywhere) {
   EXPECT_NEAR(v.flux.at("black_sky_albedo")[0], 0.3, 1e-6);
   EXPECT_NEAR(v.flux.at("transmitted_to_ground")[0], 1, 1e-6);
   EXPECT_NEAR(v.flux.at("absorbed_by_canopy")[0], 0, 1e-6);
+}
+
+// Regression: a ground of reflectance 0 lost its fluxes without a word, and `planes: []` was refused.
+TEST(Rami, ABlackGroundHasItsFluxesAlone) {
+  // Leaves that only absorb: what comes down is the sum over their shadows, which a sun straight from above shows as
+  // the area that no disc covers; nothing comes up. The same light over a grey ground, where nothing comes back down.
+  auto scene = canopy(2, 0.2, 0, 0, 0);
+  const std::string alone = instrument(2, 2, 0, 0, 1 << 12) + "planes: []\n";
+  const Views black = render(scene, 2, alone, 0);
+  EXPECT_TRUE(black.principal.empty());
+  ASSERT_EQ(black.flux.size(), 4u);
+  EXPECT_EQ(black.flux.at("black_sky_albedo")[0], 0);
+  int open = 0;
+  constexpr int n = 1000;
+  const Tracer tracer(scene, Periodic{{-2, -2}, {4, 4}});
+  TraceStatistics statistics;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const Ray up{{-2 + 4 * (i + 0.5) / n, -2 + 4 * (j + 0.5) / n, 1e-3}, {0, 0, 1}, 0};
+      const double far = std::numeric_limits<double>::infinity();
+      uint8_t blocked = 0;
+      tracer.occluded({&up, 1}, {&far, 1}, {&blocked, 1}, false, statistics);
+      open += !blocked;
+    }
+  const auto [down, error] = black.flux.at("transmitted_to_ground");
+  EXPECT_NEAR(down, 1.0 * open / (n * n), 4.5 * error + 1e-3);
+  EXPECT_LT(4.5 * error, 0.05) << "a tenth would not be seen";
+  EXPECT_EQ(black.flux.at("absorbed_by_ground")[0], down);
+  EXPECT_EQ(black.flux.at("absorbed_by_canopy")[0], 1 - down);
+  scene->materials[1] = test::material("soil", test::lambert(0.5));
+  const Views grey = render(scene, 2, instrument(2, 2, 0, 0.5, 1 << 12), 0);
+  EXPECT_NEAR(grey.flux.at("transmitted_to_ground")[0], down,
+              4.5 * std::hypot(error, grey.flux.at("transmitted_to_ground")[1]));
+  EXPECT_NEAR(grey.flux.at("absorbed_by_ground")[0], 0.5 * grey.flux.at("transmitted_to_ground")[0], 1e-9);
+}
+
+TEST(Rami, RefusesWhatCannotBe) {
+  const auto scene = canopy(2, 0.2, 0, 0, 0);
+  const std::string text = instrument(2, 2, 0, 0.3, 4);
+  EXPECT_THAT(message_of([&] { render(scene, 2, text + "planes: []\nby_reciprocity: true\n", 0); }),
+              testing::HasSubstr("no plane is listed"));
+  EXPECT_THAT(message_of([&] { render(scene, 2, instrument(2, 2, 0, 1.5, 4), 0); }),
+              testing::HasSubstr("not between 0 and 1"));
 }
 
 TEST(Rami, NothingIsLostOverAWhiteGround) {

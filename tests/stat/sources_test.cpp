@@ -73,7 +73,7 @@ struct Asked {
       d.direction = s.direction, d.density = s.density;
       e.sky->add(s.direction, 1, d.radiance);
     } else {
-      const auto s = e.lamps->sample(at, choice, u);
+      const auto s = e.lamps->sample(at, choice, u, 0);
       if (!s) return std::nullopt;
       d.direction = s->direction, d.density = s->density;
       for (size_t i = 0; i < bins; ++i) d.radiance[i] = static_cast<float>(s->scale) * s->spectrum[i];
@@ -87,7 +87,7 @@ struct Asked {
     TraceStatistics statistics;
     const Ray ray{at.position, d, 0};
     tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
-    return hit.hit() ? e.lamps->density(at, hit, hit.distance, -dot(hit.normal, d)) : 0;
+    return hit.hit() ? e.lamps->density(at, hit, d, hit.distance, -dot(hit.normal, d)) : 0;
   }
 };
 

@@ -82,6 +82,20 @@ class FluxSensor final : public RaySensor {
   }
 };
 
+// What the rays see in a scene that may repeat itself; no sample may fail.
+inline CaptureResult render_cell(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
+                                 std::vector<Ray> rays, uint32_t paths,
+                                 const std::optional<Periodic>& cell = std::nullopt, uint64_t seed = 1) {
+  JobOptions job;
+  job.progress = false;
+  job.periodic = cell;
+  job.pipeline.seed = seed;
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  sensors.push_back(std::make_unique<RaySensor>(std::move(rays), one_band(), paths));
+  if (run_job(scene, sources, sensors, job).statistics.failures) throw Error("samples that failed");
+  return std::move(static_cast<RaySensor&>(*sensors[0]).result);
+}
+
 // Mean and standard error over problems that all ask the same, from their own means: 64 independent numbers.
 struct Repeated {
   double mean = 0, error = 0;

@@ -89,6 +89,10 @@ std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene)
 uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    if (scene.materials[i].id == spec.material && scene.materials[i].bounds_medium())
+      throw Error(spec.where,
+                  "the Earth: the material '" + spec.material + "' bounds a medium, and the Earth is no body",
+                  "name a material without inside and outside");
     if (scene.materials[i].id == spec.material && !scene.materials[i].surface.model.empty()) return i;
     names.push_back(scene.materials[i].id);
   }
@@ -104,12 +108,7 @@ Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, boo
   if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
   if (specs.moon) e.moon = std::make_unique<Sun>(specs.moon->disk, state);
   if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  if (!specs.lamps.empty()) {
-    if (periodic)
-      throw Error(specs.lamps.front().where, "lamps in a scene that repeats itself would stand in every cell",
-                  "give the scene no lamps, or no period");
-    e.lamps = std::make_unique<Lamps>(specs.lamps, tracer, state);
-  }
+  if (!specs.lamps.empty()) e.lamps = std::make_unique<Lamps>(specs.lamps, tracer, state);
   if (specs.atmosphere) {
     std::vector<Beam> beams;
     for (const Sun* body : {e.sun.get(), e.moon.get()})

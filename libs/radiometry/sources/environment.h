@@ -50,7 +50,7 @@ struct Environment {
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene);
 
 // Bakes resolved sources. periodic: the scene repeats itself. Error: as the sources' constructors; unknown material of
-// the Earth; lamps or an Earth in a periodic scene.
+// the Earth, or one that bounds a medium; an Earth in a periodic scene.
 Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic, const SpectralState& state);
 
 // Index of the Earth's material. Error when the scene has none of that name.

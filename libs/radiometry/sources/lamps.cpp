@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "radiometry/sources/lamp_images.h"
 #include "radiometry/sources/lamp_shapes.h"
 
 namespace suite {
@@ -18,6 +19,10 @@ struct Lamps::Core {
   // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
   std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
   std::vector<const float*> front, back;  // per material
+  // Of a scene that repeats itself. Copies of an object at the sides of the cell are images of the first one.
+  std::optional<Periodic> cell;
+  std::unique_ptr<LampImages> images;
+  std::unordered_map<uint32_t, std::pair<uint32_t, Vec3>> copy_of;  // per object: the first one, and the way to it
 
   // While the lamps are gathered.
   std::vector<LightBounds> bounds;
@@ -28,6 +33,7 @@ struct Lamps::Core {
   void add_material(uint32_t spec, const Scene& scene);
   void add_surfaces(const Tracer& tracer);
   uint32_t add(const LampShape& shape, LightBounds b);
+  uint32_t shape_at(const Hit& hit) const;
   uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, uint32_t object, const Tracer& tracer);
 };
 
@@ -113,6 +119,13 @@ void check(const LampSpec& s) {
 
 }  // namespace
 
+// The shape that a ray met; kNone = none that can be drawn.
+uint32_t Lamps::Core::shape_at(const Hit& hit) const {
+  const auto copy = copy_of.find(hit.object);
+  const auto shapes_of = shape_of_triangle.find(copy == copy_of.end() ? hit.object : copy->second.first);
+  return shapes_of == shape_of_triangle.end() ? kNone : shapes_of->second[hit.triangle];
+}
+
 Lamps::~Lamps() = default;
 size_t Lamps::size() const { return core_->shapes.size(); }
 
@@ -140,7 +153,11 @@ void Lamps::Core::add_points(uint32_t spec) {
   if (index == static_cast<int>(profiles.size())) profiles.push_back(profile);
   LampShape shape;
   shape.spec = spec;
-  for (const Vec3& p : s.positions) {
+  for (Vec3 p : s.positions) {
+    if (cell) {
+      p.x -= std::floor((p.x - cell->low.x) / cell->size.x) * cell->size.x;
+      p.y -= std::floor((p.y - cell->low.y) / cell->size.y) * cell->size.y;
+    }
     shape.origin = p;
     add(shape, {{p, p}, frames[spec].z, widest, 0.01, kPi, false, index});
   }
@@ -185,7 +202,10 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   TraceStatistics statistics;
   tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
   const double reach = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z), 1e-3});
-  shape->step = hit.object == object ? hit.step : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
+  const auto instance = [&](uint32_t o) { return tracer.objects()[o].instance; };
+  shape->step = hit.hit() && instance(hit.object) == instance(object)
+                    ? hit.step
+                    : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
   return add(*shape, bounds_of(*shape));
 }
 
@@ -194,9 +214,14 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
   const FlushDenormals flush;
   const Scene& scene = tracer.scene();
   auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
+  std::unordered_map<uint32_t, uint32_t> first;  // object of an instance
   for (uint32_t o = 0; o < tracer.objects().size(); ++o) {
     const TracedObject& object = tracer.objects()[o];
     if (object.node != kNone) continue;
+    if (const auto [at, is_new] = first.emplace(object.instance, o); !is_new) {
+      copy_of[o] = {at->second, tracer.objects()[at->second].place->b - object.place->b};
+      continue;
+    }
     const Affine3& place = *object.place;
     auto carried = [&](uint32_t own) {
       return spec_of(object.material_override != kNone ? object.material_override : own);
@@ -224,6 +249,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   Core& core = *core_;
   const size_t materials = tracer.scene().materials.size();
   core.specs.assign(specs.begin(), specs.end());
+  core.cell = tracer.periodic();
   core.front.assign(materials, nullptr);
   core.back.assign(materials, nullptr);
   core.spec_of_material.assign(materials, kNone);
@@ -241,6 +267,11 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
     surfaces = surfaces || surface;
   }
   if (surfaces) core.add_surfaces(tracer);
+  if (core.cell && !core.bounds.empty()) {
+    Box3 all;
+    for (const LightBounds& b : core.bounds) all.grow(b.box);
+    core.images = std::make_unique<LampImages>(*core.cell, all);
+  }
   if (!core.bounds.empty()) core.tree = std::make_unique<LightTree>(core.bounds, std::move(core.profiles));
   core.bounds = {};
 }
@@ -250,14 +281,28 @@ const float* Lamps::glow(uint32_t material, bool front) const {
   return front ? core_->front[material] : core_->back[material];
 }
 
-std::optional<LampSample> Lamps::sample(const LightReceiver& at, double choice, Vec2 u) const {
+std::optional<LampSample> Lamps::sample(const LightReceiver& at, double choice, Vec2 u, double image) const {
   if (!core_->tree) return std::nullopt;
-  const auto chosen = core_->tree->sample(at, choice);
+  LightReceiver from = at;
+  LampImages::Image drawn{{}, 1};
+  if (core_->images) drawn = core_->images->draw(at.position, image), from.position = at.position - drawn.shift;
+  const auto chosen = core_->tree->sample(from, choice);
   if (!chosen) return std::nullopt;
-  return sample_one(chosen->light, chosen->probability, at.position, u);
+  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, u);
+  if (lamp) lamp->end += drawn.shift;
+  return lamp;
 }
 
-std::optional<LampSample> Lamps::sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
+std::optional<LampSample> Lamps::sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u, double image) const {
+  LampImages::Image drawn{{}, 1};
+  if (core_->images) drawn = core_->images->draw(from, image);
+  auto sample = sample_here(lamp, probability * drawn.probability, from - drawn.shift, u);
+  if (sample) sample->end += drawn.shift;
+  return sample;
+}
+
+// As seen from a place beside the lamp itself, not an image of it.
+std::optional<LampSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
   const LampShape& s = core_->shapes[lamp];
   LampSample r;
   r.spectrum = core_->spectra[s.spec].data();
@@ -282,17 +327,23 @@ std::optional<LampSample> Lamps::sample_one(uint32_t lamp, double probability, V
   return r;
 }
 
-bool Lamps::draws(const Hit& hit) const {
-  const auto of_object = core_->shape_of_triangle.find(hit.object);
-  return of_object != core_->shape_of_triangle.end() && of_object->second[hit.triangle] != kNone;
-}
+bool Lamps::draws(const Hit& hit) const { return core_->shape_at(hit) != kNone; }
 
-double Lamps::density(const LightReceiver& at, const Hit& hit, double distance, double cosine) const {
-  const auto of_object = core_->shape_of_triangle.find(hit.object);
-  if (of_object == core_->shape_of_triangle.end()) return 0;
-  const uint32_t index = of_object->second[hit.triangle];
+double Lamps::density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const {
+  const uint32_t index = core_->shape_at(hit);
   if (index == kNone) return 0;
-  return core_->tree->probability(at, index) * density_of(core_->shapes[index], at.position, distance, cosine);
+  LightReceiver from = at;
+  double image = 1;
+  if (core_->images) {
+    // From the place on the lamp itself to where the ray really met its image.
+    const auto copy = core_->copy_of.find(hit.object);
+    const Vec3 own = hit.position + (copy == core_->copy_of.end() ? Vec3{} : copy->second.second);
+    const Vec3 shift = core_->images->whole(at.position + direction * distance - own);
+    image = core_->images->probability(at.position, shift);
+    from.position = at.position - shift;
+  }
+  return image * core_->tree->probability(from, index) *
+         density_of(core_->shapes[index], from.position, distance, cosine);
 }
 
 }  // namespace suite

@@ -3,9 +3,9 @@
 //
 // Assumes: points are seen by nothing but the explicit sample; glowing surfaces glow equally in all directions of their
 // side. Glowing triangles, disks, boxes, bounded planes and spheres are drawn; other exact surfaces that glow are met
-// by chance only. A lamp that stands in a scene with periodic boundaries would stand in every cell: refused. Based on:
-// Pharr, Jakob & Humphreys, "Physically based rendering", 4th ed. 2023, chapter 12; cones towards spheres after
-// section 6.2.4 there.
+// by chance only. In a scene that repeats itself every lamp stands in every cell: an image of the cell is drawn first
+// (lamp_images.h), then one of its lamps. Based on: Pharr, Jakob & Humphreys, "Physically based rendering", 4th ed.
+// 2023, chapter 12; cones towards spheres after section 6.2.4 there.
 #pragma once
 #include <memory>
 #include <optional>
@@ -66,20 +66,22 @@ class Lamps {
   Lamps(const Lamps&) = delete;
   Lamps& operator=(const Lamps&) = delete;
 
-  // u: choice, then two numbers for the place on the lamp.
-  std::optional<LampSample> sample(const LightReceiver& at, double choice, Vec2 u) const;
+  // u: two numbers for the place on the lamp. image: one for the choice among the images of a lamp, unused where the
+  // scene does not repeat itself.
+  std::optional<LampSample> sample(const LightReceiver& at, double choice, Vec2 u, double image) const;
   // A point on one lamp (0..size() - 1) that was chosen with a probability.
-  std::optional<LampSample> sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
+  std::optional<LampSample> sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u, double image) const;
   // Whether sample() may draw the surface that a ray met.
   bool draws(const Hit& hit) const;
   // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
   const float* glow(uint32_t material, bool front) const;
   // Density, 1/sr, with which sample() draws the direction from `at` towards the point `hit` of a glowing surface,
-  // which it met at an angle of the given cosine; 0 when that surface is met by chance only.
-  double density(const LightReceiver& at, const Hit& hit, double distance, double cosine) const;
-  size_t size() const;  // lamps in the tree
+  // met after `distance` (m) at an angle of the given cosine; 0 when that surface is met by chance only.
+  double density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const;
+  size_t size() const;  // lamps in the tree, of one cell
 
  private:
+  std::optional<LampSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
   struct Core;
   std::unique_ptr<Core> core_;
 };

@@ -5,7 +5,10 @@
 // which gives all views from the same paths (radiometry/many_suns.h) at a tenth of the cost or less. The patch is
 // divided into strata x strata problems, whose mean is the result; fluxes are left to the other mode.
 //
-// Assumes: a collimated sun of the given direction and irradiance and no sky in the simulation; a Lambertian ground.
+// Light that reaches the ground is collected by a level receiver just above it, whatever the ground reflects.
+//
+// Assumes: a collimated sun of the given direction and irradiance and no sky in the simulation; a level ground at
+// ground_m, and for what it absorbs one that reflects by a share (a Lambertian one).
 // The reference area is the whole patch at the height of the canopy's top; every problem is a mean over all of it.
 // Based on: J.-L. Widlowski et al., "Third Radiation Transfer Model Intercomparison (RAMI) exercise", J. Geophys. Res.
 // 112, 2007, and the formats of its online model checker (romc.jrc.ec.europa.eu); Goodenough & Brown, section V-B (each
@@ -20,7 +23,7 @@ namespace suite {
 namespace {
 
 constexpr size_t kViews = 76;    // -75, -73 ... 75 degrees in each plane
-constexpr double kAbove = 1e-3;  // m: where the look at the ground starts
+constexpr double kAbove = 1e-3;  // m: of the receiver over the ground
 
 class Rami final : public SimpleSensor {
  public:
@@ -41,17 +44,23 @@ class Rami final : public SimpleSensor {
     irradiance_ = in_bands(p.at("irradiance"));
     for (const double e : irradiance_)
       if (!(e > 0)) throw p.at("irradiance").error("the sun's irradiance must be positive in every band");
-    if (const auto ground = p.find("ground_reflectance")) ground_reflectance_ = in_bands(*ground);
+    if (const auto ground = p.find("ground_reflectance")) {
+      ground_reflectance_ = in_bands(*ground);
+      for (const double r : ground_reflectance_)
+        if (!(r >= 0 && r <= 1)) throw ground->error("the ground's reflectance is not between 0 and 1 in every band");
+    }
     planes_ = {true, true};
     if (const auto planes = p.find("planes")) {
       planes_ = {false, false};
       for (const Params& plane : planes->items()) planes_[plane.as_choice({"principal", "orthogonal"})] = true;
-      if (!planes_[0] && !planes_[1]) throw planes->error("no plane is listed", "principal, orthogonal or both");
     }
     for (const size_t plane : {0u, 1u})
       for (size_t k = 0; planes_[plane] && k < kViews; ++k)
         views_.push_back({plane, -75 + 2.0 * static_cast<double>(k)});
     if (p.boolean("by_reciprocity", false)) {
+      if (views_.empty())
+        throw p.at("planes").error("by_reciprocity gives views alone, and no plane is listed",
+                                   "list principal, orthogonal or both, or drop by_reciprocity for the fluxes");
       strata_ = static_cast<uint32_t>(p.integer("strata", 1, 4096, 32));
       capture_.columns = capture_.rows = strata_;
       capture_.bin_by = Capture::BinBy::sun;
@@ -84,7 +93,9 @@ class Rami final : public SimpleSensor {
       const Dir out = cosine_hemisphere({r.u[2], r.u[3]});
       return {{patch_.at(r.u[0], r.u[1], top_), -out, moment(0)}};
     }
-    return {{patch_.at(r.u[0], r.u[1], ground_ + kAbove), {0, 0, -1}, moment(0)}};  // the ground itself
+    SensorRay up{{patch_.at(r.u[0], r.u[1], ground_ + kAbove), {0, 0, 1}, moment(0)}};  // what falls on the ground
+    up.receiver = SensorRay::Receiver::plane;
+    return up;
   }
 
  private:
@@ -143,10 +154,10 @@ class Rami final : public SimpleSensor {
                 strf("1\t5\t-1.000000\n%.6f\t-1.000000\t-1.000000\t%.6f\t-1.000000\n", sun_zenith_,
                      value(d, views_.size(), 0, b).value));
     }
-    d.texts.push_back({name_ + "_brf.csv", std::move(views)});
+    if (!views_.empty()) d.texts.push_back({name_ + "_brf.csv", std::move(views)});
     if (!strata_) d.texts.push_back({name_ + "_fluxes.csv", std::move(fluxes)});
     d.description = strata_ ? "problems: strata of the patch; bins: views, as radiance back along the sun's rays"
-                            : "problems: the views of each plane, the upward flux, the ground";
+                            : "problems: the views of each plane, the upward flux, what falls on the ground";
   }
   // Tables of the intercomparison's model checker: files <measurement>_<model>-<experiment>.mes; a line that counts
   // lines and columns; then sun zenith, view zenith, view azimuth from the sun (rad), value, its spread (-1 = not
@@ -165,12 +176,12 @@ class Rami final : public SimpleSensor {
     };
     const Value albedo = value(d, views_.size(), 0, b), ground = value(d, views_.size() + 1, 0, b);
     line("black_sky_albedo", albedo.value, albedo.error);
-    if (ground_reflectance_.empty() || !(ground_reflectance_[b] > 0)) return;
-    // A Lambertian ground of reflectance r shows r times its irradiance over pi.
-    const double r = ground_reflectance_[b], down = ground.value / r, error = ground.error / r;
-    line("transmitted_to_ground", down, error);
-    line("absorbed_by_ground", (1 - r) * down, (1 - r) * error);
-    line("absorbed_by_canopy", 1 - albedo.value - (1 - r) * down, std::hypot(albedo.error, (1 - r) * error));
+    // A receiver shows its irradiance over pi.
+    line("transmitted_to_ground", ground.value, ground.error);
+    if (ground_reflectance_.empty()) return;
+    const double taken = 1 - ground_reflectance_[b];
+    line("absorbed_by_ground", taken * ground.value, taken * ground.error);
+    line("absorbed_by_canopy", 1 - albedo.value - taken * ground.value, std::hypot(albedo.error, taken * ground.error));
   }
 
   Patch patch_;
