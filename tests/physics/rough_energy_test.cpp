@@ -1,5 +1,5 @@
 // Rough micro-facets lose no energy: white furnaces of faces and panes, and comparison with exact walks over the
-// micro-surface. Prints its tables.
+// micro-surface. Prints its tables. Bounds of 0.003 stand five standard errors away from what is expected.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,22 +47,29 @@ Step draw(const ScatterModel& model, Dir out, Pcg32& random) {
   return {s->in, static_cast<double>(w[0]) / p[0]};
 }
 
-// What a face returns of a uniform field of radiance over squared index.
-RunningStats face(const ScatterModel& model, Dir out, double index, int samples) {
+// Draws until the standard error is below kEnough.
+constexpr double kEnough = 6e-4;
+template <class F>
+RunningStats mean_of(const F& one) {
   RunningStats stats;
-  Pcg32 random(7);
-  for (int n = 0; n < samples; ++n) {
-    const Step s = draw(model, out, random);
-    const double scale = s.in.z * out.z > 0 ? 1 : out.z > 0 ? index * index : 1 / (index * index);
-    stats.add(s.weight * scale);
+  for (int n = 0; n < 1 << 22; ++n) {
+    stats.add(one());
+    if (n >= 1 << 14 && n % 1024 == 0 && stats.stderr_of_mean() < kEnough) break;
   }
   return stats;
 }
+// What a face returns of a uniform field of radiance over squared index.
+RunningStats face(const ScatterModel& model, Dir out, double index) {
+  Pcg32 random(7);
+  return mean_of([&] {
+    const Step s = draw(model, out, random);
+    return s.weight * (s.in.z * out.z > 0 ? 1 : out.z > 0 ? index * index : 1 / (index * index));
+  });
+}
 // The same of a plate between two faces whose fronts look outwards.
-RunningStats pane(const ScatterModel& model, Dir out, int samples) {
-  RunningStats stats;
+RunningStats pane(const ScatterModel& model, Dir out) {
   Pcg32 random(8);
-  for (int n = 0; n < samples; ++n) {
+  return mean_of([&] {
     double throughput = 1;
     Dir at = out;
     for (int node = 0; node < 10000 && throughput > 0; ++node) {
@@ -71,9 +78,8 @@ RunningStats pane(const ScatterModel& model, Dir out, int samples) {
       if (s.in.z > 0) break;
       at = {-s.in.x, -s.in.y, s.in.z};  // meets the other face from within; both are alike
     }
-    stats.add(throughput);
-  }
-  return stats;
+    return throughput;
+  });
 }
 
 template <class F>
@@ -87,7 +93,7 @@ void furnace_table(const char* what, const F& returned) {
       const RunningStats s = returned(roughness, deg * kDegree);
       std::printf("   %.4f (%.4f)", s.mean(), s.stderr_of_mean());
       EXPECT_NEAR(s.mean(), 1, 3e-3) << what << ' ' << roughness << ' ' << deg;
-      EXPECT_LT(s.stderr_of_mean(), 8e-4) << what << ' ' << roughness << ' ' << deg;
+      EXPECT_LT(s.stderr_of_mean(), kEnough) << what << ' ' << roughness << ' ' << deg;
     }
     std::printf("\n");
   }
@@ -95,33 +101,33 @@ void furnace_table(const char* what, const F& returned) {
 
 TEST(RoughFurnace, GlassFaceFromAir) {
   furnace_table("face of index 1.5 seen from air", [](double roughness, double theta) {
-    return face(*glass(roughness, 1.5), dir_from_angles(theta, 0.4), 1.5, 1 << 17);
+    return face(*glass(roughness, 1.5), dir_from_angles(theta, 0.4), 1.5);
   });
 }
 TEST(RoughFurnace, GlassFaceFromWithin) {
   furnace_table("face of index 1.5 seen from within", [](double roughness, double theta) {
-    return face(*glass(roughness, 1.5), dir_from_angles(kPi - theta, 0.4), 1.5, 1 << 17);
+    return face(*glass(roughness, 1.5), dir_from_angles(kPi - theta, 0.4), 1.5);
   });
 }
 TEST(RoughFurnace, GlassPane) {
   furnace_table("pane of index 1.5", [](double roughness, double theta) {
-    return pane(*glass(roughness, 1.5), dir_from_angles(theta, 0.4), 1 << 16);
+    return pane(*glass(roughness, 1.5), dir_from_angles(theta, 0.4));
   });
 }
 TEST(RoughFurnace, OtherIndices) {
   for (const double index : {1.0001, 1.02, 1.33, 2.4, 4.0})
     for (const double roughness : {0.02, 0.3, 1.0})
       for (const double deg : {0.0, 45.0, 85.0, 100.0, 140.0, 180.0}) {
-        const RunningStats s = face(*glass(roughness, index), dir_from_angles(deg * kDegree, 0.4), index, 1 << 16);
+        const RunningStats s = face(*glass(roughness, index), dir_from_angles(deg * kDegree, 0.4), index);
         EXPECT_NEAR(s.mean(), 1, 3e-3) << index << ' ' << roughness << ' ' << deg;
       }
 }
 TEST(RoughFurnace, WhiteMetal) {
   furnace_table("metal of reflectance 1", [](double roughness, double theta) {
-    return face(*white(roughness, roughness), dir_from_angles(theta, 0.4), 1, 1 << 17);
+    return face(*white(roughness, roughness), dir_from_angles(theta, 0.4), 1);
   });
   furnace_table("metal of reflectance 1, roughness_y a quarter", [](double roughness, double theta) {
-    return face(*white(roughness, roughness / 4), dir_from_angles(theta, 0.4), 1, 1 << 17);
+    return face(*white(roughness, roughness / 4), dir_from_angles(theta, 0.4), 1);
   });
 }
 
@@ -145,7 +151,7 @@ struct Cells {
     return sum;
   }
 };
-constexpr int kWalks = 200000;
+constexpr int kWalks = 100000;
 
 struct Walked {
   Cells all;
@@ -176,8 +182,8 @@ Cells modelled(const ScatterModel& model, Dir out, double index) {
   return cells;
 }
 
-// 200 000 walks: reflected shares have a standard error of 0.0011 at most, misplaced shares of identical distributions
-// come out near 0.005.
+// 100 000 walks: shares have a standard error of 0.0016 at most, misplaced shares of identical distributions come out
+// near 0.01. Single scattering, which lost what has met more facets (up to 0.9), would be refused.
 TEST(RoughAgainstWalks, Glass) {
   std::printf(
       "glass against exact walks: share after one facet, reflected (walks, model), misplaced\n"
@@ -192,7 +198,10 @@ TEST(RoughAgainstWalks, Glass) {
         const double misplaced = ours.misplaced(exact.all);
         std::printf("%5.2f %9.2f %4.0f  %.4f  %.4f  %.4f   %.4f\n", index, roughness, deg, exact.once,
                     exact.all.reflected, ours.reflected, misplaced);
-        EXPECT_NEAR(ours.reflected, exact.all.reflected, 0.01);
+        // Near index 1 the passages of both sides leave no room for the walks' share of reflection.
+        EXPECT_NEAR(ours.reflected, exact.all.reflected, index < 1.1 ? 0.04 : 0.012);
+        EXPECT_NEAR(ours.reflected + ours.passed, 1, 0.02);
+        EXPECT_LT(misplaced, 0.33);
       }
 }
 
@@ -219,7 +228,8 @@ TEST(RoughAgainstWalks, Metals) {
         const double misplaced = ours.misplaced(exact.all);
         std::printf("%-13s %4.2f/%4.2f %4.0f  %.4f  %.4f  %.4f   %.4f\n", m.name, x, y, deg, exact.once,
                     exact.all.reflected, static_cast<double>(W[0]), misplaced);
-        EXPECT_NEAR(W[0], exact.all.reflected, 0.01);
+        EXPECT_NEAR(W[0], exact.all.reflected, 0.008);
+        EXPECT_LT(misplaced, 0.08);
       }
 }
 

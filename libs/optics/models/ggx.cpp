@@ -1,7 +1,8 @@
 // Rough metal: a GGX micro-facet surface of perfect conductors' mirrors, isotropic or anisotropic.
 // Assumes: the same on both sides, nothing transmitted. What meets one facet is exact for Smith's surface. What meets
 // more is a second lobe, missed(out) missed(in) / integral of missed, which closes the energy (at reflectance 1 the
-// total is 1) and is reciprocal; it is dimmed by the mean product of reflectances that such light meets.
+// total is 1) and is reciprocal. For real metals `missed` is multiplied with the mean product of reflectances that
+// light from a direction meets.
 // @NEGLECTS@
 // Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals);
 // C. Kulla & A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH course, 2017 (second lobe); E.
@@ -46,8 +47,14 @@ class GgxConductor final : public ScatterModel {
     if (!same_side(out, in)) return zero(w);
     const Dir o = up(out), i = up(in), h = normalized(o + i);
     const double shape = facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z), c = dot(o, h);
-    const double again = tables_->missed(o) * tables_->missed(i) * i.z / tables_->missed_integral();
-    for (size_t b = 0; b < w.size(); ++b) w[b] = finite_float(reflectance(c, b) * shape + repeated_[b] * again);
+    thread_local std::vector<float> from, to;
+    from.resize(w.size());
+    to.resize(w.size());
+    again_.at(o, from);
+    again_.at(i, to);
+    for (size_t b = 0; b < w.size(); ++b)
+      w[b] = finite_float(reflectance(c, b) * shape +
+                          std::max(0.0f, from[b]) * std::max(0.0f, to[b]) * again_scale_[b] * i.z);
   }
   void total(Dir out, std::span<float> W) const override {
     if (out.z == 0) return zero(W);
@@ -82,25 +89,46 @@ class GgxConductor final : public ScatterModel {
     for (size_t b = 0; b < f0_.size(); ++b) {
       const std::span<float> row{fresnel.data() + b * angles, angles};
       for (size_t a = 0; a < angles; ++a) row[a] = static_cast<float>(reflectance(GgxTables::cosine(a), b));
-      repeated_.push_back(tables_->repeated(row));
     }
+    again_ = DirectionalTable(facets_.ax, facets_.ay, GgxTables::kRows, f0_.size(), [&](Dir o, std::span<float> A) {
+      for (size_t b = 0; b < A.size(); ++b)
+        A[b] = static_cast<float>(tables_->missed(o) * tables_->repeated(o, {fresnel.data() + b * angles, angles}));
+    });
+    scale_again();
     total_ = DirectionalTable(facets_.ax, facets_.ay, GgxTables::kRows, f0_.size(), [&](Dir o, std::span<float> W) {
       std::vector<float> once(angles);
       tables_->single(o, once);
       for (size_t b = 0; b < W.size(); ++b) {
-        double sum = repeated_[b] * tables_->missed(o);
+        double sum = again_.at(o, b);
         for (size_t a = 0; a < angles; ++a) sum += once[a] * fresnel[b * angles + a];
         W[b] = static_cast<float>(sum);
       }
     });
   }
 
+  // Integrals of the second lobe's share over the hemisphere, in steps even in the cube root of the cosine: of smooth
+  // surfaces only grazing directions miss anything.
+  void scale_again() {
+    constexpr int steps = 1024;
+    const int azimuths = isotropic() ? 1 : 32;
+    std::vector<float> share(f0_.size());
+    again_scale_.assign(f0_.size(), 0);
+    for (int s = 0; s < steps * azimuths; ++s) {
+      const double low = std::pow(static_cast<double>(s / azimuths) / steps, 3),
+                   high = std::pow((s / azimuths + 1.0) / steps, 3), mu = 0.5 * (low + high);
+      again_.at(dir_from_angles(std::acos(mu), kPi / 2 * (s % azimuths + 0.5) / azimuths), share);
+      for (size_t b = 0; b < share.size(); ++b)
+        again_scale_[b] += kPi * (high * high - low * low) / azimuths * std::max(0.0f, share[b]);
+    }
+    for (double& x : again_scale_) x = x > 0 ? 1 / x : 0;
+  }
+
   std::vector<float> f0_, n_, k_;
-  std::vector<double> repeated_;  // of light that meets several facets: mean product of their reflectances
+  std::vector<double> again_scale_;  // 1 / integral of again_ times cosine
   Ggx facets_;
   std::shared_ptr<const GgxTables> tables_;
   bool indexed_ = false, uniform_ = false;
-  DirectionalTable total_;
+  DirectionalTable total_, again_;  // again_: share of the second lobe
 };
 
 std::vector<ModelSpec> examples() {

@@ -1,9 +1,10 @@
 #include "optics/models/ggx_tables.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
-#include "base/error.h"
 #include "optics/models/microsurface_walk.h"
 #include "optics/models/shared_tables.h"
 
@@ -11,7 +12,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kPoints = 4096, kWalks = 1 << 16;
+constexpr size_t kPoints = 4096, kWalks = 1024, kWalksOfAnisotropic = 128;
 
 // Adds `weight` at cosine c to hats over the nodes: linear in c between them, as F is nearly.
 void add_hat(double c, double weight, std::span<double> hats) {
@@ -22,12 +23,30 @@ void add_hat(double c, double weight, std::span<double> hats) {
   hats[a + 1] += weight * share;
 }
 
-// Mean over the azimuths of the first quadrant.
-template <class F>
-double around(const F& f, double mu, int azimuths) {
-  double sum = 0;
-  for (int k = 0; k < azimuths; ++k) sum += f(dir_from_angles(std::acos(mu), kPi / 2 * (k + 0.5) / azimuths));
-  return sum / azimuths;
+// Shares of orders and of nodes among walks from `out` that meet more than one facet.
+void walk(const Ggx& facets, Dir out, size_t count, std::span<float> shares) {
+  // Every direction has its own stream.
+  Pcg32 random(hash_of(std::bit_cast<uint64_t>(out.x), std::bit_cast<uint64_t>(out.y)));
+  std::vector<double> orders(GgxTables::kOrders), cosines(GgxTables::kAngles), met;
+  for (size_t n = 0; n < count; ++n) {
+    MicrosurfaceWalk light(facets, out);
+    met.clear();
+    while (met.size() < kMostFacets) {
+      const auto h = light.next(random);
+      if (!h) break;
+      met.push_back(light.cosine(*h));
+      light.reflect(*h);
+    }
+    if (met.size() < 2) continue;
+    orders[std::min(met.size() - 2, orders.size() - 1)] += 1;
+    for (const double c : met) add_hat(c, 1, cosines);
+  }
+  // Where hardly any light meets two facets it does not matter at which angles.
+  double walks = std::accumulate(orders.begin(), orders.end(), 0.0);
+  if (walks == 0) walks = orders[0] = 1, add_hat(out.z, 1, cosines);
+  const double facets_met = std::accumulate(cosines.begin(), cosines.end(), 0.0);
+  for (size_t k = 0; k < orders.size(); ++k) shares[k] = static_cast<float>(orders[k] / walks);
+  for (size_t a = 0; a < cosines.size(); ++a) shares[orders.size() + a] = static_cast<float>(cosines[a] / facets_met);
 }
 
 }  // namespace
@@ -38,21 +57,8 @@ std::shared_ptr<const GgxTables> GgxTables::of(Roughness roughness) {
 }
 
 GgxTables::GgxTables(Roughness roughness) {
-  tabulate(roughness);
-  const int azimuths = roughness.x == roughness.y ? 1 : 64;
-  const auto missed_at = [&](Dir out) { return missed(out); };
-  lobe_ = std::make_shared<const PolarLobe>([&](double mu) { return around(missed_at, mu, azimuths); });
-  // Even steps in the cube root of the cosine: on smooth surfaces only grazing directions miss anything.
-  constexpr int steps = 4096;
-  for (int s = 0; s < steps; ++s) {
-    const double low = std::pow(static_cast<double>(s) / steps, 3), high = std::pow((s + 1.0) / steps, 3);
-    missed_integral_ += kPi * (high * high - low * low) * around(missed_at, 0.5 * (low + high), azimuths);
-  }
-  walk(roughness);
-}
-
-void GgxTables::tabulate(Roughness roughness) {
   const Ggx facets{roughness.x, roughness.y};
+  const bool isotropic = facets.ax == facets.ay;
   const std::vector<Vec2> points = baking_points(kPoints);
   single_ = DirectionalTable(facets.ax, facets.ay, kRows, kAngles, [&](Dir o, std::span<float> once) {
     std::vector<double> hats(kAngles);
@@ -62,54 +68,31 @@ void GgxTables::tabulate(Roughness roughness) {
       const Dir in = h * (2 * c) - o;
       if (in.z > 0 && c > 0) add_hat(c, facets.shadowing(o, in) / facets.masking(o) / kPoints, hats);
     }
-    std::transform(hats.begin(), hats.end(), once.begin(), [](double x) { return static_cast<float>(x); });
+    std::copy(hats.begin(), hats.end(), once.begin());
   });
   missed_ = DirectionalTable(facets.ax, facets.ay, kRows, 1, [&](Dir o, std::span<float> missed) {
     std::vector<float> once(kAngles);
     single_.at(o, once);
+    missed[0] = static_cast<float>(std::max(0.0, 1 - std::accumulate(once.begin(), once.end(), 0.0)));
+  });
+  walks_ = DirectionalTable(facets.ax, facets.ay, kRows, kOrders + kAngles, [&](Dir o, std::span<float> shares) {
+    walk(facets, o, isotropic ? kWalks : kWalksOfAnisotropic, shares);
+  });
+  lobe_ = std::make_shared<const PolarLobe>([&](double mu) {
+    const int azimuths = isotropic ? 1 : 64;
     double sum = 0;
-    for (const float x : once) sum += x;
-    missed[0] = static_cast<float>(std::max(0.0, 1 - sum));
+    for (int k = 0; k < azimuths; ++k) sum += missed(dir_from_angles(std::acos(mu), kPi / 2 * (k + 0.5) / azimuths));
+    return sum / azimuths;
   });
 }
 
-void GgxTables::walk(Roughness roughness) {
-  const Ggx facets{roughness.x, roughness.y};
-  const std::vector<Vec2> points = baking_points(kWalks);
-  Pcg32 random(0x67677820);
-  orders_.assign(kMostFacets - 1, 0);
-  cosines_.assign(kAngles, 0);
-  double walks = 0, cosines = 0;
-  std::vector<double> met;
-  for (const Vec2 u : points) {
-    // Start where much is missed; a walk then stands for the others that left too soon.
-    const Dir out = lobe_->sample(u);
-    const double chance = missed(out);
-    if (!(out.z > 0 && chance > 0)) continue;
-    MicrosurfaceWalk light(facets, out);
-    met.clear();
-    while (met.size() < kMostFacets) {
-      const auto h = light.next(random);
-      if (!h) break;
-      met.push_back(light.cosine(*h));
-      light.reflect(*h);
-    }
-    if (met.size() < 2) continue;
-    walks += 1 / chance;
-    orders_[met.size() - 2] += 1 / chance;
-    cosines += static_cast<double>(met.size()) / chance;
-    for (const double c : met) add_hat(c, 1 / chance, cosines_);
-  }
-  SUITE_CHECK(walks > 0);
-  for (double& x : orders_) x /= walks;
-  for (double& x : cosines_) x /= cosines;
-}
-
-double GgxTables::repeated(std::span<const float> F) const {
+double GgxTables::repeated(Dir out, std::span<const float> F) const {
+  std::vector<float> shares(kOrders + kAngles);
+  walks_.at(out, shares);
   double mean = 0, sum = 0;
-  for (size_t a = 0; a < kAngles; ++a) mean += cosines_[a] * F[a];
+  for (size_t a = 0; a < kAngles; ++a) mean += shares[kOrders + a] * F[a];
   double power = mean;
-  for (const double share : orders_) sum += share * (power *= mean);
+  for (size_t k = 0; k < kOrders; ++k) sum += shares[k] * (power *= mean);
   return sum;
 }
 

@@ -16,7 +16,7 @@ namespace suite {
 
 class GgxTables {
  public:
-  static constexpr size_t kRows = 129, kAngles = 96;
+  static constexpr size_t kRows = 129, kAngles = 96, kOrders = 24;
   // Cosine of node a of kAngles: even in its square root, because Fresnel reflectance bends near grazing.
   static double cosine(size_t a) {
     const double t = static_cast<double>(a) / (kAngles - 1);
@@ -34,18 +34,16 @@ class GgxTables {
   void single(Dir out, std::span<float> once) const { single_.at(out, once); }
   // Share of what arrives from (or leaves to) `out` that meets more than one facet, out.z > 0, at reflectance 1.
   double missed(Dir out) const { return std::max(0.0f, missed_.at(out, 0)); }
-  double missed_integral() const { return missed_integral_; }  // of missed x cosine over the hemisphere
-  // Mean over the light that meets more than one facet of the product of reflectances that it has met; F at the nodes.
-  double repeated(std::span<const float> F) const;
+  // Mean over the light from `out` that meets more than one facet of the product of reflectances that it meets; F at
+  // the nodes, out.z > 0. Facets are taken for independent of each other.
+  double repeated(Dir out, std::span<const float> F) const;
   const PolarLobe& lobe() const { return *lobe_; }  // follows `missed`
 
  private:
-  void tabulate(Roughness roughness);
-  void walk(Roughness roughness);
   DirectionalTable single_, missed_;
-  double missed_integral_ = 0;
-  std::vector<double> orders_;   // share of the light that meets 2, 3, ... facets
-  std::vector<double> cosines_;  // shares of the nodes among the facets that it meets
+  // kOrders shares of the light that meets 2, 3, ... (the last: and more) facets, then kAngles shares of the nodes
+  // among the facets that it meets.
+  DirectionalTable walks_;
   std::shared_ptr<const PolarLobe> lobe_;
 };
 
