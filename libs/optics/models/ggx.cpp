@@ -3,7 +3,9 @@
 // more is a second lobe, missed(out) missed(in) / integral of missed, which closes the energy (at reflectance 1 the
 // total is 1) and is reciprocal. For real metals `missed` is multiplied with the mean product of reflectances that
 // light from a direction meets.
-// @NEGLECTS@
+// Neglected: the second lobe's own shape, and that facets met one after the other depend on each other. Against exact
+// walks up to 0.061 of the light leaves in wrong directions (aluminium, roughness 0.6 by 0.15; mostly below 0.02), and
+// totals agree within 0.006 (tests/physics/rough_energy_test.cpp prints both).
 // Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals);
 // C. Kulla & A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH course, 2017 (second lobe); E.
 // Heitz et al. 2016 (what it stands for: the walks of ggx_tables.h).
@@ -148,7 +150,9 @@ std::vector<ModelSpec> examples() {
 ModelRow ggx_row() {
   using P = ModelParameter;
   return {"ggx",
-          "rough metal, GGX micro-facets (Walter 2007, Heitz 2018) that lose no energy (Kulla & Conty 2017)",
+          "rough metal, GGX micro-facets (Walter 2007); loses no energy: what meets several facets is a lobe of its "
+          "own (Kulla & "
+          "Conty 2017), which sends up to 6 % of the light astray",
           {{"f0", P::Kind::curve, "1", "reflectance at normal incidence (Schlick); or give n and k", 0, 1, false, 0},
            {"n", P::Kind::curve, "1", "real part of the refractive index", 0, 100, false, 0},
            {"k", P::Kind::curve, "1", "imaginary part of the refractive index, absorbing positive", 0, 200, false, 0},
