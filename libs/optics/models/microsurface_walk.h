@@ -13,7 +13,7 @@
 namespace suite {
 
 inline constexpr int kMostFacets =
-    128;  // of one walk: at roughness 1 white metal keeps fewer than 1e-6 of its light for more
+    128;  // of one walk: at roughness 1 no walk of 300 000 over white metal met more than 32
 
 class MicrosurfaceWalk {
  public:
