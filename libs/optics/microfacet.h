@@ -17,8 +17,8 @@
 
 namespace suite {
 
-// Euler's B(1 + a, 1 + b) for a, b >= 0, within 2e-8 of its value
-// while both are below 1e5 (Stirling's series at arguments of at least 5).
+// Euler's B(1 + a, 1 + b) for a, b >= 0, to 2e-8 relative while both are below 1e5
+// (Stirling's series at arguments of at least 5).
 inline double beta_above_one(double a, double b) {
   const auto log_gamma = [](double x) {  // of 1 + x
     const double z = x + 5, y = 1 / z, y2 = y * y;
