@@ -1,9 +1,9 @@
 // A rough interface between air (front) and a transparent medium (back): GGX micro-facets that reflect and refract.
 // Assumes: isotropic; radiance is scaled by the squared index ratio across the interface, so W seen from the dense side
-// may exceed 1. What meets one facet is exact for Smith's surface. What meets more is a second lobe on both sides that
-// closes the energy: its share in each direction, and how much of it is reflected, are those of walks over the
-// micro-surface (rough_interface.h); its shape is a product of a function of `out` and one of `in`, which is
-// reciprocal.
+// may exceed 1. What meets one facet is exact for Smith's surface; chains of refractions that go nearly straight on are
+// counted with its transmitted lobe (rough_interface.h). The rest of what meets several facets is a second lobe on both
+// sides that closes the energy: its share in each direction, and how much of it is reflected, are those of walks over
+// the micro-surface; its shape is a product of a function of `out` and one of `in`, which is reciprocal.
 // Neglected: the second lobe's own shape. Against exact walks, at indices 1.02 to 2.4, the share of the light that
 // leaves in wrong directions is below 0.04 from above for roughness up to 0.3 and angles up to 63 deg, below 0.14 for
 // roughness up to 0.3 anywhere, and up to 0.31 at roughness 1 (index 1.33, 85 deg). The reflected share agrees within
