@@ -1,10 +1,13 @@
 // The GGX distribution of micro-facet normals with Smith's height-correlated shadowing, and the sampling of the normals
 // that are visible from a direction.
 //
-// All directions on the upper side (z > 0), unit length. Based on: B. Walter et al., "Microfacet models for refraction
-// through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function", JCGT 3(2), 2014
-// (equations 72, 86, 99); E. Heitz, "Sampling the GGX distribution of visible normals", JCGT 7(4), 2018.
+// All directions on the upper side (z > 0) where nothing else is said, unit length. Based on: B. Walter et al.,
+// "Microfacet models for refraction through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing
+// function", JCGT 3(2), 2014 (equations 72, 86, 99); E. Heitz, "Sampling the GGX distribution of visible normals", JCGT
+// 7(4), 2018; E. Heitz, J. Hanika, E. d'Eon, C. Dachsbacher, "Multiple-scattering microfacet BSDFs with the Smith
+// model", SIGGRAPH 2016.
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include <vector>
@@ -13,6 +16,18 @@
 #include "math/vec.h"
 
 namespace suite {
+
+// Euler's B(1 + a, 1 + b) for a, b >= 0, to 2e-8 relative while both are below 1e5
+// (Stirling's series at arguments of at least 5).
+inline double beta_above_one(double a, double b) {
+  const auto log_gamma = [](double x) {  // of 1 + x
+    const double z = x + 5, y = 1 / z, y2 = y * y;
+    return (z - 0.5) * std::log(z) - z + y * (1.0 / 12 - y2 * (1.0 / 360 - y2 / 1260)) -
+           std::log((x + 1) * (x + 2) * ((x + 3) * (x + 4)));
+  };
+  constexpr double half_log_two_pi = 0.91893853320467274178;
+  return std::exp(log_gamma(a) + log_gamma(b) - log_gamma(a + b + 1) + half_log_two_pi);
+}
 
 struct Ggx {
   double ax = 0.1, ay = 0.1;  // roughness along x and y, > 0
@@ -29,11 +44,15 @@ struct Ggx {
   }
   double masking(Dir d) const { return 1 / (1 + lambda(d)); }                       // G1
   double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }  // G2, same side
+  // The chance that a point which a sees from above is seen from below by b (given as up(b)), times masking(a): heights
+  // that are easily seen from one side are hardly seen from the other (Heitz et al. 2016: G2 of transmission).
+  double shadowing_across(Dir a, Dir b) const { return beta_above_one(lambda(a), lambda(b)); }
   // Density per steradian of visible_normal(out, .).
   double visible_density(Dir out, Dir h) const {
     const double c = dot(out, h);
     return c > 0 ? masking(out) * c * density(h) / out.z : 0;
   }
+  // out may point below the horizon too: the normals that a ray climbing out of a valley meets.
   Dir visible_normal(Dir out, Vec2 u) const {
     // Stretch to the hemisphere of unit roughness, sample the visible half disk, project back.
     const Dir v = normalized({ax * out.x, ay * out.y, out.z});

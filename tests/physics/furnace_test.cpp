@@ -73,6 +73,23 @@ TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
 INSTANTIATE_TEST_SUITE_P(Table, OpenFurnace, testing::ValuesIn(all_models()),
                          [](const auto& one) { return one.param.row + "_" + std::to_string(one.param.example); });
 
+// A rough pane lost up to 61 % of the light: what met more than one facet.
+TEST(OpenFurnaces, RoughPaneReturnsAll) {
+  for (const double roughness : {0.1, 0.6}) {
+    const ModelSpec spec{"ggx_dielectric", {{"roughness", roughness}}, {{"index", Curve::constant(1.5)}}, {}, nullptr};
+    const auto scene = scene_of({box({-5, -5, -0.01}, {5, 5, 0}, 0, true)}, {material("pane", spec)});
+    SourceSpecs sources;
+    sources.sky = uniform_sky(2, true);
+    const std::vector<double> zeniths{0, 63 * kDegree};
+    const auto run =
+        render(scene, sources, std::make_unique<RaySensor>(rays_onto_square(zeniths), one_band(), 1 << 15));
+    for (size_t i = 0; i < zeniths.size(); ++i) {
+      EXPECT_NEAR(run.result.radiance[i], 2, 3e-3 * 2 + 4 * run.result.standard_error[i]) << roughness << ' ' << i;
+      EXPECT_LT(run.result.standard_error[i], 0.02) << roughness << ' ' << i;
+    }
+  }
+}
+
 TEST(ClosedFurnace, IsothermalBoxIsBlack) {
   // A camera inside a closed box of emissivity 0.3 at 300 K sees the blackbody, short of what max_nodes cuts:
   // (1 - e)^nodes.

@@ -48,26 +48,36 @@ TEST(Fresnel, ConductorAgreesWithTheTextbook) {
   EXPECT_EQ(fresnel_conductor(0, 1.3, 9), 1);
 }
 
-// Across an interface, f / n^2 of the side it leaves to is reciprocal.
+// f / n^2 of the side it leaves to is reciprocal, across an interface and on either side of it, with one index and with
+// one that stands between tables.
 TEST(Fresnel, RoughInterfaceIsReciprocalInBasicRadiance) {
   const SpectralState state = test::test_state(1);
-  ModelSpec spec{"ggx_dielectric", {{"roughness", 0.4}}, {{"index", Curve::constant(1.6)}}, {}, nullptr};
-  check_model(spec);
-  const auto model = bake(spec, state);
-  std::vector<float> there(state.size()), back(state.size());
+  const Curve steady = Curve::constant(1.6), dispersive({0.4, 1.7}, {1.6, 1.5}, Outside::hold);
   Pcg32 random(5);
-  int compared = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Dir a = dir_from_angles(1.5 * random.uniform(), 7 * random.uniform()),
-              b = dir_from_angles(kPi - 1.5 * random.uniform(), 7 * random.uniform());
-    model->eval(a, b, there);  // leaves to the front, n = 1
-    model->eval(b, a, back);   // leaves to the back, n = 1.6
-    const double f = there[0] / std::fabs(b.z), g = back[0] / std::fabs(a.z) / (1.6 * 1.6);
-    if (f + g < 1e-12) continue;
-    ++compared;
-    EXPECT_NEAR(f, g, 1e-5 * (f + g));
-  }
-  EXPECT_GT(compared, 500);
+  for (const double roughness : {0.4, 1.0})
+    for (const Curve& index : {steady, dispersive}) {
+      ModelSpec spec{"ggx_dielectric", {{"roughness", roughness}}, {{"index", index}}, {}, nullptr};
+      check_model(spec);
+      const auto model = bake(spec, state);
+      const std::vector<float> n = state.sample(index);
+      std::vector<float> there(state.size()), back(state.size());
+      int compared[2][2] = {};
+      for (int i = 0; i < 4000; ++i) {
+        const Dir a = dir_from_angles(kPi * random.uniform(), 7 * random.uniform()),
+                  b = dir_from_angles(kPi * random.uniform(), 7 * random.uniform());
+        model->eval(a, b, there);
+        model->eval(b, a, back);
+        for (size_t k = 0; k < n.size(); ++k) {
+          const double f = there[k] / std::fabs(b.z) / (a.z > 0 ? 1 : n[k] * n[k]),
+                       g = back[k] / std::fabs(a.z) / (b.z > 0 ? 1 : n[k] * n[k]);
+          if (f + g < 1e-12) continue;
+          ++compared[a.z > 0][b.z > 0];
+          EXPECT_NEAR(f, g, 1e-5 * (f + g));
+        }
+      }
+      for (const auto& row : compared)
+        for (const int count : row) EXPECT_GT(count, 2000);
+    }
 }
 
 }  // namespace

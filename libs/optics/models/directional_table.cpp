@@ -28,13 +28,14 @@ DirectionalTable::DirectionalTable(double ax, double ay, size_t rows, size_t wid
 }
 
 double DirectionalTable::coordinate(double theta, double roughness) const {
-  return 0.5 * (theta / (kPi / 2) + 1 - 1 / std::sqrt(1 + roughness * std::tan(theta)));
+  return 0.5 * (std::sqrt(2.0) * std::sin(theta / 2) + 1 - 1 / std::sqrt(1 + roughness * std::tan(theta)));
 }
 
 DirectionalTable::Place DirectionalTable::locate(Dir out) const {
   const double scaled = std::sqrt(ax_ * ax_ * out.x * out.x + ay_ * ay_ * out.y * out.y),
                v = 1 - std::sqrt(out.z / (out.z + scaled));
-  const double row = std::min(1.0, 0.5 * (polar_angle(out) / (kPi / 2) + v)) * static_cast<double>(rows_ - 1);
+  const double half = std::sqrt((out.x * out.x + out.y * out.y) / (1 + out.z));  // sqrt(2) sin(theta / 2)
+  const double row = std::min(1.0, 0.5 * (half + v)) * static_cast<double>(rows_ - 1);
   const size_t r = std::min(rows_ - 2, static_cast<size_t>(row));
   const double t = row - static_cast<double>(r), t2 = t * t, t3 = t2 * t;
   // The first row is a turning point (the pole), the last one an end: the value beyond is mirrored, and extrapolated.

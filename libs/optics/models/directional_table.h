@@ -1,8 +1,8 @@
 // Numbers tabulated over the outgoing direction when a model is baked: directional totals that have no closed form.
 //
-// Rows run over (theta / (pi/2) + v) / 2 with v = 1 - 1 / sqrt(1 + s), s = sqrt(ax^2 x^2 + ay^2 y^2) / |z|: the polar
-// angle, which Fresnel's equations follow, and the tangent in units of the roughness, which shadowing follows; columns
-// over the azimuth in the first quadrant (one when isotropic). Every entry holds `width` numbers.
+// Rows run over (sqrt(2) sin(theta / 2) + v) / 2 with v = 1 - 1 / sqrt(1 + s), s = sqrt(ax^2 x^2 + ay^2 y^2) / |z|:
+// nearly the polar angle, which Fresnel's equations follow, and the tangent in units of the roughness, which shadowing
+// follows; columns over the azimuth in the first quadrant (one when isotropic). Every entry holds `width` numbers.
 #pragma once
 #include <cstddef>
 #include <functional>

@@ -1,20 +1,25 @@
-// Rough metal: a GGX micro-facet surface of perfect conductors' mirrors, isotropic or anisotropic, single scattering.
-// Assumes: the same on both sides, nothing transmitted; light scattered twice between facets is lost (the total says
-// so). Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible
-// normals).
+// Rough metal: a GGX micro-facet surface of perfect conductors' mirrors, isotropic or anisotropic.
+// Assumes: the same on both sides, nothing transmitted. What meets one facet is exact for Smith's surface. What meets
+// more is a second lobe, missed(out) missed(in) / integral of missed, which closes the energy (at reflectance 1 the
+// total is 1) and is reciprocal. For real metals `missed` is multiplied with the mean product of reflectances that
+// light from a direction meets.
+// Neglected: the second lobe's own shape, and that facets met one after the other depend on each other. Against exact
+// walks up to 0.061 of the light leaves in wrong directions (aluminium, roughness 0.6 by 0.15; mostly below 0.02), and
+// totals agree within 0.006 (tests/physics/rough_energy_test.cpp prints both).
+// Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals);
+// C. Kulla & A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH course, 2017 (second lobe); E.
+// Heitz et al. 2016 (what it stands for: the walks of ggx_tables.h).
 #include <cmath>
 
 #include "optics/fresnel.h"
 #include "optics/microfacet.h"
 #include "optics/models/common.h"
-#include "optics/models/directional_table.h"
+#include "optics/models/ggx_tables.h"
 #include "optics/models/rows.h"
 
 namespace suite {
 
 namespace {
-
-constexpr size_t kRows = 129, kPoints = 4096, kAngles = 96;
 
 class GgxConductor final : public ScatterModel {
  public:
@@ -31,6 +36,7 @@ class GgxConductor final : public ScatterModel {
     indexed_ = n_high > 0;
     if (indexed_ && !(n_low > 0)) throw Error("model 'ggx': n must be above 0 everywhere");
     if (indexed_ == given_f0) throw Error("model 'ggx' needs f0, or n and k, but not both");
+    tables_ = GgxTables::of({facets_.ax, facets_.ay});
     tabulate();
     const std::vector<float>&first = indexed_ ? n_ : f0_, &second = indexed_ ? k_ : f0_;
     auto constant = [](const std::vector<float>& v) {
@@ -43,70 +49,88 @@ class GgxConductor final : public ScatterModel {
     if (!same_side(out, in)) return zero(w);
     const Dir o = up(out), i = up(in), h = normalized(o + i);
     const double shape = facets_.density(h) * facets_.shadowing(o, i) / (4 * o.z), c = dot(o, h);
-    for (size_t b = 0; b < w.size(); ++b) w[b] = finite_float(reflectance(c, b) * shape);
+    thread_local std::vector<float> from, to;
+    from.resize(w.size());
+    to.resize(w.size());
+    again_.at(o, from);
+    again_.at(i, to);
+    for (size_t b = 0; b < w.size(); ++b)
+      w[b] = finite_float(reflectance(c, b) * shape +
+                          std::max(0.0f, from[b]) * std::max(0.0f, to[b]) * again_scale_[b] * i.z);
   }
   void total(Dir out, std::span<float> W) const override {
     if (out.z == 0) return zero(W);
     total_.at(up(out), W);
   }
-  std::optional<Sample> sample(Dir out, Vec2 u, double, int) const override {
+  std::optional<Sample> sample(Dir out, Vec2 u, double lobe_u, int) const override {
     if (out.z == 0) return std::nullopt;
-    const Dir o = up(out), h = facets_.visible_normal(o, u), in = normalized(h * (2 * dot(o, h)) - o);
+    const Dir o = up(out);
+    const bool again = lobe_u < tables_->missed(o);
+    const Dir h = again ? Dir{} : facets_.visible_normal(o, u);
+    const Dir in = again ? tables_->lobe().sample(u) : normalized(h * (2 * dot(o, h)) - o);
     if (!(in.z > 0)) return std::nullopt;
-    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, 0, false};
+    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, again ? 1 : 0, false};
   }
   void pdf(Dir out, Dir in, std::span<float> p) const override {
     if (!same_side(out, in)) return zero(p);
-    const Dir o = up(out), h = normalized(o + up(in));
-    const double density = facets_.masking(o) * facets_.density(h) / (4 * o.z);
-    std::fill(p.begin(), p.end(), finite_float(density));
+    const Dir o = up(out), i = up(in), h = normalized(o + i);
+    const double again = tables_->missed(o), once = facets_.masking(o) * facets_.density(h) / (4 * o.z);
+    std::fill(p.begin(), p.end(), finite_float((1 - again) * once + again * tables_->lobe().pdf(i.z)));
   }
   bool spectrally_uniform_shape() const override { return uniform_; }
   bool isotropic() const override { return facets_.ax == facets_.ay; }
-  bool single_lobe() const override { return true; }
 
  private:
   double reflectance(double c, size_t bin) const {
     return indexed_ ? fresnel_conductor(c, n_[bin], k_[bin]) : fresnel_schlick(c, f0_[bin]);
   }
-  // W(out) = integral of F(o.h) G2/G1 over visible normals. The distribution of c = o.h, weighed with G2/G1, is put
-  // into hats over c = t^2 (F bends near grazing), then multiplied with F of every wavelength.
+  // W(out): the distribution of cosines at the facets times F of every wavelength, and the second lobe.
   void tabulate() {
-    std::vector<float> fresnel(f0_.size() * kAngles);
-    for (size_t b = 0; b < f0_.size(); ++b)
-      for (size_t a = 0; a < kAngles; ++a) {
-        const double t = static_cast<double>(a) / (kAngles - 1);
-        fresnel[b * kAngles + a] = static_cast<float>(reflectance(t * t, b));
-      }
-    const std::vector<Vec2> points = baking_points(kPoints);
-    total_ = DirectionalTable(facets_.ax, facets_.ay, kRows, f0_.size(), [&](Dir o, std::span<float> W) {
-      std::vector<double> hats(kAngles);
-      for (const Vec2 u : points) {
-        const Dir h = facets_.visible_normal(o, u);
-        const double c = dot(o, h);
-        const Dir in = h * (2 * c) - o;
-        if (!(in.z > 0 && c > 0)) continue;
-        const double weight = facets_.shadowing(o, in) / facets_.masking(o) / kPoints;
-        const double t = std::min(1.0, std::sqrt(c)) * (kAngles - 1);
-        const size_t a = std::min(kAngles - 2, static_cast<size_t>(t));
-        // Linear in c between the nodes, as F is nearly.
-        const double c0 = static_cast<double>(a * a), c1 = static_cast<double>((a + 1) * (a + 1)),
-                     share = (t * t - c0) / (c1 - c0);
-        hats[a] += weight * (1 - share);
-        hats[a + 1] += weight * share;
-      }
+    constexpr size_t angles = GgxTables::kAngles;
+    std::vector<float> fresnel(f0_.size() * angles);
+    for (size_t b = 0; b < f0_.size(); ++b) {
+      const std::span<float> row{fresnel.data() + b * angles, angles};
+      for (size_t a = 0; a < angles; ++a) row[a] = static_cast<float>(reflectance(GgxTables::cosine(a), b));
+    }
+    again_ = DirectionalTable(facets_.ax, facets_.ay, GgxTables::kRows, f0_.size(), [&](Dir o, std::span<float> A) {
+      for (size_t b = 0; b < A.size(); ++b)
+        A[b] = static_cast<float>(tables_->missed(o) * tables_->repeated(o, {fresnel.data() + b * angles, angles}));
+    });
+    scale_again();
+    total_ = DirectionalTable(facets_.ax, facets_.ay, GgxTables::kRows, f0_.size(), [&](Dir o, std::span<float> W) {
+      std::vector<float> once(angles);
+      tables_->single(o, once);
       for (size_t b = 0; b < W.size(); ++b) {
-        double sum = 0;
-        for (size_t a = 0; a < kAngles; ++a) sum += hats[a] * fresnel[b * kAngles + a];
+        double sum = again_.at(o, b);
+        for (size_t a = 0; a < angles; ++a) sum += once[a] * fresnel[b * angles + a];
         W[b] = static_cast<float>(sum);
       }
     });
   }
 
+  // Integrals of the second lobe's share over the hemisphere, in steps even in the cube root of the cosine: of smooth
+  // surfaces only grazing directions miss anything.
+  void scale_again() {
+    constexpr int steps = 1024;
+    const int azimuths = isotropic() ? 1 : 32;
+    std::vector<float> share(f0_.size());
+    again_scale_.assign(f0_.size(), 0);
+    for (int s = 0; s < steps * azimuths; ++s) {
+      const double low = std::pow(static_cast<double>(s / azimuths) / steps, 3),
+                   high = std::pow((s / azimuths + 1.0) / steps, 3), mu = 0.5 * (low + high);
+      again_.at(dir_from_angles(std::acos(mu), kPi / 2 * (s % azimuths + 0.5) / azimuths), share);
+      for (size_t b = 0; b < share.size(); ++b)
+        again_scale_[b] += kPi * (high * high - low * low) / azimuths * std::max(0.0f, share[b]);
+    }
+    for (double& x : again_scale_) x = x > 0 ? 1 / x : 0;
+  }
+
   std::vector<float> f0_, n_, k_;
+  std::vector<double> again_scale_;  // 1 / integral of again_ times cosine
   Ggx facets_;
+  std::shared_ptr<const GgxTables> tables_;
   bool indexed_ = false, uniform_ = false;
-  DirectionalTable total_;
+  DirectionalTable total_, again_;  // again_: share of the second lobe
 };
 
 std::vector<ModelSpec> examples() {
@@ -126,7 +150,9 @@ std::vector<ModelSpec> examples() {
 ModelRow ggx_row() {
   using P = ModelParameter;
   return {"ggx",
-          "rough metal, GGX micro-facets (Walter 2007, Heitz 2014 and 2018), single scattering",
+          "rough metal, GGX micro-facets (Walter 2007); loses no energy: what meets several facets is a lobe of its "
+          "own (Kulla & "
+          "Conty 2017), which sends up to 6 % of the light astray",
           {{"f0", P::Kind::curve, "1", "reflectance at normal incidence (Schlick); or give n and k", 0, 1, false, 0},
            {"n", P::Kind::curve, "1", "real part of the refractive index", 0, 100, false, 0},
            {"k", P::Kind::curve, "1", "imaginary part of the refractive index, absorbing positive", 0, 200, false, 0},
