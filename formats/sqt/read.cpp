@@ -53,6 +53,10 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   layout.theta = angles_of(l.at("theta"));
   layout.phi_count = static_cast<size_t>(l.integer("phi_count", 1, 10000));
   layout.channels = d.function.wavelength_um.size();
+  layout.refined = l.boolean("refined", false);
+  if (l.find("spectra"))
+    layout.spectra.resize(static_cast<size_t>(l.integer("spectra", 1, static_cast<long long>(layout.channels))) *
+                          layout.channels);
   d.totals.theta = t.find("theta") ? angles_of(t.at("theta")) : sqt::total_angles(layout.theta);
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();

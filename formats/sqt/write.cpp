@@ -110,6 +110,8 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   layout.set("quality", l.quality);
   layout.set("theta", numbers(l.theta));
   layout.set("phi_count", l.phi_count);
+  if (l.refined) layout.set("refined", true);
+  if (!l.spectra.empty()) layout.set("spectra", l.spectra.size() / l.channels);
   header.set("layout", std::move(layout));
   Json totals = Json::object();
   if (t.theta != sqt::total_angles(l.theta)) totals.set("theta", numbers(t.theta));

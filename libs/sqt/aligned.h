@@ -37,6 +37,12 @@ struct AlignedLayout {
   size_t phi_count = 1;       // view azimuths per polar angle, uniform from 0
   size_t channels = 0;
   double quality = 0;  // base quantisation step, log2 units; the only knob of the coder
+  // Nodes may state a finer step: where averages of logarithms do not show the narrow lobe below.
+  bool refined = false;
+  // Orthonormal rows over the channels that take the place of the cosine transform, [row][channel], in units of
+  // 1/kSpectrumUnit; empty: cosines. Fewer rows than channels: nothing lies across them.
+  std::vector<int16_t> spectra;
+  static constexpr float kSpectrumUnit = 16384;
   size_t views() const { return theta.size() * phi_count; }
   size_t width() const { return views() * channels; }
 };
@@ -107,7 +113,8 @@ class AlignedSource {
 // decoded: receives what decode_sheets would return, when not null.
 std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality,
                                      std::vector<AlignedSheet>* decoded = nullptr);
-// Error: a payload that is not one (runs past its end, more than max_leaves leaves).
+// Error: a payload that is not one (runs past its end, more than max_leaves leaves). Of layout.spectra the size counts;
+// the numbers are the payload's.
 std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
                                         size_t max_leaves = size_t{1} << 22);
 // log2 of the scale that gives decoded sheets the totals of the data.
