@@ -139,8 +139,9 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   const auto coding = reader.get<uint32_t>(), text_size = reader.get<uint32_t>();
   const auto checksum = reader.get<uint64_t>();
   if (!reader.ok()) throw fail(bytes.size(), "the file ends within its first 48 bytes");
-  if (version != kSqtVersion)
-    throw fail(8, strf("SQT version %u", version), strf("this program reads version %d", kSqtVersion));
+  if (version < kSqtOldest || version > kSqtVersion)
+    throw fail(8, strf("SQT version %u", version),
+               strf("this program reads versions %d to %d", kSqtOldest, kSqtVersion));
   if (header_size > kMaxHeader || text_size > kMaxHeader || raw_size > kMaxRaw || coding > 1)
     throw fail(12, "implausible sizes in the SQT header");
   if (header_size > reader.left() || payload_size != reader.left() - header_size)

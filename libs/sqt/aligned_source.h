@@ -22,6 +22,10 @@ struct AlignedSource::Impl {
   LogScale scale;  // that holds the averages
 };
 
+// Fills sheet.details with the differences of every divided node from the plane of the data, [3][view][channel].
+void find_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet);
+// Transforms them over views and channels.
+void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet);
 // Differences [3][view][channel] of a family of the data from predictions of the four children, [4][view][channel].
 // values: [node][view][channel], of the data or what a reduced tree should have.
 void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,

@@ -13,6 +13,7 @@
 // Pairs where the data are not valid are left out. The uniform sums are estimated with half of the pairs drawn near the
 // mirror direction and weighed accordingly.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -39,6 +40,11 @@ class Reference {
   };
   Brief brief(const Bundle& bundle) const;
   double l1(const Bundle& bundle) const { return brief(bundle).l1; }
+  // Largest g over largest f in the plane of incidence at view angles of 20, 45 and 70 deg, of a channel. Phase
+  // functions and intensities: the plane through the pole.
+  std::array<double, 3> peaks(const Bundle& bundle, size_t channel) const;
+  // The same of the channel where it is smallest, at every angle.
+  std::array<double, 3> least_peaks(const Bundle& bundle) const;
   // Unphysical data, measured on the way.
   struct Findings {
     double largest_total = 0;      // over view angles up to 80 deg and channels
