@@ -93,6 +93,7 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
     total_.insert(total_.end(), W.begin(), W.end());
     for (const double w : W) findings_.largest_total = std::max(findings_.largest_total, w);
   }
+  find_peaks();
   std::vector<double> f(channels_), back(channels_);
   double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
   for (size_t n = 0; n < std::min<size_t>(pairs, 50000); ++n) {
@@ -171,21 +172,33 @@ Reference::Brief Reference::brief(const Bundle& bundle) const {
   return {all.data > 0 ? all.error / all.data : 0, all.data_square > 0 ? std::sqrt(all.square / all.data_square) : 0};
 }
 
+void Reference::find_peaks() {
+  parallel_for(0, planes_.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t a = begin; a < end; ++a) {
+      Plane& plane = planes_[a];
+      plane.out = dir_from_angles(kPeakAngles[a], 0);
+      plane.peak.assign(channels_, 0.0);
+      std::vector<double> f(channels_);
+      const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
+      for (int k = -last; k <= last; ++k) {
+        const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
+        if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
+        function_.value(plane.out, in, f);
+        if (!std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); })) continue;
+        plane.in.push_back(in);
+        for (size_t c = 0; c < channels_; ++c) plane.peak[c] = std::max(plane.peak[c], f[c]);
+      }
+    }
+  });
+}
+
 std::array<double, 3> Reference::peaks(const Bundle& bundle, size_t channel) const {
   std::array<double, 3> ratio;
-  std::vector<double> f(channels_);
   for (size_t a = 0; a < 3; ++a) {
-    double peak_f = 0, peak_g = 0;
-    const Dir view = dir_from_angles(kPeakAngles[a], 0);
-    const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
-    for (int k = -last; k <= last; ++k) {
-      const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
-      if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
-      function_.value(view, in, f);
-      if (std::isfinite(f[channel]))
-        peak_f = std::max(peak_f, f[channel]), peak_g = std::max(peak_g, bundle.value(view, in, channel));
-    }
-    ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;
+    const Plane& plane = planes_[a];
+    double peak = 0;
+    for (const Dir in : plane.in) peak = std::max(peak, bundle.value(plane.out, in, channel));
+    ratio[a] = plane.peak[channel] > 0 ? peak / plane.peak[channel] : 1;
   }
   return ratio;
 }

@@ -67,6 +67,13 @@ class Reference {
   std::vector<double> theta_;   // of the totals
   std::vector<double> total_;   // [theta][channel]
   std::vector<uint8_t> valid_;  // [theta][point] of the integration
+  struct Plane {                // of incidence at a view angle of the peaks
+    Dir out;
+    std::vector<Dir> in;       // where the data are valid
+    std::vector<double> peak;  // [channel], of the data
+  };
+  std::array<Plane, 3> planes_;
+  void find_peaks();
   Findings findings_;
   // Totals per channel; points where not every channel is finite do not count.
   std::vector<double> integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& f, Dir out) const;

@@ -13,15 +13,14 @@ constexpr size_t kMostViews = 64;                  // that they may ask for
 
 struct Trial {
   AlignedFit fit;
+  std::shared_ptr<const Bundle> bundle;
   double l1;
-  std::array<double, 3> peaks;
 };
 
 Trial attempt(const AlignedSource& source, const Reference& reference, double quality) {
-  Trial t{encode_aligned(source, quality), 0, {}};
-  const auto bundle = make_bundle(t.fit.data);
-  t.l1 = reference.l1(*bundle);
-  t.peaks = reference.least_peaks(*bundle);
+  Trial t{encode_aligned(source, quality), nullptr, 0};
+  t.bundle = make_bundle(t.fit.data);
+  t.l1 = reference.l1(*t.bundle);
   return t;
 }
 
@@ -83,7 +82,7 @@ FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& refere
     Trial t = attempt(source, reference, quality);
     result.fit = std::move(t.fit);
     result.l1 = t.l1;
-    result.peaks = t.peaks;
+    result.peaks = reference.least_peaks(*t.bundle);
   };
   const size_t around = target.max_bytes ? container(source) : 0;
   if (target.max_l1 <= 0 && target.max_bytes == 0) {
@@ -116,6 +115,7 @@ bool better(const FitResult& a, const FitResult& b, const FitTarget& target) {
   if (a.bytes_met != b.bytes_met) return a.bytes_met;
   if (a.error_met != b.error_met) return a.error_met;
   if (a.peak_met != b.peak_met) return a.peak_met;
+  if (!a.peak_met && target.max_l1 <= 0 && !target.max_bytes) return least(a.peaks) > least(b.peaks);
   return target.max_l1 > 0 && a.error_met ? bytes_of(a.fit) < bytes_of(b.fit) : a.l1 < b.l1;
 }
 
@@ -159,8 +159,7 @@ FitResult fit_to(const Function& function, const Reference& reference, const Ali
   FitResult best = fit(used, kDefaultQuality, free ? 0.5 : 1.0 / 3);
   auto consider = [&](const AlignedSource::Options& o, double quality = kDefaultQuality) {
     FitResult other = fit(o, quality, left / 2);
-    const bool higher = free && !other.peak_met && least(other.peaks) > least(best.peaks);
-    if (!better(other, best, target) && !higher) return;
+    if (!better(other, best, target)) return;
     best = std::move(other);
     used = o;
   };

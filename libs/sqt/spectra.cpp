@@ -58,7 +58,7 @@ Covariance covariance_of(const AlignedLayout& asked, const AlignedTotals& totals
                          const std::vector<AlignedSource::Impl::Sheet>& sheets) {
   AlignedLayout layout = asked;
   layout.quality = 1;
-  const size_t channels = layout.channels, width = layout.width(), views = layout.views();
+  const size_t channels = layout.channels, views = layout.views();
   const StepRule steps(layout, 0.25 * step_reference(totals, layout));
   NodeLevels levels(layout);
   size_t rows = 0;
@@ -83,7 +83,6 @@ Covariance covariance_of(const AlignedLayout& asked, const AlignedTotals& totals
       for (; next < end; next += stride) covariance.add(&sheet.details[next * channels], 1 / (step * step));
     }
   }
-  (void)width;
   covariance.finish();
   return covariance;
 }
