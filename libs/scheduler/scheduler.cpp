@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "scheduler/capture_run.h"
+#include "scheduler/items.h"
 #include "scheduler/kits.h"
-#include "scheduler/order.h"
 #include "scheduler/plan.h"
 #include "scheduler/result.h"
 #include "surface/cut_out.h"
@@ -21,60 +21,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
-
-bool same_state(const SpectralState& a, const SpectralState& b) {
-  auto same_bin = [](const Bin& x, const Bin& y) { return x.low_um == y.low_um && x.high_um == y.high_um; };
-  return a.reference_um == b.reference_um && a.knots == b.knots &&
-         std::equal(a.bins.begin(), a.bins.end(), b.bins.begin(), b.bins.end(), same_bin);
-}
-
-// A capture of the job and what it needs.
-struct Item {
-  size_t sensor, task, capture, id;
-  StatePair state;
-  double moment;
-};
-
-// moves: something in the scene does, so that windows differ.
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
-  std::vector<Item> items;
-  std::map<std::pair<double, double>, size_t> windows;
-  std::vector<const SpectralState*> distinct;
-  for (size_t s = 0; s < sensors.size(); ++s) {
-    std::vector<size_t> number;  // of each of the sensor's states
-    for (const SpectralState& state : sensors[s]->states()) {
-      const auto known =
-          std::find_if(distinct.begin(), distinct.end(), [&](const SpectralState* d) { return same_state(*d, state); });
-      number.push_back(static_cast<size_t>(known - distinct.begin()));
-      if (known == distinct.end()) distinct.push_back(&state);
-    }
-    for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
-        const Capture& capture = sensors[s]->tasks()[t].captures[c];
-        const size_t window =
-            moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
-        items.push_back({s, t, c, items.size(), {window, number[capture.state]}, moment_of(capture)});
-      }
-  }
-  return items;
-}
-
-// Captures of equal states run in the order of their moments when dates move the sources (dated), so that those of one
-// moment share their lights.
-std::vector<Item> in_cheapest_order(const std::vector<Item>& items, bool dated, size_t& changes) {
-  std::vector<StatePair> pairs;
-  for (const Item& i : items) pairs.push_back(i.state);
-  std::vector<Item> ordered;
-  std::vector<StatePair> sequence;
-  for (const size_t i : cheapest_order(pairs)) ordered.push_back(items[i]), sequence.push_back(items[i].state);
-  changes = state_changes(sequence);
-  for (auto run = ordered.begin(); dated && run != ordered.end();) {
-    const auto end = std::find_if(run, ordered.end(), [&](const Item& i) { return !(i.state == run->state); });
-    std::stable_sort(run, end, [](const Item& a, const Item& b) { return a.moment < b.moment; });
-    run = end;
-  }
-  return ordered;
-}
 
 // One run of all captures: what changes from capture to capture.
 class Job {
