@@ -51,6 +51,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("peak_bytes", peak_bytes());
   j.set("tracer_builds", r.tracer_builds);
   j.set("optics_bakes", r.optics_bakes);
+  j.set("light_bakes", r.light_bakes);
   j.set("state_changes", r.state_changes);
   j.set("total", json_of(r.statistics));
   j.set("median_relative_error", r.median_relative_error);

@@ -104,7 +104,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   m.values = d.result.values_per_problem();
   m.chosen = preview_bands(d.bands, spec_.preview);
   m.map = d.map;
-  m.description = d.description.empty() ? "" : "; " + d.description;
+  const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
+  const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
+  m.description = said.empty() ? "" : "; " + said;
   const std::string base = folder_ + "/" + stem, tail = m.description + "; " + notes_.engine;
 
   EnviHeader h;

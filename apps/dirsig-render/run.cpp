@@ -23,6 +23,7 @@
 #include "radiometry/truth/truth.h"
 #include "scene/combine.h"
 #include "scheduler/features.h"
+#include "scheduler/moments.h"
 #include "scheduler/step_check.h"
 #include "sensor/plugin.h"
 #include "study.h"
@@ -128,7 +129,7 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
         std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(),
                     c.columns, c.rows, c.window.begin, c.window.end);
   }
-  const JobOrder order = order_of(sim.sensors);
+  const JobOrder order = order_of(sim.sensors, false, sim.sources.dated());
   std::printf("order of the captures:");
   for (const size_t id : order.captures) std::printf(" %zu", id);
   std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n",
@@ -239,11 +240,12 @@ int run_render(const Cli& cli, const RenderOptions& o) {
       for (const Capture& c : task.captures)
         check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
-  for (const std::string& sentence : resolve_sources(sim.sources, *scene)) note(sentence);
+  for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
+  const SourceSpecs first = first_sources(sim.sources, *scene, sim.sensors);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output);
     for (const std::string& truth : sensor->truth()) find_truth(truth);
-    check_step(*scene, sim.sources, *sensor);
+    check_step(*scene, first, *sensor);
   }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
@@ -254,6 +256,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
+  options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());

@@ -1,5 +1,7 @@
 #include "formats/sim_text/context.h"
 
+#include <cmath>
+
 #include "formats/motion/motion.h"
 #include "formats/raster/raster.h"
 #include "formats/tle/tle.h"
@@ -24,10 +26,21 @@ void read_epoch(const Params& root, Simulation& sim) {
     } catch (const Error& e) {
       throw epoch->error(e.message(), e.hint());
     }
-  } else if (sim.sources.sun && sim.sources.sun->time) {
-    sim.epoch = parse_iso8601(sim.sources.sun->time->utc);
   }
-  sim.dut1 = root.number_in("dut1_s", -0.9, 0.9, "s", 0);
+  // Sun and Moon by date stand there at second 0, and go on with the simulation's one clock.
+  SourceSpecs& s = sim.sources;
+  for (const auto& [body, time] : {std::pair{"sun", s.sun ? s.sun->time : std::nullopt},
+                                   std::pair{"moon", s.moon ? s.moon->disk.time : std::nullopt}}) {
+    if (!time) continue;
+    const Utc date = parse_iso8601(time->utc);
+    if (!sim.epoch) sim.epoch = date;
+    if (std::fabs(instant_from_utc(date) - instant_from_utc(*sim.epoch)) > 1e-6)
+      throw Error(
+          time->where, strf("the %s's date is not that of second 0, which is %s", body, to_iso8601(*sim.epoch).c_str()),
+          "give the same date: Sun and Moon by date go on with the captures' times; one that stands still has a "
+          "direction {zenith_deg, azimuth_deg}");
+  }
+  sim.dut1 = s.dut1 = root.number_in("dut1_s", -0.9, 0.9, "s", 0);
 }
 
 SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& callbacks) {

@@ -38,7 +38,7 @@ struct Simulation {
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;
   SourceSpecs sources;       // as written: dates, phases and clear skies are still to be resolved
-  std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's date
+  std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's or the moon's date
   double dut1 = 0;           // s, UT1 - UTC
   std::vector<std::unique_ptr<Sensor>> sensors;
   OutputSpec output;

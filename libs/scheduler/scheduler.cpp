@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "base/progress.h"
 #include "scheduler/capture_run.h"
-#include "scheduler/order.h"
+#include "scheduler/items.h"
+#include "scheduler/kits.h"
 #include "scheduler/plan.h"
 #include "scheduler/result.h"
 #include "surface/cut_out.h"
@@ -20,79 +22,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-// Materials that geometry or the Earth can show; the others are never baked.
-std::vector<bool> shown_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
-  std::vector<bool> used = used_materials(scene, tracer.objects());
-  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
-  return used;
-}
-
-// Everything that belongs to one spectral state; kept while captures ask for the same one.
-struct StateKit {
-  Optics optics;
-  Environment environment;
-  BandProjection projection;
-  size_t reference_band = 0;
-  std::shared_ptr<const Tracer> lamps_of;  // whose geometry the environment was made for
-
-  StateKit(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources, const SpectralState& state,
-           bool periodic, std::span<const Band> bands, TimeSpan window)
-      : optics(scene, state, shown_materials(scene, tracer, sources), {}, window),
-        environment(bake_environment(sources, tracer, periodic, state)),
-        projection(state, bands) {
-    for (size_t b = 0; b < bands.size(); ++b)
-      if (std::fabs(bands[b].center_um - state.reference_um) <
-          std::fabs(bands[reference_band].center_um - state.reference_um))
-        reference_band = b;
-  }
-};
-
-bool same_state(const SpectralState& a, const SpectralState& b) {
-  auto same_bin = [](const Bin& x, const Bin& y) { return x.low_um == y.low_um && x.high_um == y.high_um; };
-  return a.reference_um == b.reference_um && a.knots == b.knots &&
-         std::equal(a.bins.begin(), a.bins.end(), b.bins.begin(), b.bins.end(), same_bin);
-}
-
-// A capture of the job and what it needs.
-struct Item {
-  size_t sensor, task, capture, id;
-  StatePair state;
-};
-
-// moves: something in the scene does, so that windows differ.
-std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
-  std::vector<Item> items;
-  std::map<std::pair<double, double>, size_t> windows;
-  std::vector<const SpectralState*> distinct;
-  for (size_t s = 0; s < sensors.size(); ++s) {
-    std::vector<size_t> number;  // of each of the sensor's states
-    for (const SpectralState& state : sensors[s]->states()) {
-      const auto known =
-          std::find_if(distinct.begin(), distinct.end(), [&](const SpectralState* d) { return same_state(*d, state); });
-      number.push_back(static_cast<size_t>(known - distinct.begin()));
-      if (known == distinct.end()) distinct.push_back(&state);
-    }
-    for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
-      for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
-        const Capture& capture = sensors[s]->tasks()[t].captures[c];
-        const size_t window =
-            moves ? windows.try_emplace({capture.window.begin, capture.window.end}, windows.size()).first->second : 0;
-        items.push_back({s, t, c, items.size(), {window, number[capture.state]}});
-      }
-  }
-  return items;
-}
-
-std::vector<Item> in_cheapest_order(const std::vector<Item>& items, size_t& changes) {
-  std::vector<StatePair> pairs;
-  for (const Item& i : items) pairs.push_back(i.state);
-  std::vector<Item> ordered;
-  std::vector<StatePair> sequence;
-  for (const size_t i : cheapest_order(pairs)) ordered.push_back(items[i]), sequence.push_back(items[i].state);
-  changes = state_changes(sequence);
-  return ordered;
-}
-
 // One run of all captures: what changes from capture to capture.
 class Job {
  public:
@@ -102,7 +31,7 @@ class Job {
 
   JobReport run() {
     const std::vector<Item> items =
-        in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), report_.state_changes);
+        in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), sources_.dated(), report_.state_changes);
     for (const Item& item : items) {
       const TimeWindow& w = capture_of(item).window;
       check_temperatures(*scene_, w.begin, w.end);
@@ -110,8 +39,11 @@ class Job {
                                       : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
     }
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
+    kits_ = std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window_);
+    for (const Item& item : items) kits_->expect(item.state.spectral);
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
+    doubt_before();
     if (options_.store) options_.store->begin(shapes(items));
     if (options_.store && options_.begun) options_.begun(stored_work(items));
     report_.captures_asked = items.size();
@@ -124,6 +56,7 @@ class Job {
       report_.stopped = true;
     }
     if (progress_) progress_->finish();
+    if (!report_.stopped) doubt_after();
     finish();
     return std::move(report_);
   }
@@ -147,6 +80,24 @@ class Job {
     tracer_ = tracers_->get({capture.window.begin, capture.window.end});
     report_.tracer_builds = tracers_->builds();
     return tracers_->builds() > before;
+  }
+
+  // Each sensor is doubted once: what was said before rendering explains what comes out.
+  void doubt_before() {
+    outcomes_.resize(sensors_.size());
+    if (!options_.doubt || !tracer_) return;
+    const auto say = [&](const std::vector<Doubt>& doubts) {
+      for (const Doubt& d : doubts)
+        if (!d.useless || doubted_.insert(d.sensor).second) options_.doubt(d);
+    };
+    say(doubts_of_view(*tracer_, sources_, sensors_));
+    say(doubts_of_light(sources_, *scene_, sensors_));
+  }
+
+  void doubt_after() {
+    for (size_t s = 0; options_.doubt && s < sensors_.size(); ++s)
+      if (!doubted_.contains(sensors_[s]->name()))
+        if (const auto doubt = doubt_of_outcome(*sensors_[s], outcomes_[s], !options_.store)) options_.doubt(*doubt);
   }
 
   // What the store has to hold of each capture, by number.
@@ -191,29 +142,15 @@ class Job {
     return work;
   }
 
-  StateKit& kit_of(const Item& item, CaptureLog& log) {
-    const size_t state = capture_of(item).state;
-    std::unique_ptr<StateKit>& kit = kits_[{item.sensor, state}];
-    if (!kit) {
-      kit = std::make_unique<StateKit>(*scene_, *tracer_, sources_, sensors_[item.sensor]->states()[state],
-                                       options_.periodic.has_value(), sensors_[item.sensor]->bands(state), window_);
-      ++report_.optics_bakes;
-      log.new_optics = true;
-    }
-    // Glowing geometry has its places in the tracer.
-    if (kit->environment.lamps && kit->lamps_of != tracer_)
-      kit->environment = bake_environment(sources_, *tracer_, options_.periodic.has_value(), kit->optics.state());
-    kit->lamps_of = tracer_;
-    return *kit;
-  }
-
   void run_item(const Item& item) {
     const Clock::time_point begun = Clock::now();
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
     CaptureLog log;
     log.new_tracer = tracer_of(capture);
-    StateKit& kit = kit_of(item, log);
+    const size_t bakes = kits_->optics_bakes();
+    const Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
+    log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics.media().empty() || kit.environment.atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
     const Surface surface(*tracer_, kit.optics);
@@ -250,6 +187,9 @@ class Job {
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
+    outcomes_[item.sensor].add(sensor.bands(capture.state), result, log.statistics);
+    if (item.task == 0 && item.capture == 0)
+      outcomes_[item.sensor].looks_down = middle_ray(sensor, capture, capture.problems() / 2).ray.direction.z < 0;
     log.sensor = sensor.name();
     log.task = sensor.tasks()[item.task].name;
     log.capture = capture.name;
@@ -264,12 +204,13 @@ class Job {
     report_.problems += capture.problems();
     report_.log.push_back(std::move(log));
     const Clock::time_point handed = Clock::now();
+    kits_->done(item.state.spectral);
     sensors_[item.sensor]->accept(std::move(result));
     report_.deliver_seconds += seconds_since(handed);
   }
 
   // The bands that decide, and how much stricter than theirs the strictest target is.
-  std::vector<JudgedBand> judged_bands(const Capture& capture, const StateKit& kit) const {
+  std::vector<JudgedBand> judged_bands(const Capture& capture, const Kit& kit) const {
     const std::vector<double>& targets = capture.band_targets;
     if (targets.empty() && !options_.budget.all_bands) return {{kit.reference_band}};
     std::vector<JudgedBand> judged;
@@ -307,7 +248,7 @@ class Job {
     if (options_.store) options_.store->save_cap(cap_);
   }
 
-  void judge(const Item& item, const CaptureWork& work, const StateKit& kit, const CaptureResult& r, CaptureLog& log) {
+  void judge(const Item& item, const CaptureWork& work, const Kit& kit, const CaptureResult& r, CaptureLog& log) {
     const size_t values = r.values_per_problem();
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
@@ -335,6 +276,7 @@ class Job {
   }
 
   void finish() {
+    report_.optics_bakes = kits_->optics_bakes(), report_.light_bakes = kits_->light_bakes();
     report_.median_relative_error = errors_.median();
     report_.share_in_embree = report_.statistics.cycles ? static_cast<double>(report_.statistics.trace.cycles) /
                                                               static_cast<double>(report_.statistics.cycles)
@@ -378,7 +320,9 @@ class Job {
   std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
   TimeSpan window_;  // of all captures
-  std::map<std::pair<size_t, size_t>, std::unique_ptr<StateKit>> kits_;
+  std::unique_ptr<Kits> kits_;
+  std::vector<SensorOutcome> outcomes_;  // of each sensor
+  std::set<std::string> doubted_;        // sensors
   ErrorHistogram errors_;
   double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, flagged_ = 0, target_ = 0;
   uint32_t cap_ = 0;
@@ -413,9 +357,10 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   return most;
 }
 
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves, bool dated) {
   JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors, moves), order.state_changes)) order.captures.push_back(i.id);
+  for (const Item& i : in_cheapest_order(items_of(sensors, moves), dated, order.state_changes))
+    order.captures.push_back(i.id);
   return order;
 }
 

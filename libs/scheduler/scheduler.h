@@ -10,6 +10,7 @@
 
 #include "radiometry/pipeline.h"
 #include "scheduler/budget.h"
+#include "scheduler/doubts.h"
 #include "scheduler/state_store.h"
 #include "sensor/sensor.h"
 
@@ -31,6 +32,7 @@ struct JobOptions {
   // never.
   std::function<bool()> stop;
   std::function<void(const StoredWork&)> begun;  // called once, before the first capture of a job that has a store
+  std::function<void(const Doubt&)> doubt = {};  // is told of pictures that will be or are useless; null = nobody
 };
 
 // What one capture took; a line of the log.
@@ -59,6 +61,7 @@ struct JobReport {
   size_t captures_asked = 0;
   bool stopped = false;  // JobOptions::stop ended the job; statistics count what the unfinished capture took, too
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
+  size_t light_bakes = 0;  // environments made or brought to another moment
   double seconds = 0, build_seconds = 0;
   double deliver_seconds = 0;        // sensors taking their results
   double share_in_embree = 0;        // of the CPU time of the pipeline
@@ -79,11 +82,12 @@ struct JobOrder {
   std::vector<size_t> captures;
   size_t state_changes = 0;
 };
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves = false);
+JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves = false, bool dated = false);
 // Bytes that the accumulators and the result of the largest capture take.
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 
-// Runs every capture of every sensor. Deterministic: the same bytes for any number of threads, for any order, and for a
+// Runs every capture of every sensor. sources: as written; what follows from dates is resolved for each capture, in the
+// middle of its window (moments.h). Deterministic: the same bytes for any number of threads, for any order, and for a
 // run that was interrupted and continued from its store.
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
                   std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);

@@ -45,6 +45,8 @@ struct Delivery {
   std::vector<TextFile> texts;
   std::optional<MapGrid> map;
   std::string description;  // one sentence for the header
+  // Of strips: when the lines of the task were taken and how the picture lies, and the same of all tasks in turn.
+  std::string lines_of_task = {}, lines_of_all = {};
 };
 
 // Places of all captures of a sensor, [task][capture]. image_of: the name of the image that a capture belongs to;

@@ -47,6 +47,7 @@ struct Capture {
   enum class BinBy : uint8_t { none, time, escape, sun } bin_by = BinBy::none;
   uint32_t bins = 1, escape_rings = 0;
   std::vector<Dir> suns;
+  uint8_t reversed = 0;  // for the sensor's own use: which of the picture's axes run against its detectors
   size_t problems() const { return size_t{columns} * rows; }
 };
 
@@ -131,7 +132,7 @@ class Sensor {
   // What a problem of a capture with own_convergence may take, instead of what the capture says for all. Asked before
   // the job starts, from one thread; at least one path.
   virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }
-  // Called once per capture before its rays are asked for, from one thread.
+  // Called once per capture before it is rendered, from one thread. Single rays may be asked for before.
   virtual void begin(const Capture&) {}
   // The ray of a sample. Called from many threads; does not throw.
   virtual SensorRay ray(const RayRequest& request) const = 0;

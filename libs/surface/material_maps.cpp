@@ -150,16 +150,16 @@ double kelvin_of(const MaterialMaps& maps, const MapPlace& place, double time) {
   return maps.field ? maps.field->kelvin(place.position, time) : maps.constant_k;
 }
 
-// Blackbody radiance of a material; false when it does not emit.
-bool blackbody_of(const BakedMaterial& m, const MapPlace& place, double time, std::vector<float>& out, size_t bins) {
+// Blackbody radiance of a material; returns its temperature, 0 when it does not emit.
+double blackbody_of(const BakedMaterial& m, const MapPlace& place, double time, std::vector<float>& out, size_t bins) {
   if (!m.maps || !m.maps->blackbody) {
     out = m.blackbody;
-    return !out.empty();
+    return m.kelvin;
   }
   const double kelvin = kelvin_of(*m.maps, place, time);
   out.resize(kelvin > 0 ? bins : 0);
   if (kelvin > 0) m.maps->blackbody->radiance(kelvin, out);
-  return kelvin > 0;
+  return std::max(kelvin, 0.0);
 }
 
 // The blackbody radiance that, emitted with the emissivity of the whole, is what the parts emit: sum of shares times
@@ -170,11 +170,13 @@ void mix_emission(const MaterialMaps& maps, const SpectralState& state, const Ma
   std::vector<float>& sum = made.blackbody;
   sum.assign(n, 0.0f);
   memory.totals.resize(n);
-  bool any = false;
+  double warm = 0, kelvin = 0;  // shares of the parts that emit, and their temperatures times shares
   // A part's own variation counts for its emissivity too.
   for (size_t p = 0; p < maps.parts.size(); ++p) {
-    if (!(memory.fractions[p] > 0) || !blackbody_of(*maps.parts[p], place, time, memory.radiance, n)) continue;
-    any = true;
+    if (!(memory.fractions[p] > 0)) continue;
+    const double part = blackbody_of(*maps.parts[p], place, time, memory.radiance, n);
+    if (!(part > 0)) continue;
+    warm += double{memory.fractions[p]}, kelvin += double{memory.fractions[p]} * part;
     LocalMaterial own;
     own.spectra.resize(2);
     own.mixed.reset(state.knots);
@@ -184,7 +186,8 @@ void mix_emission(const MaterialMaps& maps, const SpectralState& state, const Ma
     for (size_t i = 0; i < n; ++i)
       sum[i] += memory.fractions[p] * std::max(0.0f, 1 - memory.totals[i]) * memory.radiance[i];
   }
-  if (!any) return sum.clear();
+  if (!(warm > 0)) return sum.clear();
+  made.kelvin = kelvin / warm;
   memory.mixed.total(out, memory.totals);
   for (size_t i = 0; i < n; ++i) sum[i] = memory.totals[i] < 1 ? sum[i] / (1 - memory.totals[i]) : 0.0f;
 }
@@ -216,8 +219,8 @@ const BakedMaterial* material_here(const BakedMaterial& base, const SpectralStat
     add_reflection(base, state, place, 1, memory, cubes);
     made.model = &memory.mixed;
   }
-  const bool own = blackbody_of(base, place, time, made.blackbody, state.size());
-  if (!own && mixture) mix_emission(maps, state, place, time, out, memory, made);
+  made.kelvin = blackbody_of(base, place, time, made.blackbody, state.size());
+  if (!(made.kelvin > 0) && mixture) mix_emission(maps, state, place, time, out, memory, made);
   return &made;
 }
 

@@ -149,6 +149,7 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
   baked.owned = bake(m.surface, state_);
   baked.model = baked.owned.get();
   baked.needs_tangent = !baked.model->isotropic();
+  baked.kelvin = m.temperature_k;
   if (m.temperature_k > 0) {
     any_emission_ = true;
     for (const Bin& b : state_.bins)

@@ -15,6 +15,7 @@ namespace suite {
 struct BakedMaterial {
   const ScatterModel* model = nullptr;
   std::vector<float> blackbody;        // Planck radiance at the material's temperature per bin; empty = does not emit
+  double kelvin = 0;                   // that temperature; of a mixture's parts their mean by share; 0 = does not emit
   bool needs_tangent = false;          // some direction along the surface is preferred
   std::unique_ptr<MaterialMaps> maps;  // null = the same everywhere
   std::unique_ptr<const ScatterModel> owned;  // what `model` points to, unless it is an Interaction's

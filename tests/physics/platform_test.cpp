@@ -111,12 +111,13 @@ TEST(Platform, StaggeredChipsLookAheadByTheirOffset) {
           kPan + "\n"));
   const Capture& c = sensor->tasks()[0].captures[0];
   EXPECT_EQ(c.columns, 200u);
-  const Vec3 left = on_ground(ray_of(*sensor, c, 99).ray), right = on_ground(ray_of(*sensor, c, 100).ray);
+  // Columns of a strip that is flown forward run from the right to the left.
+  const Vec3 left = on_ground(ray_of(*sensor, c, 100).ray), right = on_ground(ray_of(*sensor, c, 99).ray);
   EXPECT_NEAR(right.x - left.x, 0.1, 1e-9);                // the chips meet
   EXPECT_NEAR(left.y - right.y, 3e-3 / 0.1 * 1000, 1e-9);  // 3 mm over f times the height: 30 m
   // The same ground is seen 30 m / 50 m/s = 0.6 s = 300 lines later.
   const Capture& later = sensor->tasks()[0].captures[4];
-  const Vec3 again = on_ground(ray_of(*sensor, later, (300 - 256) * 200 + 100).ray);
+  const Vec3 again = on_ground(ray_of(*sensor, later, (300 - 256) * 200 + 99).ray);
   EXPECT_NEAR(again.y, left.y, 1e-8);
 }
 

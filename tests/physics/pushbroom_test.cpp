@@ -94,7 +94,7 @@ TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
   double worst = 0, largest = 0, lowest = INFINITY, highest = -INFINITY;
   int n = 0;
   for (const size_t column : {size_t{1}, size_t{1 + kChip}, size_t{2 + 3 * kChip}, size_t{6 * kChip}}) {
-    const int chip = static_cast<int>(column) / kChip;
+    const int chip = kChips - 1 - static_cast<int>(column) / kChip;  // the last chip, on the right, comes first
     for (const int band : {1, 4, 8})
       for (double north = -700; north <= 700; north += 70) {
         const double first = line_of(0, column, north), later = line_of(band, column, north);

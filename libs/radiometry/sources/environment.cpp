@@ -25,28 +25,31 @@ Instant instant_of(const SourceTime& time) {
   }
 }
 
-std::string sentence(const char* name, const SourceTime& time, const SkyBody& body, const std::string& more) {
-  return strf("%s at %s: %.3f degrees above the horizon, %s", name, time.utc.c_str(), body.elevation / kDegree,
-              more.c_str());
+std::string sentence(const char* name, const SourceTime& time, double seconds, const SkyBody& body,
+                     const std::string& more) {
+  const std::string utc = seconds == 0 ? time.utc : to_iso8601(utc_from_instant(instant_of(time) + seconds));
+  return strf("%s at %s: %.3f degrees %s the horizon, %s", name, utc.c_str(), std::fabs(body.elevation) / kDegree,
+              body.elevation < 0 ? "below" : "above", more.c_str());
 }
 
-void resolve_sun(SunSpec& sun, const Scene& scene, std::vector<std::string>& said) {
+void resolve_sun(SunSpec& sun, const Scene& scene, double seconds, double dut1, std::vector<std::string>& said) {
   if (!sun.time) return;
-  const SkyBody body = sun_at(frame_of(scene, sun.time->where, "a sun by date"), {}, instant_of(*sun.time));
+  const SkyBody body =
+      sun_at(frame_of(scene, sun.time->where, "a sun by date"), {}, instant_of(*sun.time) + seconds, dut1);
   sun.direction = body.direction;
   if (sun.disk_by_time) sun.half_angle = body.angular_radius;
   const double au = body.distance / kAstronomicalUnit;
   if (sun.at_1_au) sun.irradiance = sun.irradiance.scaled(1 / (au * au));
-  said.push_back(sentence("sun", *sun.time, body, strf("%.5f AU", au)));
+  said.push_back(sentence("sun", *sun.time, seconds, body, strf("%.5f AU", au)));
   sun.time.reset();
 }
 
-void resolve_moon(MoonSpec& moon, const Scene& scene, std::vector<std::string>& said) {
+void resolve_moon(MoonSpec& moon, const Scene& scene, double seconds, double dut1, std::vector<std::string>& said) {
   MoonGeometry& g = moon.geometry;
   if (moon.disk.time) {
     const SceneFrame frame = frame_of(scene, moon.disk.time->where, "a moon by date");
-    const Instant instant = instant_of(*moon.disk.time);
-    const SkyBody body = moon_at(frame, {}, instant), sun = sun_at(frame, {}, instant);
+    const Instant instant = instant_of(*moon.disk.time) + seconds;
+    const SkyBody body = moon_at(frame, {}, instant, dut1), sun = sun_at(frame, {}, instant, dut1);
     moon.disk.direction = body.direction;
     if (moon.disk.disk_by_time) moon.disk.half_angle = body.angular_radius;
     // Sun, Moon and observer in one triangle: phase and the Moon's distance from the Sun.
@@ -58,7 +61,7 @@ void resolve_moon(MoonSpec& moon, const Scene& scene, std::vector<std::string>& 
     // phase.
     const double later = moon_phase_angle(instant + 3600), now = moon_phase_angle(instant);
     g.sun_longitude = later < now ? g.phase : -g.phase;
-    said.push_back(sentence("moon", *moon.disk.time, body,
+    said.push_back(sentence("moon", *moon.disk.time, seconds, body,
                             strf("phase angle %.2f degrees, %.0f km", g.phase / kDegree, body.distance * 1e-3)));
     moon.disk.time.reset();
   }
@@ -70,10 +73,10 @@ void resolve_moon(MoonSpec& moon, const Scene& scene, std::vector<std::string>& 
 
 }  // namespace
 
-std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene) {
+std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds) {
   std::vector<std::string> said;
-  if (specs.sun) resolve_sun(*specs.sun, scene, said);
-  if (specs.moon) resolve_moon(*specs.moon, scene, said);
+  if (specs.sun) resolve_sun(*specs.sun, scene, seconds, specs.dut1, said);
+  if (specs.moon) resolve_moon(*specs.moon, scene, seconds, specs.dut1, said);
   if (!specs.clear) return said;
   if (!specs.sun) throw Error("a clear sky needs a sun");
   if (specs.sky || specs.atmosphere) throw Error("a clear sky stands for sky and atmosphere alike", "drop one of them");
@@ -100,22 +103,43 @@ uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
               name_hint(spec.material, names));
 }
 
+namespace {
+
+void bake_bodies(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
+  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
+  if (specs.moon) e.moon = std::make_unique<Sun>(specs.moon->disk, state);
+}
+
+// The air scatters the beams of the bodies.
+void bake_air(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
+  if (!specs.atmosphere) return;
+  std::vector<Beam> beams;
+  for (const Sun* body : {e.sun.get(), e.moon.get()})
+    if (body) beams.push_back({body->direction(), body->irradiance()});
+  AtmosphereSpec spec = *specs.atmosphere;
+  e.atmosphere = make_layered_atmosphere(spec, state, std::move(beams));
+}
+
+}  // namespace
+
+void rebake_dated(Environment& environment, const SourceSpecs& written, const SourceSpecs& now,
+                  const SpectralState& state) {
+  if (!written.dated()) return;
+  SUITE_CHECK(!now.clear);
+  bake_bodies(environment, now, state);
+  if (written.clear) environment.sky = std::make_unique<Sky>(*now.sky, state);
+  bake_air(environment, now, state);
+}
+
 Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic,
                              const SpectralState& state) {
   SUITE_CHECK(!specs.clear);
   const Scene& scene = tracer.scene();
   Environment e;
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.moon) e.moon = std::make_unique<Sun>(specs.moon->disk, state);
+  bake_bodies(e, specs, state);
   if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
   if (!specs.lamps.empty()) e.lamps = std::make_unique<Lamps>(specs.lamps, tracer, state);
-  if (specs.atmosphere) {
-    std::vector<Beam> beams;
-    for (const Sun* body : {e.sun.get(), e.moon.get()})
-      if (body) beams.push_back({body->direction(), body->irradiance()});
-    AtmosphereSpec spec = *specs.atmosphere;
-    e.atmosphere = make_layered_atmosphere(spec, state, std::move(beams));
-  }
+  bake_air(e, specs, state);
   if (specs.earth) {
     if (periodic) throw Error(specs.earth->where, "a scene that repeats itself has no Earth under it");
     const SceneFrame frame = frame_of(scene, specs.earth->where, "the Earth");

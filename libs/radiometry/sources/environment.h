@@ -22,7 +22,7 @@ struct MoonSpec {
 };
 
 // Sources before they are baked for a state. Plain ones may be baked at once; dates and clear skies are turned into
-// directions, spectra and tables by resolve_sources.
+// directions, spectra and tables by resolve_sources. Dates are those of second 0; bodies that have one go on with time.
 struct SourceSpecs {
   std::optional<SunSpec> sun = {};
   std::optional<SkySpec> sky = {};
@@ -32,7 +32,10 @@ struct SourceSpecs {
   std::vector<LampSpec> lamps = {};
   std::optional<AtmosphereSpec> atmosphere = {};
   std::optional<EarthSpec> earth = {};
+  double dut1 = 0;  // s, UT1 - UTC, -0.9..0.9
   bool any() const { return sun || sky || moon || clear || !lamps.empty() || atmosphere; }
+  // Something follows from a date, so that it is another one at every moment.
+  bool dated() const { return (sun && sun->time) || (moon && moon->disk.time); }
 };
 
 // Null = none. The sky is black where there is none.
@@ -45,13 +48,20 @@ struct Environment {
 };
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear
-// skies. Returns a sentence about each body. Error: a date without a geodetic origin of the scene; a clear sky without
-// a sun, beside a sky or beside an atmosphere (it stands for both).
-std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene);
+// skies, `seconds` after the dates. Returns a sentence about each body. What is resolved already stays. Error: a date
+// without a geodetic origin of the scene; a clear sky without a sun, beside a sky or beside an atmosphere (it stands
+// for both), or with the sun below the horizon.
+std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds = 0);
 
 // Bakes resolved sources. periodic: the scene repeats itself. Error: as the sources' constructors; unknown material of
 // the Earth, or one that bounds a medium; an Earth in a periodic scene.
 Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic, const SpectralState& state);
+
+// Puts what dates move (Sun, Moon, a clear sky, the beams of the air) into an environment that was baked for another
+// moment, and leaves the rest (lamps, other skies, the Earth) alone. written: the sources before they were resolved;
+// now: resolved for the moment. The result is the same as that of bake_environment(now, ...).
+void rebake_dated(Environment& environment, const SourceSpecs& written, const SourceSpecs& now,
+                  const SpectralState& state);
 
 // Index of the Earth's material. Error when the scene has none of that name.
 uint32_t earth_material(const EarthSpec& spec, const Scene& scene);

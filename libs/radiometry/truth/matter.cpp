@@ -147,14 +147,13 @@ void add_matter_rows(std::vector<TruthRow>& table) {
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Reflectance>(c);
                    }});
-  table.push_back({"temperature", "K", "mean temperature of the first hits that have one",
+  table.push_back({"temperature", "K", "mean temperature that was rendered, of the first hits that have one",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<SimpleCollector>(
                          c, 2, std::vector<std::string>{"temperature [K]"},
-                         [](const TruthContext& x, const TruthSample& s, double* sum) {
-                           if (!s.first || s.first->at.material >= x.tracer.scene().materials.size()) return;
-                           const double kelvin = x.tracer.scene().materials[s.first->at.material].temperature_k;
-                           if (kelvin > 0) sum[0] += kelvin, ++sum[1];
+                         [](const TruthContext&, const TruthSample& s, double* sum) {
+                           if (!s.first || !s.first->at.baked || !(s.first->at.baked->kelvin > 0)) return;
+                           sum[0] += s.first->at.baked->kelvin, ++sum[1];
                          },
                          [](const TruthContext&, const double* sum, const TruthCounts&, double* v) {
                            if (sum[1] > 0) v[0] = sum[0] / sum[1];

@@ -22,10 +22,9 @@ class Platform final : public Sensor {
       keys.emplace_back();
       for (const PlatformSpec::Part& part : parts) {
         const FocalArray& a = spec_.arrays[part.array];
-        const bool lines = a.readout.kind == Readout::Kind::line || a.readout.kind == Readout::Kind::whisk;
         // Only the first segment counts rows; the others stand beside it.
         const bool first = part.segment == a.segments[0];
-        keys.back().push_back({first ? a.image : a.image + strf("/%zu", part.segment), lines});
+        keys.back().push_back({first ? a.image : a.image + strf("/%zu", part.segment), a.scans()});
       }
     }
     rows_ = lay_out(spec_.tasks, keys);
@@ -43,9 +42,8 @@ class Platform final : public Sensor {
   Convergence convergence(const Capture& capture, size_t problem) const override {
     const Segment& s = spec_.segments[capture.state];
     const FocalArray& array = spec_.arrays[s.array];
-    const bool whisk = array.readout.kind == Readout::Kind::whisk;
-    const uint32_t column = whisk ? 0 : s.first_column + static_cast<uint32_t>(problem % capture.columns);
-    return place_of(array, column, 0, 0.5, 0.5).chip->convergence.value_or(capture.convergence);
+    return place_of(array, exposed(spec_, capture, problem).column, 0, 0.5, 0.5)
+        .chip->convergence.value_or(capture.convergence);
   }
 
   void begin(const Capture& capture) override {
@@ -69,32 +67,16 @@ class Platform final : public Sensor {
     const Instrument& instrument = spec_.instruments[array.instrument];
     const Readout& r = array.readout;
     const std::span<const double> u = request.u;
-    uint32_t column = static_cast<uint32_t>(request.problem % capture.columns),
-             row = static_cast<uint32_t>(request.problem / capture.columns);
 
     // Find the detector and the moment.
-    double t = capture.window.begin;
-    switch (r.kind) {
-      case Readout::Kind::global:
-        break;
-      case Readout::Kind::rolling:
-        t += row * r.row_time;
-        break;
-      case Readout::Kind::line:
-        t += row * r.line_period, row = 0;
-        break;
-      case Readout::Kind::whisk:
-        t += (row / array.rows) * r.line_period + column * r.sample_period;
-        row %= array.rows, column = 0;
-        break;
-    }
-    if (r.kind != Readout::Kind::whisk) column += s.first_column;
+    const Exposed from = exposed(spec_, capture, request.problem);
+    double t = capture.window.begin + from.delay;
     const double stage = std::min(std::floor(u[2] * r.stages), r.stages - 1.0);
     if (r.stages > 1) t += stage * r.line_period;
     t += (u[2] * r.stages - stage) * r.integration;
 
     // Find the place in the focal plane whose light it collects.
-    Vec2 place = place_of(array, column, row, u[0], u[1]).place;
+    Vec2 place = place_of(array, from.column, from.row, u[0], u[1]).place;
     if (r.stages > 1) place.y += r.direction * (stage - 0.5 * (r.stages - 1)) * array.pitch.y;
     // (Radius and wavelength come from one block, so that weights are stratified together.)
     SensorRay out;
@@ -172,22 +154,40 @@ class Platform final : public Sensor {
     const FocalArray& array = spec_.arrays[part.array];
     Piece& first = pieces.at(array.segments[0]);
     const size_t task = first.result.task, capture = first.result.capture;
+    const bool backwards = spec_.tasks[task].captures[capture].reversed & kColumnsReversed;
     std::vector<Band> bands(spec_.segments[array.segments[0]].bands.begin(),
                             spec_.segments[array.segments[0]].bands.begin() + static_cast<long>(first.result.bands));
     if (pieces.size() > 1) {
       std::vector<CaptureResult*> results;
       std::vector<std::vector<Product>*> products;
       for (auto& [segment, piece] : pieces) results.push_back(&piece.result), products.push_back(&piece.products);
+      if (backwards) std::reverse(results.begin(), results.end()), std::reverse(products.begin(), products.end());
       join(results, products, first);
     }
     const Instrument& instrument = spec_.instruments[array.instrument];
     const Capture& c = spec_.tasks[task].captures[capture];
     Delivery d{
         *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
-    d.description = strf("instrument '%s', %.9g to %.9g s", instrument.name.c_str(), c.window.begin, c.window.end);
+    const std::string who = strf("instrument '%s'", instrument.name.c_str());
+    std::string spread;
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)
-      d.description += strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
+      spread = strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
+    d.description = who + strf(", %.9g to %.9g s", c.window.begin, c.window.end) + spread;
+    if (array.scans()) {
+      const std::vector<std::string>& lines = lines_of(part.array);
+      d.lines_of_task = who + ", " + lines[task] + spread;
+      for (const std::string& text : lines)
+        d.lines_of_all += text.empty() ? "" : (d.lines_of_all.empty() ? who + ", " : "; ") + text;
+      d.lines_of_all += spread;
+    }
     context_.deliver(d);
+  }
+
+  // The times of all lines of an array, task by task, for the header of the file that holds them.
+  const std::vector<std::string>& lines_of(size_t array) {
+    std::vector<std::string>& texts = lines_[array];
+    for (size_t t = texts.size(); t < spec_.tasks.size(); ++t) texts.push_back(lines_text(spec_, t, array, context_));
+    return texts;
   }
 
   template <class T>
@@ -214,7 +214,7 @@ class Platform final : public Sensor {
       for (const CaptureResult* r : results) parts.push_back(&(r->*member));
       return beside(parts, columns, rows);
     };
-    CaptureResult joined = *results[0];
+    CaptureResult joined = into.result;
     joined.radiance = of(&CaptureResult::radiance);
     joined.standard_error = of(&CaptureResult::standard_error);
     joined.paths = of(&CaptureResult::paths);
@@ -232,6 +232,7 @@ class Platform final : public Sensor {
   SensorContext context_;
   PlatformSpec spec_;
   std::vector<std::vector<ImageRows>> rows_;
+  std::map<size_t, std::vector<std::string>> lines_;  // by array: texts of the tasks
   bool wide_ = false;
   Prepared prepared_;
   std::map<std::pair<size_t, uint64_t>, std::map<size_t, Piece>>

@@ -53,6 +53,7 @@ struct FocalArray {
   std::optional<DetectorSpec> detector;
   size_t instrument = 0;
   std::vector<size_t> segments;
+  bool scans() const { return readout.kind == Readout::Kind::line || readout.kind == Readout::Kind::whisk; }
   uint32_t image_columns() const { return readout.kind == Readout::Kind::whisk ? readout.samples : columns; }
 };
 
@@ -108,6 +109,20 @@ struct DetectorPlace {
   const Chip* chip = nullptr;
 };
 DetectorPlace place_of(const FocalArray& array, uint32_t column, uint32_t row, double u, double v);
+
+// platform_strips.cpp: which way up the pictures of push-brooms and whiskbrooms are. Lines follow in time downwards,
+// and columns, and the detectors of a whisk scan, are put in the order in which the picture is not mirrored.
+constexpr uint8_t kColumnsReversed = 1, kRowsReversed = 2;  // Capture::reversed
+void turn_strips(PlatformSpec& spec);
+// What a pixel of a capture is: a detector (column over all chips of the array, row) and when it begins to integrate, s
+// after the capture began.
+struct Exposed {
+  uint32_t column = 0, row = 0;
+  double delay = 0;
+};
+Exposed exposed(const PlatformSpec& spec, const Capture& capture, size_t problem);
+// For headers: when each line of a task's picture is taken, and where on the compass the picture's axes point.
+std::string lines_text(const PlatformSpec& spec, size_t task, size_t array, const SensorContext& context);
 
 // platform_products.cpp: electrons and counts of a result whose bands are a segment's; strips the photon bands.
 // read_out: tells this event from all others.

@@ -57,25 +57,21 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   Product counts{"dn", "DN", true, {}, std::vector<double>(n * bands)};
   for (size_t b = 0; b < bands; ++b) electrons.bands.push_back(segment.bands[b].name);
   counts.bands = electrons.bands;
-  const bool whisk = array.readout.kind == Readout::Kind::whisk, line = array.readout.kind == Readout::Kind::line;
+  const Capture& capture = spec.tasks[result.task].captures[result.capture];
   for (size_t i = 0; i < n; ++i) {
-    const uint32_t row = static_cast<uint32_t>(i / result.columns), at = static_cast<uint32_t>(i % result.columns);
-    const uint32_t detector_row = line    ? 0
-                                  : whisk ? row % array.rows
-                                          : row,
-                   column = whisk ? 0 : segment.first_column + at;
-    const DetectorPlace place = place_of(array, column, detector_row, 0.5, 0.5);
+    const Exposed from = exposed(spec, capture, i);
+    const DetectorPlace place = place_of(array, from.column, from.row, 0.5, 0.5);
     const double cosine = lens.cos4 ? -lens.look(place.place).z : 1;
     const double factor = area / g * array.readout.exposure() * place.chip->gain * cosine * cosine * cosine * cosine;
     const bool bad =
-        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{column, detector_row}) != d.bad.end();
+        std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) != d.bad.end();
     for (size_t b = 0; b < bands; ++b) {
       // The photon bands follow the listed ones; every band has detectors of its own.
       double signal = 0;
       for (size_t t = 0; t < result.bins; ++t)
         signal += result.radiance[(i * result.bins + t) * result.bands + bands + b] / static_cast<double>(result.bins);
       signal *= factor * segment.electrons[b];
-      const uint64_t own = hash_of(segment.array, b, uint64_t{detector_row} * 0x100000000ull + column);
+      const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
       Detector::Character character = detector.character(own);
       character.dead = character.dead || bad;
       electrons.values[i * bands + b] = signal;

@@ -129,7 +129,7 @@ void plan_captures(PlatformSpec& spec, const Params& params, const SensorContext
       const FocalArray& array = spec.arrays[a];
       const Instrument& instrument = spec.instruments[array.instrument];
       const Readout& r = array.readout;
-      if (r.kind == Readout::Kind::line || r.kind == Readout::Kind::whisk) {
+      if (array.scans()) {
         add_lines(spec, task, parts, a, p, event[a]);
         continue;
       }
@@ -148,6 +148,7 @@ void plan_captures(PlatformSpec& spec, const Params& params, const SensorContext
       throw list.error(
           "the instrument '" + spec.instruments[spec.arrays[a].instrument].name + "' takes nothing in any of the tasks",
           "its clock's offset or its triggers lie outside them");
+  turn_strips(spec);
 }
 
 }  // namespace suite

@@ -1,0 +1,170 @@
+#include "scheduler/doubts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/time.h"
+#include "optics/models.h"
+#include "surface/material_lookup.h"
+
+namespace suite {
+
+namespace {
+
+// Some captures of a sensor, evenly chosen.
+std::vector<const Capture*> some_captures(const Sensor& sensor, size_t most) {
+  std::vector<const Capture*> all, some;
+  for (const Task& task : sensor.tasks())
+    for (const Capture& c : task.captures) all.push_back(&c);
+  for (size_t i = 0; i < std::min(all.size(), most); ++i)
+    some.push_back(all[i * all.size() / std::min(all.size(), most)]);
+  return some;
+}
+
+bool glows(const Scene& scene) {
+  return !scene.temperatures.empty() || uses_media(scene) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(), [](auto& m) { return m.temperature_k > 0; }) ||
+         std::any_of(scene.property_maps.begin(), scene.property_maps.end(),
+                     [](auto& m) { return m.kind == MapKind::temperature; });
+}
+
+bool set(const SunSpec& body) { return body.direction.z < -std::sin(body.half_angle); }
+
+std::string when(const SourceSpecs& written, double moment) {
+  return written.sun->time
+             ? " at " +
+                   to_iso8601(utc_from_instant(instant_from_utc(parse_iso8601(written.sun->time->utc)) + moment), 0)
+             : std::string();
+}
+
+// The sun has set whenever the sensor looks, and nothing else shines.
+std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+  if (!written.sun || written.sky || written.clear || written.atmosphere || !written.lamps.empty() || glows(scene))
+    return std::nullopt;
+  SourcesInTime sources(written, scene);
+  double highest = -1, moment = 0;
+  for (const Capture* c : some_captures(sensor, 64)) {
+    const SourceSpecs& now = sources.at(moment_of(*c));
+    if (!set(*now.sun) || (now.moon && !set(now.moon->disk))) return std::nullopt;
+    if (now.sun->direction.z > highest) highest = now.sun->direction.z, moment = moment_of(*c);
+  }
+  return Doubt{sensor.name(),
+               strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
+                    -std::asin(std::max(-1.0, highest)) / kDegree, when(written, moment).c_str()),
+               "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
+}
+
+// Bands in which no source sends anything, of a scene that does not glow itself.
+std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
+  if (!now.any() || glows(scene) || now.atmosphere) return std::nullopt;
+  std::vector<const Curve*> lights;
+  if (now.sun) lights.push_back(&now.sun->irradiance);
+  if (now.moon) lights.push_back(&now.moon->disk.irradiance);
+  if (now.sky && !now.sky->layers.empty()) return std::nullopt;
+  if (now.sky) lights.push_back(&now.sky->radiance);
+  for (const LampSpec& l : now.lamps) lights.push_back(l.kind == LampSpec::Kind::surface ? &l.radiance : &l.intensity);
+  std::string names;
+  for (size_t s = 0; s < sensor.states().size(); ++s)
+    for (const Band& b : sensor.bands(s)) {
+      const bool lit = std::any_of(lights.begin(), lights.end(), [&](const Curve* c) {
+        return !c->covers(b.low_um(), b.high_um()) || c->integral(b.low_um(), b.high_um()) > 0;
+      });
+      const std::string name = strf("'%s' (%.3g um)", b.name.c_str(), b.center_um);
+      if (!lit && names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+    }
+  if (names.empty()) return std::nullopt;
+  return Doubt{sensor.name(), "no source sends light in band " + names + " and nothing in the scene glows there",
+               "give the sources spectra that reach it, the scene temperatures, or the sensor other bands"};
+}
+
+// Bands beyond the tabulated ends of every spectrum of the scene, where only `outside` says what the surfaces are.
+std::optional<Doubt> unknown_bands(const Scene& scene, const Sensor& sensor) {
+  double low = INFINITY, high = 0;
+  for (const Material& m : scene.materials) {
+    if (m.surface.model.empty()) continue;
+    if (m.surface.curves.empty()) return std::nullopt;
+    for (const auto& [name, curve] : m.surface.curves) {
+      if (curve.is_constant()) return std::nullopt;
+      low = std::min(low, curve.low_um()), high = std::max(high, curve.high_um());
+    }
+  }
+  for (const PropertyMap& m : scene.property_maps) {
+    for (const double w : m.wavelength_um) low = std::min(low, w), high = std::max(high, w);
+    for (const Curve& c : m.family) low = std::min(low, c.low_um()), high = std::max(high, c.high_um());
+  }
+  for (size_t s = 0; s < sensor.states().size() && high > 0; ++s)
+    for (const Band& b : sensor.bands(s))
+      if (b.low_um() > high || b.high_um() < low)
+        return Doubt{
+            sensor.name(),
+            strf("band '%s' (%.3g um) lies outside all spectra of the scene, which reach from %.3g to %.3g um: "
+                 "what is seen there is only what their `outside` says",
+                 b.name.c_str(), b.center_um, low, high),
+            "give the materials spectra that cover it, or the sensor other bands"};
+  return std::nullopt;
+}
+
+std::optional<Doubt> too_long(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+  const std::optional<LongExposure> e = long_exposure(written, scene, sensor);
+  if (!e) return std::nullopt;
+  return Doubt{sensor.name(),
+               strf("capture '%s' lasts %.4g s, in which the %s moves by %.3g degrees (its radius is %.3g) and what it "
+                    "sends to level ground changes by %.2g %%; it is taken where it stands in the middle",
+                    e->capture.c_str(), e->seconds, e->body.c_str(), e->moved / kDegree, e->radius / kDegree,
+                    100 * e->irradiance_change),
+               "divide it into shorter captures (lines_per_capture, tasks, integration times) where that matters",
+               false};
+}
+
+}  // namespace
+
+std::vector<Doubt> doubts_of_light(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
+  std::vector<Doubt> all;
+  if (sensors.empty()) return all;
+  const SourceSpecs first = first_sources(written, scene, sensors);
+  for (const auto& sensor : sensors) {
+    std::optional<Doubt> found = night(written, scene, *sensor);
+    if (!found) found = dark_bands(first, scene, *sensor);
+    if (!found) found = unknown_bands(scene, *sensor);
+    if (found) all.push_back(*found);
+    if (auto slow = too_long(written, scene, *sensor)) all.push_back(*slow);
+  }
+  return all;
+}
+
+void SensorOutcome::add(std::span<const Band> of, const CaptureResult& result, const RunStatistics& statistics) {
+  paths += statistics.paths, nodes += statistics.nodes;
+  for (size_t b = 0; b < result.bands && b < of.size(); ++b) {
+    size_t i = static_cast<size_t>(std::find(bands.begin(), bands.end(), of[b].name) - bands.begin());
+    if (i == bands.size()) bands.push_back(of[b].name), bright.push_back(false);
+    for (size_t v = b; v < result.radiance.size() && !bright[i]; v += result.bands) bright[i] = result.radiance[v] > 0;
+  }
+}
+
+std::optional<Doubt> doubt_of_outcome(const Sensor& sensor, const SensorOutcome& o, bool complete) {
+  const size_t lit = static_cast<size_t>(std::count(o.bright.begin(), o.bright.end(), true));
+  const bool missed = complete && o.paths > 0 && o.nodes == 0;
+  if (missed && (lit == 0 || o.looks_down))
+    return Doubt{sensor.name(),
+                 lit ? "none of its paths met anything: the picture shows the sky alone"
+                     : "none of its paths met anything: the picture is black",
+                 "check where it stands and looks: metres east, north and up in the scene's frame"};
+  if (o.bands.empty() || lit == o.bands.size()) return std::nullopt;
+  if (lit == 0)
+    return Doubt{
+        sensor.name(), "every pixel of every band is zero: no light reaches what it sees",
+        "check the sources (directions, spectra), the surfaces' reflectance in its bands and what shades them"};
+  std::string names;
+  for (size_t b = 0; b < o.bands.size(); ++b)
+    if (!o.bright[b]) names += (names.empty() ? "'" : ", '") + o.bands[b] + "'";
+  return Doubt{sensor.name(), "every pixel of band " + names + " is zero",
+               "check the spectra of the sources and of the surfaces there"};
+}
+
+SensorRay middle_ray(const Sensor& sensor, const Capture& capture, size_t problem) {
+  const std::vector<double> u(static_cast<size_t>(sensor.numbers()), 0.5);
+  std::vector<float> weights(sensor.states()[capture.state].size());
+  return sensor.ray({capture, problem, u, weights});
+}
+
+}  // namespace suite

@@ -1,0 +1,26 @@
+// The captures of a job as what they need, and the order in which they run.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scheduler/order.h"
+#include "sensor/sensor.h"
+
+namespace suite {
+
+// A capture of the job and what it needs.
+struct Item {
+  size_t sensor, task, capture, id;
+  StatePair state;
+  double moment;  // s, at which its sources are taken (moments.h)
+};
+
+// All captures, numbered over sensors, tasks and captures. moves: something in the scene does, so that windows differ.
+std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves);
+
+// Fewest changes of state; `changes` is set to their number. Captures of equal states run in the order of their moments
+// when dates move the sources (dated), so that those of one moment share their lights.
+std::vector<Item> in_cheapest_order(const std::vector<Item>& items, bool dated, size_t& changes);
+
+}  // namespace suite

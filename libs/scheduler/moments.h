@@ -1,0 +1,58 @@
+// Time goes on: Sun, Moon and clear skies that follow from dates, for each capture where they are in the middle of its
+// window.
+//
+// Assumes: a whole capture sees them there; long_exposure says when that is too coarse.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiometry/sources/environment.h"
+#include "sensor/sensor.h"
+
+namespace suite {
+
+// The moment at which a capture's sources are resolved: the middle of its window, s.
+double moment_of(const Capture& capture);
+
+// Sources resolved for one moment after the other. Keeps references to what it is made from.
+class SourcesInTime {
+ public:
+  SourcesInTime(const SourceSpecs& written, const Scene& scene) : written_(written), scene_(scene) {}
+  const SourceSpecs& written() const { return written_; }
+  bool dated() const { return written_.dated(); }
+  // Sources at a moment (s); they hold until the next call. Without dates they are the same at all moments. Error: as
+  // resolve_sources.
+  const SourceSpecs& at(double moment);
+
+ private:
+  const SourceSpecs& written_;
+  SourceSpecs now_;
+  const Scene& scene_;
+  std::optional<double> moment_;
+};
+
+using Sensors = std::span<const std::unique_ptr<Sensor>>;
+
+// The sources as the earliest capture sees them.
+SourceSpecs first_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors);
+
+// Sentences about the sources: at the first and the last moment at which a capture sees them. Error, naming the
+// capture: a clear sky while the sun is below the horizon.
+std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors);
+
+// The capture of a sensor during which a dated Sun or Moon (over the horizon) goes furthest from where it is taken.
+struct LongExposure {
+  std::string body, capture;     // "sun", name
+  double seconds = 0;            // of the capture
+  double moved = 0;              // rad, from the beginning to the end
+  double radius = 0;             // rad, of the disk
+  double irradiance_change = 0;  // of what it sends to level ground, air apart, at the reference wavelength, relative
+};
+inline constexpr double kExposureLimit = 1e-3;  // of the change of irradiance; the body may move by its radius
+// Nothing when all captures are short enough.
+std::optional<LongExposure> long_exposure(const SourceSpecs& written, const Scene& scene, const Sensor& sensor);
+
+}  // namespace suite
