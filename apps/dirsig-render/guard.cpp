@@ -39,7 +39,7 @@ struct Room {
   double whole = 0, largest = 0;  // bytes: of all images, of the largest file
 };
 
-// What radiance, error and truth take; products of the sensors come on top.
+// What radiance, error, quality and truth take; products of the sensors come on top.
 Room room_for(const Simulation& sim) {
   Room room;
   const double value = sim.output.type == OutputSpec::Type::float64  ? 8
@@ -52,7 +52,7 @@ Room room_for(const Simulation& sim) {
         const double values = static_cast<double>(c.problems()) * static_cast<double>(sensor->bands(c.state).size()) *
                               static_cast<double>(sensor->channels().size()) * c.bins;
         const double truth = 8.0 * static_cast<double>(c.problems()) * static_cast<double>(sensor->truth().size());
-        room.whole += values * (value + std::max(value, 4.0)) + truth;
+        room.whole += values * (value + std::max(value, 4.0)) + truth + static_cast<double>(c.problems());
         room.largest = std::max({room.largest, values * value, truth});
       }
   }

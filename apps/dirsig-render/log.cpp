@@ -36,6 +36,16 @@ Json json_of(const RunStatistics& s) {
   return j;
 }
 
+// How many pixels of a sensor carry each bit.
+Json json_of(const SensorQuality& q) {
+  Json j = Json::object();
+  j.set("sensor", q.sensor);
+  j.set("pixels", q.counts.problems);
+  j.set("flagged", q.counts.flagged);
+  for (const QualityBit& b : quality_bits()) j.set(b.name, q.counts.with(b.bit));
+  return j;
+}
+
 }  // namespace
 
 void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
@@ -58,6 +68,9 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("share_at_target", r.share_at_target);
   j.set("share_flagged", r.share_flagged);
   j.set("ended", r.stopped_by);
+  Json quality = Json::array();
+  for (const SensorQuality& q : r.quality) quality.push(json_of(q));
+  j.set("quality", std::move(quality));
   Json captures = Json::array();
   for (const CaptureLog& c : r.log) {
     Json one = json_of(c.statistics);

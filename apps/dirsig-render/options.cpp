@@ -10,6 +10,7 @@ AppInfo render_info() {
           "Output, for each sensor NAME, in the folder given with -o (ENVI, opens in GDAL, QGIS, ENVI):\n"
           "  NAME.img         radiance, one band per channel, with wavelengths and fwhm\n"
           "  NAME_error.img   standard error of the radiance, same bands\n"
+          "  NAME_quality.img flags of every pixel, a sum of the bits that its header names\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
           "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"

@@ -8,6 +8,7 @@
 #include "formats/envi/envi.h"
 #include "formats/raster/raster_write.h"
 #include "preview.h"
+#include "sensor/quality.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -66,6 +67,22 @@ std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
   return rows.image;
 }
 
+// The header of the flags beside an image: one byte a pixel, the sum of the bits that the header names.
+EnviHeader quality_header(EnviHeader h, const std::string& about) {
+  h.extra.clear(), h.wavelength_um.clear(), h.fwhm_um.clear(), h.data_units.clear();
+  h.type = EnviType::uint8;
+  h.bands = 1;
+  h.band_names = {"quality"};
+  h.description = "quality" + about + "; a pixel is the sum of the bits that hold, 0 = none:";
+  std::string bits = "{";
+  for (const QualityBit& b : quality_bits()) {
+    h.description += strf("\n%d = %s: %s", b.bit, b.name.c_str(), b.meaning.c_str());
+    bits += strf("%s%d %s", bits.size() > 1 ? ", " : "", b.bit, b.name.c_str());
+  }
+  h.extra.push_back({"quality bits", bits + "}"});
+  return h;
+}
+
 }  // namespace
 
 // An image while its rows come in.
@@ -75,12 +92,13 @@ struct OutputWriter::Image {
   std::vector<double> factor;            // of each value
   std::vector<size_t> chosen;            // of the preview
   std::map<uint32_t, Delivery> waiting;  // by first row
-  std::unique_ptr<EnviWriter> radiance, error, truth;
+  std::unique_ptr<EnviWriter> radiance, error, quality, truth;
   std::vector<std::unique_ptr<EnviWriter>> products;
   std::vector<std::string> files;
   std::vector<double> preview;  // [pixel][chosen]
   std::vector<std::string> names;
   std::vector<float> all;           // [pixel][value], for formats that take a whole picture
+  std::vector<float> all_quality;   // [pixel], likewise
   std::vector<double> correlation;  // [band][band], summed over rows
   std::optional<MapGrid> map;
   std::string description;
@@ -153,6 +171,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   }
   m.radiance = open("", h);
   m.error = open("_error", e);
+  m.quality = open("_quality", quality_header(h, who + tail));
   EnviHeader t = h;
   t.extra.clear(), t.wavelength_um.clear(), t.fwhm_um.clear(), t.data_units.clear();
   t.type = EnviType::float64;  // positions and indices keep every digit
@@ -176,6 +195,26 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
     m.products.push_back(open("_" + p.name, x));
   }
   return m;
+}
+
+// The formats that take a whole picture: radiance, and the flags in a file of their own.
+void OutputWriter::write_whole(Image& m, const std::string& base) {
+  const std::string comment = strf("suite %s: ", kVersion) + command_line() + m.description;
+  std::optional<RasterPlacement> place;
+  if (m.map) {
+    place = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
+    if (notes_.origin.given) place->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
+  }
+  if (spec_.geotiff) {
+    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all, comment, place);
+    write_float_tiff(base + "_quality.tif", m.columns, m.rows, {"quality"}, m.all_quality, comment, place);
+    m.files.insert(m.files.end(), {base + ".tif", base + "_quality.tif"});
+  }
+  if (spec_.exr) {
+    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all, comment);
+    write_exr(base + "_quality.exr", m.columns, m.rows, {"quality"}, m.all_quality, comment);
+    m.files.insert(m.files.end(), {base + ".exr", base + "_quality.exr"});
+  }
 }
 
 void OutputWriter::take(const Delivery& delivery) {
@@ -206,6 +245,9 @@ void OutputWriter::take(const Delivery& delivery) {
       for (const size_t b : m.chosen) m.preview.push_back(d.result.radiance[i * m.values + b]);
     m.radiance->append(radiance);
     m.error->append(error);
+    m.quality->append(std::vector<double>(d.result.quality.begin(), d.result.quality.end()));
+    if (spec_.geotiff || spec_.exr)
+      m.all_quality.insert(m.all_quality.end(), d.result.quality.begin(), d.result.quality.end());
     if (m.truth) m.truth->append(d.result.truth);
     for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
     // Of an image in parts the correlation is the mean over its rows.
@@ -215,25 +257,11 @@ void OutputWriter::take(const Delivery& delivery) {
     m.waiting.erase(next);
   }
   if (m.next < m.rows) return;
-  for (EnviWriter* w : {m.radiance.get(), m.error.get(), m.truth.get()})
+  for (EnviWriter* w : {m.radiance.get(), m.error.get(), m.quality.get(), m.truth.get()})
     if (w) w->commit();
   for (auto& w : m.products) w->commit();
   const std::string base = folder_ + "/" + stem;
-  if (spec_.geotiff) {
-    std::optional<RasterPlacement> place;
-    if (m.map) {
-      place = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
-      if (notes_.origin.given) place->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
-    }
-    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all,
-                     strf("suite %s: ", kVersion) + command_line() + m.description, place);
-    m.files.push_back(base + ".tif");
-  }
-  if (spec_.exr) {
-    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all,
-              strf("suite %s: ", kVersion) + command_line() + m.description);
-    m.files.push_back(base + ".exr");
-  }
+  write_whole(m, base);
   std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
   const size_t bands = delivery.bands.size();
   for (const Band& b : delivery.bands) correlation += "," + b.name;

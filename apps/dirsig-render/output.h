@@ -1,5 +1,5 @@
-// The files of a run: radiance, its standard error, truth, the sensors' own products, previews; cut into files as
-// asked.
+// The files of a run: radiance, its standard error, quality, truth, the sensors' own products, previews; cut into files
+// as asked.
 #pragma once
 #include <map>
 #include <memory>
@@ -28,6 +28,7 @@ class OutputWriter {
  private:
   struct Image;
   Image& image_of(const Delivery& delivery, const std::string& stem);
+  void write_whole(Image& image, const std::string& base);
   std::string folder_;
   OutputSpec spec_;
   SceneNotes notes_;

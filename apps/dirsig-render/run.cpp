@@ -149,13 +149,29 @@ void check_memory(const Simulation& sim, const JobOptions& options) {
                 "fewer columns or rows, or fewer lines_per_capture");
 }
 
+// How many pixels of each sensor are flagged, and what the flags that occur mean.
+void tell_quality(std::span<const SensorQuality> sensors) {
+  QualityCounts all;
+  for (const auto& [sensor, counts] : sensors) {
+    note(counts.flagged
+             ? strf("sensor '%s': %llu of %llu pixels are flagged (%.2g %%): ", sensor.c_str(),
+                    static_cast<unsigned long long>(counts.flagged), static_cast<unsigned long long>(counts.problems),
+                    100 * static_cast<double>(counts.flagged) / static_cast<double>(counts.problems)) +
+                   text_of(counts)
+             : strf("sensor '%s': no pixel is flagged", sensor.c_str()));
+    for (size_t i = 0; i < all.of.size(); ++i) all.of[i] += counts.of[i];
+  }
+  for (const QualityBit& b : quality_bits())
+    if (all.with(b.bit)) note(b.name + ": " + b.meaning);
+}
+
 void tell(const JobReport& r) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
             human_count(paths).c_str(), human_count(static_cast<double>(r.statistics.trace.rays)).c_str(),
             paths > 0 ? static_cast<double>(r.statistics.nodes) / paths : 0, 100 * r.share_in_embree));
-  note(strf("median relative standard error %.2f %%; %.2f %% of the pixels are flagged for heavy tails",
-            100 * r.median_relative_error, 100 * r.share_flagged));
+  note(strf("median relative standard error %.2f %%", 100 * r.median_relative_error));
+  tell_quality(r.quality);
   note(r.stopped_by);
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",

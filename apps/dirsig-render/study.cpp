@@ -1,6 +1,7 @@
 #include "study.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "base/files.h"
 #include "base/inputs.h"
@@ -8,6 +9,7 @@
 #include "base/progress.h"
 #include "formats/envi/envi.h"
 #include "log.h"
+#include "sensor/quality.h"
 #include "study/study.h"
 #include "trace/tracer.h"
 
@@ -139,6 +141,13 @@ void tell(const StudySummary& s) {
         series.name.c_str(), 100 * last.rmse, last.budget, series.by_time ? "s" : "paths", last.seconds,
         series.slope_seconds, series.slope_seconds_error, series.slope_paths, series.slope_paths_error,
         100 * last.coverage);
+    const std::string found =
+        std::isnan(last.found_share) ? "" : strf(", %.4g %% of these are flagged", 100 * last.found_share);
+    std::printf(
+        "  flagged %.3g %%; beyond %g standard errors by more than %g %% of radiance: %.3g %%%s; flagged but not: "
+        "%.3g %%\n",
+        100 * last.flagged_share, kTailFactor, 100 * kTailShare, 100 * last.exceeding_share, found.c_str(),
+        100 * last.false_share);
   }
   std::printf("bias: smallest p of %zu tests %.3g: %s at 1 %% family-wise\n", s.tests, s.smallest_p,
               s.unbiased ? "passes" : "FAILS");
@@ -153,9 +162,9 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene is empty: there is nothing to study");
   const Size size = size_of(sim);
   make_folder(o.study);
+  const std::string table = o.study + "/study.csv", identity = identity_of(o, sim, options);
   check_outputs({table, o.study + "/study.json", o.study + "/study.html", o.study + "/reference.img",
                  o.study + "/reference_error.img"});
-  const std::string table = o.study + "/study.csv", identity = identity_of(o, sim, options);
   const bool kept = file_exists(table);
   std::vector<StudyRow> rows;
   if (kept) {

@@ -6,12 +6,14 @@
 
 #include "base/memory.h"
 #include "scheduler/plan.h"
+#include "scheduler/tails.h"
+#include "sensor/quality.h"
 
 namespace suite {
 
 ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band,
-                             const TruthPlan& truth)
-    : reference_band_(reference_band), neighbours_(has_neighbours(capture)), truth_(truth) {
+                             const TruthPlan& truth, const Goals& goals)
+    : reference_band_(reference_band), neighbours_(has_neighbours(capture)), truth_(truth), goals_(goals) {
   CaptureResult& r = result_;
   r.columns = capture.columns;
   r.rows = capture.rows;
@@ -24,6 +26,7 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   resize_large(r.standard_error, n * values);
   r.paths.resize(n);
   r.quality.resize(n);
+  resize_large(largest_, n);
   resize_large(r.truth, n * r.truth_names.size());
   // Few enough that bands^2 products of each take neither time nor memory.
   const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
@@ -36,10 +39,8 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   const size_t values = r.values_per_problem();
   sums.estimate(slot, {&r.radiance[problem * values], values}, {&r.standard_error[problem * values], values});
   const uint32_t paths = r.paths[problem] = sums.paths(slot);
-  const double mean = r.radiance[problem * values + reference_band_];
-  // One sample that carries a tenth of a problem's sum: too few such events were seen for the interval to be trusted.
+  largest_[problem] = sums.largest(slot);
   uint8_t& quality = r.quality[problem];
-  if (paths >= 16 && sums.largest(slot) > 0.1 * mean * paths) quality |= quality_heavy_tail;
   if (sums.failures(slot)) quality |= quality_failures;
   if (sums.truncated(slot) > 0.01f * static_cast<float>(paths)) quality |= quality_truncated;
   truth_.finish(sums.truth(slot), paths, r.truth.data() + problem * r.truth_names.size());
@@ -62,35 +63,24 @@ void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const doubl
   }
 }
 
-// Events that brighten or darken a problem but happened not to be among its samples leave no trace in them, only in its
-// neighbours': a problem whose variance at the reference band is far below the mean of its 24 neighbours' has an
-// interval that cannot be trusted. 1/40: of four scrambles with the same variance everywhere 0.5 % fall below it
-// (chi-square with three degrees of freedom), of eight none.
-void ResultBuilder::flag_unlike_neighbours() {
-  constexpr long reach = 2;
-  constexpr double share = 1.0 / 40;
+void ResultBuilder::flag_tails() {
   CaptureResult& r = result_;
-  const long columns = r.columns, rows = r.rows;
   const size_t values = r.values_per_problem();
-  std::vector<double> variances(r.problems());  // of one path
-  for (size_t i = 0; i < variances.size(); ++i) {
-    const double error = r.standard_error[i * values + reference_band_];
-    variances[i] = std::isfinite(error) ? error * error * r.paths[i] : 0;
+  std::vector<TailSums> of(r.problems());
+  for (size_t i = 0; i < of.size(); ++i) {
+    const Convergence goal = goals_.of(i);
+    of[i] = {r.radiance[i * values + reference_band_],
+             r.standard_error[i * values + reference_band_],
+             largest_[i],
+             r.paths[i],
+             goal.relative_error > 0 ? goal.relative_error : kTailShare,
+             goal.absolute_floor};
   }
-  const auto variance = [&](long x, long y) { return variances[static_cast<size_t>(y * columns + x)]; };
-  for (long y = 0; y < rows; ++y)
-    for (long x = 0; x < columns; ++x) {
-      double sum = 0;
-      int n = 0;
-      for (long v = std::max(0L, y - reach); v <= std::min(rows - 1, y + reach); ++v)
-        for (long u = std::max(0L, x - reach); u <= std::min(columns - 1, x + reach); ++u)
-          if (u != x || v != y) sum += variance(u, v), ++n;
-      if (variance(x, y) < share * sum / n) r.quality[static_cast<size_t>(y * columns + x)] |= quality_heavy_tail;
-    }
+  flag_heavy_tails(of, r.columns, neighbours_, r.quality);
 }
 
 CaptureResult ResultBuilder::finish() {
-  if (neighbours_) flag_unlike_neighbours();
+  flag_tails();
   const size_t bands = result_.bands;
   std::vector<double> sum(bands * bands, 0.0);
   for (const std::vector<double>& p : products_)

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "radiometry/truth/truth.h"
+#include "scheduler/budget.h"
 #include "scheduler/scheduler.h"
 
 namespace suite {
@@ -11,19 +12,23 @@ namespace suite {
 // The result of a capture, taken from accumulators problem by problem, so that these need not all be there at once.
 class ResultBuilder {
  public:
-  // bands: of the sensor; reference_band: whose samples decide about the heavy-tail flag.
-  ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth);
+  // bands: of the sensor; reference_band: whose samples decide about the heavy-tail flag; goals: of the problems, kept
+  // by reference.
+  ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth,
+                const Goals& goals);
   // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
   void take(size_t problem, const Accumulators& sums, size_t slot);
   CaptureResult finish();
 
  private:
-  void flag_unlike_neighbours();
+  void flag_tails();
   void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
   CaptureResult result_;
   size_t reference_band_, correlated_every_;
   bool neighbours_;  // problems beside each other look at neighbouring places
   const TruthPlan& truth_;
+  const Goals& goals_;
+  std::vector<float> largest_;  // sample of each problem
   // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands
   // ride on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
   std::vector<std::vector<double>> products_;

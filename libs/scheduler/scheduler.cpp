@@ -50,6 +50,7 @@ class Job {
     for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
+    for (const auto& sensor : sensors_) report_.quality.push_back({sensor->name(), {}});
     try {
       for (const Item& item : items) run_item(item);
     } catch (const Stopped&) {
@@ -175,7 +176,7 @@ class Job {
       };
     if (work.after_pilot) shorten_pilots(work.goals);
     const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth);
+    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth, work.goals);
     sensors_[item.sensor]->begin(capture);
     try {
       run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
@@ -250,9 +251,9 @@ class Job {
 
   void judge(const Item& item, const CaptureWork& work, const Kit& kit, const CaptureResult& r, CaptureLog& log) {
     const size_t values = r.values_per_problem();
+    report_.quality[item.sensor].counts.add(r.quality);
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
-      flagged_ += r.quality[i] & quality_heavy_tail ? 1 : 0;
       if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
         errors.add(r.standard_error[i * values + kit.reference_band] / mean);
       double worst = 0;
@@ -283,7 +284,10 @@ class Job {
                                                         : 0;
     report_.seconds = seconds_since(start_);
     if (with_target_ > 0) report_.share_at_target = at_target_ / with_target_;
-    if (report_.problems) report_.share_flagged = flagged_ / static_cast<double>(report_.problems);
+    for (const auto& [sensor, counts] : report_.quality)
+      if (counts.problems)
+        report_.share_flagged +=
+            static_cast<double>(counts.with(quality_heavy_tail)) / static_cast<double>(report_.problems);
     std::string& s = report_.stopped_by;
     if (report_.stopped)
       s = strf("stopped from outside after %zu of %zu captures", report_.captures, report_.captures_asked);
@@ -324,7 +328,7 @@ class Job {
   std::vector<SensorOutcome> outcomes_;  // of each sensor
   std::set<std::string> doubted_;        // sensors
   ErrorHistogram errors_;
-  double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, flagged_ = 0, target_ = 0;
+  double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, target_ = 0;
   uint32_t cap_ = 0;
 };
 

@@ -12,7 +12,7 @@
 #include "scheduler/budget.h"
 #include "scheduler/doubts.h"
 #include "scheduler/state_store.h"
-#include "sensor/sensor.h"
+#include "sensor/quality.h"
 
 namespace suite {
 
@@ -63,15 +63,16 @@ struct JobReport {
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
   size_t light_bakes = 0;  // environments made or brought to another moment
   double seconds = 0, build_seconds = 0;
-  double deliver_seconds = 0;        // sensors taking their results
-  double share_in_embree = 0;        // of the CPU time of the pipeline
-  double median_relative_error = 0;  // standard error over radiance, reference band, all problems with radiance > 0
-  double share_at_target = 0;        // of the problems of captures with a target
-  double share_flagged = 0;          // of all problems: heavy tails
-  WorstProblem worst;                // at the judged bands; relative_error 0 = none
-  uint32_t time_cap = 0;             // maximum of paths that a time budget was turned into; 0 = none
-  std::string stopped_by;            // one sentence: the rule that ended the run, share at target, worst pixel
-  std::vector<CaptureLog> log;       // in the order in which captures ran
+  double deliver_seconds = 0;          // sensors taking their results
+  double share_in_embree = 0;          // of the CPU time of the pipeline
+  double median_relative_error = 0;    // standard error over radiance, reference band, all problems with radiance > 0
+  double share_at_target = 0;          // of the problems of captures with a target
+  double share_flagged = 0;            // of all problems: heavy tails
+  std::vector<SensorQuality> quality;  // one a sensor, in their order
+  WorstProblem worst;                  // at the judged bands; relative_error 0 = none
+  uint32_t time_cap = 0;               // maximum of paths that a time budget was turned into; 0 = none
+  std::string stopped_by;              // one sentence: the rule that ended the run, share at target, worst pixel
+  std::vector<CaptureLog> log;         // in the order in which captures ran
 };
 
 // Paths that a job will run: exactly for fixed counts, at least for adaptive captures (their pilots).

@@ -104,10 +104,12 @@ struct CaptureResult {
   size_t problems() const { return size_t{columns} * rows; }
   size_t values_per_problem() const { return channels * bins * bands; }
 };
+// What each means, in words: quality.h.
 enum QualityFlag : uint8_t {
-  quality_heavy_tail = 1,  // rare events: a few samples dominate, or neighbours saw what this one did not
+  quality_heavy_tail = 1,  // rare events: the true error may be far beyond the reported one
   quality_failures = 2,    // NaN or negative samples were rejected
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
+  quality_unresolved = 8,  // light behind a smooth refracting surface was not found
 };
 
 // A text that a sensor writes: a log, a table of results.

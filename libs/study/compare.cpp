@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "math/stats.h"
 #include "radiometry/pipeline.h"
+#include "sensor/quality.h"
 
 namespace suite {
 
@@ -60,7 +61,11 @@ Comparison compare_series(const StudyImage::Series& run, const StudyImage::Serie
     mean += reference.radiance[i];
     reference_variance += theirs * theirs;
     difference.add(d);
-    if (i < image.flagged.size() && image.flagged[i]) {
+    const bool flagged = i < image.flagged.size() && image.flagged[i];
+    const bool exceeds = std::fabs(d) > kTailFactor * own + kTailShare * std::fabs(reference.radiance[i]) + 2 * theirs;
+    c.exceeding += exceeds;
+    c.found += exceeds && flagged;
+    if (flagged) {
       ++c.flagged;
     } else if (!(own > 0)) {
       ++c.zero_variance;

@@ -39,6 +39,9 @@ struct Comparison {
   size_t counted = 0;               // problems with a standard error and no flag
   size_t zero_variance = 0;         // problems whose standard error is 0
   size_t flagged = 0;
+  size_t exceeding = 0;  // problems whose error is beyond what a missing flag promises (sensor/quality.h), and beyond
+                         // twice the reference's own standard error on top of it
+  size_t found = 0;      // of these, flagged
 };
 // Error when the images differ in series or sizes, or when the reference is 0 on the mean.
 std::vector<Comparison> compare(const StudyImage& run, const StudyImage& reference);

@@ -13,8 +13,9 @@ namespace {
 const char* kColumns =
     "by_time,budget,seed,seconds,build_seconds,file_seconds,paths,rays,nodes,paths_per_problem,share_trace,share_"
     "sample,share_shade,share_sensor,peak_bytes,"
-    "relative_rmse,bias,bias_error,reference_bias_error,coverage,counted,zero_variance,flagged,efficiency,series,ended";
-constexpr size_t kNumbers = 24;
+    "relative_rmse,bias,bias_error,reference_bias_error,coverage,counted,zero_variance,flagged,exceeding,found,"
+    "efficiency,series,ended";
+constexpr size_t kNumbers = 26;
 
 // Texts stand last and unquoted: commas and ends of line in them become semicolons.
 std::string plain(std::string text) {
@@ -52,6 +53,8 @@ std::string rows_to_csv(const std::vector<StudyRow>& rows, const std::string& id
                              static_cast<double>(f.counted),
                              static_cast<double>(f.zero_variance),
                              static_cast<double>(f.flagged),
+                             static_cast<double>(f.exceeding),
+                             static_cast<double>(f.found),
                              r.efficiency()};
     for (const double v : values) csv += strf("%.17g,", v);
     csv += plain(f.series) + "," + plain(r.ended) + "\n";
@@ -96,7 +99,9 @@ std::vector<StudyRow> rows_from_csv(std::string_view text, const std::string& id
                  v[19],
                  static_cast<size_t>(v[20]),
                  static_cast<size_t>(v[21]),
-                 static_cast<size_t>(v[22])};
+                 static_cast<size_t>(v[22]),
+                 static_cast<size_t>(v[23]),
+                 static_cast<size_t>(v[24])};
     r.ended.assign(comma + 1, end);
     rows.push_back(std::move(r));
   }

@@ -208,10 +208,11 @@ Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std
   page.paragraphs.push_back(strf("Bias: smallest p of %zu tests is %.3g, so the runs %s at 1 %% family-wise.", s.tests,
                                  s.smallest_p, s.unbiased ? "pass" : "FAIL"));
   PageTable slopes{"Slopes of log error (standard error)", {"series", "against seconds", "against paths"}, {}};
-  PageTable points{"Budgets",
-                   {"series", "budget", "runs", "seconds", "RMSE %", "95 % of RMSE", "bias %", "p", "coverage %",
-                    "zero variance %", "flagged %", "efficiency 1/s", "Mpaths/s", "Mrays/s", "Embree %"},
-                   {}};
+  PageTable points{
+      "Budgets",
+      {"series", "budget", "runs", "seconds", "RMSE %", "95 % of RMSE", "bias %", "p", "coverage %", "zero variance %",
+       "flagged %", "beyond %", "of it flagged %", "efficiency 1/s", "Mpaths/s", "Mrays/s", "Embree %"},
+      {}};
   for (const StudySeries& series : s.series) {
     slopes.rows.push_back({series.name, strf("%.3f (%.3f)", series.slope_seconds, series.slope_seconds_error),
                            strf("%.3f (%.3f)", series.slope_paths, series.slope_paths_error)});
@@ -221,6 +222,8 @@ Page page_of(const StudySummary& s, const std::vector<StudyRow>& rows, const std
                              strf("%.4g to %.4g", 100 * p.low, 100 * p.high), strf("%+.2g", 100 * p.bias),
                              strf("%.2g", p.bias_p), std::isnan(p.coverage) ? "none" : strf("%.1f", 100 * p.coverage),
                              strf("%.2f", 100 * p.zero_share), strf("%.2f", 100 * p.flagged_share),
+                             strf("%.2f", 100 * p.exceeding_share),
+                             std::isnan(p.found_share) ? "none" : strf("%.1f", 100 * p.found_share),
                              strf("%.3g", p.efficiency), strf("%.3g", p.paths_per_second / 1e6),
                              strf("%.3g", p.rays_per_second / 1e6), strf("%.0f", 100 * p.share_in_embree)});
   }
@@ -252,7 +255,8 @@ Json json_of(const StudySummary& s, const std::vector<StudyRow>& rows) {
       q.set("relative_rmse", p.rmse), q.set("low", p.low), q.set("high", p.high), q.set("bias", p.bias),
           q.set("bias_error", p.bias_error), q.set("bias_p", p.bias_p);
       q.set("coverage", p.coverage), q.set("zero_variance_share", p.zero_share),
-          q.set("flagged_share", p.flagged_share), q.set("efficiency", p.efficiency);
+          q.set("flagged_share", p.flagged_share), q.set("exceeding_share", p.exceeding_share),
+          q.set("found_share", p.found_share), q.set("false_share", p.false_share), q.set("efficiency", p.efficiency);
       q.set("paths_per_second", p.paths_per_second), q.set("rays_per_second", p.rays_per_second),
           q.set("share_in_embree", p.share_in_embree), q.set("share_sample", p.share_sample),
           q.set("share_shade", p.share_shade), q.set("share_sensor", p.share_sensor),

@@ -17,7 +17,7 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
   p.runs = static_cast<int>(runs.size());
   const double n = static_cast<double>(runs.size());
   RunningStats logs;
-  double scatter = 0, shared = 0, covered = 0, counted = 0;
+  double scatter = 0, shared = 0, covered = 0, counted = 0, exceeding = 0, found = 0;
   for (const StudyRow* r : runs) {
     const Comparison& f = r->figures;
     const double pixels = static_cast<double>(f.counted + f.zero_variance + f.flagged);
@@ -32,6 +32,10 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
     counted += static_cast<double>(f.counted);
     p.zero_share += static_cast<double>(f.zero_variance) / pixels / n;
     p.flagged_share += static_cast<double>(f.flagged) / pixels / n;
+    p.exceeding_share += static_cast<double>(f.exceeding) / pixels / n;
+    p.false_share += static_cast<double>(f.flagged - f.found) / pixels / n;
+    exceeding += static_cast<double>(f.exceeding);
+    found += static_cast<double>(f.found);
     p.efficiency += r->efficiency() / n;
     p.rays_per_second += r->rays / r->seconds / n;
     p.paths_per_second += r->paths / r->seconds / n;
@@ -42,6 +46,7 @@ StudyPoint point_of(const std::vector<const StudyRow*>& runs) {
     p.build_seconds += r->build_seconds / n;
     p.file_seconds += r->file_seconds / n;
   }
+  p.found_share = exceeding > 0 ? found / exceeding : std::numeric_limits<double>::quiet_NaN();
   p.coverage = counted > 0 ? covered / counted : std::numeric_limits<double>::quiet_NaN();
   const double wide = p.runs > 1 ? student_t_quantile(0.95, p.runs - 1) * logs.stderr_of_mean() : 0;
   p.rmse = std::exp(logs.mean());

@@ -17,6 +17,9 @@ struct StudyPoint {
   double bias_p = 1;                // two-sided
   double coverage = 0;              // share of the counted problems of all runs; NaN when none was counted
   double zero_share = 0, flagged_share = 0;
+  double exceeding_share = 0;  // errors beyond what a missing flag promises
+  double found_share = 0;      // of these, flagged; NaN when there was none
+  double false_share = 0;      // flagged, and the error within the promise
   double efficiency = 0, rays_per_second = 0, paths_per_second = 0;
   double share_in_embree = 0, share_sample = 0, share_shade = 0, share_sensor = 0, build_seconds = 0, file_seconds = 0;
 };

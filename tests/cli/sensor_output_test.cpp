@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/files.h"
@@ -82,6 +83,35 @@ TEST_F(SensorOutput, FilesHoldACaptureATaskOrAll) {
   const std::vector<double> rows = all.read_lines(8, 4);
   EXPECT_EQ(rows, EnviImage(*folder_ / "capture/uas_0002.img").read_all());
   EXPECT_EQ(rows, EnviImage(*folder_ / "task/uas_out.img").read_lines(8, 4));
+}
+
+// No file held the flags, so nobody could see which pixels they were about.
+TEST_F(SensorOutput, FlagsAreAnImageAndAreCounted) {
+  // One scattering event a path: what the lit box sends to the ground is cut, in a ring around it.
+  for (const char* files : {"capture", "task", "simulation"}) {
+    const std::string out = std::string("flags_") + files, name = out == "flags_task" ? "uas_out" : "uas";
+    std::string text = two_tasks(files);
+    render("max_nodes: 1\n" + text, out);
+    const std::string stem = out + (out == "flags_capture" ? "/uas_0001" : "/" + name);
+    const EnviImage radiance(*folder_ / (stem + ".img")), quality(*folder_ / (stem + "_quality.img"));
+    EXPECT_EQ(quality.header().type, EnviType::uint8);
+    EXPECT_EQ(quality.header().bands, 1u);
+    EXPECT_EQ(quality.header().lines, radiance.header().lines) << out;
+    EXPECT_THAT(quality.header().description, HasSubstr("1 = heavy_tail: rare events"));
+    const std::pair<std::string, std::string> bits{"quality bits",
+                                                   "{1 heavy_tail, 2 failures, 4 truncated, 8 unresolved}"};
+    EXPECT_THAT(quality.header().extra, testing::Contains(bits));
+    const std::vector<double> pixels = quality.read_all();
+    EXPECT_GT(std::count(pixels.begin(), pixels.end(), 4), 0) << "cut at the first node";
+    if (std::string(files) != "simulation") continue;
+    // All pixels of the run are in this image, so the log counts the same.
+    const std::string log = read_text(*folder_ / (out + "/render.json"));
+    EXPECT_THAT(log, HasSubstr(strf("\"pixels\": %zu", pixels.size())));
+    EXPECT_THAT(log, HasSubstr(strf("\"truncated\": %ld,\n",
+                                    static_cast<long>(std::count_if(pixels.begin(), pixels.end(), [](double q) {
+                                      return static_cast<int>(q) & 4;
+                                    })))));
+  }
 }
 
 TEST_F(SensorOutput, PushBroomLinesAndLogsAndCounts) {
@@ -165,6 +195,12 @@ TEST_F(SensorOutput, MapsCarryTheirCoordinates) {
   EXPECT_EQ(envi.header().map_info[3], "-7");   // west edge
   EXPECT_EQ(envi.header().map_info[4], "5.5");  // north edge
   const Raster tiff = read_raster(*folder_ / "map/map.tif"), exr = read_raster(*folder_ / "map/map.exr");
+  const std::vector<double> flags = EnviImage(*folder_ / "map/map_quality.img").read_all();
+  for (const char* file : {"map/map_quality.tif", "map/map_quality.exr"}) {
+    const Raster also = read_raster(*folder_ / file);
+    ASSERT_EQ(also.values.size(), flags.size()) << file;
+    for (size_t i = 0; i < flags.size(); ++i) ASSERT_EQ(also.values[i], static_cast<float>(flags[i])) << file;
+  }
   const std::vector<double> values = envi.read_all();
   for (size_t i = 0; i < values.size(); ++i) {
     ASSERT_EQ(tiff.values[i], static_cast<float>(values[i]));

@@ -5,77 +5,12 @@
 
 #include <cmath>
 
-#include "math/sampling.h"
 #include "math/stats.h"
 #include "study/compare.h"
-#include "tests/support/radiometry_kit.h"
+#include "tests/support/area_kit.h"
 
 namespace suite::test {
 namespace {
-
-// Parallel rays, straight up or down, each problem over one square metre; one band.
-class AreaSensor final : public Sensor {
- public:
-  AreaSensor(double z, Dir direction, uint32_t edge, Convergence goal, bool neighbours)
-      : z_(z), direction_(direction), bands_(one_band()), state_(make_state(bands_, 0.02)) {
-    Capture c;
-    c.columns = c.rows = edge;
-    c.neighbours = neighbours;
-    c.convergence = goal;
-    tasks_.push_back({"area", {}, {c}});
-  }
-  std::string name() const override { return "area"; }
-  std::span<const SpectralState> states() const override { return {&state_, 1}; }
-  std::span<const Band> bands(size_t) const override { return bands_; }
-  std::span<const Task> tasks() const override { return tasks_; }
-  SensorRay ray(const RayRequest& r) const override {
-    const double x = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
-                 y = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
-    return {{{x, y, z_}, direction_, 0}, 1};
-  }
-  void accept(CaptureResult&& r) override { result = std::move(r); }
-  CaptureResult result;
-
- private:
-  double z_;
-  Dir direction_;
-  std::vector<Band> bands_;
-  SpectralState state_;
-  std::vector<Task> tasks_;
-};
-
-constexpr uint32_t kEdge = 48;
-
-// In every square metre a square of area `share` that differs from the rest, at a place of its own.
-std::shared_ptr<Scene> squares(double share, bool holes) {
-  const double side = std::sqrt(share);
-  std::vector<Vec3> v;
-  std::vector<uint32_t> few, rest;
-  auto rectangle = [&](double x0, double y0, double x1, double y1, std::vector<uint32_t>& to) {
-    const auto at = static_cast<uint32_t>(v.size());
-    for (const Vec3 p : {Vec3{x0, y0, 0}, Vec3{x1, y0, 0}, Vec3{x1, y1, 0}, Vec3{x0, y1, 0}}) v.push_back(p);
-    for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) to.push_back(at + i);
-  };
-  Pcg32 rng(17);
-  for (uint32_t j = 0; j < kEdge; ++j)
-    for (uint32_t i = 0; i < kEdge; ++i) {
-      const double x = i + rng.uniform() * (1 - side), y = j + rng.uniform() * (1 - side);
-      rectangle(i, j, i + 1, y, rest), rectangle(i, y + side, i + 1, j + 1, rest);
-      rectangle(i, y, x, y + side, rest), rectangle(x + side, y, i + 1, y + side, rest);
-      if (!holes) rectangle(x, y, x + side, y + side, few);
-    }
-  ModelSpec mirror{"mirror", {}, {{"reflectance", Curve::constant(1)}}, {}, nullptr};
-  std::vector<Mesh> meshes{mesh_of(v, rest, 0)};
-  if (!holes) meshes.push_back(mesh_of(v, few, 1));
-  return scene_of(std::move(meshes), {material("black", lambert(0)), material("mirror", mirror)});
-}
-
-struct Place {
-  const char* name;
-  double share;
-  bool holes;  // the sky through a canopy from below; else mirrors on a black floor from above
-};
-constexpr Place kGap{"canopy gap", 0.02, true}, kGlint{"glint", 0.005, false};
 
 struct Bias {
   double relative, z, mean_paths;
@@ -145,7 +80,6 @@ TEST(StopRules, ThePapersRuleIsBiasedLow) {
   }
 }
 
-// A floor with a box on it under sun and sky, and a corner of two walls: noise from shadow edges and exchange.
 // half_angle: of the sun, rad.
 StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint32_t n, uint64_t seed,
                     double inflate = 1) {
@@ -171,18 +105,6 @@ double coverage_of(const StudyImage& image, const StudyImage& reference, double 
               image.paths[0], half_angle, 100 * c.coverage, c.counted, c.zero_variance, c.flagged);
   EXPECT_GT(c.counted, 1500u);
   return c.coverage;
-}
-
-std::shared_ptr<Scene> block() {
-  Mesh ground = mesh_of({{-50, -50, 0}, {98, -50, 0}, {98, 98, 0}, {-50, 98, 0}}, {0, 1, 2, 0, 2, 3}, 0);
-  return scene_of({ground, box({10, 10, 0}, {30, 26, 12}, 1, true)},
-                  {material("ground", lambert(0.3)), material("wall", lambert(0.6))});
-}
-std::shared_ptr<Scene> court() {
-  Mesh ground = mesh_of({{-50, -50, 0}, {98, -50, 0}, {98, 98, 0}, {-50, 98, 0}}, {0, 1, 2, 0, 2, 3}, 0);
-  return scene_of({ground, box({-4, -4, 0}, {0, 52, 14}, 1, true), box({-4, -4, 0}, {52, 0, 14}, 1, true),
-                   box({48, -4, 0}, {52, 52, 14}, 1, true)},
-                  {material("ground", lambert(0.5)), material("wall", lambert(0.7))});
 }
 
 TEST(Coverage, NinetyFivePerCentIntervalsHold) {
