@@ -107,6 +107,7 @@ enum QualityFlag : uint8_t {
   quality_heavy_tail = 1,  // rare events: a few samples dominate, or neighbours saw what this one did not
   quality_failures = 2,    // NaN or negative samples were rejected
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
+  quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
 };
 
 // A text that a sensor writes: a log, a table of results.
