@@ -46,6 +46,29 @@ Json json_of(const SensorQuality& q) {
   return j;
 }
 
+// What each sensor's results lack.
+Json json_of(std::span<const JobReport::SensorShortfall> sensors) {
+  Json all = Json::array();
+  for (const auto& [name, lacks] : sensors) {
+    Json j = Json::object();
+    j.set("sensor", name);
+    j.set("problems", lacks.problems);
+    const auto part = [&](const char* key, const Shortfall::Part& of) {
+      Json p = Json::object();
+      p.set("problems", of.problems);
+      p.set("mean_share", of.mean());
+      p.set("largest_share", of.most);
+      j.set(key, std::move(p));
+    };
+    part("unresolved", lacks.unresolved);
+    part("truncated", lacks.truncated);
+    j.set("rejecting_problems", lacks.rejecting);
+    j.set("rejected_samples", lacks.rejected);
+    all.push(std::move(j));
+  }
+  return all;
+}
+
 }  // namespace
 
 void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
@@ -71,6 +94,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   Json quality = Json::array();
   for (const SensorQuality& q : r.quality) quality.push(json_of(q));
   j.set("quality", std::move(quality));
+  j.set("lacks", json_of(r.shortfalls));
   Json captures = Json::array();
   for (const CaptureLog& c : r.log) {
     Json one = json_of(c.statistics);

@@ -176,9 +176,8 @@ void tell(const JobReport& r) {
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
               100 * r.statistics.truncated / paths));
-  if (r.statistics.failures)
-    warn(strf("%llu samples were not finite or negative and were left out",
-              static_cast<unsigned long long>(r.statistics.failures)));
+  for (const JobReport::SensorShortfall& s : r.shortfalls)
+    for (const std::string& sentence : sentences(s.sensor, s.shortfall)) warn(sentence);
 }
 
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
@@ -273,6 +272,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
+  options.warn = warn;
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());

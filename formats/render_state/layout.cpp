@@ -50,8 +50,8 @@ Budget read_budget(h5::Reader& reader) {
 namespace {
 
 double bytes_of(const CaptureShape& s) {
-  return static_cast<double>(s.problems()) *
-         (8.0 * static_cast<double>(s.values) * s.scrambles + 8 + 16 + 8.0 * static_cast<double>(s.truth_slots));
+  return static_cast<double>(s.problems()) * (8.0 * static_cast<double>(s.values) * (s.scrambles + 1) +
+                                              4 * s.scrambles + 36 + 8.0 * static_cast<double>(s.truth_slots));
 }
 
 void check_room(const std::string& path, const std::vector<CaptureShape>& shapes) {
@@ -93,9 +93,11 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
       w.column(g + "/needs", h5::native<double>(), n, "1");
       w.column(g + "/sums", h5::native<double>(), n * s.values * static_cast<size_t>(s.scrambles), "W/(m2 sr um)");
       w.column(g + "/paths", h5::native<uint32_t>(), n, "1");
-      w.column(g + "/failures", h5::native<uint32_t>(), n, "1");
+      w.column(g + "/failures", h5::native<uint32_t>(), n * static_cast<size_t>(s.scrambles), "1");
       w.column(g + "/truncated", h5::native<float>(), n, "1");
       w.column(g + "/largest", h5::native<float>(), n, "W/(m2 sr um)");
+      w.column(g + "/missing", h5::native<double>(), n * s.values, "W/(m2 sr um)");
+      w.column(g + "/missing_of", h5::native<double>(), 2 * n, "SI");
       w.column(g + "/truth", h5::native<double>(), n * s.truth_slots, "1");
     }
     w.close();

@@ -19,7 +19,8 @@ using namespace render_state;
 // Where the columns of one capture stand in the file.
 struct Columns {
   CaptureShape shape;
-  uint64_t valid = 0, piloted = 0, needs = 0, sums = 0, paths = 0, failures = 0, truncated = 0, largest = 0, truth = 0;
+  uint64_t valid = 0, piloted = 0, needs = 0, sums = 0, paths = 0, failures = 0, truncated = 0, largest = 0,
+           missing = 0, missing_of = 0, truth = 0;
 };
 
 class StateFile final : public StateStore {
@@ -59,22 +60,30 @@ class StateFile final : public StateStore {
                    count = std::min(n - first, size_t{kRangeRows} * c.shape.columns);
       std::vector<double> stored(wide * count);
       get(c.sums + first * wide * 8, stored.data(), stored.size() * 8);
-      std::vector<uint32_t> paths(count), failures(count);
+      const size_t scrambles = static_cast<size_t>(c.shape.scrambles);
+      std::vector<uint32_t> paths(count), failures(count * scrambles);
       std::vector<float> truncated(count), largest(count);
       get(c.paths + first * 4, paths.data(), count * 4);
       if (std::any_of(paths.begin(), paths.end(), [](uint32_t x) { return x > (1u << 31); }))
         fail("holds more paths than can be");
-      get(c.failures + first * 4, failures.data(), count * 4);
+      get(c.failures + first * scrambles * 4, failures.data(), failures.size() * 4);
       get(c.truncated + first * 4, truncated.data(), count * 4);
       get(c.largest + first * 4, largest.data(), count * 4);
       for (size_t i = 0; i < count; ++i) {
-        for (int s = 0; s < std::min(c.shape.scrambles, sums.scrambles()); ++s)
+        sums.set_paths(first + i, paths[i]);
+        for (int s = 0; s < std::min(c.shape.scrambles, sums.scrambles()); ++s) {
           std::copy_n(&stored[i * wide + static_cast<size_t>(s) * c.shape.values], c.shape.values,
                       sums.sums(first + i, s));
-        sums.set_paths(first + i, paths[i]);
-        sums.failures(first + i) = failures[i];
+          const uint32_t rejected = failures[i * scrambles + static_cast<size_t>(s)];
+          if (rejected > dealt(paths[i], static_cast<uint32_t>(s))) fail("holds more rejected samples than samples");
+          sums.failures(first + i, s) = rejected;
+        }
         sums.truncated(first + i) = truncated[i];
         sums.largest(first + i) = largest[i];
+      }
+      if (sums.keeps_missing()) {
+        get(c.missing + first * c.shape.values * 8, sums.missing(first).light, count * c.shape.values * 8);
+        get(c.missing_of + first * 16, sums.missing(first).reference, count * 16);
       }
       get(c.truth + first * c.shape.truth_slots * 8, sums.truth(first), count * c.shape.truth_slots * 8);
     }
@@ -108,7 +117,8 @@ class StateFile final : public StateStore {
     std::vector<uint32_t> paths, failures;
     std::vector<float> truncated, largest;
     for (size_t i = first; i < first + count; ++i) {
-      paths.push_back(sums.paths(i)), failures.push_back(sums.failures(i));
+      paths.push_back(sums.paths(i));
+      for (int s = 0; s < c.shape.scrambles; ++s) failures.push_back(s < sums.scrambles() ? sums.failures(i, s) : 0);
       truncated.push_back(sums.truncated(i)), largest.push_back(sums.largest(i));
     }
     if (sums.scrambles() == c.shape.scrambles) {
@@ -121,9 +131,13 @@ class StateFile final : public StateStore {
       put(c.sums + first * wide * 8, padded.data(), padded.size() * 8);
     }
     put(c.paths + first * 4, paths.data(), count * 4);
-    put(c.failures + first * 4, failures.data(), count * 4);
+    put(c.failures + first * static_cast<size_t>(c.shape.scrambles) * 4, failures.data(), failures.size() * 4);
     put(c.truncated + first * 4, truncated.data(), count * 4);
     put(c.largest + first * 4, largest.data(), count * 4);
+    if (sums.keeps_missing()) {  // a hole in the file, all zeros, where nothing is missing
+      put(c.missing + first * c.shape.values * 8, sums.missing_light(first), count * c.shape.values * 8);
+      put(c.missing_of + first * 16, sums.missing_of(first), count * 16);
+    }
     put(c.truth + first * c.shape.truth_slots * 8, sums.truth(first), count * c.shape.truth_slots * 8);
     sync();
     mark(c.valid + range, 1);
@@ -169,9 +183,11 @@ class StateFile final : public StateStore {
     c.sums = at("/sums", h5::native<double>(), "W/(m2 sr um)",
                 n * static_cast<long long>(c.shape.values) * c.shape.scrambles);
     c.paths = at("/paths", h5::native<uint32_t>(), "1", n);
-    c.failures = at("/failures", h5::native<uint32_t>(), "1", n);
+    c.failures = at("/failures", h5::native<uint32_t>(), "1", n * c.shape.scrambles);
     c.truncated = at("/truncated", h5::native<float>(), "1", n);
     c.largest = at("/largest", h5::native<float>(), "W/(m2 sr um)", n);
+    c.missing = at("/missing", h5::native<double>(), "W/(m2 sr um)", n * static_cast<long long>(c.shape.values));
+    c.missing_of = at("/missing_of", h5::native<double>(), "SI", 2 * n);
     c.truth = at("/truth", h5::native<double>(), "1", n * static_cast<long long>(c.shape.truth_slots));
     return c;
   }
@@ -220,7 +236,7 @@ bool roomy(const std::string& path, const std::vector<CaptureShape>& shapes) {
 void copy_state(StateFile& from, StateFile& to, const std::vector<CaptureShape>& shapes) {
   for (size_t c = 0; c < shapes.size(); ++c) {
     const CaptureShape& s = shapes[c];
-    Accumulators sums(s.problems(), s.values, s.scrambles, s.truth_slots);
+    Accumulators sums(s.problems(), s.values, s.scrambles, s.truth_slots, true);
     std::vector<double> needs;
     from.load(c, sums, needs);
     if (!needs.empty()) to.save_needs(c, needs);

@@ -35,6 +35,7 @@ struct Node {
   double optical_length = 0;   // m from the sensor, sum of segment lengths
   bool sunlit = false;         // the explicit sample of the sun arrived
   bool has_direct = false;     // explicit light that did not factor stands in the wave's store
+  bool has_missed = false;     // light that did not arrive, but is known of, stands in the wave's store (lost_light.h)
   double spectral_factor = 1;  // c: 1 / sum over knots of P_k r_k of the prefix that leads here (1 with one knot)
   // Bit s is set when light[s] arrived and its scattering factored; the other entries hold nothing.
   uint8_t lights = 0;
@@ -64,10 +65,13 @@ struct Path {
   double sun_factor = 0;     // the same when the Sun was met by chance, shared with explicit sampling
   double moon_factor = 0;
   double sky_factor = 0;
-  double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
+  double truncated = 0;  // throughput at the reference that was cut at the maximum number of nodes
+  // Of light that is known to have been missed, the least chance of having met it; infinite when there is none.
+  double missed_chance = std::numeric_limits<double>::infinity();
   int size = 0;                  // nodes
   bool received = false;         // node 0 is the sensor's own receiver (receiver.h), no surface
   bool scattered_first = false;  // a medium scattered it before it met anything
+  bool missed() const { return missed_chance < std::numeric_limits<double>::infinity(); }
   int first_met() const { return received ? 1 : 0; }  // number of the node of the first surface
 
   // Member by member: a temporary would be cleared and copied for every path.
@@ -78,6 +82,7 @@ struct Path {
     end = PathEnd::absorbed;
     escape_factor = 1;
     sun_factor = moon_factor = sky_factor = truncated = 0;
+    missed_chance = std::numeric_limits<double>::infinity();
     received = scattered_first = false;
   }
 };

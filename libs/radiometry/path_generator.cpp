@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "radiometry/lost_light.h"
 #include "radiometry/receiver.h"
 #include "radiometry/volume_paths.h"
 
@@ -12,6 +13,7 @@ namespace suite {
 
 namespace {
 constexpr uint32_t kLobes = kLobeBlock;
+constexpr double kChainsCarry = 0.25;
 }  // namespace
 
 PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const Environment& environment,
@@ -33,9 +35,12 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
   if (environment.lamps && !paper_)
     lamp_draws_ =
         static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
+  if ((environment.sun || environment.moon || environment.lamps) &&
+      LostLight::possible(surface.tracer().scene(), optics, options))
+    lost_ = std::make_unique<LostLight>(surface, optics);
   if (!optics.media().empty()) {
     volume_ = std::make_unique<VolumePaths>(surface, optics, environment, options,
-                                            std::span<const double>(knot_probability_, knots_));
+                                            std::span<const double>(knot_probability_, knots_), lost_.get());
     transmission_.resize(optics.state().size());
   }
 }
@@ -117,6 +122,7 @@ void PathGenerator::complete(Wave& wave, RunStatistics& statistics) {
       volume_->look(wave, live_, statistics);
     else
       see(wave, parallel, depth == 0, statistics.trace);
+    if (lost_) look_for_lost(wave, statistics.trace);
     for (size_t i = 0; i < wave.rays.size(); ++i) {
       const uint32_t p = wave.owner[i];
       if (wave.blocked[i] || (environment_.earth &&
@@ -158,7 +164,7 @@ Node& PathGenerator::add_node(Wave& wave, uint32_t p, const Hit& hit) {
   live.length += hit.distance;
   node.optical_length = live.length;
   node.spectral_factor = 1 / live.shares;
-  node.continues = node.has_direct = node.sunlit = false;
+  node.continues = node.has_direct = node.has_missed = node.sunlit = false;
   node.lights = 0;
   node.glow = nullptr;
   return node;
@@ -270,8 +276,9 @@ bool PathGenerator::go_on(Wave& wave, uint32_t p) {
   if (!(brightest > 0) && knots_ == 1 && optics_.state().size() == 1) return false;  // nothing more can arrive
   brightest /= live.shares;
 
+  // Chains of Dirac events that still carry much play no roulette: there is nothing else that could vary.
   double survival = 1;
-  if (path.size > options_.roulette_after) {
+  if (path.size > options_.roulette_after && !(drawn->delta && brightest > kChainsCarry)) {
     survival = std::clamp(brightest, 0.05, 1.0);
     if (live.stream.hashed(live.sample, kRoulettePurpose + 16 * static_cast<uint32_t>(n)) >= survival) {
       path.end = PathEnd::roulette;

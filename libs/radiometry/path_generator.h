@@ -33,6 +33,7 @@ inline constexpr uint32_t kLobeBlock = 128, kLampBlock = 512, kMoonBlock = 640;
 // kRoulettePurpose + 16 n at node n.
 inline constexpr uint32_t kKnotPurpose = 1, kRoulettePurpose = 2;
 
+class LostLight;
 class VolumePaths;
 
 class PathGenerator {
@@ -70,6 +71,16 @@ class PathGenerator {
   void meet_glow(Wave& wave, uint32_t p);
   // ray: of wave.rays, which found the source in sight.
   void add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ray);
+  // Adds what an explicit sample sends through the node to `sum`: scale times its radiance times w in the wave's
+  // scratch spectrum.
+  void add_shining(Wave& wave, const Node& node, const ExplicitLight& light, float scale, std::span<float> sum) const;
+  // Estimates what of the light that did not arrive has only been bent on its way (lost_light.h).
+  void look_for_lost(Wave& wave, TraceStatistics& statistics);
+  void miss(Wave& wave, uint32_t p, uint8_t slot, size_t ray, double passes);
+  // Density with which continuations are drawn from `out` to `in` (both in the shading frame) and reach the source,
+  // over all knots: sum P_k r_k p_k reach_k.
+  double density_by_chance(const Live& live, const ScatterModel& model, Dir out, Dir in,
+                           std::span<const double> reach) const;
   bool go_on(Wave& wave, uint32_t p);
 
   const Surface& surface_;
@@ -83,6 +94,7 @@ class PathGenerator {
   double knot_probability_[kMaxKnots];
   std::vector<size_t> knot_bins_;
   std::vector<Live> live_;
+  std::unique_ptr<LostLight> lost_;      // null where no light can be lost
   std::unique_ptr<VolumePaths> volume_;  // null where the scene has no media
   TraceStatistics probing_;              // of rays that look for bodies around sensors
   std::vector<float> transmission_;

@@ -85,6 +85,23 @@ void add_segment(Wave& wave, size_t p, int n, std::span<float> radiance) {
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = gathered[i] + through[i] * radiance[i];
 }
 
+// The same for light that was missed.
+void add_missed(Wave& wave, size_t p, int n, bool continues, std::span<float> radiance) {
+  const Node& node = wave.node(p, n);
+  if (continues)
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] *= node.bounce_scale * node.bounce_spectrum[i];
+  else
+    std::fill(radiance.begin(), radiance.end(), 0.0f);
+  if (!node.has_missed) return;
+  const std::span<float> missed = wave.missed(p, n);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += missed[i];
+}
+
+void add_missed_on_way(Wave& wave, size_t p, int n, std::span<float> radiance) {
+  const std::span<float> through = wave.through(p, n), missed = wave.missed_on_way(p, n);
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = missed[i] + through[i] * radiance[i];
+}
+
 }  // namespace
 
 void process_path(Wave& wave, size_t p, const Environment& environment, std::span<float> radiance) {
@@ -124,6 +141,26 @@ void process_single(Wave& wave, size_t p, const Environment& environment, std::s
     through_air(*air, path.ray.origin, -first.out, first.hit.distance, first.spectral_factor, wave, single);
   if (path.weight != 1)
     for (float& x : single) x *= static_cast<float>(path.weight);
+}
+
+void process_missed(Wave& wave, size_t p, const Environment& environment, bool single, std::span<float> radiance) {
+  const Path& path = wave.path(p);
+  const bool media = wave.has_media();
+  const Atmosphere* air = media ? nullptr : environment.atmosphere.get();
+  std::fill(radiance.begin(), radiance.end(), 0.0f);
+  const int last = single ? std::min(path.size, 1) : path.size;
+  if (media && last == path.size && (path.size == 0 || wave.node(p, path.size - 1).continues))
+    add_missed_on_way(wave, p, path.size, radiance);
+  for (int n = last - 1; n >= 0; --n) {
+    const Node& node = wave.node(p, n);
+    add_missed(wave, p, n, node.continues && (!single || path.size < 2), radiance);
+    if (media) add_missed_on_way(wave, p, n, radiance);
+    if (air)
+      through_air(*air, n == 0 ? path.ray.origin : wave.node(p, n - 1).at.position, -node.out, node.hit.distance, 0,
+                  wave, radiance);
+  }
+  if (path.weight != 1)
+    for (float& x : radiance) x *= static_cast<float>(path.weight);
 }
 
 }  // namespace suite

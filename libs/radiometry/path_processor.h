@@ -21,4 +21,8 @@ void process_path(Wave& wave, size_t p, const Environment& environment, std::spa
 void process_single(Wave& wave, size_t p, const Environment& environment, std::span<const float> radiance,
                     std::span<float> single);
 
+// The light that the path is known to have missed (Path::missed), as radiance at the sensor. single: only what would
+// have been scattered once. Overwrites the wave's scratch spectra but the second.
+void process_missed(Wave& wave, size_t p, const Environment& environment, bool single, std::span<float> radiance);
+
 }  // namespace suite

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "radiometry/lost_light.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/volume_paths.h"
 
@@ -179,14 +180,10 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
   std::fill_n(reach, knots_, 1.0);
   const bool dim = volume_ && volume_->dims(ray, transmission_, {reach, knots_});
   double denominator = live.shares;
-  if (light.density > 0) {
-    float pdf[kMaxKnots];
-    model.pdf(out, in, {pdf, knots_});
-    double by_chance = 0;
-    for (size_t k = 0; k < knots_ && !paper_; ++k)
-      by_chance += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
-    denominator = shared_density(live.shares * light.density, by_chance, slot <= light_moon);
-  }
+  if (light.density > 0)
+    denominator =
+        shared_density(live.shares * light.density,
+                       paper_ ? 0 : density_by_chance(live, model, out, in, {reach, knots_}), slot <= light_moon);
   const float scale = static_cast<float>(light.radiance_scale / denominator);
   const Atmosphere* air = environment_.atmosphere.get();
   if (light.spectrum && !air && !dim) {
@@ -201,9 +198,25 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
   model.eval(out, in, w);
   if (dim)
     for (size_t i = 0; i < w.size(); ++i) w[i] *= transmission_[i];
-  float* direct = wave.direct(p, n).data();
-  if (!node.has_direct) std::fill_n(direct, w.size(), 0.0f);
+  const std::span<float> direct = wave.direct(p, n);
+  if (!node.has_direct) std::fill(direct.begin(), direct.end(), 0.0f);
   node.has_direct = true;
+  add_shining(wave, node, light, scale, direct);
+}
+
+double PathGenerator::density_by_chance(const Live& live, const ScatterModel& model, Dir out, Dir in,
+                                        std::span<const double> reach) const {
+  float pdf[kMaxKnots];
+  model.pdf(out, in, {pdf, knots_});
+  double sum = 0;
+  for (size_t k = 0; k < knots_; ++k) sum += knot_probability_[k] * live.relative[k] * pdf[k] * reach[k];
+  return sum;
+}
+
+void PathGenerator::add_shining(Wave& wave, const Node& node, const ExplicitLight& light, float scale,
+                                std::span<float> sum) const {
+  const Atmosphere* air = environment_.atmosphere.get();
+  const std::span<float> w = wave.scratch();
   if (!light.spectrum || air) {
     // What arrives, as a spectrum of its own: the sky's in this direction, through the air.
     const std::span<float> arriving = wave.scratch2();
@@ -217,10 +230,52 @@ void PathGenerator::add_explicit(Wave& wave, uint32_t p, uint8_t slot, size_t ra
       std::copy_n(light.spectrum, arriving.size(), arriving.begin());
     else
       environment_.sky->add(light.direction, 1, arriving);
-    for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * arriving[i] * scale;
+    for (size_t i = 0; i < w.size(); ++i) sum[i] += w[i] * arriving[i] * scale;
     return;
   }
-  for (size_t i = 0; i < w.size(); ++i) direct[i] += w[i] * light.spectrum[i] * scale;
+  for (size_t i = 0; i < w.size(); ++i) sum[i] += w[i] * light.spectrum[i] * scale;
+}
+
+void PathGenerator::look_for_lost(Wave& wave, TraceStatistics& statistics) {
+  if (!volume_) {  // with media, visibility has found it on its way
+    lost_->begin(wave.rays.size());
+    for (size_t i = 0; i < wave.rays.size(); ++i)
+      if (wave.blocked[i] && wave.light[i] != light_sky) lost_->want(i);
+    lost_->look(wave.rays, wave.distance, statistics);
+  }
+  for (size_t i = 0; i < wave.rays.size(); ++i) {
+    if (!wave.blocked[i] || wave.light[i] == light_sky) continue;
+    const double passes = volume_ ? volume_->passes(i) : lost_->passes(i);
+    if (passes > 0) miss(wave, wave.owner[i], wave.light[i], i, passes);
+  }
+}
+
+void PathGenerator::miss(Wave& wave, uint32_t p, uint8_t slot, size_t ray, double passes) {
+  if (environment_.earth &&
+      environment_.earth->meet(wave.rays[ray].origin, wave.rays[ray].direction, wave.distance[ray]))
+    return;
+  const Live& live = live_[p];
+  Path& path = wave.path(p);
+  Node& node = wave.node(p, path.size - 1);
+  const ExplicitLight& light = node.light[slot];
+  double reach[kMaxKnots];
+  std::fill_n(reach, knots_, 1.0);
+  const bool dim = volume_ && volume_->dims(ray, transmission_, {reach, knots_});
+  const ScatterModel& model = *node.at.baked->model;
+  const Dir out = node.at.frame.to_local(node.out), in = node.at.frame.to_local(light.direction);
+  const double by_chance = density_by_chance(live, model, out, in, {reach, knots_});
+  const double chance = light.density > 0 ? by_chance / (live.shares * light.density) : 0;
+  if (!(by_chance > 0) || chance > LostLight::kOftenMet) return;
+  const std::span<float> w = wave.scratch();
+  model.eval(out, in, w);
+  if (dim)
+    for (size_t i = 0; i < w.size(); ++i) w[i] *= transmission_[i];
+  const std::span<float> missed = wave.missed(p, path.size - 1);
+  if (!node.has_missed) std::fill(missed.begin(), missed.end(), 0.0f);
+  node.has_missed = true;
+  path.missed_chance = std::min(path.missed_chance, chance);
+  const double density = live.shares * (light.density > 0 ? light.density : 1);
+  add_shining(wave, node, light, static_cast<float>(passes * light.radiance_scale / density), missed);
 }
 
 }  // namespace suite

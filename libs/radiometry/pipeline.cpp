@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radiometry/lost_light.h"
 #include "radiometry/many_suns.h"
 #include "radiometry/matte_kernel.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/path_processor.h"
+#include "radiometry/sensor_samples.h"
 #include "radiometry/wave.h"
 
 namespace suite {
@@ -52,6 +54,12 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
   if (options_.max_nodes < 1 || options_.max_nodes > kMaxNodes)
     throw Error(strf("max nodes %d is not between 1 and %d", options_.max_nodes, kMaxNodes));
   matte_ = options_.specialise && MatteKernel::serves(surface, optics, environment, options_);
+  loses_light_ = LostLight::possible(surface.tracer().scene(), optics, options_);
+}
+
+bool Pipeline::may_miss(const Capture& capture) const {
+  const Environment& e = environment_;
+  return loses_light_ && (e.sun || e.moon || e.lamps || capture.bin_by == Capture::BinBy::sun);
 }
 
 namespace {
@@ -94,55 +102,19 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow() const {
     }
   }
   return std::unique_ptr<Workspace>(new Workspace{
-      Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty()),
+      Wave(kWaveWidth, options_.max_nodes, state_.size(), !optics_.media().empty(), loses_light_),
       PathGenerator(surface_, optics_, environment_, options_),
       {},
       std::vector<float>(kWaveWidth * state_.size()),
       std::vector<uint8_t>(kWaveWidth),
       std::vector<float>(state_.size()),
-      ManySuns(surface_),
+      ManySuns(surface_, loses_light_ ? std::make_unique<LostLight>(surface_, optics_) : nullptr),
       matte_ ? std::make_unique<MatteKernel>(surface_, optics_, environment_, options_, truth_.wanted(), kWaveWidth)
              : nullptr,
       std::vector<uint8_t>(kWaveWidth),
       std::vector<float>(kWaveWidth),
       {}});
 }
-
-namespace {
-
-// The second block of numbers that a sensor may ask for; nodes take the blocks from 1 on, their lobes those from 128
-// on.
-constexpr uint32_t kSecondSensorBlock = 250;
-
-// Asks the sensor for the ray of a sample. weights: where it may leave spectral weights.
-SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream,
-                  uint32_t index, std::span<float> weights) {
-  const size_t numbers = static_cast<size_t>(sensor.numbers());
-  std::array<double, 4> first = stream.draw(index, 0);
-  if (numbers <= 4) return sensor.ray({capture, problem, {first.data(), numbers}, weights});
-  std::array<double, 8> u;
-  const std::array<double, 4> second = stream.draw(index, kSecondSensorBlock);
-  std::copy(first.begin(), first.end(), u.begin());
-  std::copy(second.begin(), second.end(), u.begin() + 4);
-  return sensor.ray({capture, problem, {u.data(), numbers}, weights});
-}
-
-// The bin of a capture that a path's radiance goes into, or Capture::bins when none is right.
-size_t bin_of(const Capture& capture, const Path& path) {
-  if (capture.bin_by == Capture::BinBy::none) return 0;
-  if (capture.bin_by == Capture::BinBy::time) {
-    const double span = capture.window.end - capture.window.begin;
-    const double at = span > 0 ? std::floor((path.ray.time - capture.window.begin) / span * capture.bins) : 0;
-    return static_cast<size_t>(std::clamp(at, 0.0, capture.bins - 1.0));
-  }
-  if (path.end != PathEnd::escaped || path.escape.z < 0) return capture.bins;
-  const uint32_t columns = capture.bins / capture.escape_rings;
-  const double turn = std::atan2(path.escape.y, path.escape.x) / (2 * kPi);
-  const uint32_t ring = std::min(static_cast<uint32_t>(path.escape.z * capture.escape_rings), capture.escape_rings - 1);
-  return size_t{ring} * columns + std::min(static_cast<uint32_t>((turn - std::floor(turn)) * columns), columns - 1);
-}
-
-}  // namespace
 
 // The problems of one block while they run.
 class Pipeline::BlockRun {
@@ -249,59 +221,96 @@ class Pipeline::BlockRun {
     const std::span<float> radiance = wave.scratch2();
     process_path(wave, p, pipeline_.environment_, radiance);
     if (single_) process_single(wave, p, pipeline_.environment_, radiance, workspace_.single);
-    const bool timed = capture_.bin_by == Capture::BinBy::time;
-    if (!workspace_.weighted[p] && !timed) return radiance;
-    const float* weights = workspace_.weighted[p] ? &workspace_.weights[p * radiance.size()] : nullptr;
-    for (size_t k = 0; k < radiance.size(); ++k) {
-      const float factor = (weights ? weights[k] : 1.0f) * (timed ? static_cast<float>(capture_.bins) : 1.0f);
-      radiance[k] *= factor;
-      if (single_) workspace_.single[k] *= factor;
-    }
+    weigh(p, radiance);
+    if (single_) weigh(p, workspace_.single);
     return radiance;
+  }
+
+  // By the sensor's weights and the number of the bins of time.
+  void weigh(size_t p, std::span<float> radiance) const {
+    const bool timed = capture_.bin_by == Capture::BinBy::time;
+    if (!workspace_.weighted[p] && !timed) return;
+    const float* weights = workspace_.weighted[p] ? &workspace_.weights[p * radiance.size()] : nullptr;
+    for (size_t k = 0; k < radiance.size(); ++k)
+      radiance[k] *= (weights ? weights[k] : 1.0f) * (timed ? static_cast<float>(capture_.bins) : 1.0f);
+  }
+
+  // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
+  static bool acceptable(std::span<const float> radiance) {
+    unsigned good = 1;
+    for (const float L : radiance) good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
+    return good;
   }
 
   void accumulate_suns(size_t p, size_t place, uint32_t sample) {
     const size_t slot = slot_of(place);
+    const Path& path = workspace_.wave.path(p);
     double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
+    std::span<double> missing;
+    if (sums_.keeps_missing()) missing = {sums_.missing(slot).light, sums_.bands()};
     const bool good = workspace_.suns.add(workspace_.wave, p, capture_.suns, pipeline_.projection_, single_,
-                                          {target, sums_.bands()}, statistics_.trace);
+                                          {target, sums_.bands()}, missing, statistics_.trace);
     ++statistics_.paths;
-    statistics_.truncated += workspace_.wave.path(p).truncated;
+    statistics_.truncated += path.truncated;
     sums_.set_paths(slot, sample + 1);
-    if (!good) ++statistics_.failures, ++sums_.failures(slot);
-    sums_.truncated(slot) += static_cast<float>(workspace_.wave.path(p).truncated);
+    if (!good) return reject(slot, sample);
+    if (path.missed() && !missing.empty())
+      *sums_.missing(slot).square = INFINITY;  // nothing but asking finds a collimated sun
+    sums_.truncated(slot) += static_cast<float>(path.truncated);
     if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+  }
+
+  // A sample that is not averaged in.
+  void reject(size_t slot, uint32_t sample) {
+    ++statistics_.failures;
+    ++sums_.failures(slot, static_cast<int>(deal(sample).scramble));
+  }
+
+  // Adds what path p is known to have missed.
+  void add_missing(size_t p, size_t slot, size_t bin) {
+    const Path& path = workspace_.wave.path(p);
+    const size_t bands = pipeline_.projection_.bands();
+    const Accumulators::Missing missing = sums_.missing(slot);
+    const std::span<float> light = workspace_.wave.scratch2();
+    for (const bool single : {false, true}) {
+      if (single && !single_) break;
+      process_missed(workspace_.wave, p, pipeline_.environment_, single, light);
+      weigh(p, light);
+      if (!acceptable(light)) return;
+      double* const sum = missing.light + (single ? capture_.bins + bin : bin) * bands;
+      const double before = sum[pipeline_.reference_band_];
+      pipeline_.projection_.add(light, {sum, bands});
+      const double seen = sum[pipeline_.reference_band_] - before;
+      if (single) break;
+      *missing.reference += seen;
+      *missing.square += path.missed_chance > 0 ? seen * (seen / path.missed_chance) : INFINITY;
+    }
   }
 
   void accumulate(size_t p, size_t place, uint32_t sample) {
     const size_t slot = slot_of(place), bands = pipeline_.projection_.bands(), reference = pipeline_.reference_band_;
     const Path& path = workspace_.wave.path(p);
     const std::span<float> radiance = radiance_of(p);
-    // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-    unsigned good = 1;
-    for (const float L : radiance) good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
     ++statistics_.paths;
     statistics_.truncated += path.truncated;
     sums_.set_paths(slot, sample + 1);
-    if (!good) {
-      ++statistics_.failures;
-      ++sums_.failures(slot);
-      return;
-    }
+    if (!acceptable(radiance)) return reject(slot, sample);
     double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
     const bool watched = pipeline_.options_.stop == StopRule::change;
     const double before = target[reference], sum_before = watched ? reference_sum(slot) : 0;
-    if (const size_t bin = bin_of(capture_, path); bin < capture_.bins) {
+    const size_t bin = bin_of(capture_, path);
+    if (bin < capture_.bins) {
       pipeline_.projection_.add(radiance, {target + bin * bands, bands});
       if (single_) pipeline_.projection_.add(workspace_.single, {target + (capture_.bins + bin) * bands, bands});
     }
     if (watched && sample >= pipeline_.options_.change_after) {
-      const double mean = reference_sum(slot) / (sample + 1.0);
-      if (std::fabs(mean - sum_before / sample) <= pipeline_.options_.change * mean) end_[place] = 0;
+      const double accepted = sums_.accepted(slot), mean = reference_sum(slot) / accepted;
+      if (std::fabs(mean - sum_before / (accepted - 1)) <= pipeline_.options_.change * mean) end_[place] = 0;
     }
     sums_.largest(slot) = std::max(sums_.largest(slot), static_cast<float>(target[reference] - before));
     sums_.truncated(slot) += static_cast<float>(path.truncated);
     if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+    if (path.missed() && sums_.keeps_missing() && bin < capture_.bins) add_missing(p, slot, bin);
   }
 
   // The samples of one problem that the matte kernel ran, from lane p on. Those of one scramble are added together.
@@ -331,8 +340,7 @@ class Pipeline::BlockRun {
     const bool direct = pipeline_.projection_.identity();  // bands are bins
     const float radiance = workspace_.matte->radiance(p, direct ? pipeline_.reference_band_ : 0);
     if (std::isnan(radiance)) {
-      ++statistics_.failures;
-      ++sums_.failures(slot);
+      reject(slot, workspace_.lanes[p].sample);
       return false;
     }
     workspace_.seen[p] = radiance;

@@ -81,10 +81,11 @@ struct RunStatistics {
 };
 
 // Accumulators of the problems of one capture. Sums are kept per independent scramble, which is where standard errors
-// come from. bands: values a problem ([channel][bin][band]); truth_slots: doubles of truth a problem.
+// come from. bands: values a problem ([channel][bin][band]); truth_slots: doubles of truth a problem; missing: light
+// may be lost (lost_light.h), and what is known of it is kept.
 class Accumulators {
  public:
-  Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0);
+  Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots = 0, bool missing = false);
   // Number of scrambles that `paths` samples are dealt to.
   static int scrambles_for(uint32_t paths) { return paths > 256 ? 8 : 4; }
 
@@ -99,13 +100,57 @@ class Accumulators {
   }
   uint32_t paths(size_t problem) const { return paths_[problem]; }
   void set_paths(size_t problem, uint32_t n) { paths_[problem] = n; }
-  uint32_t& failures(size_t problem) { return failures_[problem]; }
-  uint32_t failures(size_t problem) const { return failures_[problem]; }
+  // Rejected samples: of one scramble, of all.
+  uint32_t& failures(size_t problem, int scramble) {
+    return failures_[problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)];
+  }
+  uint32_t failures(size_t problem, int scramble) const {
+    return failures_[problem * static_cast<size_t>(scrambles_) + static_cast<size_t>(scramble)];
+  }
+  uint32_t failures(size_t problem) const;
+  // Samples that were averaged in: of one scramble, of all.
+  uint32_t accepted(size_t problem, int scramble) const {
+    return dealt(paths_[problem], static_cast<uint32_t>(scramble)) - failures(problem, scramble);
+  }
+  uint32_t accepted(size_t problem) const { return paths_[problem] - failures(problem); }
   float& truncated(size_t problem) { return truncated_[problem]; }
   float truncated(size_t problem) const { return truncated_[problem]; }
   // Largest single sample at the reference band, for the tail indicator.
   float& largest(size_t problem) { return largest_[problem]; }
   float largest(size_t problem) const { return largest_[problem]; }
+  // Light that samples are known to have missed, with what they carried. light: its sums, bands() values. reference:
+  // its sum at the reference band, and that of its squares over the chance of having met it, which is the square that
+  // meeting it by chance would have summed to; infinite where nothing but an explicit sample finds it.
+  struct Missing {
+    double* light;
+    double* reference;
+    double* square;
+  };
+  bool keeps_missing() const { return !missing_of_.empty(); }
+  Missing missing(size_t problem) {
+    return {&missing_[problem * bands_], &missing_of_[2 * problem], &missing_of_[2 * problem + 1]};
+  }
+  const double* missing_light(size_t problem) const { return &missing_[problem * bands_]; }
+  // Its reference and its square, side by side with those of the next problem.
+  const double* missing_of(size_t problem) const { return &missing_of_[2 * problem]; }
+  // How much lower than they should be the means of a problem are, as far as that is known.
+  //
+  // cut: what is cut at the maximum number of nodes, relative to the mean. A share T of the throughput is cut where
+  // paths end; if what lies beyond shines as the problem itself does, L = mean + T L and the mean lacks T / (1 - T) of
+  // itself. That is exact where every node sees the same light (cavities, isothermal boxes), too much where paths lose
+  // themselves in the dark, too little where they are on their way to the light. T is known at the reference
+  // wavelength and taken for all bands; 0.999 at most, where paths lose nothing at all.
+  // missing: what of the missing light (per value, missing_light() / accepted()) counts. Meeting it by chance h times
+  // has a relative error of 1 / sqrt(h); with h expected meetings less than one, all of it is likely to be missing:
+  // min(1, 1 / sqrt(h)). From kEnoughMeetings on the samples themselves tell their error, and 0 counts.
+  struct Shortfall {
+    double cut = 0, missing = 0;
+  };
+  static constexpr double kEnoughMeetings = 20;
+  Shortfall shortfall(size_t problem) const;
+  // Adds it to the standard errors of a problem: the root of the sum of squares of what the samples tell and of what
+  // the means are known to lack. spans of bands() values.
+  void widen(size_t problem, std::span<const double> means, std::span<double> standard_errors) const;
   size_t truth_slots() const { return truth_slots_; }
   double* truth(size_t problem) { return truth_.data() + problem * truth_slots_; }
   const double* truth(size_t problem) const { return truth_.data() + problem * truth_slots_; }
@@ -113,7 +158,8 @@ class Accumulators {
   // Mean and standard error of one band of one problem. The variance of the mean, sum of (share^2 variance) over the
   // scrambles, is estimated without bias for any shares and variances of the scrambles below one half each:
   //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
-  // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples.
+  // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples. Means and
+  // shares are those of accepted samples.
   void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
   // The same for all values of a problem at once; spans of bands() values.
   void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
@@ -123,9 +169,10 @@ class Accumulators {
  private:
   size_t bands_;
   int scrambles_;
-  std::vector<double> sums_;  // [problem][scramble][band]
-  std::vector<uint32_t> paths_, failures_;
+  std::vector<double> sums_;                // [problem][scramble][band]
+  std::vector<uint32_t> paths_, failures_;  // [problem], [problem][scramble]
   std::vector<float> truncated_, largest_;
+  std::vector<double> missing_, missing_of_;  // [problem][band], [problem][reference, square]
   size_t truth_slots_;
   std::vector<double> truth_;  // [problem][slot]
 };
@@ -154,6 +201,8 @@ class Pipeline {
   // distinct blocks.
   void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
            std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
+  // Whether paths of a capture may know of light that they miss (lost_light.h).
+  bool may_miss(const Capture& capture) const;
   // The kernel that paths of this state run in: "general", or "matte" (matte_kernel.h).
   const char* kernel() const { return matte_ ? "matte" : "general"; }
 
@@ -166,7 +215,7 @@ class Pipeline {
   size_t reference_band_;
   const TruthPlan& truth_;
   PipelineOptions options_;
-  bool matte_ = false;
+  bool matte_ = false, loses_light_ = false;
   // Working memory goes from block to block; as many as threads have been at work at once.
   struct Workspace;
   class BlockRun;

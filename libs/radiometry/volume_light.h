@@ -1,10 +1,11 @@
 // Visibility through media: what is left, at every wavelength, of light that comes straight from a source.
 //
-// Index-matched boundaries let light pass; all other surfaces stop it, refracting ones too (light through them is met
-// by chance, after the refraction has been drawn).
+// Index-matched boundaries let light pass; all other surfaces stop it, refracting ones too: light through them is met
+// by chance, after the refraction has been drawn, or lost (lost_light.h).
 #pragma once
 #include <vector>
 
+#include "radiometry/lost_light.h"
 #include "radiometry/volume_bodies.h"
 #include "radiometry/volume_flight.h"
 
@@ -12,8 +13,8 @@ namespace suite {
 
 class VolumeLight {
  public:
-  // Keeps references.
-  VolumeLight(const Surface& surface, Bodies& bodies, Flights& flights, size_t media);
+  // Keeps references. lost: null where no light can be lost.
+  VolumeLight(const Surface& surface, Bodies& bodies, Flights& flights, size_t media, LostLight* lost);
 
   // The bodies that ray i starts in; call once for each ray of the list that look() will get, in its order.
   void clear() { added_ = 0; }
@@ -22,10 +23,11 @@ class VolumeLight {
     return bodies_at_[added_++] = stack;
   }
   // As Tracer::occluded; afterwards depths(i) holds the integrated densities on the way of every ray that is not
-  // blocked.
+  // blocked or whose light is lost: blocked by nothing but smooth surfaces, which pass passes(i) of it.
   void look(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
             TraceStatistics& statistics);
   std::span<const double> depths(size_t ray) const { return {&depths_[ray * media_], media_}; }
+  double passes(size_t ray) const { return lost_ && bent_[ray] ? passes_[ray] : 0; }
 
  private:
   void look_past_boundaries(std::span<const Ray> rays, std::span<const double> distance, std::span<uint8_t> blocked,
@@ -34,10 +36,12 @@ class VolumeLight {
   Bodies& body_rules_;
   Flights& flights_;
   size_t media_;
+  LostLight* lost_;
   uint32_t ambient_;
   std::vector<MediumStack> bodies_at_;  // the first added_ of them; the others keep their memory
   size_t added_ = 0;
-  std::vector<double> depths_, travelled_, gap_;
+  std::vector<double> depths_, travelled_, gap_, passes_;
+  std::vector<uint8_t> bent_;
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
   std::vector<uint32_t> owner_;

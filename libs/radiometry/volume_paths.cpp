@@ -16,7 +16,7 @@ constexpr uint32_t kMostFlights = 1u << 24;  // boundaries passed included
 }  // namespace
 
 VolumePaths::VolumePaths(const Surface& surface, const Optics& optics, const Environment& environment,
-                         const PipelineOptions& options, std::span<const double> knot_probability)
+                         const PipelineOptions& options, std::span<const double> knot_probability, LostLight* lost)
     : surface_(surface),
       optics_(optics),
       environment_(environment),
@@ -26,7 +26,7 @@ VolumePaths::VolumePaths(const Surface& surface, const Optics& optics, const Env
       field_(surface.tracer().scene(), optics.state(), surface.tracer().periodic()),
       bodies_(surface),
       flights_(field_, optics, knot_probability, environment.atmosphere.get()),
-      light_(surface, bodies_, flights_, optics.media().size()),
+      light_(surface, bodies_, flights_, optics.media().size(), lost),
       spectrum_(optics.state().size()),
       transmission_(optics.state().size()),
       phase_(optics.state().size()) {}
@@ -49,6 +49,9 @@ void VolumePaths::open(Wave& wave, uint32_t p) {
   const std::span<float> through = wave.through(p, wave.path(p).size), gathered = wave.gathered(p, wave.path(p).size);
   std::fill(through.begin(), through.end(), 1.0f);
   std::fill(gathered.begin(), gathered.end(), 0.0f);
+  if (!wave.has_missed()) return;
+  const std::span<float> missed = wave.missed_on_way(p, wave.path(p).size);
+  std::fill(missed.begin(), missed.end(), 0.0f);
 }
 
 void VolumePaths::travel(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics) {
@@ -208,8 +211,8 @@ void VolumePaths::light_events(Wave& wave, std::vector<LivePath>& live, RunStati
   for (size_t i = 0; i < rays_.size(); ++i) {
     const bool buried =
         environment_.earth && environment_.earth->meet(rays_[i].origin, rays_[i].direction, wave.distance[i]);
-    if (!wave.blocked[i] && !buried)
-      add_light(wave, live[events_[lights_[i].event].path], lights_[i], rays_[i].direction, i);
+    if (!buried && (!wave.blocked[i] || light_.passes(i) > 0))
+      add_light(wave, live[events_[lights_[i].event].path], lights_[i], rays_[i].direction, i, !wave.blocked[i]);
   }
 }
 
@@ -217,9 +220,9 @@ void VolumePaths::light_events(Wave& wave, std::vector<LivePath>& live, RunStati
 void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
   const Ray& own = wave.path(events_[e].path).ray;
   const auto ask = [&](Dir direction, double density, double radiance, const float* spectrum, double distance,
-                       bool disk = false) {
+                       bool disk = false, bool sky = false) {
     if (!(radiance > 0)) return;
-    lights_.push_back({e, density, radiance, spectrum, disk});
+    lights_.push_back({e, density, radiance, spectrum, disk, sky});
     rays_.push_back({events_[e].place, direction, own.time, own.draw});
     wave.distance.push_back(distance);
     light_.add(live.bodies);
@@ -239,7 +242,8 @@ void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
     const std::array<double, 4> u = numbers(live, kSkyNumbers);
     const DirectionSample drawn = environment_.sky->sample({u[0], u[1]});
     const float* spectrum = environment_.sky->spectrum();
-    ask(drawn.direction, drawn.density, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum, far);
+    ask(drawn.direction, drawn.density, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum, far,
+        false, true);
   }
   if (environment_.lamps) {
     const std::array<double, 4> u = numbers(live, kLampNumbers);
@@ -253,7 +257,8 @@ void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
   }
 }
 
-void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray) {
+void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray,
+                            bool arrives) {
   const Scattering& e = events_[light.event];
   const size_t knots = probability_.size();
   const double cosine = scattering_cosine(-live.direction, direction);
@@ -261,17 +266,24 @@ void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light
   double reach[kMaxKnots];
   std::fill_n(reach, knots, 1.0);
   const bool dim = dims(ray, transmission_, {reach, knots});
-  double denominator = live.shares;
+  double denominator = live.shares, chance = 0;
   if (light.density > 0) {
     double q[kMaxKnots];
     densities(e, cosine, {q, knots});
     double by_chance = 0;
     for (size_t k = 0; k < knots; ++k) by_chance += probability_[k] * live.relative[k] * q[k] * reach[k];
-    denominator = shared_density(live.shares * light.density, by_chance, light.disk);
+    const double drawn = live.shares * light.density;
+    chance = by_chance / drawn;
+    denominator = arrives ? shared_density(drawn, by_chance, light.disk) : drawn;
   }
-  const int n = wave.path(e.path).size;
-  const std::span<float> beta = wave.through(e.path, n), gathered = wave.gathered(e.path, n);
-  const float scale = static_cast<float>(light.radiance / denominator);
+  Path& path = wave.path(e.path);
+  if (!arrives) {
+    if (light.sky || chance > LostLight::kOftenMet) return;
+    path.missed_chance = std::min(path.missed_chance, chance);
+  }
+  const std::span<float> beta = wave.through(e.path, path.size),
+                         sum = arrives ? wave.gathered(e.path, path.size) : wave.missed_on_way(e.path, path.size);
+  const float scale = static_cast<float>((arrives ? 1 : light_.passes(ray)) * light.radiance / denominator);
   if (dim)
     for (size_t i = 0; i < beta.size(); ++i) spectrum_[i] *= transmission_[i];
   if (environment_.atmosphere) {
@@ -284,7 +296,7 @@ void VolumePaths::add_light(Wave& wave, const LivePath& live, const Light& light
     environment_.sky->add(direction, 1, phase_);
     source = phase_.data();
   }
-  for (size_t i = 0; i < beta.size(); ++i) gathered[i] += scale * beta[i] * spectrum_[i] * source[i];
+  for (size_t i = 0; i < beta.size(); ++i) sum[i] += scale * beta[i] * spectrum_[i] * source[i];
 }
 
 // Draws the direction in which a scattered path goes on; false when it ends.

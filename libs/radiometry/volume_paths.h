@@ -20,9 +20,9 @@ namespace suite {
 
 class VolumePaths {
  public:
-  // Keeps references. knot_probability: P_k.
+  // Keeps references. knot_probability: P_k. lost: null where no light can be lost.
   VolumePaths(const Surface& surface, const Optics& optics, const Environment& environment,
-              const PipelineOptions& options, std::span<const double> knot_probability);
+              const PipelineOptions& options, std::span<const double> knot_probability, LostLight* lost);
 
   // Puts a new path into the bodies around its origin.
   void start(LivePath& live, double time, TraceStatistics& statistics);
@@ -42,6 +42,9 @@ class VolumePaths {
   // What ray i of the last look() leaves of its light: false = all of it. knots: the same of scattering alone, the
   // share of flights that reach the source.
   bool dims(size_t ray, std::span<float> transmission, std::span<double> knots) const;
+  // Of ray i of the last look(), which is blocked: the share of its light that smooth surfaces pass, if nothing else
+  // blocks it.
+  double passes(size_t ray) const { return light_.passes(ray); }
 
  private:
   struct Scattering {  // of one path
@@ -56,6 +59,7 @@ class VolumePaths {
     double density, radiance;
     const float* spectrum;
     bool disk;  // the Sun's or the Moon's
+    bool sky;
   };
   std::array<double, 4> numbers(const LivePath& live, uint32_t block) const;
   // How a path goes on after an event of travel().
@@ -67,7 +71,8 @@ class VolumePaths {
   void remember(Wave& wave, size_t slot, Vec3 place);
   void light_events(Wave& wave, std::vector<LivePath>& live, RunStatistics& statistics);
   void ask_sources(Wave& wave, size_t event, const LivePath& live);
-  void add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray);
+  // arrives: else it is lost on smooth surfaces, and only noted.
+  void add_light(Wave& wave, const LivePath& live, const Light& light, Dir direction, size_t ray, bool arrives);
   bool scatter(Wave& wave, const Scattering& event, LivePath& live);
   void densities(const Scattering& event, double cosine, std::span<double> q) const;
   void phase_spectrum(const Scattering& event, double cosine, std::span<float> v);

@@ -5,7 +5,7 @@
 
 namespace suite {
 
-Wave::Wave(size_t width, int max_nodes, size_t bins, bool media)
+Wave::Wave(size_t width, int max_nodes, size_t bins, bool media, bool missed)
     : bins_(bins),
       stride_((bins + 7) / 8 * 8),
       max_nodes_(max_nodes),
@@ -16,6 +16,8 @@ Wave::Wave(size_t width, int max_nodes, size_t bins, bool media)
   if (!spectra_) throw std::bad_alloc();
   std::fill_n(spectra_.get(), floats, 0.0f);
   if (media) segments_.resize(2 * width * static_cast<size_t>(max_nodes + 1) * stride_);
+  if (missed) missed_.resize(width * static_cast<size_t>(max_nodes) * stride_);
+  if (missed && media) missed_on_way_.resize(width * static_cast<size_t>(max_nodes + 1) * stride_);
   rays.reserve(2 * width);
   hits.reserve(width);
   distance.reserve(2 * width);

@@ -13,8 +13,9 @@ namespace suite {
 class Wave {
  public:
   // width: paths that run together; bins: of the spectral state.
-  // media: paths travel through media; segments then carry spectra.
-  Wave(size_t width, int max_nodes, size_t bins, bool media = false);
+  // media: paths travel through media; segments then carry spectra. missed: light may be lost (lost_light.h); nodes and
+  // segments then carry what is known of it.
+  Wave(size_t width, int max_nodes, size_t bins, bool media = false, bool missed = false);
 
   size_t width() const { return paths_.size(); }
   size_t bins() const { return bins_; }
@@ -31,6 +32,10 @@ class Wave {
   bool has_media() const { return !segments_.empty(); }
   std::span<float> through(size_t p, int n) { return {&segments_[2 * segment(p, n) * stride_], bins_}; }
   std::span<float> gathered(size_t p, int n) { return {&segments_[(2 * segment(p, n) + 1) * stride_], bins_}; }
+  // Light that should have come from a node, or have been gathered on a segment, but did not arrive.
+  bool has_missed() const { return !missed_.empty(); }
+  std::span<float> missed(size_t p, int n) { return {&missed_[place(p, n) * stride_], bins_}; }
+  std::span<float> missed_on_way(size_t p, int n) { return {&missed_on_way_[segment(p, n) * stride_], bins_}; }
   std::span<float> scratch() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_)), bins_}; }
   std::span<float> scratch2() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 1), bins_}; }
   std::span<float> scratch3() { return {at(2 * paths_.size() * static_cast<size_t>(max_nodes_) + 2), bins_}; }
@@ -56,7 +61,7 @@ class Wave {
   std::vector<Path> paths_;
   std::vector<Node> nodes_;
   std::unique_ptr<float[], Free> spectra_;
-  std::vector<float> segments_;
+  std::vector<float> segments_, missed_, missed_on_way_;
 };
 
 }  // namespace suite

@@ -113,7 +113,8 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
     }
     if (!sums)
       sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values,
-                                            Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
+                                            Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots,
+                                            work.pipeline.may_miss(work.capture));
     for (size_t b = begin; b < end && !stops(work); ++b) {
       const Block& block = blocks[b];
       RunStatistics mine;
@@ -148,7 +149,8 @@ void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBui
   if (!piloted && !work.store) return run_streamed(work, values, truth_slots, result, statistics);
 
   const size_t problems = work.capture.problems();
-  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots);
+  const bool missing = work.pipeline.may_miss(work.capture);
+  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots, missing);
   std::vector<double> needs;
   if (work.store) work.store->load(work.id, sums, needs);
   if (piloted && needs.empty()) {
@@ -156,7 +158,7 @@ void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBui
     const std::vector<uint32_t> pilot = pilot_of(work);
     double paths = 0;
     if (alone) {
-      Accumulators thrown(problems, values, sums.scrambles(), truth_slots);
+      Accumulators thrown(problems, values, sums.scrambles(), truth_slots, missing);
       paths = run_stage(work, work.id + kPilotStream, pilot, thrown, statistics, false);
       needs = own_needs_of(thrown, work.judged, work.goals);
     } else {

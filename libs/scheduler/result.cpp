@@ -27,6 +27,8 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   r.paths.resize(n);
   r.quality.resize(n);
   resize_large(largest_, n);
+  sampled_error_.resize(n);
+  lacks_.resize(n);
   resize_large(r.truth, n * r.truth_names.size());
   // Few enough that bands^2 products of each take neither time nor memory.
   const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
@@ -37,12 +39,18 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
 void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) {
   CaptureResult& r = result_;
   const size_t values = r.values_per_problem();
-  sums.estimate(slot, {&r.radiance[problem * values], values}, {&r.standard_error[problem * values], values});
+  const std::span<double> means(&r.radiance[problem * values], values),
+      errors(&r.standard_error[problem * values], values);
+  sums.estimate(slot, means, errors);
+  sampled_error_[problem] = errors[reference_band_];
+  sums.widen(slot, means, errors);
+  lacks_[problem] = lack_of(problem, sums, slot);
   const uint32_t paths = r.paths[problem] = sums.paths(slot);
   largest_[problem] = sums.largest(slot);
   uint8_t& quality = r.quality[problem];
-  if (sums.failures(slot)) quality |= quality_failures;
-  if (sums.truncated(slot) > 0.01f * static_cast<float>(paths)) quality |= quality_truncated;
+  if (lacks_[problem].rejected) quality |= quality_failures;
+  if (lacks_[problem].truncated()) quality |= quality_truncated;
+  if (lacks_[problem].unresolved()) quality |= quality_unresolved;
   truth_.finish(sums.truth(slot), paths, r.truth.data() + problem * r.truth_names.size());
   if (problem % correlated_every_ == 0) {
     products_[problem / correlated_every_].assign(r.bands * r.bands, 0.0);
@@ -50,12 +58,28 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   }
 }
 
+Lack ResultBuilder::lack_of(size_t problem, const Accumulators& sums, size_t slot) const {
+  const uint32_t accepted = sums.accepted(slot);
+  Lack lack{0, 0, sums.failures(slot)};
+  if (!accepted) return lack;
+  const Accumulators::Shortfall of = sums.shortfall(slot);
+  lack.cut = of.cut / (1 + of.cut);
+  if (!(of.missing > 0)) return lack;
+  // Of the bin that lacks most.
+  const double* means = &result_.radiance[problem * result_.values_per_problem()];
+  for (size_t at = reference_band_; at < result_.bins * result_.bands; at += result_.bands) {
+    const double missing = of.missing * sums.missing_light(slot)[at] / accepted;
+    if (missing > 0) lack.missing = std::max(lack.missing, missing / (means[at] + missing));
+  }
+  return lack;
+}
+
 void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means,
                               std::vector<double>& products) const {
   const size_t bands = result_.bands;
   std::vector<double> deviation(bands);
   for (int s = 0; s < sums.scrambles(); ++s) {
-    const uint32_t count = dealt(sums.paths(slot), static_cast<uint32_t>(s));
+    const uint32_t count = sums.accepted(slot, s);
     if (!count) continue;
     for (size_t b = 0; b < bands; ++b) deviation[b] = means[b] > 0 ? sums.sums(slot, s)[b] / count / means[b] - 1 : 0;
     for (size_t a = 0; a < bands; ++a)
@@ -70,7 +94,7 @@ void ResultBuilder::flag_tails() {
   for (size_t i = 0; i < of.size(); ++i) {
     const Convergence goal = goals_.of(i);
     of[i] = {r.radiance[i * values + reference_band_],
-             r.standard_error[i * values + reference_band_],
+             sampled_error_[i],
              largest_[i],
              r.paths[i],
              goal.relative_error > 0 ? goal.relative_error : kTailShare,

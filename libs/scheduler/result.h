@@ -6,6 +6,7 @@
 #include "radiometry/truth/truth.h"
 #include "scheduler/budget.h"
 #include "scheduler/scheduler.h"
+#include "scheduler/shortfall.h"
 
 namespace suite {
 
@@ -19,11 +20,16 @@ class ResultBuilder {
   // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
   void take(size_t problem, const Accumulators& sums, size_t slot);
   CaptureResult finish();
+  // What the results lack, as far as that is known.
+  Shortfall shortfall() const { return shortfall_of(lacks_); }
 
  private:
+  Lack lack_of(size_t problem, const Accumulators& sums, size_t slot) const;
   void flag_tails();
   void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
   CaptureResult result_;
+  std::vector<double> sampled_error_;  // [problem] standard error at the reference band, as the samples tell it
+  std::vector<Lack> lacks_;            // [problem]
   size_t reference_band_, correlated_every_;
   bool neighbours_;  // problems beside each other look at neighbouring places
   const TruthPlan& truth_;

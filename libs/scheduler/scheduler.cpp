@@ -27,7 +27,9 @@ class Job {
  public:
   Job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
       std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options)
-      : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {}
+      : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {
+    for (const auto& sensor : sensors) report_.shortfalls.push_back({sensor->name(), {}});
+  }
 
   JobReport run() {
     const std::vector<Item> items =
@@ -143,6 +145,13 @@ class Job {
     return work;
   }
 
+  void warn_of_lost_light(const Sensor& sensor, const Capture& capture, const Kit& kit) {
+    if (!options_.warn) return;
+    const uint32_t paths = goals_of(sensor, capture, budget()).all.max_paths;
+    for (const std::string& s : lost_light(*scene_, sources_, kit.optics, kit.environment, options_.pipeline, paths))
+      if (told_.insert(s).second) options_.warn(s);
+  }
+
   void run_item(const Item& item) {
     const Clock::time_point begun = Clock::now();
     const Sensor& sensor = *sensors_[item.sensor];
@@ -154,6 +163,7 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics.media().empty() || kit.environment.atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
+    warn_of_lost_light(sensor, capture, kit);
     const Surface surface(*tracer_, kit.optics);
     const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
                                            kit.projection, kit.environment});
@@ -185,6 +195,7 @@ class Job {
       throw;
     }
     CaptureResult result = builder.finish();
+    report_.shortfalls[item.sensor].shortfall.merge(builder.shortfall());
     result.task = item.task;
     result.capture = item.capture;
     judge(item, work, kit, result, log);
@@ -328,6 +339,7 @@ class Job {
   std::vector<SensorOutcome> outcomes_;  // of each sensor
   std::set<std::string> doubted_;        // sensors
   ErrorHistogram errors_;
+  std::set<std::string> told_;
   double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, target_ = 0;
   uint32_t cap_ = 0;
 };
@@ -356,7 +368,7 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
       for (const Capture& c : t.captures) {
         const double scrambles = Accumulators::scrambles_for(goals_of(*s, c, options.budget).all.max_paths),
                      bands = static_cast<double>(s->bands(c.state).size());
-        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 2) * bands * 8 + 200));
+        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 3) * bands * 8 + 300));
       }
   return most;
 }

@@ -11,6 +11,7 @@
 #include "radiometry/pipeline.h"
 #include "scheduler/budget.h"
 #include "scheduler/doubts.h"
+#include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
 #include "sensor/quality.h"
 
@@ -33,6 +34,8 @@ struct JobOptions {
   std::function<bool()> stop;
   std::function<void(const StoredWork&)> begun;  // called once, before the first capture of a job that has a store
   std::function<void(const Doubt&)> doubt = {};  // is told of pictures that will be or are useless; null = nobody
+  // Told, once each and before the paths are run, what a state's light will lack; empty = nobody listens.
+  std::function<void(const std::string&)> warn = {};
 };
 
 // What one capture took; a line of the log.
@@ -72,7 +75,13 @@ struct JobReport {
   WorstProblem worst;                  // at the judged bands; relative_error 0 = none
   uint32_t time_cap = 0;               // maximum of paths that a time budget was turned into; 0 = none
   std::string stopped_by;              // one sentence: the rule that ended the run, share at target, worst pixel
-  std::vector<CaptureLog> log;         // in the order in which captures ran
+  // What each sensor's results lack, in the order of the sensors.
+  struct SensorShortfall {
+    std::string sensor;
+    Shortfall shortfall;
+  };
+  std::vector<SensorShortfall> shortfalls;
+  std::vector<CaptureLog> log;  // in the order in which captures ran
 };
 
 // Paths that a job will run: exactly for fixed counts, at least for adaptive captures (their pilots).

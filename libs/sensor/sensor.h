@@ -109,7 +109,7 @@ enum QualityFlag : uint8_t {
   quality_heavy_tail = 1,  // rare events: the true error may be far beyond the reported one
   quality_failures = 2,    // NaN or negative samples were rejected
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
-  quality_unresolved = 8,  // light behind a smooth refracting surface was not found
+  quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
 };
 
 // A text that a sensor writes: a log, a table of results.

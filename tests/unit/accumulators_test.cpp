@@ -44,6 +44,69 @@ TEST(Accumulators, squared_standard_error_is_the_variance_of_the_mean) {
   }
 }
 
+// Of four scrambles with one sample in a hundred rejected, intervals of Student's t at 95 % cover 95 %. Negative
+// control: the way that was a bug, a scramble's sum over all of its samples against the mean of the accepted ones.
+TEST(Accumulators, rejected_samples_do_not_count) {
+  constexpr uint32_t n = 256;
+  constexpr int trials = 4000;
+  constexpr double t = 3.182446;
+  Pcg32 random(9);
+  int covered = 0, covered_by_all = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    Accumulators a(1, 1, 4);
+    for (uint32_t i = 0; i < n; ++i) {
+      const int scramble = static_cast<int>(deal(i).scramble);
+      if (random.uniform() < 0.01)
+        ++a.failures(0, scramble);
+      else
+        a.sums(0, scramble)[0] += 0.9 + 0.2 * random.uniform();
+    }
+    a.set_paths(0, n);
+    double mean = 0, error = 0, square = 0;
+    a.estimate(0, 0, mean, error);
+    std::vector<double> means(1), errors(1);
+    a.estimate(0, means, errors);
+    EXPECT_EQ(means[0], mean);
+    EXPECT_EQ(errors[0], error);
+    covered += std::fabs(mean - 1) <= t * error;
+    for (int s = 0; s < 4; ++s) square += std::pow(a.sums(0, s)[0] / (n / 4) - mean, 2) / 12;
+    covered_by_all += std::fabs(mean - 1) <= t * std::sqrt(square);
+  }
+  // Four deviations of the share of so many trials.
+  EXPECT_NEAR(covered, 0.95 * trials, 4 * std::sqrt(trials * 0.95 * 0.05));
+  EXPECT_GT(covered_by_all, 0.97 * trials);
+}
+
+TEST(Accumulators, shortfall_of_what_was_cut_and_missed) {
+  Accumulators a(1, 2, 4, 0, true);
+  a.set_paths(0, 100);
+  const std::vector<double> means{3, 6};
+  std::vector<double> errors{0.3, 0};
+  a.widen(0, means, errors);
+  EXPECT_EQ(errors, (std::vector<double>{0.3, 0}));
+  a.truncated(0) = 25;  // T / (1 - T) = 1 / 3
+  a.widen(0, means, errors);
+  EXPECT_NEAR(errors[0], std::hypot(0.3, 1), 1e-12);
+  EXPECT_NEAR(errors[1], 2, 1e-12);
+  a.truncated(0) = 100;
+  EXPECT_NEAR(a.shortfall(0).cut, 999, 1e-6) << "paths that lose nothing";
+  a.truncated(0) = 0;
+  // Met with a chance of 0.05 a path: five meetings are expected, of a mean of 2 and 4.
+  for (int i = 0; i < 100; ++i) {
+    a.missing(0).light[0] += 2, a.missing(0).light[1] += 4;
+    *a.missing(0).reference += 2, *a.missing(0).square += 2 * 2 / 0.05;
+  }
+  errors = {0, 0};
+  a.widen(0, means, errors);
+  EXPECT_NEAR(errors[0], 2 / std::sqrt(5), 1e-12);
+  EXPECT_NEAR(errors[1], 4 / std::sqrt(5), 1e-12);
+  a.set_paths(0, 100);
+  *a.missing(0).square /= 4.01;  // 20 meetings
+  EXPECT_EQ(a.shortfall(0).missing, 0);
+  *a.missing(0).square = INFINITY;  // something that is never met
+  EXPECT_EQ(a.shortfall(0).missing, 1);
+}
+
 TEST(Accumulators, one_sample_tells_nothing_about_its_error) {
   Accumulators a(1, 1, 4);
   a.sums(0, 0)[0] = 3;

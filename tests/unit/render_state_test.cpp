@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/files.h"
+#include "formats/hdf5/h5.h"
 #include "support/message_of.h"
 #include "support/radiometry_kit.h"
 #include "support/temp_folder.h"
@@ -33,10 +34,15 @@ class Grid final : public Sensor {
   SensorRay ray(const RayRequest& r) const override {
     const double x = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
                  y = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
-    return {{{0, 0, 3}, normalized(Vec3{x / 10 - 1, y / 10 - 1, -1}), 0}, 1};
+    SensorRay ray{{{0, 0, 3}, normalized(Vec3{x / 10 - 1, y / 10 - 1, -1}), 0}, 1};
+    if (!rejects) return ray;
+    ray.spectral = true;
+    for (float& w : r.spectral) w = r.u[2] < 0.05 ? NAN : 1;
+    return ray;
   }
   void accept(CaptureResult&& r) override { results.push_back(std::move(r)); }
   std::vector<CaptureResult> results;
+  bool rejects = false;  // some samples are no number
 
  private:
   std::vector<Band> bands_{Band::rectangular("a", 0.5, 0.02), Band::rectangular("b", 0.7, 0.02)};
@@ -48,7 +54,15 @@ std::shared_ptr<const Scene> corner() {
   return scene_of({quad(2, 0, 0), box({-1, -1, 0}, {0.5, 0.5, 1}, 0, true)}, {material("grey", lambert(0.5))});
 }
 
-std::vector<CaptureResult> run(StateStore* store, const Budget& budget, uint32_t paths, double target) {
+// The corner under a pane of glass, through which the sun is not found.
+std::shared_ptr<const Scene> covered() {
+  const ModelSpec glass{"dielectric", {}, {{"index", Curve::constant(1.5)}}, {}, nullptr};
+  return scene_of({quad(2, 0, 0), box({-1, -1, 0}, {0.5, 0.5, 1}, 0, true), quad(2, 2, 1)},
+                  {material("grey", lambert(0.5)), material("glass", glass)});
+}
+
+std::vector<CaptureResult> run(StateStore* store, const Budget& budget, uint32_t paths, double target,
+                               bool lacks = false) {
   SourceSpecs sources;
   sources.sky = uniform_sky(1, false);
   sources.sun = SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)};
@@ -57,8 +71,10 @@ std::vector<CaptureResult> run(StateStore* store, const Budget& budget, uint32_t
   options.budget = budget;
   options.store = store;
   std::vector<std::unique_ptr<Sensor>> sensors;
-  sensors.push_back(std::make_unique<Grid>(paths, target));
-  run_job(corner(), sources, sensors, options);
+  auto grid = std::make_unique<Grid>(paths, target);
+  grid->rejects = lacks;
+  sensors.push_back(std::move(grid));
+  run_job(lacks ? covered() : corner(), sources, sensors, options);
   return std::move(static_cast<Grid&>(*sensors[0]).results);
 }
 
@@ -68,6 +84,7 @@ void expect_same(const std::vector<CaptureResult>& a, const std::vector<CaptureR
     EXPECT_EQ(a[i].radiance, b[i].radiance);
     EXPECT_EQ(a[i].standard_error, b[i].standard_error);
     EXPECT_EQ(a[i].paths, b[i].paths);
+    EXPECT_EQ(a[i].quality, b[i].quality);
     EXPECT_EQ(sha256(std::as_bytes(std::span(a[i].truth))),
               sha256(std::as_bytes(std::span(b[i].truth))));  // NaNs compare too
   }
@@ -82,6 +99,22 @@ TEST(RenderState, sixty_four_and_sixty_four_is_one_hundred_and_twenty_eight) {
     budget.more += more;
     const auto continued = run(make_state(path, StateUse::extend, kIdentity, budget).get(), budget, first, 0);
     expect_same(continued, run(nullptr, {}, first + more, 0));
+  }
+}
+
+// What is missing and what was rejected is kept, scramble by scramble, also when a state is widened to more of them.
+TEST(RenderState, what_results_lack_goes_on) {
+  const TempFolder folder;
+  const std::string path = folder / "result.state.h5";
+  for (const auto& [first, more] : {std::pair<uint32_t, uint32_t>{64, 64}, {200, 200}}) {
+    run(make_state(path, StateUse::start, kIdentity, {}).get(), {}, first, 0, true);
+    Budget budget = read_state_budget(path, kIdentity);
+    budget.more += more;
+    const auto continued = run(make_state(path, StateUse::extend, kIdentity, budget).get(), budget, first, 0, true);
+    expect_same(continued, run(nullptr, {}, first + more, 0, true));
+    const std::vector<uint8_t>& quality = continued[0].quality;
+    EXPECT_GT(std::count_if(quality.begin(), quality.end(), [](uint8_t q) { return q & quality_unresolved; }), 100);
+    EXPECT_GT(std::count_if(quality.begin(), quality.end(), [](uint8_t q) { return q & quality_failures; }), 300);
   }
 }
 
@@ -154,6 +187,19 @@ TEST(RenderState, refuses_the_state_of_another_run) {
   const auto result = run(first.get(), {}, 8, 0);
   EXPECT_THAT(message_of([&] { run(make_state(path, StateUse::resume, kIdentity, {}).get(), {}, 8, 0); }),
               testing::HasSubstr("in use by another run"));
+}
+
+TEST(RenderState, refuses_an_older_version) {
+  const TempFolder folder;
+  const std::string path = folder / "result.state.h5";
+  {
+    h5::Writer old(path, path);
+    old.attribute("format", std::string("dirsig-render state"));
+    old.attribute("version", std::string("1"));
+    old.close();
+  }
+  EXPECT_THAT(message_of([&] { read_state_budget(path, kIdentity); }),
+              testing::HasSubstr("has version '1', this program reads 2"));
 }
 
 TEST(RenderState, refuses_what_is_no_state) {

@@ -1,0 +1,99 @@
+#include "scheduler/shortfall.h"
+
+#include <cmath>
+
+#include "radiometry/lost_light.h"
+
+namespace suite {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr size_t most = 4;
+  std::string out;
+  for (size_t i = 0; i < names.size() && i < most; ++i) out += (i ? ", " : "") + names[i];
+  return names.size() > most ? out + strf(" and %zu more", names.size() - most) : out;
+}
+
+// A disk that too few paths meet, in words; empty for others. It is met by a path that is scattered evenly over a
+// hemisphere with the probability solid angle / pi at most.
+std::string small_disk(const char* name, const Sun* disk, uint32_t paths) {
+  if (!disk) return {};
+  if (disk->collimated()) return std::string(name) + " (collimated)";
+  const double chance = 1 / (kPi * disk->density());
+  if (chance * paths >= Accumulators::kEnoughMeetings) return {};
+  return strf("%s (a disk that one path in %.2g meets by chance)", name, 1 / chance);
+}
+
+std::string share(const Shortfall::Part& part) {
+  return strf("%.3g %% of their radiance on average, %.3g %% at most", 100 * part.mean(), 100 * part.most);
+}
+
+}  // namespace
+
+void Shortfall::merge(const Shortfall& o) {
+  problems += o.problems;
+  unresolved.merge(o.unresolved);
+  truncated.merge(o.truncated);
+  rejecting += o.rejecting;
+  rejected += o.rejected;
+}
+
+Shortfall shortfall_of(std::span<const Lack> problems) {
+  Shortfall all;
+  all.problems = problems.size();
+  for (const Lack& lack : problems) {
+    if (lack.unresolved()) all.unresolved.add(lack.missing);
+    if (lack.truncated()) all.truncated.add(lack.cut);
+    all.rejecting += lack.rejected > 0;
+    all.rejected += lack.rejected;
+  }
+  return all;
+}
+
+std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s) {
+  std::vector<std::string> said;
+  const auto of = [&](size_t n) { return strf("sensor '%s': %zu of %zu problems ", sensor.c_str(), n, s.problems); };
+  if (s.unresolved.problems)
+    said.push_back(of(s.unresolved.problems) +
+                   "are not resolved: light of small sources behind smooth refracting surfaces was not found, about " +
+                   share(s.unresolved) +
+                   "; their standard errors contain it. A wider disk of the sun, lamps with a surface, rough surfaces "
+                   "or more paths help");
+  if (s.truncated.problems)
+    said.push_back(of(s.truncated.problems) + "lost light that was cut at the maximum number of nodes, about " +
+                   share(s.truncated) + "; their standard errors contain it. More max_nodes help");
+  if (s.rejected)
+    said.push_back(of(s.rejecting) + strf("rejected %llu samples that were not finite or negative",
+                                          static_cast<unsigned long long>(s.rejected)));
+  return said;
+}
+
+std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
+                                    const Environment& environment, const PipelineOptions& options, uint32_t paths) {
+  if (!options.explicit_sources) return {};
+  std::vector<std::string> lights, refracting, mirrors;
+  for (const std::string& disk :
+       {small_disk("the sun", environment.sun.get(), paths), small_disk("the moon", environment.moon.get(), paths)})
+    if (!disk.empty()) lights.push_back(disk);
+  for (const LampSpec& lamp : sources.lamps)
+    if (lamp.kind != LampSpec::Kind::surface) lights.push_back("lamp '" + lamp.name + "' (a point)");
+  if (lights.empty()) return {};
+  for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
+  for (uint32_t i = 0; i < scene.materials.size(); ++i)
+    if (const ScatterModel* m = optics.material(i).model; m && m->has_delta())
+      mirrors.push_back("'" + scene.materials[i].id + "'");
+  std::vector<std::string> said;
+  if (!refracting.empty())
+    said.push_back("light of " + listed(lights) + " is not found behind smooth refracting surfaces (" +
+                   listed(refracting) +
+                   "): only asking for it finds it, and they bend it away. What is missing is estimated, enlarges "
+                   "standard errors and flags problems as not resolved");
+  if (!mirrors.empty())
+    said.push_back("light of " + listed(lights) + " that smooth surfaces (" + listed(mirrors) +
+                   ") reflect to others is not found and not estimated: no standard error and no flag tells of it. A "
+                   "rough surface (ggx) or a wider source is found");
+  return said;
+}
+
+}  // namespace suite
