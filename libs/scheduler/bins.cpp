@@ -12,7 +12,6 @@ namespace {
 constexpr double kUsualError = 1e-3;    // judges even bins
 constexpr size_t kMostCells = 1 << 16;  // of a state
 constexpr size_t kMostOfABand = 512;    // bins
-constexpr double kWholeStretch = 1e5;   // um: wider than any stretch of bands
 constexpr size_t kCellsAcross = 32;     // of the narrowest band, to begin with
 
 // What a state's bins count in each band by its response, or by its shares.
@@ -36,10 +35,13 @@ class StateBins {
       : state_(state), bands_(bands), wanted_(state.choice.error > 0 ? state.choice.error : kUsualError) {
     double narrowest = INFINITY, support = 0;
     for (const Band& b : bands) narrowest = std::min(narrowest, b.high_um() - b.low_um());
-    for (const Bin& b : make_state(bands, kWholeStretch).bins) support += b.high_um - b.low_um;
+    for (const Bin& b : whole_stretches().bins) support += b.high_um - b.low_um;
     cell_ = std::max(narrowest / kCellsAcross, 4 * support / kMostCells);
     SpectralState fine = make_state(bands, cell_, 0, 1);
-    recipe_ = ProductRecipe(seen, fine, white_light);
+    SpectralState probe = fine;
+    const std::vector<Bin> between = middles(fine).bins;
+    probe.bins.insert(probe.bins.end(), between.begin(), between.end());
+    recipe_ = ProductRecipe(seen, probe, white_light);
     refine(std::move(fine));
   }
 
@@ -47,7 +49,7 @@ class StateBins {
   SpectralState choose() {
     const double room = std::max(wanted_ - unresolved_, 0.5 * wanted_);
     const double widest = state_.choice.widest_um;
-    SpectralState whole = make_state(bands_, widest > 0 ? widest : kWholeStretch, state_.reference_um, 1);
+    SpectralState whole = widest > 0 ? make_state(bands_, widest) : whole_stretches();
     if (judge(whole) <= room) return finished(std::move(whole));
     SpectralState some = sparse(room);
     const double of_some = error_, of_even = judge(state_);
@@ -108,6 +110,9 @@ class StateBins {
         if (a[i][p] > 0 && b[i][p] > 0) most = std::max(most, std::fabs(a[i][p] / b[i][p] - 1));
     return most;
   }
+  // One bin for bands that overlap or touch.
+  SpectralState whole_stretches() const { return make_state(bands_, state_.high_um - state_.low_um); }
+  // The middle 64th of every bin.
   static SpectralState middles(SpectralState state) {
     for (Bin& b : state.bins) {
       const double middle = b.center_um(), half = (b.high_um - b.low_um) / 128;

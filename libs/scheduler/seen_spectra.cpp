@@ -28,7 +28,7 @@ class Gatherer {
   Gatherer(const Scene& scene, std::span<const Band> bands) : scene_(scene) {
     constexpr double kSamples = 200;
     double support = 0;
-    for (const Bin& b : make_state(bands, 1e6).bins) support += b.high_um - b.low_um;
+    for (const Bin& b : make_state(bands, 1).bins) support += b.high_um - b.low_um;
     coarse_ = make_state(bands, support / kSamples, 0, 1);
   }
 

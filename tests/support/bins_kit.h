@@ -29,10 +29,10 @@ inline SourceSpecs sun_of(const Curve& irradiance) {
   return s;
 }
 
-// Band means of a function of wavelength by midpoints of steps of 0.1 nm, which shares no code with bins.
-inline double by_small_steps(const Band& band, const std::function<double(double)>& value) {
+// Band means of a function of wavelength by midpoints of small steps, 0.1 nm unless told; shares no code with bins.
+inline double by_small_steps(const Band& band, const std::function<double(double)>& value, double step_um = 1e-4) {
   double sum = 0, whole = 0;
-  const auto steps = static_cast<int>(std::ceil((band.high_um() - band.low_um()) / 1e-4));
+  const auto steps = static_cast<int>(std::ceil((band.high_um() - band.low_um()) / step_um));
   for (int i = 0; i < steps; ++i) {
     const double um = band.low_um() + (band.high_um() - band.low_um()) * (i + 0.5) / steps;
     const double response = band.response.at(um);
@@ -43,7 +43,8 @@ inline double by_small_steps(const Band& band, const std::function<double(double
 
 // The largest relative error of a product of curves over all bands, as the bins of a state give it. The bins see the
 // curves as averages over bins.
-inline double error_of(const SpectralState& state, std::span<const Band> bands, const std::vector<Curve>& curves) {
+inline double error_of(const SpectralState& state, std::span<const Band> bands, const std::vector<Curve>& curves,
+                       double step_um = 1e-4) {
   const BandProjection projection(state, bands);
   double worst = 0;
   for (size_t b = 0; b < bands.size(); ++b) {
@@ -53,11 +54,14 @@ inline double error_of(const SpectralState& state, std::span<const Band> bands, 
       for (const Curve& c : curves) product *= c.mean(state.bins[k].low_um, state.bins[k].high_um);
       got += product;
     }
-    const double right = by_small_steps(bands[b], [&](double um) {
-      double product = 1;
-      for (const Curve& c : curves) product *= c.at(um);
-      return product;
-    });
+    const double right = by_small_steps(
+        bands[b],
+        [&](double um) {
+          double product = 1;
+          for (const Curve& c : curves) product *= c.at(um);
+          return product;
+        },
+        step_um);
     worst = std::max(worst, std::fabs(got / right - 1));
   }
   return worst;
