@@ -65,11 +65,11 @@ class StateBins {
     error_ = 0, band_ = 0, product_ = products.products.size();
     for (size_t b = 0; b < bands_.size(); ++b)
       for (size_t p = 0; p < products.products.size(); ++p) {
-        if (!(means_[b][p] > 0)) continue;
+        if (!(means_[b][p].mean > 0)) continue;
         double value = 0;
         for (size_t k = 0; k < cells[b].share.size(); ++k)
           value += cells[b].share[k] * products.at(products.products[p], cells[b].first + k);
-        if (const double e = std::fabs(value / means_[b][p] - 1); e > error_) error_ = e, band_ = b, product_ = p;
+        if (const double e = means_[b][p].error(value); e > error_) error_ = e, band_ = b, product_ = p;
       }
     return error_;
   }
@@ -82,7 +82,7 @@ class StateBins {
   }
 
  private:
-  using Means = std::vector<std::vector<double>>;  // [band][product]
+  using Means = std::vector<std::vector<BandMean>>;  // [band][product]
 
   // Halves the cells until no band of no product changes.
   void refine(SpectralState fine) {
@@ -107,7 +107,7 @@ class StateBins {
     double most = 0;
     for (size_t i = 0; i < a.size(); ++i)
       for (size_t p = 0; p < a[i].size(); ++p)
-        if (a[i][p] > 0 && b[i][p] > 0) most = std::max(most, std::fabs(a[i][p] / b[i][p] - 1));
+        if (a[i][p].mean > 0 && b[i][p].mean > 0) most = std::max(most, b[i][p].error(a[i][p].mean));
     return most;
   }
   // One bin for bands that overlap or touch.

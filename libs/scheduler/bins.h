@@ -3,9 +3,10 @@
 //
 // Light is followed as averages over bins, and averages of curves are multiplied where the product of the curves is
 // meant. Against that the bands of all products of what shines with what it is multiplied by (seen_spectra.h; one, two
-// and three factors, and the fourth and eighth power of some) are first found over ever finer cells until halving the
-// cells changes none of them; then the fewest bins are looked for that give the same: one bin a stretch of bands where
-// that will do, else some of the cells with weights (spectral/cubature.h), which are so narrow that averages multiply.
+// and three factors; the fourth and eighth power of some, as errors of what is scattered twice) are first found over
+// ever finer cells until halving the cells changes none of them; then the fewest bins are looked for that give the
+// same: one bin a stretch of bands where that will do, else some of the cells with weights (spectral/cubature.h), which
+// are so narrow that averages multiply.
 #pragma once
 #include <span>
 #include <string>

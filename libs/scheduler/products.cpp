@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace suite {
 
@@ -85,14 +86,17 @@ void ProductRecipe::list_products(bool white_light) {
     const bool glows = l != one && role_[l] == SpectrumRole::glow;
     for (uint32_t f = 0; f < role_.size(); ++f)
       if (!shines(role_[f]) && (glows || role_[f] != SpectrumRole::emitting)) products_.push_back({l, {f, one, one}});
-    for (uint32_t p = 0; p < powers_.size(); ++p)
-      products_.push_back({l, {static_cast<uint32_t>(role_.size()) + p, one, one}});
+    std::map<uint32_t, uint32_t> twice;  // the product of a leader with itself
     for (size_t i = 0; i < leaders_.size(); ++i)
       for (size_t j = i; j < leaders_.size(); ++j) {
+        if (i == j) twice[leaders_[i]] = static_cast<uint32_t>(products_.size());
         products_.push_back({l, {leaders_[i], leaders_[j], one}});
         for (size_t k = j; k < std::min(kTriples, leaders_.size()); ++k)
           products_.push_back({l, {leaders_[i], leaders_[j], leaders_[k]}});
       }
+    // Where light arrives after many reflections, that of two does as well.
+    for (uint32_t p = 0; p < powers_.size(); ++p)
+      products_.push_back({l, {static_cast<uint32_t>(role_.size()) + p, one, one}, twice.at(powers_[p].of)});
   }
 }
 

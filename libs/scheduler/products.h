@@ -8,8 +8,8 @@ namespace suite {
 class ProductRecipe {
  public:
   ProductRecipe() = default;
-  // Spectra of one shape, seen over the bins of a state (in any order), count once. white_light: a source of unit radiance shines as
-  // well; it does in any case when nothing else does.
+  // Spectra of one shape, seen over the bins of a state (in any order), count once. white_light: a source of unit
+  // radiance shines as well; it does in any case when nothing else does.
   ProductRecipe(const std::vector<SeenSpectra>& seen, const SpectralState& state, bool white_light);
   SpectralProducts over(const SpectralState& state) const;
   // "the sun on reflectance of asphalt"; empty when there is no such product.

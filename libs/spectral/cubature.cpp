@@ -26,7 +26,7 @@ class BandFit {
     add_row([](size_t) { return kWhole; }, kWhole);
     for (size_t i = 0; i < band.stretches.size(); ++i) demand(all.products.size() + i);
     for (size_t p = 0; p < all.products.size(); ++p)
-      if (plain(all.products[p]) && means_[p] > 0) demand(p);
+      if (plain(all.products[p]) && means_[p].mean > 0) demand(p);
   }
 
   // Fits to cells of the band (numbered from its first); continues with `fit`. True: every product is within the
@@ -77,7 +77,8 @@ class BandFit {
     rows_.push_back(row);
     if (row < means_.size()) {
       const SpectralProducts::Product& p = all_.products[row];
-      add_row([&](size_t j) { return all_.at(p, band_.first + j) / means_[row]; }, 1);
+      const BandMean& m = means_[row];
+      add_row([&](size_t j) { return all_.at(p, band_.first + j) / m.scale; }, m.mean / m.scale);
     } else {
       const auto [low, high] = band_.stretches[row - means_.size()];
       add_row([&](size_t j) { return band_.first + j >= low && band_.first + j < high ? 1.0 : 0.0; },
@@ -98,10 +99,10 @@ class BandFit {
         if (const size_t cell = band_.first + fit.chosen[k]; cell >= low && cell < high) value += fit.x[k];
       return std::fabs(value / sum - stretch_share(low, high));
     }
-    if (!(means_[row] > 0)) return 0;
+    if (!(means_[row].mean > 0)) return 0;
     for (size_t k = 0; k < fit.chosen.size(); ++k)
       value += fit.x[k] * all_.at(all_.products[row], band_.first + fit.chosen[k]);
-    return std::fabs(value / (sum * means_[row]) - 1);
+    return means_[row].error(value / sum);
   }
   // Adds the worst of what is not within the tolerance to the equations; false when there is nothing to add.
   bool demand_worst(const NonNegativeFit& fit, double tolerance) {
@@ -120,7 +121,7 @@ class BandFit {
 
   const SpectralProducts& all_;
   const BandCells& band_;
-  std::vector<double> means_;
+  std::vector<BandMean> means_;
   std::vector<std::vector<double>> columns_;  // [cell of the band][row]
   std::vector<double> wanted_;
   std::vector<size_t> rows_;  // what the rows after the first are: products, then stretches
@@ -201,15 +202,15 @@ class Choice {
 
 }  // namespace
 
-std::vector<double> band_means(const SpectralProducts& all, const BandCells& band) {
+std::vector<BandMean> band_means(const SpectralProducts& all, const BandCells& band) {
   constexpr double kDarkLight = 1e-6, kDarkFactor = 1e-6, kDarkFactors = 1e-4;
-  std::vector<double> means;
+  std::vector<BandMean> means;
   std::vector<double> light(all.spectra.size() + 1, 0.0);  // mean of each alone; the last is of 1
   double brightest = 0;
   for (const SpectralProducts::Product& p : all.products) {
     double sum = 0;
     for (size_t j = 0; j < band.share.size(); ++j) sum += band.share[j] * all.at(p, band.first + j);
-    means.push_back(sum);
+    means.push_back({sum, sum});
     if (!plain(p)) continue;
     light[p.light == SpectralProducts::kOne ? all.spectra.size() : p.light] = sum;
     brightest = std::max(brightest, sum);
@@ -218,8 +219,10 @@ std::vector<double> band_means(const SpectralProducts& all, const BandCells& ban
     const SpectralProducts::Product& p = all.products[i];
     const double of_light = light[p.light == SpectralProducts::kOne ? all.spectra.size() : p.light];
     const double dark = plain(p) ? 0 : p.factors[1] == SpectralProducts::kOne ? kDarkFactor : kDarkFactors;
-    if (!(of_light > kDarkLight * brightest && means[i] > dark * of_light)) means[i] = 0;
+    if (!(of_light > kDarkLight * brightest && means[i].mean > dark * of_light)) means[i].mean = 0;
   }
+  for (size_t i = 0; i < means.size(); ++i)
+    if (const uint32_t by = all.products[i].judged_by; by != SpectralProducts::kOne) means[i].scale = means[by].scale;
   return means;
 }
 

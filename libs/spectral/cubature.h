@@ -10,6 +10,7 @@
 // problems", 1974, chapter 23. That such weights exist: V. Tchakaloff, Bull. Sci. Math. 81, 1957.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,8 @@ struct SpectralProducts {
   struct Product {
     uint32_t light = kOne;                                 // index into spectra
     std::array<uint32_t, 3> factors = {kOne, kOne, kOne};  // indices; kOne = 1
+    // The product whose mean its error is relative to, kOne = its own: light that is never seen alone.
+    uint32_t judged_by = kOne;
   };
   std::vector<Product> products;
   size_t cells = 0;
@@ -45,7 +48,11 @@ struct BandCells {
 
 // Means of the products over a band. What is too dark to matter is 0: a light below 1e-6 of the brightest, a product
 // of several factors below 1e-4 of its light, one factor below 1e-6.
-std::vector<double> band_means(const SpectralProducts& all, const BandCells& band);
+struct BandMean {
+  double mean = 0, scale = 1;  // errors are relative to the scale
+  double error(double value) const { return std::fabs(value - mean) / scale; }
+};
+std::vector<BandMean> band_means(const SpectralProducts& all, const BandCells& band);
 
 struct ChosenCells {
   std::vector<size_t> cells;     // ascending
@@ -53,8 +60,8 @@ struct ChosenCells {
   double error = 0;              // the largest of all bands and products, relative
   size_t band = 0, product = 0;  // whose it is
 };
-// tolerance > 0: relative error of each product in each band. most: cells that one band may take; what is not reached
-// with them is told in `error`.
+// tolerance > 0: largest relative error of each product in each band. most: cells that one band may take; what is not
+// reached with them is told in `error`.
 ChosenCells choose_cells(const SpectralProducts& all, std::span<const BandCells> bands, double tolerance, size_t most);
 
 }  // namespace suite

@@ -74,8 +74,8 @@ TEST(Bins, FollowProductsOfLightAndMaterials) {
   BinSensor sensor({Ray{}}, kBands, 1, 1e-3);
   const BinReport r = chosen(sensor, *scene, sun_of(sun));
   EXPECT_TRUE(r.met()) << r.text();
-  for (const std::vector<Curve>& product : std::vector<std::vector<Curve>>{
-           {sun}, {sun, a}, {sun, b}, {sun, a, b}, {sun, a, a}, {sun, a, b, b}, {sun, a, a, a, a}})
+  for (const std::vector<Curve>& product :
+       std::vector<std::vector<Curve>>{{sun}, {sun, a}, {sun, b}, {sun, a, b}, {sun, a, a}, {sun, a, b, b}})
     EXPECT_LE(test::error_of(sensor.state(), kBands, product, 1e-5), 1e-3);  // the combs are steep for 0.1 nm
 }
 
