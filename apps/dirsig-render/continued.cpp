@@ -10,12 +10,24 @@ namespace {
 
 std::string hash_of_file(const std::string& path) { return sha256(read_bytes(path, size_t{1} << 40)); }
 
+// Bins follow from the curves that the simulation names, which may have changed.
+std::string hash_of_bins(const Simulation& sim) {
+  std::string all;
+  for (const auto& sensor : sim.sensors)
+    for (const SpectralState& s : sensor->states()) {
+      for (const Bin& b : s.bins) all += strf("%a %a ", b.low_um, b.high_um);
+      for (const double share : s.shares) all += strf("%a ", share);
+    }
+  return sha256(all);
+}
+
 StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
   // The program itself is the build: another compiler or another line of code gives other last bits.
   std::string scenes;
   for (const SimulationScene& s : sim.scenes) scenes += hash_of_file(s.path);
   return {{"scene", sim.scenes.size() == 1 ? scenes : sha256(scenes)},
           {"simulation", hash_of_file(sim.path)},
+          {"spectral bins", hash_of_bins(sim)},
           {"seed", strf("%llu", static_cast<unsigned long long>(options.pipeline.seed))},
           {"build", hash_of_file("/proc/self/exe")},
           {"engine", Tracer::engine()}};

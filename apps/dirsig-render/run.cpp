@@ -22,9 +22,9 @@
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
 #include "scene/combine.h"
+#include "scheduler/bins.h"
 #include "scheduler/features.h"
 #include "scheduler/moments.h"
-#include "scheduler/step_check.h"
 #include "sensor/plugin.h"
 #include "study.h"
 
@@ -74,16 +74,16 @@ std::string explain(const std::string& feature) {
   }
 }
 
-// Warns when a sensor's spectral step is too coarse for what it looks at.
-void check_step(const Scene& scene, const SourceSpecs& sources, const Sensor& sensor) {
-  const std::optional<CoarseStep> found = coarse_step(scene, sources, sensor);
-  if (!found) return;
-  const std::string cure =
-      found->halvings ? strf("; spectral_step_um: %.3g is fine enough", 0.995 * found->bin_um / (1 << found->halvings))
-                      : "; no step is fine enough: the spectrum has lines";
-  warn(strf("sensor '%s': halving its spectral bins of %.3g um changes band '%s' by %.2g %% (%s); %g %% is the limit%s",
-            sensor.name().c_str(), found->bin_um, found->band.c_str(), 100 * found->change, found->under.c_str(),
-            100 * kStepLimit, cure.c_str()));
+// Chooses the bins of a sensor's states and says what they are good for.
+void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources) {
+  for (const BinReport& r : choose_bins(scene, sources, sensor)) {
+    note(r.text());
+    if (r.met()) continue;
+    warn(strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(), r.band.c_str(),
+              100 * r.reached, r.under.c_str(), 100 * r.wanted,
+              r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
+                       : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
+  }
 }
 
 // What the sensors can see decides what is loaded.
@@ -123,7 +123,12 @@ Scene load_scenes(const Simulation& sim, bool all, std::vector<std::shared_ptr<c
 int dry_run(const Simulation& sim, const JobOptions& options) {
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());
-    for (const SpectralState& s : sensor->states()) std::printf("  state %s\n", s.text().c_str());
+    for (const SpectralState& s : sensor->states())
+      std::printf("  state %s\n", s.choice.error > 0 ? strf("%.4g-%.4g um, bins for a spectral error of %g %%, "
+                                                            "reference %.4g um",
+                                                            s.low_um, s.high_um, 100 * s.choice.error, s.reference_um)
+                                                           .c_str()
+                                                     : s.text().c_str());
     for (const Task& t : sensor->tasks())
       for (const Capture& c : t.captures)
         std::printf("  task '%s', capture '%s': %u x %u problems, %g to %g s\n", t.name.c_str(), c.name.c_str(),
@@ -256,11 +261,11 @@ int run_render(const Cli& cli, const RenderOptions& o) {
         check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
   note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
   for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
-  const SourceSpecs first = first_sources(sim.sources, *scene, sim.sensors);
+  const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output);
     for (const std::string& truth : sensor->truth()) find_truth(truth);
-    check_step(*scene, first, *sensor);
+    choose_bins_of(*sensor, *scene, standing);
   }
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);

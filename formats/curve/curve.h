@@ -1,12 +1,16 @@
 // Spectral curves from files: two-column text, CSV, ECOSTRESS library spectra, ENVI
 // spectral libraries, DIRSIG emissivity files. See FORMAT.md.
 #pragma once
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "spectral/curve.h"
 
 namespace suite {
+
+class Params;
 
 struct CurveOptions {
   Outside outside = Outside::error;
@@ -20,5 +24,16 @@ Curve read_curve(const std::string& path, const CurveOptions& options);
 
 // All curves of a file: of a library in its order, else the one. Same Errors.
 std::vector<Curve> read_curve_family(const std::string& path, const CurveOptions& options);
+
+// One curve from several that follow each other in wavelength: the rows of each up to where the next one takes over,
+// linear between the last and the first. at_um: where, one less than parts; empty = the middle of what neighbours
+// share, or of a gap no wider than twice the step of the rows beside it. where: of each part. Error: order, gaps,
+// constants, parts with a rule outside their range.
+Curve join_curves(std::span<const Curve> parts, std::span<const double> at_um, Outside outside,
+                  std::span<const Where> where);
+// The same from a list of curves, or from {join: [CURVE, ...], at_um: [N, ...], outside: RULE}. Located Errors.
+Curve read_joined(const Params& p, const std::function<Curve(const Params&)>& read_one);
+// Key `outside` of a map; error when absent.
+Outside read_outside(const Params& map);
 
 }  // namespace suite

@@ -9,12 +9,6 @@
 namespace suite::scene_text {
 
 namespace {
-Outside read_outside(const Params& p) {
-  const auto rule = p.find("outside");
-  if (!rule) return Outside::error;
-  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
-  return rules[rule->as_choice({"error", "hold", "zero"})];
-}
 // 'outside' of a material is the medium there, or what a fitted quad-tree is worth outside its wavelengths.
 bool is_rule(const Params& p) {
   if (p.kind() == Params::Kind::map || p.kind() == Params::Kind::list) return false;
@@ -44,8 +38,10 @@ Curve Reader::read_curve_map(const Params& p) {
   return read_curve(input(p.at("file")), options);
 }
 
-// A number, the name of a curve of `curves`, the name of a file, or a map.
+// A number, the name of a curve of `curves`, the name of a file, a map, or a list of curves to be joined.
 Curve Reader::read_curve_value(const Params& p) {
+  if (p.kind() == Params::Kind::list || (p.kind() == Params::Kind::map && p.has("join")))
+    return read_joined(p, [this](const Params& one) { return read_curve_value(one); });
   if (p.kind() == Params::Kind::map) return read_curve_map(p);
   const std::string text = p.as_text();
   if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) return Curve::constant(p.as_number());

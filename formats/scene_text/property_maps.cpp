@@ -52,16 +52,13 @@ std::vector<Curve> Reader::read_family(const Params& p) {
   }
   CurveOptions options;
   if (p.kind() == Params::Kind::scalar) return read_curve_family(input(p), options);
-  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
-  if (const auto outside = p.find("outside")) options.outside = rules[outside->as_choice({"error", "hold", "zero"})];
+  options.outside = read_outside(p);
   options.scale = p.number("scale", 1);
   return read_curve_family(input(p.at("file")), options);
 }
 
 void Reader::read_cube(const Params& p, PropertyMap& map) {
-  constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
-  const auto outside = p.find("outside");
-  map.outside = outside ? rules[outside->as_choice({"error", "hold", "zero"})] : Outside::error;
+  map.outside = read_outside(p);
   const Params file = p.at("file");
   const EnviImage cube(input(file));
   header_input(file);

@@ -23,15 +23,13 @@ std::string file_of(const Params& p) {
 }  // namespace
 
 Curve read_curve_value(const Params& p) {
-  auto outside_of = [](const Params& map) {
-    const auto rule = map.find("outside");
-    return rule ? static_cast<Outside>(rule->as_choice({"error", "hold", "zero"})) : Outside::error;
-  };
+  if (p.kind() == Params::Kind::list || (p.kind() == Params::Kind::map && p.has("join")))
+    return read_joined(p, read_curve_value);
   if (p.kind() == Params::Kind::map) {
     if (const auto x = p.find("wavelength_um"))
-      return Curve(x->as_numbers(), p.at("value").as_numbers(), outside_of(p), p.where());
+      return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
     CurveOptions options;
-    options.outside = outside_of(p);
+    options.outside = read_outside(p);
     options.column = static_cast<int>(p.integer("column", 0, 10000, 0));
     options.scale = p.number("scale", 1);
     return read_curve(file_of(p.at("file")), options);

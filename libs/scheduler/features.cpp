@@ -51,11 +51,10 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
   size_t fitted = 0, warm = scene.temperatures.size();
   for (const Material& m : scene.materials) fitted += m.surface.bundle != nullptr, warm += m.temperature_k > 0;
   std::set<std::string> truth;
-  size_t bands = 0, bins = 0, states = 0;
+  size_t bands = 0, states = 0;
   for (const auto& sensor : sensors) {
     truth.insert(sensor->truth().begin(), sensor->truth().end());
-    for (size_t s = 0; s < sensor->states().size(); ++s)
-      bands += sensor->bands(s).size(), bins += sensor->states()[s].size(), ++states;
+    for (size_t s = 0; s < sensor->states().size(); ++s) bands += sensor->bands(s).size(), ++states;
   }
   std::string names;
   for (const std::string& t : truth) names += (names.empty() ? "" : ", ") + t;
@@ -72,7 +71,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
           source("atmosphere", sources.atmosphere.has_value()),
           source("earth", sources.earth.has_value()),
           {"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names},
-          {"bands", true, strf("%zu in %zu spectral states of %zu bins", bands, states, bins)}};
+          {"bands", true, strf("%zu in %zu spectral states", bands, states)}};
 }
 
 std::string text_of(const std::vector<FeatureUse>& features) {

@@ -11,7 +11,7 @@ namespace {
 
 bool same_state(const SpectralState& a, const SpectralState& b) {
   auto same_bin = [](const Bin& x, const Bin& y) { return x.low_um == y.low_um && x.high_um == y.high_um; };
-  return a.reference_um == b.reference_um && a.knots == b.knots &&
+  return a.reference_um == b.reference_um && a.knots == b.knots && a.bins.size() == b.bins.size() &&
          std::equal(a.bins.begin(), a.bins.end(), b.bins.begin(), b.bins.end(), same_bin);
 }
 

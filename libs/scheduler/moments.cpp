@@ -85,6 +85,26 @@ SourceSpecs first_sources(const SourceSpecs& written, const Scene& scene, Sensor
   return first;
 }
 
+std::vector<SourceSpecs> sources_at_all_times(const SourceSpecs& written, const Scene& scene) {
+  std::vector<SourceSpecs> all;
+  for (const double zenith_deg : {0.0, 60.0, 85.0}) {
+    SourceSpecs s = written;
+    if (s.sun && s.sun->time) {
+      s.sun->time.reset();
+      s.sun->direction = dir_from_angles(zenith_deg * kDegree, 0);
+    }
+    if (s.moon && s.moon->disk.time) {
+      s.moon->disk.time.reset();
+      s.moon->disk.direction = Dir{0, 0, 1};
+      s.moon->geometry.phase = s.moon->geometry.sun_longitude = 1.5 * zenith_deg * kDegree;
+    }
+    resolve_sources(s, scene, 0);
+    all.push_back(std::move(s));
+    if (!written.dated()) break;
+  }
+  return all;
+}
+
 std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
   const std::map<double, Named> moments = written.dated() ? moments_of(sensors) : std::map<double, Named>{};
   if (written.clear && written.sun && written.sun->time) check_clear(written, scene, moments);

@@ -36,6 +36,10 @@ class SourcesInTime {
 
 using Sensors = std::span<const std::unique_ptr<Sensor>>;
 
+// Sources that stand for those of all moments: dated ones with the sun at the zenith, 60 and 85 degrees from it and the
+// Moon full and at half, so that what is chosen from their spectra does not depend on when a run looks.
+std::vector<SourceSpecs> sources_at_all_times(const SourceSpecs& written, const Scene& scene);
+
 // The sources as the earliest capture sees them.
 SourceSpecs first_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors);
 

@@ -108,7 +108,7 @@ class PluginSensor final : public Sensor {
       throw params.error("the plug-in '" + kind_ +
                          "' made no sensor: " + (making.failure.empty() ? "no reason given" : making.failure));
     try {
-      take();
+      take(read_spectral_error(params));
     } catch (const Error& e) {
       destroy();
       throw params.error("the plug-in '" + kind_ + "': " + e.message(), e.hint());
@@ -119,6 +119,10 @@ class PluginSensor final : public Sensor {
   std::string name() const override { return name_; }
   std::span<const SpectralState> states() const override { return states_; }
   std::span<const Band> bands(size_t state) const override { return bands_[state]; }
+  void take_state(size_t state, SpectralState with_bins) override {
+    states_[state] = std::move(with_bins);
+    set_centers();
+  }
   std::span<const Task> tasks() const override { return tasks_; }
   std::span<const std::string> truth() const override { return truth_; }
   int numbers() const override { return static_cast<int>(sensor_.numbers); }
@@ -131,7 +135,8 @@ class PluginSensor final : public Sensor {
                                     r.u.data(),
                                     static_cast<uint32_t>(r.u.size()),
                                     static_cast<uint32_t>(r.spectral.size()),
-                                    r.spectral.data()};
+                                    r.spectral.data(),
+                                    centers_[r.capture.state].data()};
     suite_ray out{sizeof(suite_ray), 0, {0, 0, 0}, {0, 0, 0}, r.capture.window.begin, 1, SUITE_RECEIVER_NONE, 0};
     bool good = false;
     try {
@@ -198,7 +203,7 @@ class PluginSensor final : public Sensor {
     sensor_ = {};
   }
 
-  void take() {
+  void take(double spectral_error) {
     if (!sensor_.ray) throw Error("it gives no rays");
     if (sensor_.numbers < 1 || sensor_.numbers > 8)
       throw Error(strf("it asks for %u numbers a ray", sensor_.numbers), "1 to 8");
@@ -209,8 +214,9 @@ class PluginSensor final : public Sensor {
       bands_.emplace_back();
       for (uint32_t b = 0; b < state.band_count; ++b)
         bands_.back().push_back(band_of(element(state.bands, b, "bands")));
-      states_.push_back(make_state(bands_.back(), state.step_um > 0 ? state.step_um : 0.01, state.reference_um));
+      states_.push_back(state_for(bands_.back(), spectral_error, state.step_um, state.reference_um, 4));
     }
+    set_centers();
     for (uint32_t t = 0; t < sensor_.task_count; ++t) {
       const suite_task& task = element(sensor_.tasks, t, "tasks");
       tasks_.push_back({task.name ? task.name : strf("task_%u", t), {task.begin_s, task.end_s}, {}});
@@ -241,6 +247,14 @@ class PluginSensor final : public Sensor {
     rows_ = lay_out(tasks_, keys);
   }
 
+  void set_centers() {
+    centers_.clear();
+    for (const SpectralState& s : states_) {
+      centers_.emplace_back();
+      for (const Bin& b : s.bins) centers_.back().push_back(b.center_um());
+    }
+  }
+
   std::pair<size_t, size_t> place_of(const Capture& capture) const {
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const auto& list = tasks_[t].captures;
@@ -258,6 +272,7 @@ class PluginSensor final : public Sensor {
   suite_sensor sensor_{};
   std::vector<std::vector<Band>> bands_;
   std::vector<SpectralState> states_;
+  std::vector<std::vector<double>> centers_;  // um, of the bins of each state
   std::vector<Task> tasks_;
   std::vector<std::vector<uint32_t>> numbers_;  // [task][capture]: the plug-in's own
   std::vector<std::vector<ImageRows>> rows_;

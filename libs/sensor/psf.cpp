@@ -74,7 +74,17 @@ struct Airy final : PointSpread {
     }
     beyond = 1 - sum / whole;
     rings.set(step_v, std::move(light));
-    for (const Bin& b : state.bins) unit.push_back(b.center_um() * 1e-6 * f_number / kPi);
+    set_units(f_number * 1e-6 / kPi, state);
+  }
+  std::unique_ptr<PointSpread> with_bins(const SpectralState& state) const override {
+    auto other = std::make_unique<Airy>(*this);
+    other->set_units(per_um, state);
+    return other;
+  }
+  void set_units(double m_per_um, const SpectralState& state) {
+    per_um = m_per_um;
+    unit.clear();
+    for (const Bin& b : state.bins) unit.push_back(b.center_um() * per_um);
   }
   Vec2 sample(double u, double v, double which) const override {
     const size_t bin = std::min(static_cast<size_t>(which * static_cast<double>(unit.size())), unit.size() - 1);
@@ -95,6 +105,7 @@ struct Airy final : PointSpread {
   double cut() const override { return beyond; }
   static constexpr double kScale = 1e-12;  // densities per um2 fit a float
   Rings rings;
+  double per_um = 0;         // m of a unit per um of wavelength
   std::vector<double> unit;  // m
   double beyond = 0;
 };

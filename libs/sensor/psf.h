@@ -23,6 +23,8 @@ class PointSpread {
   // weights() gives, per bin, the density of an offset at that wavelength over the mixture's.
   virtual bool spectral() const { return false; }
   virtual void weights(Vec2 offset, std::span<float> per_bin) const;
+  // The same pattern over the bins of another state; null when it is the same for all wavelengths.
+  virtual std::unique_ptr<PointSpread> with_bins(const SpectralState&) const { return nullptr; }
   // Share of the light that is cut off far out and spread over the rest.
   virtual double cut() const { return 0; }
 };

@@ -1,5 +1,7 @@
 #include "sensor/sensor.h"
 
+#include "base/error.h"
+
 namespace suite {
 
 std::span<const std::string> default_truth() {
@@ -8,6 +10,8 @@ std::span<const std::string> default_truth() {
 }
 
 std::span<const std::string> Sensor::truth() const { return default_truth(); }
+
+void Sensor::take_state(size_t, SpectralState) { throw Bug("a sensor whose states stay as they are was given one"); }
 
 std::span<const Channel> Sensor::channels() const {
   static constexpr Channel only[] = {Channel::radiance};

@@ -124,6 +124,9 @@ class Sensor {
   virtual std::string name() const = 0;
   virtual std::span<const SpectralState> states() const = 0;
   virtual std::span<const Band> bands(size_t state) const = 0;
+  // Takes a state with other bins in the place of one whose `choice` asks for them (scheduler/bins.h): the same window
+  // and reference wavelength. Called before any capture begins, from one thread.
+  virtual void take_state(size_t state, SpectralState with_bins);
   virtual std::span<const Task> tasks() const = 0;
   // Uniform numbers that one ray takes, 1..8. The first four form one stratified block, the others a second.
   virtual int numbers() const { return 4; }

@@ -8,6 +8,8 @@
 namespace suite {
 
 namespace {
+constexpr double kSpectralError = 1e-3, kLeastSpectralError = 1e-5;
+
 std::vector<SensorRow>& table() {
   static std::vector<SensorRow> rows{frame_camera_row(), platform_row(),   orthographic_row(), fisheye_row(),
                                      point_row(),        goniometer_row(), rami_row()};
@@ -34,10 +36,26 @@ std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& c
   throw params.at("kind").error("unknown sensor kind '" + kind + "'", name_hint(kind, known), "SE101");
 }
 
+double read_spectral_error(const Params& p) {
+  const double error = p.number_in("spectral_error", 0, 0.5, "(fraction)", kSpectralError);
+  if (error > 0 && error < kLeastSpectralError)
+    throw p.at("spectral_error")
+        .error(strf("the spectral error %g is too small for single precision", error),
+               strf("at least %g, or 0 for even bins of spectral_step_um", kLeastSpectralError));
+  return error;
+}
+
+SpectralState state_for(std::span<const Band> bands, double spectral_error, double step_um, double reference_um,
+                        size_t knots) {
+  SpectralState state = make_state(bands, step_um > 0 ? step_um : kDefaultStep, reference_um, knots);
+  state.choice = {spectral_error, step_um, knots};
+  return state;
+}
+
 SpectralState read_state(const Params& p, std::span<const Band> bands) {
-  const double step = p.number_in("spectral_step_um", 1e-6, 1000, "um", 0.01);
-  return make_state(bands, step, p.number_in("reference_um", 0, 10000, "um", 0),
-                    static_cast<size_t>(p.integer("knots", 1, 8, 4)));
+  const auto step = p.find("spectral_step_um");
+  return state_for(bands, read_spectral_error(p), step ? step->as_number_in(1e-6, 1000, "um") : 0,
+                   p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
 }
 
 std::vector<std::string> read_truth(const Params& params) {

@@ -53,7 +53,13 @@ Convergence read_convergence(const Params& params);  // key `paths`: N, or {min,
 // Key `paths: {bands: {NAME: relative error, ...}}`: a target for each band listed. Sets convergence.relative_error to
 // the strictest of them and returns one a band, 0 for the others; nothing when the key is absent.
 std::vector<double> read_band_targets(const Params& params, std::span<const Band> bands, Convergence& convergence);
-// Keys spectral_step_um, reference_um, knots.
+// Key `spectral_error`: of each band, relative; 0 = the bins are even and stay as they are.
+double read_spectral_error(const Params& params);
+inline constexpr double kDefaultStep = 0.01;  // um
+// Even bins of at most a step, to be replaced by what a spectral error asks for. step_um: 0 = not given.
+SpectralState state_for(std::span<const Band> bands, double spectral_error, double step_um, double reference_um,
+                        size_t knots);
+// Keys spectral_error, spectral_step_um, reference_um, knots.
 SpectralState read_state(const Params& params, std::span<const Band> bands);
 // Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the
 // renderer.

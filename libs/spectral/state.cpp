@@ -136,6 +136,12 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
     for (size_t i = 0; i < n; ++i) state.bins.push_back({edge(i), edge(i + 1)});
   }
   state.reference_um = reference_um > 0 ? reference_um : moment / weight;
+  place_knots(state, knot_count);
+  return state;
+}
+
+void place_knots(SpectralState& state, size_t knot_count) {
+  state.knots.clear();
   size_t reference = 0;
   for (size_t i = 0; i < state.bins.size(); ++i)
     if (std::fabs(state.bins[i].center_um() - state.reference_um) <
@@ -152,33 +158,68 @@ SpectralState make_state(std::span<const Band> bands, double step, double refere
       distance[i] = std::min(distance[i], std::fabs(state.bins[i].center_um() - latest));
     state.knots.push_back(static_cast<size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
   }
-  return state;
+}
+
+double band_mean(const Band& band, const Curve& curve) {
+  if (curve.is_constant()) return curve.value()[0];
+  std::vector<double> knots = band.response.wavelength_um();
+  for (const double x : curve.wavelength_um())
+    if (x > band.low_um() && x < band.high_um()) knots.push_back(x);
+  std::sort(knots.begin(), knots.end());
+  // Between knots both are linear: two Gauss points are exact, and never stand where a curve jumps to zero.
+  double sum = 0;
+  for (size_t i = 1; i < knots.size(); ++i) {
+    const double half = 0.5 * (knots[i] - knots[i - 1]), middle = 0.5 * (knots[i] + knots[i - 1]);
+    for (const double at : {middle - half / std::sqrt(3.0), middle + half / std::sqrt(3.0)})
+      sum += half * band.response.at(at) * curve.at(at);
+  }
+  return sum / band.response.integral(band.low_um(), band.high_um());
 }
 
 BandProjection::BandProjection(const SpectralState& state, std::span<const Band> bands) {
-  for (const Band& band : bands) {
-    std::vector<double> weights;
+  const size_t bins = state.size();
+  if (!state.shares.empty() && state.shares.size() != bands.size() * bins)
+    throw Error(strf("a state has %zu shares for %zu bands and %zu bins", state.shares.size(), bands.size(), bins));
+  for (size_t b = 0; b < bands.size(); ++b) {
     size_t first = 0;
-    const double total = band.response.integral(band.low_um(), band.high_um());
-    double sum = 0;
-    for (size_t k = 0; k < state.bins.size(); ++k) {
-      const Bin& bin = state.bins[k];
-      // Bins and bands that touch may overlap by a rounding.
-      const double sliver = kSliver * (bin.high_um - bin.low_um);
-      const bool inside = bin.high_um > band.low_um() + sliver && bin.low_um < band.high_um() - sliver;
-      if (!inside && weights.empty()) continue;
-      if (weights.empty()) first = k;
-      weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);
-      sum += weights.back();
+    std::vector<double> weights;
+    if (state.shares.empty()) {
+      weights = shares_of(state, bands[b], first);
+    } else {
+      const double* row = &state.shares[b * bins];
+      while (first < bins && row[first] == 0) ++first;
+      weights.assign(row + first, row + bins);
     }
-    if (!(sum > 0.999)) throw Error("band '" + band.name + "' is not covered by the bins of its spectral state");
-    while (!weights.empty() && weights.back() == 0) weights.pop_back();
-    identity_ = identity_ && weights.size() == 1 && first == rows_.size();
-    rows_.push_back(
-        {static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
-    for (const double w : weights) weights_.push_back(w / sum);
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    if (!(sum > 0.999)) throw Error("band '" + bands[b].name + "' is not covered by the bins of its spectral state");
+    while (weights.back() == 0) weights.pop_back();
+    for (double& w : weights) w /= sum;
+    add_row(first, std::move(weights));
   }
-  identity_ = identity_ && rows_.size() == state.bins.size();
+  identity_ = identity_ && rows_.size() == bins;
+}
+
+std::vector<double> BandProjection::shares_of(const SpectralState& state, const Band& band, size_t& first) const {
+  std::vector<double> weights;
+  const double total = band.response.integral(band.low_um(), band.high_um());
+  for (size_t k = 0; k < state.bins.size(); ++k) {
+    const Bin& bin = state.bins[k];
+    // Bins and bands that touch may overlap by a rounding.
+    const double sliver = kSliver * (bin.high_um - bin.low_um);
+    const bool inside = bin.high_um > band.low_um() + sliver && bin.low_um < band.high_um() - sliver;
+    if (!inside && weights.empty()) continue;
+    if (weights.empty()) first = k;
+    weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);
+  }
+  return weights;
+}
+
+void BandProjection::add_row(size_t first, std::vector<double> weights) {
+  identity_ = identity_ && weights.size() == 1 && first == rows_.size();
+  rows_.push_back(
+      {static_cast<uint32_t>(first), static_cast<uint32_t>(weights_.size()), static_cast<uint32_t>(weights.size())});
+  weights_.insert(weights_.end(), weights.begin(), weights.end());
 }
 
 void BandProjection::add(std::span<const float> in, std::span<double> sums) const {

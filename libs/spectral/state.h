@@ -34,12 +34,23 @@ struct Bin {
   double center_um() const { return 0.5 * (low_um + high_um); }
 };
 
+// What the bins of a state are to be chosen for when it is known what is looked at (scheduler/bins.h).
+struct BinChoice {
+  double error = 0;      // of each band, relative; 0: the bins stay as they are
+  double widest_um = 0;  // no stretch of a band that wide goes without bins for its share; 0: no limit
+  size_t knots = 4;      // wanted, 1..8
+};
+
 // One spectral state (paper, section III-C): what the radiometry core is primed for.
 struct SpectralState {
   double low_um = 0, high_um = 0;  // the window
   double reference_um = 0;         // drives directions and convergence
   std::vector<Bin> bins;           // ascending, not overlapping, inside the window; gaps where no band looks
   std::vector<size_t> knots;  // <= 8 indices into bins: where the shape of scattering is drawn; knots[0] = reference
+  // What each bin counts in each band, [band][bin], adding up to 1 for a band. Empty: by the part of the response that
+  // lies in the bin.
+  std::vector<double> shares = {};
+  BinChoice choice = {};
 
   size_t size() const { return bins.size(); }
   size_t reference_bin() const { return knots.at(0); }
@@ -57,9 +68,16 @@ struct SpectralState {
 // positive, more than 100 000 bins.
 SpectralState make_state(std::span<const Band> bands, double step_um, double reference_um = 0, size_t knot_count = 4);
 
+// Chooses the knots of a state whose bins and reference wavelength are set, as make_state does.
+void place_knots(SpectralState& state, size_t knot_count);
+
+// Mean of a curve weighed by the response of a band; exact. Error when the curve does not cover the band.
+double band_mean(const Band& band, const Curve& curve);
+
 // Weights that turn bin radiances into band radiances: sum over bins of weight = 1 for each band.
 class BandProjection {
  public:
+  // Error: a band that the bins do not cover; shares that are not [band][bin] or do not add up to 1 for each band.
   BandProjection(const SpectralState& state, std::span<const Band> bands);
   size_t bands() const { return rows_.size(); }
   bool identity() const { return identity_; }  // band b is bin b
@@ -74,6 +92,8 @@ class BandProjection {
     uint32_t offset = 0;  // of its weights
     uint32_t count = 0;
   };
+  std::vector<double> shares_of(const SpectralState& state, const Band& band, size_t& first) const;
+  void add_row(size_t first, std::vector<double> weights);
   std::vector<Row> rows_;
   std::vector<double> weights_;
   bool identity_ = true;

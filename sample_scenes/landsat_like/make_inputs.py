@@ -39,7 +39,6 @@ for b, (name, um) in enumerate(BANDS):
         pitch_um: {1000 * PITCH_MM:g}
         readout: {{kind: line, line_rate_hz: 1500, lines_per_capture: 512}}
         paths: 8
-        spectral_step_um: 0.02
         bands: [{{name: {name}, center_um: {um}, fwhm_um: 0.02}}]
         chips:
 """

@@ -106,6 +106,5 @@ lamps:
       - {name: blue, center_um: 0.46, fwhm_um: 0.06, shape: rectangular}
       - {name: green, center_um: 0.55, fwhm_um: 0.06, shape: rectangular}
       - {name: red, center_um: 0.63, fwhm_um: 0.06, shape: rectangular}
-    spectral_step_um: 0.03
     paths: 64
 """ % (columns, rows))

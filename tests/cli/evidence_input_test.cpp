@@ -53,6 +53,19 @@ TEST_F(Evidence, BudgetsOfNothing) {
   EXPECT_FALSE(file_exists(folder_ / "out/map.img"));
 }
 
+// The bins follow from a file that the simulation only names.
+TEST_F(Evidence, StatesOfOtherBins) {
+  const std::string sim = read_text(folder_ / "sim.yaml", 10000);
+  std::string named = sim;
+  named.replace(named.find("radiance: 1"), 11, "radiance: sky.txt");
+  write_file(folder_ / "named.yaml", named);
+  write_file(folder_ / "sky.txt", std::string_view("8 1\n14 1\n"));
+  ASSERT_EQ(run("dirsig-render named.yaml --state -o out").code, 0);
+  ASSERT_EQ(run("dirsig-render named.yaml --more 4 -o out").code, 0);
+  write_file(folder_ / "sky.txt", std::string_view("8 1\n9.9 1\n10 5\n10.1 1\n14 1\n"));
+  refused("dirsig-render named.yaml --more 4 -o out", "spectral bins");
+}
+
 TEST_F(Evidence, FoldersThatCannotBeWritten) {
   refused("dirsig-render sim.yaml -o /dev/null/x", "/dev/null/x: error: folder cannot be made");
   refused("dirsig-render sim.yaml --study /dev/null/x", "/dev/null/x: error: folder cannot be made");

@@ -67,6 +67,15 @@ TEST_F(Plugin, SaysHowManyPathsEachProblemMayTake) {
   EXPECT_THAT(r.out, HasSubstr("40 paths in the first pixel, 4 in the last"));
 }
 
+TEST_F(Plugin, MayWeighWavelengths) {
+  const CommandResult r = render("{kind: grid_camera, name: grid, pixels: 1, unit_um: 0.6}", "grid_camera", "weighed");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const std::vector<double> bands = EnviImage(*folder_ / "weighed/grid.img").read_all();
+  ASSERT_EQ(bands.size(), 2u);
+  EXPECT_NEAR(bands[0], 0.5 * 0.55 / 0.6, 1e-6);
+  EXPECT_NEAR(bands[1], 0.5 * 0.65 / 0.6, 1e-6);
+}
+
 TEST_F(Plugin, MayCollectOverAHemisphere) {
   const CommandResult r = render("{kind: irradiance_meter, name: meter}", "irradiance_meter", "meter");
   ASSERT_EQ(r.code, 0) << r.err;

@@ -18,6 +18,8 @@ class GridCamera final : public suite_sdk::Sensor {
     // The first pixel may have a number of paths of its own.
     first_paths_ = static_cast<uint32_t>(keys.number("first_paths", 0));
     own_convergence = first_paths_ > 0;
+    // What this wavelength (um) is weighed with 1, others in proportion; 0: all alike.
+    unit_um_ = keys.number("unit_um", 0);
   }
   void ray(const suite_ray_request& request, suite_ray& ray) const override {
     const double column = static_cast<double>(request.problem % size_) + request.u[0],
@@ -26,6 +28,9 @@ class GridCamera final : public suite_sdk::Sensor {
     ray.origin[1] = (0.5 * size_ - row) * gsd_;
     ray.origin[2] = height_;
     ray.direction[2] = -1;
+    ray.weighted = unit_um_ > 0;
+    for (uint32_t i = 0; ray.weighted && i < request.bins; ++i)
+      request.weights[i] = static_cast<float>(request.bin_um[i] / unit_um_);
   }
   void convergence(uint32_t, uint64_t problem, suite_convergence& c) const override {
     if (problem == 0) c.min_paths = c.max_paths = first_paths_;
@@ -41,7 +46,7 @@ class GridCamera final : public suite_sdk::Sensor {
  private:
   unsigned size_ = 0;
   uint32_t first_paths_ = 0;
-  double gsd_ = 0, height_ = 0;
+  double gsd_ = 0, height_ = 0, unit_um_ = 0;
 };
 
 SUITE_SENSOR_PLUGIN("grid_camera", "a map seen straight from above (example plug-in)", GridCamera)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/files.h"
+#include "base/params.h"
 #include "formats/curve/curve.h"
 #include "support/message_of.h"
 #include "support/temp_folder.h"
@@ -105,6 +106,77 @@ TEST_F(CurveFile, LocalDirsigFiles) {
   options.outside = Outside::hold;
   EXPECT_NEAR(read_curve(folder + "background_1.ems", options).at(0.35), 0.02, 1e-9);
   EXPECT_NEAR(read_curve(folder + "ideal_mat_1.ems", options).at(0.35), 0, 1e-9);
+}
+
+// Reads `text` as a curve whose items are files of the folder.
+Curve joined(const std::string& folder, const std::string& text) {
+  const Params p = Params::parse_text("c: " + text, "s.yaml").at("c");
+  return read_joined(p, [&](const Params& one) {
+    CurveOptions options;
+    if (one.kind() != Params::Kind::map) return read_curve(folder + "/" + one.as_text(), options);
+    if (one.has("constant")) return Curve::constant(one.number("constant"));
+    options.outside = read_outside(one);
+    return read_curve(folder + "/" + one.text("file"), options);
+  });
+}
+
+class JoinedCurves : public CurveFile {
+ protected:
+  JoinedCurves() {
+    write_file(folder_ / "low.txt", "0.4 1\n0.6 1\n0.8 1\n1.0 1\n1.2 1\n");
+    write_file(folder_ / "high.txt", "0.9 3\n1.1 3\n1.3 3\n2.0 3\n");
+    write_file(folder_ / "near.txt", "1.5 5\n1.9 5\n");  // 0.3 from low, whose rows are 0.2 apart
+    write_file(folder_ / "far.txt", "2.5 5\n2.6 5\n");
+    write_file(folder_ / "inside.txt", "0.5 5\n0.7 5\n");
+  }
+  Curve of(const std::string& text) { return joined(folder_.path(), text); }
+  std::string fault(const std::string& text) {
+    return message_of([&] { of(text); });
+  }
+};
+
+TEST_F(JoinedCurves, MeetInTheMiddleOfWhatTheyShare) {
+  const Curve c = of("[low.txt, high.txt]");  // they share 0.9 to 1.2
+  EXPECT_EQ(c.wavelength_um(), (std::vector<double>{0.4, 0.6, 0.8, 1.0, 1.1, 1.3, 2.0}));
+  EXPECT_EQ(c.value(), (std::vector<double>{1, 1, 1, 1, 3, 3, 3}));
+  EXPECT_EQ(c.outside(), Outside::error);
+}
+
+TEST_F(JoinedCurves, MeetWhereTheyAreTold) {
+  const Curve c = of("{join: [low.txt, high.txt], at_um: [1.15], outside: hold}");
+  EXPECT_EQ(c.wavelength_um(), (std::vector<double>{0.4, 0.6, 0.8, 1.0, 1.3, 2.0}));
+  EXPECT_EQ(c.outside(), Outside::hold);
+}
+
+TEST_F(JoinedCurves, BridgeAGapNoWiderThanTwoSteps) {
+  const Curve c = of("[low.txt, near.txt]");
+  EXPECT_DOUBLE_EQ(c.at(1.35), 3);  // half way from 1 to 5
+}
+
+TEST_F(JoinedCurves, AreRefusedWithTheirPlace) {
+  EXPECT_THAT(fault("[low.txt, far.txt]"), HasSubstr("no curve is given between 1.2 and 2.5 um"));
+  EXPECT_THAT(fault("[low.txt, far.txt]"), HasSubstr("s.yaml:1:14"));
+  EXPECT_THAT(fault("[high.txt, low.txt]"), HasSubstr("list curves from short to long wavelengths"));
+  EXPECT_THAT(fault("[low.txt, inside.txt]"), HasSubstr("none inside another"));
+  EXPECT_THAT(fault("[low.txt]"), HasSubstr("two curves at least"));
+  EXPECT_THAT(fault("[low.txt, [high.txt, far.txt]]"), HasSubstr("a list inside a list"));
+  EXPECT_THAT(fault("[{constant: 1}, high.txt]"), HasSubstr("a constant has no wavelengths"));
+  EXPECT_THAT(fault("[{file: low.txt, outside: hold}, high.txt]"), HasSubstr("write 'outside' beside 'join'"));
+  EXPECT_THAT(fault("{join: [low.txt, high.txt], at_um: [0.5]}"), HasSubstr("they meet from 0.9 to 1.2 um"));
+  EXPECT_THAT(fault("{join: [low.txt, high.txt], at_um: [1, 1.1]}"), HasSubstr("2 wavelengths for 2 curves"));
+}
+
+// The two instruments of one sample of the ECOSTRESS library meet at 2.5 um.
+TEST_F(CurveFile, LocalGrassOfTwoInstruments) {
+  const std::string grass = SUITE_LOCAL_DATA "/spectra/vegetation.grass.avena.fatua.";
+  if (!file_exists(grass + "tir.vh352.ucsb.nicolet.spectrum.txt")) GTEST_SKIP() << "needs the local library spectra";
+  const Curve c = joined(SUITE_LOCAL_DATA "/spectra",
+                         "[vegetation.grass.avena.fatua.vswir.vh352.ucsb.asd.spectrum.txt, "
+                         "vegetation.grass.avena.fatua.tir.vh352.ucsb.nicolet.spectrum.txt]");
+  EXPECT_DOUBLE_EQ(c.low_um(), 0.35);
+  EXPECT_DOUBLE_EQ(c.high_um(), 15.341);
+  EXPECT_NEAR(c.at(2.5), 0.0783, 1e-9);
+  EXPECT_NEAR(c.at(2.501), 0.04867, 1e-9);
 }
 
 TEST_F(CurveFile, LocalEcostressLibrary) {

@@ -46,6 +46,16 @@ TEST(PlatformText, MisspeltKeysHaveTheirPlaceAndTheNearestName) {
   EXPECT_THAT(message("kind: straight", "kind: strait"), HasSubstr("straight"));
 }
 
+TEST(PlatformText, ASpectralErrorIsAFractionOrNone) {
+  const auto with = [](const std::string& value) {
+    return message("columns: 10", "spectral_error: " + value + "\n            columns: 10");
+  };
+  EXPECT_EQ(with("0.01"), "no error");
+  EXPECT_EQ(with("0"), "no error");
+  EXPECT_THAT(with("-0.1"), AllOf(HasSubstr("sensor.yaml:19:"), HasSubstr("spectral_error")));
+  EXPECT_THAT(with("1e-9"), AllOf(HasSubstr("sensor.yaml:19:"), HasSubstr("at least 1e-05, or 0 for even bins")));
+}
+
 TEST(PlatformText, ImpossibleGeometryIsRefused) {
   EXPECT_THAT(message("focal_length_mm: 50", "focal_length_mm: 0"),
               AllOf(HasSubstr("sensor.yaml:12:"), HasSubstr("mm")));

@@ -222,6 +222,34 @@ TEST(Projection, KeepsConstantsAndStraightLines) {
   }
 }
 
+TEST(Projection, TakesTheSharesOfAState) {
+  const std::vector<Band> bands{Band::rectangular("a", 0.5, 0.1), Band::rectangular("b", 0.55, 0.1)};
+  SpectralState s = make_state(bands, 0.05);
+  ASSERT_EQ(s.size(), 3u);
+  s.shares = {0.25, 0.75, 0, 0, 0.5, 0.5};
+  const BandProjection p(s, bands);
+  EXPECT_FALSE(p.identity());
+  std::vector<double> out(2);
+  p.apply(std::vector<double>{1, 2, 4}, out);
+  EXPECT_DOUBLE_EQ(out[0], 1.75);
+  EXPECT_DOUBLE_EQ(out[1], 3);
+  EXPECT_EQ(p.weight(1, 0), 0);
+  s.shares.pop_back();
+  EXPECT_THAT(message_of([&] { BandProjection(s, bands); }), HasSubstr("5 shares for 2 bands and 3 bins"));
+  s.shares = {0, 0, 0, 0, 0.5, 0.5};
+  EXPECT_THAT(message_of([&] { BandProjection(s, bands); }), HasSubstr("band 'a' is not covered"));
+}
+
+TEST(BandMean, IsExactForPiecewiseLinearCurves) {
+  // A triangle from 1 to 3 um of area 1; the mean distance from its middle is 2 (1/2 - 1/3) = 1/3.
+  const Band band = Band::triangular("t", 2, 1);
+  EXPECT_NEAR(band_mean(band, Curve({0.5, 2, 3.5}, {1.5, 0, 1.5}, Outside::error)), 1.0 / 3, 1e-14);
+  EXPECT_EQ(band_mean(band, Curve::constant(0.7)), 0.7);
+  // Outside its range this curve is 0: half of the triangle is lit.
+  EXPECT_NEAR(band_mean(band, Curve({2, 4}, {1, 1}, Outside::zero)), 0.5, 1e-14);
+  EXPECT_THROW(band_mean(band, Curve({2, 4}, {1, 1}, Outside::error)), Error);
+}
+
 TEST(Projection, ABandOutsideTheStateIsRefused) {
   const std::vector<Band> bands = uas_bands(), other{Band::gaussian("swir", 1.6, 0.05)};
   EXPECT_THAT(message_of([&] { BandProjection(make_state(bands, 0.01), other); }),

@@ -52,6 +52,7 @@ class FrameCamera final : public Sensor {
   std::string name() const override { return name_; }
   std::span<const SpectralState> states() const override { return {&state_, 1}; }
   std::span<const Band> bands(size_t) const override { return bands_; }
+  void take_state(size_t, SpectralState with_bins) override { state_ = std::move(with_bins); }
   std::span<const Task> tasks() const override { return tasks_; }
 
   SensorRay ray(const RayRequest& request) const override {

@@ -35,6 +35,11 @@ class Platform final : public Sensor {
   std::string name() const override { return spec_.name; }
   std::span<const SpectralState> states() const override { return spec_.states; }
   std::span<const Band> bands(size_t state) const override { return spec_.segments[state].bands; }
+  void take_state(size_t state, SpectralState with_bins) override {
+    Segment& s = spec_.segments[state];
+    if (std::unique_ptr<PointSpread> psf = s.psf ? s.psf->with_bins(with_bins) : nullptr) s.psf = std::move(psf);
+    spec_.states[state] = std::move(with_bins);
+  }
   std::span<const Task> tasks() const override { return spec_.tasks; }
   std::span<const std::string> truth() const override { return spec_.truth; }
   int numbers() const override { return wide_ ? 8 : 4; }

@@ -113,6 +113,9 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   // An array may have a pattern of its own; else the instrument's holds.
   s.psf = read_psf(p.has("psf") ? p : spec.instruments[array.instrument].text, context, lens.f_number(),
                    lens.obscuration, spec.states.back());
+  // Rays are drawn from the mixture of the bins' patterns: it must not have gaps.
+  BinChoice& choice = spec.states.back().choice;
+  if (choice.widest_um == 0 && s.psf && s.psf->with_bins(spec.states.back())) choice.widest_um = kDefaultStep;
   array.segments.push_back(spec.segments.size());
   spec.segments.push_back(std::move(s));
 }

@@ -34,11 +34,10 @@ class Rami final : public SimpleSensor {
     sun_zenith_ = p.number_in("sun_zenith_deg", 0, 89.9, "degrees") * kDegree;
     sun_azimuth_ =
         azimuth_from_compass_deg(p.number_in("sun_azimuth_deg", -360, 360, "degrees clockwise from north", 90));
-    const BandProjection projection(states_[0], bands_);
     auto in_bands = [&](const Params& value) {
-      std::vector<float> bins = states_[0].sample(context.curve(value));
-      std::vector<double> wide(bins.begin(), bins.end()), out(bands_.size());
-      projection.apply(wide, out);
+      const Curve curve = context.curve(value);
+      std::vector<double> out;
+      for (const Band& b : bands_) out.push_back(band_mean(b, curve));
       return out;
     };
     irradiance_ = in_bands(p.at("irradiance"));

@@ -21,6 +21,7 @@ class SimpleSensor : public Sensor {
   std::string name() const override { return name_; }
   std::span<const SpectralState> states() const override { return states_; }
   std::span<const Band> bands(size_t) const override { return bands_; }
+  void take_state(size_t state, SpectralState with_bins) override { states_[state] = std::move(with_bins); }
   std::span<const Task> tasks() const override { return tasks_; }
   std::span<const std::string> truth() const override { return truth_; }
   void accept(CaptureResult&& result) override {

@@ -41,7 +41,7 @@ typedef struct suite_state {
   uint32_t size;
   uint32_t band_count;
   const suite_band* bands;
-  double step_um;      /* widest bin of the quadrature; 0 = 0.01 */
+  double step_um;      /* no stretch of a band this wide goes without bins; 0 = no limit */
   double reference_um; /* drives directions; 0 = middle of the bands */
 } suite_state;
 
@@ -67,8 +67,9 @@ typedef struct suite_ray_request {
   uint64_t problem;
   const double* u; /* `numbers` uniform numbers in [0, 1) */
   uint32_t numbers;
-  uint32_t bins;  /* of the state */
-  float* weights; /* one per bin, to be filled when suite_ray.weighted is set */
+  uint32_t bins;        /* of the state; chosen for what is seen, neither even nor known before the first ray */
+  float* weights;       /* one per bin, to be filled when suite_ray.weighted is set */
+  const double* bin_um; /* middle of each bin; since 1.2 */
 } suite_ray_request;
 
 /* What a sample collects: the radiance along its ray, or the light of many directions at the ray's origin. The host
@@ -216,7 +217,7 @@ class Sensor {
     return {sizeof(suite_band), SUITE_BAND_GAUSSIAN, name, center_um, fwhm_um, 0, nullptr, nullptr};
   }
   /* The state keeps its bands here. */
-  uint32_t add_state(std::vector<suite_band> bands, double step_um = 0.01, double reference_um = 0) {
+  uint32_t add_state(std::vector<suite_band> bands, double step_um = 0, double reference_um = 0) {
     bands_.push_back(std::move(bands));
     states.push_back({sizeof(suite_state), static_cast<uint32_t>(bands_.back().size()), bands_.back().data(), step_um,
                       reference_um});

@@ -1,0 +1,36 @@
+// The bins of spectral states, chosen from what is looked at: so few that every band comes out within its spectral
+// error of bins that are fine enough for all curves.
+//
+// Light is followed as averages over bins, and averages of curves are multiplied where the product of the curves is
+// meant. Against that the bands of all products of what shines with what it is multiplied by (seen_spectra.h; one, two
+// and three factors; the fourth and eighth power of some, as errors of what is scattered twice) are first found over
+// ever finer cells until halving the cells changes none of them; then the fewest bins are looked for that give the
+// same: one bin a stretch of bands where that will do, else some of the cells with weights (spectral/cubature.h), which
+// are so narrow that averages multiply.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scheduler/seen_spectra.h"
+
+namespace suite {
+
+struct BinReport {
+  std::string sensor;
+  size_t bands = 0, bins = 0;
+  double wanted = 0;        // relative error of each band
+  double reached = 0;       // by the bins that are used, what the cells cannot tell included
+  double cell_um = 0;       // width of the finest cells
+  std::string band, under;  // the farthest: "red edge", "the sun on reflectance of asphalt"
+  bool chosen = true;       // false: the user wants even bins (spectral_error: 0), which were only looked at
+  bool met() const { return reached <= wanted; }
+  // "sensor 'camera': 4 bands in 7 bins, within 0.08 % of bins of 0.05 nm (farthest: band 'red', the sun)"
+  std::string text() const;
+};
+
+// Gives every state of a sensor that asks for it bins for what it sees of the scene. sources: resolved; several when
+// they change with time. One report a state. Error: a source whose spectrum does not cover the bands.
+std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor);
+
+}  // namespace suite
