@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "base/files.h"
@@ -13,6 +14,20 @@ Outside read_outside(const Params& p) {
   if (!rule) return Outside::error;
   constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
   return rules[rule->as_choice({"error", "hold", "zero"})];
+}
+
+// Up to here a temperature may be meant in degrees Celsius.
+constexpr double kWarmestCelsius = 80;
+
+// Refuses what is no fit where it is named: measured files have to be fitted first.
+void require_fit(const Params& named, const std::string& path) {
+  const RandomAccessFile file(path);
+  char head[7] = {};
+  if (file.size() >= sizeof head) file.read_at(0, std::as_writable_bytes(std::span(head)));
+  if (std::memcmp(head, "SQTbund", sizeof head) != 0)
+    throw named.error("'" + named.as_text() + "' is no SQT file",
+                      "fit it first: sqt-fit " + named.as_text() + " -o " +
+                          std::filesystem::path(named.as_text()).stem().string() + ".sqt");
 }
 }  // namespace
 
@@ -73,6 +88,7 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
         spec.curves[parameter.name] = read_curve_value(*value);
         break;
       case ModelParameter::Kind::text:
+        if (parameter.name == "file" && spec.model == "sqt") require_fit(*value, input(*value));
         spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
         break;
     }
@@ -81,6 +97,9 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
                                      [](const ModelParameter& q) { return q.name == "index"; });
       wants && !spec.curves.count("index"))
     if (const auto index = relative_index(p)) spec.curves["index"] = *index;
+  for (const ModelParameter& q : row.parameters)
+    if (q.required && !spec.numbers.count(q.name) && !spec.curves.count(q.name) && !spec.texts.count(q.name))
+      if (const auto near = p.misspelt(q.name)) throw *near;
   check_model(spec, model.where());
 }
 
@@ -103,6 +122,11 @@ void Reader::read_material(const std::string& id, const Params& p) {
     m.has_model = true;
   }
   m.material.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
+  if (m.material.temperature_k > 0 && m.material.temperature_k <= kWarmestCelsius)
+    report_.add("SP107", draft_.file,
+                {p.at("temperature_k").where(),
+                 strf("material '%s' has %g K; %g degrees Celsius are %g K", id.c_str(), m.material.temperature_k,
+                      m.material.temperature_k, m.material.temperature_k + 273.15)});
   if (const auto thermal = p.find("thermal")) read_thermal(*thermal, m);
   if (const auto temperature = p.find("temperature")) {
     if (p.has("temperature_k")) throw temperature->error("a material has either 'temperature' or 'temperature_k'");
