@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
@@ -32,6 +33,25 @@ Kind kind_of(std::span<const std::byte> bytes, const std::string& path) {
   return Kind::unknown;
 }
 
+// Formats that people have and this project does not read, told by their first bytes.
+std::string foreign(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min<size_t>(bytes.size(), 4096));
+  const auto has = [&](std::string_view what) { return text.find(what) != std::string_view::npos; };
+  if (text.starts_with("PK\x03\x04")) return "a zip archive: unpack it and give the file inside";
+  if (text.starts_with("\x1f\x8b")) return "packed by gzip: unpack it first";
+  if (text.starts_with("\xfd"
+                       "7zXZ"))
+    return "packed by xz: unpack it first";
+  if (text.starts_with("\x89HDF")) return "an HDF5 file: export its samples as .csv";
+  if (text.starts_with("SQTbund")) return "an SQT file: it is fitted already; sqt-inspect looks into it";
+  if (has("<WindowElement") || (has("<?xml") && has("Window")))
+    return "a Radiance/Window XML file of a BSDF, which is not read: export its samples as .csv";
+  if (has("#DIM") || has("#PARAM_IN") || has("#VS"))
+    return "an ALTA data file, which is not read: export its samples as .csv";
+  if (has("<?xml")) return "an XML file, which is not read: export its samples as .csv";
+  return {};
+}
+
 }  // namespace
 
 Measured read_measured(const std::string& path) {
@@ -51,6 +71,7 @@ Measured read_measured(const std::string& path) {
     case Kind::unknown:
       break;
   }
+  if (const std::string what = foreign(bytes); !what.empty()) throw Error(Where{path, 0, 0, {}, -1}, "this is " + what);
   throw Error(Where{path, 0, 0, {}, -1}, "is no measured scattering file that we know",
               "known formats:\n" + measured_formats());
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "base/files.h"
@@ -14,6 +15,20 @@ bool is_rule(const Params& p) {
   if (p.kind() == Params::Kind::map || p.kind() == Params::Kind::list) return false;
   const std::string text = p.as_text();
   return text == "error" || text == "hold" || text == "zero";
+}
+
+// Up to here a temperature may be meant in degrees Celsius.
+constexpr double kWarmestCelsius = 80;
+
+// Refuses what is no fit where it is named: measured files have to be fitted first.
+void require_fit(const Params& named, const std::string& path) {
+  const RandomAccessFile file(path);
+  char head[7] = {};
+  if (file.size() >= sizeof head) file.read_at(0, std::as_writable_bytes(std::span(head)));
+  if (std::memcmp(head, "SQTbund", sizeof head) != 0)
+    throw named.error("'" + named.as_text() + "' is no SQT file",
+                      "fit it first: sqt-fit " + named.as_text() + " -o " +
+                          std::filesystem::path(named.as_text()).stem().string() + ".sqt");
 }
 }  // namespace
 
@@ -64,6 +79,7 @@ std::string Reader::embed(const Params& p) {
 void Reader::read_stored(const Params& p, ModelSpec& spec) {
   const bool with_rule = p.kind() == Params::Kind::map;
   const Params file = with_rule ? p.at("file") : p;
+  require_fit(file, input(file));
   spec.texts["file"] = embed(file);
   if (with_rule && p.has("outside")) spec.texts["outside"] = to_text(read_outside(p));
   auto& bundle = stored_[spec.texts["file"]];
@@ -97,6 +113,9 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
                                      [](const ModelParameter& q) { return q.name == "index"; });
       wants && !spec.curves.count("index"))
     if (const auto index = relative_index(p)) spec.curves["index"] = *index;
+  for (const ModelParameter& q : row.parameters)
+    if (q.required && !spec.numbers.count(q.name) && !spec.curves.count(q.name) && !spec.texts.count(q.name))
+      if (const auto near = p.misspelt(q.name)) throw *near;
   check_model(spec, model.where());
 }
 
@@ -121,6 +140,11 @@ void Reader::read_material(const std::string& id, const Params& p) {
     m.has_model = true;
   }
   m.material.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
+  if (m.material.temperature_k > 0 && m.material.temperature_k <= kWarmestCelsius)
+    report_.add("SP107", draft_.file,
+                {p.at("temperature_k").where(),
+                 strf("material '%s' has %g K; %g degrees Celsius are %g K", id.c_str(), m.material.temperature_k,
+                      m.material.temperature_k, m.material.temperature_k + 273.15)});
   if (const auto thermal = p.find("thermal")) read_thermal(*thermal, m);
   if (const auto temperature = p.find("temperature")) {
     if (p.has("temperature_k")) throw temperature->error("a material has either 'temperature' or 'temperature_k'");

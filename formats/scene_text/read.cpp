@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
 #include "motion/time.h"
+#include "spectral/wavelength.h"
 
 namespace suite {
 namespace {
@@ -111,6 +112,9 @@ void Reader::run(const Params& root) {
       item("SP001", w, [&] {
         const std::vector<double> edge = w.as_numbers();
         if (edge.size() != 2 || !(edge[0] > 0 && edge[0] < edge[1])) throw w.error("a window is [low, high] in micron");
+        if (edge[1] > kLongestWave)
+          throw w.error("the window is " + wavelengths_text(edge[0], edge[1]),
+                        strf("windows end at %g um", kLongestWave));
         draft_.windows.push_back({edge[0], edge[1], w.where()});
       });
   const auto each = [&](const char* key, const char* code,

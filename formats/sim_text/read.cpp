@@ -48,6 +48,9 @@ void check_truth(const Params& sensor, const SensorContext& context) {
 
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks) {
   const Params root = Params::parse_file(path);
+  if (!root.has("sensors") && (root.has("materials") || root.has("world")))
+    throw root.error("this is the text of a scene, not of a simulation",
+                     "prepare it with scene-prep, and name the prepared scene by 'scene:' in a simulation text");
   Simulation sim;
   sim.path = path;
   read_scenes(root, sim);

@@ -1,5 +1,7 @@
 #include "formats/sim_text/scenes.h"
 
+#include <filesystem>
+
 #include "formats/motion/motion.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/transform.h"
@@ -22,20 +24,31 @@ TrackPtr read_motion(const Params& p, const std::string& first) {
   return track_from(p, context);
 }
 
+// The file of a prepared scene; a text is refused where it is named.
+std::string prepared(const Params& p) {
+  const std::string path = p.as_path(), name = p.as_text();
+  const std::string end = std::filesystem::path(path).extension().string();
+  if (end == ".yaml" || end == ".yml" || end == ".json")
+    throw p.error(
+        "'" + name + "' is a text; a prepared scene (.h5) is wanted",
+        "prepare it: scene-prep " + name + " -o " + std::filesystem::path(name).replace_extension("h5").string());
+  return path;
+}
+
 }  // namespace
 
 void read_scenes(const Params& root, Simulation& sim) {
   const auto list = root.find("scenes");
   if (!list) {
-    sim.scenes.push_back({root.at("scene").as_path(), {}, {}});
+    sim.scenes.push_back({prepared(root.at("scene")), {}, {}});
   } else {
     if (root.has("scene")) throw list->error("'scene' and 'scenes' exclude each other");
     for (const Params& p : list->items()) {
       if (p.kind() == Params::Kind::scalar) {
-        sim.scenes.push_back({p.as_path(), {}, {}});
+        sim.scenes.push_back({prepared(p), {}, {}});
         continue;
       }
-      SimulationScene scene{p.at("file").as_path(), {}, {}};
+      SimulationScene scene{prepared(p.at("file")), {}, {}};
       scene.placement = find_transform(p);
       if (const auto motion = p.find("motion"))
         scene.motion = read_motion(*motion, sim.scenes.empty() ? scene.path : sim.scenes.front().path);

@@ -265,7 +265,12 @@ Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {
-    throw Error(document->where(e.mark.line + 1, e.mark.column + 1), "malformed YAML: " + e.msg);
+    const Where at = document->where(e.mark.line + 1, e.mark.column + 1);
+    const std::string_view line = at.source_line.view();
+    if (const size_t tab = line.find('\t'); tab < line.find_first_not_of(" \t"))
+      throw Error(document->where(e.mark.line + 1, static_cast<int>(tab) + 1), "a tab in the indentation",
+                  "YAML is indented by spaces");
+    throw Error(at, "malformed YAML: " + e.msg);
   }
   if (!document->root) throw Error(Where{file_name, 0, 0, {}, -1}, "is empty", "a YAML map is expected");
   const Node* root = document->root;
@@ -314,14 +319,19 @@ bool Params::has(std::string_view key) const {
   return node_->index.find(key) != node_->index.end();
 }
 
-Params Params::at(std::string_view key) const {
-  if (auto found = find(key)) return *found;
-  // A near miss among the keys that are there is the likeliest cause.
+std::optional<Error> Params::misspelt(std::string_view key) const {
   std::vector<std::string> present;
   for (const Node::Entry& e : node_->entries)
     if (!e.read) present.push_back(e.key);
   const std::string near = nearest_name(key, present);
-  throw error("the key '" + std::string(key) + "' is missing", near.empty() ? "" : "is '" + near + "' meant to be it?");
+  if (near.empty()) return std::nullopt;
+  return Error(where(near), "unknown key '" + near + "'", "did you mean '" + std::string(key) + "', which is missing?");
+}
+
+Params Params::at(std::string_view key) const {
+  if (auto found = find(key)) return *found;
+  if (const auto near = misspelt(key)) throw *near;
+  throw error("the key '" + std::string(key) + "' is missing");
 }
 
 std::vector<std::string> Params::keys() const {

@@ -38,7 +38,9 @@ class Params {
 
   // Maps.
   bool has(std::string_view key) const;   // marks as asked for, not as read
-  Params at(std::string_view key) const;  // Error when missing
+  Params at(std::string_view key) const;  // Error when missing, at the key that may be meant for it
+  // Of a missing key: the fault of an unread one with nearly its name.
+  std::optional<Error> misspelt(std::string_view key) const;
   std::optional<Params> find(std::string_view key) const;
   std::vector<std::string> keys() const;  // in the order written; marks none
   // Lists.

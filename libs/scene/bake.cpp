@@ -6,6 +6,7 @@
 #include "motion/track.h"
 #include "scene/baker.h"
 #include "scene/curvature.h"
+#include "scene/origin_check.h"
 #include "scene/unfolded.h"
 
 namespace suite {
@@ -91,6 +92,9 @@ Baker::Built Baker::build_terrain(const DraftGeometry& g) {
     add("SP504", g.where, "terrain '" + g.name + "': " + e.message());
     return {TargetKind::mesh, static_cast<uint32_t>(scene_.meshes.size()), 0, nullptr, true};
   }
+  if (g.terrain.georeferenced)
+    if (const auto fault = misplaced_origin(*terrains_.back(), draft_.origin))
+      add("SP505", g.where, "terrain '" + g.name + "': " + *fault);
   const auto first = static_cast<uint32_t>(scene_.meshes.size());
   std::vector<Mesh> tiles = terrains_.back()->tiles(g.name, g.tile_m, material_id(g.material));
   if (tiles.empty()) add("SP504", g.where, "terrain '" + g.name + "' has no two by two samples with heights");
@@ -181,7 +185,7 @@ std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
   if (p.scatter) {
     const auto ground = built_.find(p.on.name);
     if (ground == built_.end() || ground->second.kind != TargetKind::mesh) {
-      add("SP405", p.on.where, "'" + p.on.name + "' is no terrain and no mesh");
+      add("SP401", p.on.where, "'" + p.on.name + "' is no terrain and no mesh to scatter over");
       return all;
     }
     try {
@@ -197,6 +201,14 @@ std::vector<Affine3> Baker::transforms(const DraftPlacement& p) {
   return all;
 }
 
+// What `on` may name.
+std::string Baker::terrains() const {
+  std::string names;
+  for (const auto& [name, built] : built_)
+    if (built.terrain) names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "the scene has none: give z instead of 'on'" : "'on' takes one of: " + names;
+}
+
 // Lifts transforms onto a terrain.
 bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all) {
   const auto ground = built_.find(p.on.name);
@@ -204,7 +216,7 @@ bool Baker::put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& al
     return add("SP405", p.on.where, "'on' counts in 'world' only: groups do not know where they will stand"), false;
   if (ground != built_.end() && ground->second.failed) return false;
   if (ground == built_.end() || !ground->second.terrain)
-    return add("SP405", p.on.where, "'" + p.on.name + "' is no terrain"), false;
+    return add("SP401", p.on.where, "'" + p.on.name + "' is no terrain; " + terrains()), false;
   for (Affine3& t : all) {
     const auto z = ground->second.terrain->height_at(t.b.x, t.b.y);
     if (!z) return add("SP405", p.where, strf("(%g, %g) is not on '%s'", t.b.x, t.b.y, p.on.name.c_str())), false;

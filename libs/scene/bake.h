@@ -34,6 +34,8 @@ class TerrainGrid {
   std::vector<Mesh> tiles(const std::string& name, double tile_m, uint32_t material) const;
   // z of the triangulated surface at (x, y), m; nothing outside of it or in a gap.
   std::optional<double> height_at(double x, double y) const;
+  // Some points along its edges, ENU; gaps left out.
+  std::vector<Vec3> outline() const;
 
  private:
   const Vec3& at(uint32_t i, uint32_t j) const { return points_[size_t{j} * width_ + i]; }

@@ -19,8 +19,8 @@ void Baker::check_coverage(const DraftMaterial& m) {
     for (const SpectralWindow& w : draft_.windows)
       if (!curve.covers(w.low_um, w.high_um))
         add("SP104", m.where,
-            strf("material '%s': %s is given from %g to %g um, the window is %g to %g um", m.material.id.c_str(),
-                 what.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
+            strf("material '%s': %s is given from %s, the window is %g to %g um", m.material.id.c_str(), what.c_str(),
+                 curve.range_text().c_str(), w.low_um, w.high_um));
   };
   for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
   for (const SpectralWindow& w : draft_.windows)
@@ -124,7 +124,7 @@ void Baker::class_maps() {
         c = found->second;
     }
     for (const auto& [value, count] : missing)
-      report_.add("SP502", map.name, {d.where, strf("class %u (%zu pixels) has no material", value, count)}, count);
+      report_.add("SP502", map.name, {d.where, strf("class %u (%zu pixels) has no material", value, count)});
     scene_.class_maps.push_back(std::move(map));
   }
   for (size_t m = 0; m < draft_.materials.size(); ++m) {

@@ -58,8 +58,8 @@ class MediaBaker {
       for (const auto& [name, curve] : curves)
         if (!curve->covers(w.low_um, w.high_um))
           add("SP104", m.where,
-              strf("medium '%s': %s is given from %g to %g um, the window is %g to %g um", m.medium.id.c_str(),
-                   name.c_str(), curve->low_um(), curve->high_um(), w.low_um, w.high_um));
+              strf("medium '%s': %s is given from %s, the window is %g to %g um", m.medium.id.c_str(), name.c_str(),
+                   curve->range_text().c_str(), w.low_um, w.high_um));
     }
   }
 

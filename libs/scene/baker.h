@@ -58,6 +58,7 @@ class Baker {
   std::vector<size_t> group_order();
   std::optional<Built> target(const Reference& ref);
   std::vector<Affine3> transforms(const DraftPlacement& p);
+  std::string terrains() const;
   bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
   void place(const DraftPlacement& p, Group& group, bool world);
   TimeSpan time_window();

@@ -19,6 +19,7 @@ std::vector<IssueKind> scene_issues() {
        "reflectance + transmittance must not exceed 1"},
       {"SP106", error, "a temperature table does not cover the time that is looked at",
        "give a longer table, 'repeat: true', or a shorter 'times_s'"},
+      {"SP107", warning, "a temperature is that of deep space", "temperatures are in kelvin"},
       {"SP201", error, "a face names something that is not there",
        "indices count from 1, or from the end when negative; 0 is nothing"},
       {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},
@@ -78,6 +79,7 @@ std::vector<IssueKind> scene_issues() {
       {"SP502", error, "a map holds a class that has no material", "list a material for it"},
       {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
       {"SP504", error, "a terrain cannot be put in place", ""},
+      {"SP505", warning, "the scene's origin is far from its terrain", "correct 'origin'"},
   };
 }
 

@@ -16,6 +16,20 @@ TerrainGrid::TerrainGrid(const SourceTerrain& source) : width_(source.width), he
     }
 }
 
+std::vector<Vec3> TerrainGrid::outline() const {
+  constexpr uint32_t kSteps = 16;
+  std::vector<Vec3> points;
+  const auto add = [&](uint32_t i, uint32_t j) {
+    if (std::isfinite(at(i, j).x)) points.push_back(at(i, j));
+  };
+  for (uint32_t k = 0; k <= kSteps; ++k) {
+    const auto i = static_cast<uint32_t>(uint64_t{width_ - 1} * k / kSteps),
+               j = static_cast<uint32_t>(uint64_t{height_ - 1} * k / kSteps);
+    add(i, 0), add(i, height_ - 1), add(0, j), add(width_ - 1, j);
+  }
+  return points;
+}
+
 namespace {
 // z at (x, y) of the plane through a, b, c when (x, y) lies in their projection, edges included.
 bool triangle_height(Vec3 a, Vec3 b, Vec3 c, double x, double y, double& z) {

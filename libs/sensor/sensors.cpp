@@ -4,6 +4,7 @@
 #include <set>
 
 #include "sensor/kinds/rows.h"
+#include "spectral/wavelength.h"
 
 namespace suite {
 
@@ -14,6 +15,22 @@ std::vector<SensorRow>& table() {
   static std::vector<SensorRow> rows{frame_camera_row(), platform_row(),   orthographic_row(), fisheye_row(),
                                      point_row(),        goniometer_row(), rami_row()};
   return rows;
+}
+
+void refuse_geodetic_keys(const Params& params, const std::string& kind) {
+  for (const std::string& key : params.keys()) {
+    const bool is_place = key == "position" || key == "position_m" || key == "look_at" || key == "look_at_m";
+    const Params value = params.at(key);
+    if (key != "latitude_deg" && key != "longitude_deg" && !(is_place && value.has("latitude_deg"))) continue;
+    throw Error(params.where(key), "a " + kind + " has no geodetic place",
+                "give position_m (and look_at_m) as [east, north, up] in the scene's metres, or use kind: platform");
+  }
+}
+// Why a sensor could not be made, if it was given a place on the Earth: only platforms have one, the others of our
+// kinds stand in the scene's metres.
+void refuse_geodetic(const Params& params, const std::string& kind) {
+  for (const char* fixed : {"frame_camera", "orthographic", "fisheye", "point", "goniometer", "rami"})
+    if (kind == fixed) return refuse_geodetic_keys(params, kind);
 }
 }  // namespace
 
@@ -30,7 +47,12 @@ std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& c
   const std::string kind = params.text("kind");
   std::vector<std::string> known;
   for (const SensorRow& row : sensor_kinds()) {
-    if (row.name == kind) return row.make(params, context);
+    if (row.name == kind) try {
+        return row.make(params, context);
+      } catch (const Error&) {
+        refuse_geodetic(params, kind);
+        throw;
+      }
     known.push_back(row.name);
   }
   throw params.at("kind").error("unknown sensor kind '" + kind + "'", name_hint(kind, known), "SE101");
@@ -85,7 +107,11 @@ std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
       bands.push_back(Band::tabulated(name, context.curve(*response), response->where()));
       continue;
     }
-    const double center = item.number_in("center_um", 0.01, 10000, "um");
+    const double center = item.at("center_um").as_number();
+    if (!(center >= 0.01 && center <= kLongestWave))
+      throw item.at("center_um")
+          .error("the band's centre is " + wavelengths_text(center, center),
+                 strf("0.01 to %g um are possible", kLongestWave));
     const double width = item.number_in("fwhm_um", 1e-6, 2 * center * 0.999, "um");
     const auto shape = item.find("shape");
     switch (shape ? shape->as_choice({"gaussian", "rectangular", "triangular"}) : 0) {

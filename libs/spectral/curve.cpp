@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "spectral/wavelength.h"
+
 namespace suite {
 
 const char* to_text(Outside rule) {
@@ -51,6 +53,8 @@ double Curve::high_um() const { return constant_ ? std::numeric_limits<double>::
 double Curve::min() const { return *std::min_element(y_.begin(), y_.end()); }
 double Curve::max() const { return *std::max_element(y_.begin(), y_.end()); }
 
+std::string Curve::range_text() const { return wavelengths_text(x_.front(), x_.back()); }
+
 bool Curve::covers(double low, double high) const {
   // An ulp of slack: window edges are often computed from band centres and widths.
   return outside_ != Outside::error || (low >= low_um() * (1 - 1e-9) && high <= high_um() * (1 + 1e-9));
@@ -59,7 +63,7 @@ bool Curve::covers(double low, double high) const {
 double Curve::at(double w) const {
   if (w < x_.front() || w > x_.back()) {
     if (!covers(w, w))
-      throw Error(strf("a curve from %g to %g um was asked at %g um", x_.front(), x_.back(), w),
+      throw Error("a curve from " + range_text() + strf(" was asked at %g um", w),
                   "declare 'outside: hold' or 'zero', or give a longer curve");
     if (outside_ == Outside::zero) return 0;
     return w < x_.front() ? y_.front() : y_.back();
@@ -80,7 +84,7 @@ double Curve::primitive(double w) const {
 
 double Curve::integral(double low, double high) const {
   if (!covers(low, high))
-    throw Error(strf("a curve from %g to %g um was asked from %g to %g um", x_.front(), x_.back(), low, high),
+    throw Error("a curve from " + range_text() + strf(" was asked from %g to %g um", low, high),
                 "declare 'outside: hold' or 'zero', or give a longer curve");
   return primitive(high) - primitive(low);
 }

@@ -26,7 +26,8 @@ class Curve {
 
   bool is_constant() const { return constant_; }
   Outside outside() const { return outside_; }
-  double low_um() const;  // of the tabulated range; 0 and infinity for a constant
+  std::string range_text() const;  // "0.4 to 0.9 um", for messages; asks when that looks like nanometres
+  double low_um() const;           // of the tabulated range; 0 and infinity for a constant
   double high_um() const;
   const std::vector<double>& wavelength_um() const { return x_; }
   const std::vector<double>& value() const { return y_; }
