@@ -87,7 +87,8 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
   std::string text = strf("%zu of %zu captures are complete", finished, captures);
   if (finished) text += " in " + folder;
   return text + (state ? "; " + folder +
-                             "/result.state.h5 holds all that was computed: the same command with --resume "
+                             "/result.state.h5 holds the finished captures and strips of 8 lines: the same command "
+                             "with --resume "
                              "in place of --state and its budget goes on from there"
                        : "; without --state the rest is lost");
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 
@@ -53,8 +54,13 @@ constexpr size_t kChunkBytes = 512 << 10;  // packed in one piece: fits the libr
 constexpr size_t kSmall = 4096;            // below this packing gains nothing
 constexpr hsize_t kBestRatio = 1040;       // deflate packs no better
 
-// The library prints its error stack unless told not to.
-void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// The library prints its error stack unless told not to. When the program ends it writes what a file still lacks, and
+// crashes where that is refused; whoever writes here closes his files, so there is nothing left to do then.
+void silence() {
+  static const herr_t no_work_at_exit = H5dont_atexit();  // before anything else of the library
+  (void)no_work_at_exit;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -98,8 +104,8 @@ bool get_text(hid_t object, const std::string& name, std::string& text) {
 
 // --- Writer ---------------------------------------------------------------------------------------------------------
 
-// What the library still holds back it writes when the file is closed, or when the program ends; refused there, it
-// crashes. So the rest goes to a file in memory, which nobody sees.
+// What the library still holds back it writes when the file is closed, and keeps the file when that is refused. So the
+// rest goes to a file in memory, which nobody sees.
 void Writer::give_up() const {
   void* descriptor = nullptr;
   if (file_ < 0 || H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) < 0 || !descriptor) return;
@@ -110,10 +116,13 @@ void Writer::give_up() const {
 }
 
 void Writer::fail(const std::string& what) const {
+  const int cause = errno;
   give_up();
   const size_t slash = path_.rfind('/'),
                room = free_bytes(slash == std::string::npos ? "." : path_.substr(0, slash + 1));
-  throw Error(Where{path_, 0, 0, {}, -1}, "cannot be written: " + what,
+  const bool told = cause == ENOSPC || cause == EFBIG || cause == EDQUOT || cause == EIO;
+  throw Error(Where{path_, 0, 0, {}, -1},
+              "cannot be written: " + what + (told ? strf(": %s", std::strerror(cause)) : ""),
               "is the disk full? " + human_bytes(static_cast<double>(room)) + " are free there");
 }
 

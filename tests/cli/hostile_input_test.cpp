@@ -167,7 +167,7 @@ TEST_F(Hostile, AResultThatCannotBeWrittenLeavesTheOthersAndTheState) {
   const CommandResult r = run("dirsig-render two.yaml -o out --state");
   EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("out/b.png: error: is a directory"));
-  EXPECT_THAT(r.err, HasSubstr("1 of 2 captures are complete in out; out/result.state.h5 holds all that was computed"));
+  EXPECT_THAT(r.err, HasSubstr("1 of 2 captures are complete in out; out/result.state.h5 holds the finished captures"));
   EXPECT_TRUE(file_exists(folder_ / "out/a.img"));
   EXPECT_EQ(left_overs(folder_ / "out"), 0u);
   std::filesystem::remove(folder_ / "out/b.png");
@@ -186,7 +186,9 @@ TEST_F(Hostile, ASignalKeepsWhatIsDoneAndResumeGoesOnFromIt) {
           "while [ ! -e out/a.png ]; do sleep 0.02; done; sleep 0.3; kill -INT $pid; wait $pid'");
   ASSERT_EQ(r.code, 130) << r.err;
   EXPECT_THAT(r.err, HasSubstr("stopping in good order"));
-  EXPECT_THAT(r.err, HasSubstr("stopped: 1 of 2 captures are complete in out; out/result.state.h5 holds all"));
+  EXPECT_THAT(
+      r.err,
+      HasSubstr("stopped: 1 of 2 captures are complete in out; out/result.state.h5 holds the finished captures"));
   EXPECT_TRUE(file_exists(folder_ / "out/a.img"));
   EXPECT_FALSE(file_exists(folder_ / "out/b.img"));
   EXPECT_EQ(left_overs(folder_ / "out"), 0u);

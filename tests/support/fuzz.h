@@ -105,8 +105,9 @@ class Mutator {
   std::vector<std::string> words_;
 };
 
-// Runs `read` on mutations of `input` until `count` are done or `seconds` have passed (SUITE_FUZZ_SECONDS overrides the
-// time and lifts the count). At least one mutation must be refused, and the input itself must be accepted.
+// Runs `read` on mutations of `input` until `count` are done or `seconds` have passed, but on 1000 at least
+// (SUITE_FUZZ_SECONDS overrides the time and lifts the count). At least one mutation must be refused, and the input
+// itself must be accepted.
 inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
                  size_t count = 20000, double seconds = 4, const std::vector<std::string>& words = {}) {
   ASSERT_NO_THROW(read(input));
@@ -115,7 +116,7 @@ inline void fuzz(const Bytes& input, const std::function<void(std::span<const st
   auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Mutator mutate(seed, words);
   size_t done = 0, refused = 0;
-  for (; done < count && elapsed() < seconds; ++done) {
+  for (; done < count && (elapsed() < seconds || done < 1000); ++done) {
     const Bytes b = mutate(input);
     const double before = elapsed();
     try {
