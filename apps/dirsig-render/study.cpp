@@ -162,9 +162,9 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene is empty: there is nothing to study");
   const Size size = size_of(sim);
   make_folder(o.study);
-  check_outputs({o.study + "/study.csv", o.study + "/study.json", o.study + "/study.html", o.study + "/reference.img",
-                 o.study + "/reference_error.img"});
   const std::string table = o.study + "/study.csv", identity = identity_of(o, sim, options);
+  check_outputs({table, o.study + "/study.json", o.study + "/study.html", o.study + "/reference.img",
+                 o.study + "/reference_error.img"});
   const bool kept = file_exists(table);
   std::vector<StudyRow> rows;
   if (kept) {
