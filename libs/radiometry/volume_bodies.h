@@ -64,7 +64,7 @@ class Bodies {
   Vec3 place_;
   double time_ = 0;
   MediumStack around_, entered_;
-  // What lies at the boundary that is being crossed, nearest first, and its materials; `own`: that boundary.
+  // What lies at the boundary that is being crossed, nearest first, that boundary included, and the materials.
   std::vector<Hit> beside_;
   std::vector<uint32_t> materials_;
   std::vector<std::pair<Hit, uint32_t>> left_;

@@ -95,13 +95,13 @@ TEST(CutSlab, ScattersAsTheUncut) {
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.3, 0.2, -1}), 0});
   const Repeated whole = over_problems(render_cell(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
   for (const Cut cut : kCuts)
-    for (const uint32_t n : {2u, 16u, cut == Cut::planes ? 64u : 200u}) {
+    for (const uint32_t n : {2u, 16u, cut == Cut::boxes ? 200u : 40u}) {
       SCOPED_TRACE(std::string(name_of(cut)) + ' ' + std::to_string(n));
       const uint32_t paths = n > 40 ? 1 << 6 : 1 << 8;
       const Repeated got = over_problems(render_cell(cut_slab({gas}, n, 1, cut), sources, rays, paths, {}, n), 0);
       std::printf("cut slab, scattering, %u %s: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, name_of(cut), got.mean,
                   got.error, whole.mean, whole.error);
-      expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
+      expect_alike(got, whole, n > 40 ? 0.13 : 0.06);
     }
 }
 
@@ -156,7 +156,7 @@ TEST(NestedBodies, ConcentricSpheres) {
         over_problems(render_cell(spheres({gas}, n), sources, rays, n > 40 ? 1 << 6 : 1 << 8, {}, n), 0);
     std::printf("%u spheres, scattering: %.5f +- %.5f, uncut %.5f +- %.5f\n", n, got.mean, got.error, whole.mean,
                 whole.error);
-    expect_alike(got, whole, n > 40 ? 0.1 : 0.05);
+    expect_alike(got, whole, n > 40 ? 0.13 : 0.06);
   }
 }
 
