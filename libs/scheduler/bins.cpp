@@ -39,7 +39,7 @@ class StateBins {
     cell_ = std::max(narrowest / kCellsAcross, 4 * support / kMostCells);
     SpectralState fine = make_state(bands, cell_, 0, 1);
     SpectralState probe = fine;
-    const std::vector<Bin> between = middles(fine).bins;
+    const std::vector<Bin> between = places(fine).bins;
     probe.bins.insert(probe.bins.end(), between.begin(), between.end());
     recipe_ = ProductRecipe(seen, probe, white_light);
     refine(std::move(fine));
@@ -94,9 +94,9 @@ class StateBins {
       Means means = means_over(products_, fine_);
       const double change = difference(means_, means);
       means_ = std::move(means);
-      // Lines that are much finer than the cells do not change by halving, but show in the middles of the cells. These
-      // are no better than a few times the error wanted, so that less does not count.
-      const double hidden = difference(means_over(recipe_.over(middles(fine_)), fine_), means_);
+      // Lines that are much finer than the cells do not change by halving, but show at single places in the cells.
+      // These are no better than a few times the error wanted, so that less does not count.
+      const double hidden = difference(means_over(recipe_.over(places(fine_)), fine_), means_);
       const bool lines = hidden > 8 * wanted_;
       unresolved_ = lines ? hidden : change / 2;  // halving leaves a quarter: a third of the change
       if ((change <= wanted_ / 8 && !lines) || 2 * fine_.size() > kMostCells) return;
@@ -112,11 +112,13 @@ class StateBins {
   }
   // One bin for bands that overlap or touch.
   SpectralState whole_stretches() const { return make_state(bands_, state_.high_um - state_.low_um); }
-  // The middle 64th of every bin.
-  static SpectralState middles(SpectralState state) {
+  // A place near the middle of every bin, as narrow as Planck's function allows. Not the middle itself: there even
+  // combs of lines may all have their mean.
+  static SpectralState places(SpectralState state) {
     for (Bin& b : state.bins) {
-      const double middle = b.center_um(), half = (b.high_um - b.low_um) / 128;
-      b = {middle - half, middle + half};
+      const double width = b.high_um - b.low_um, place = b.low_um + 0.4571 * width,
+                   half = std::min(1e-7 * place, width / 128);
+      b = {place - half, place + half};
     }
     return state;
   }

@@ -42,9 +42,9 @@ inline double by_small_steps(const Band& band, const std::function<double(double
 }
 
 // The largest relative error of a product of curves over all bands, as the bins of a state give it. The bins see the
-// curves as averages over bins.
+// curves as averages over bins. least: products below this share of the first curve are passed over.
 inline double error_of(const SpectralState& state, std::span<const Band> bands, const std::vector<Curve>& curves,
-                       double step_um = 1e-4) {
+                       double step_um = 1e-4, double least = 0) {
   const BandProjection projection(state, bands);
   double worst = 0;
   for (size_t b = 0; b < bands.size(); ++b) {
@@ -62,6 +62,9 @@ inline double error_of(const SpectralState& state, std::span<const Band> bands, 
           return product;
         },
         step_um);
+    if (right < least * by_small_steps(
+                            bands[b], [&](double um) { return curves[0].at(um); }, step_um))
+      continue;
     worst = std::max(worst, std::fabs(got / right - 1));
   }
   return worst;
