@@ -45,12 +45,17 @@ void declare(Cli& cli, SqtFitOptions& o) {
   cli.option("--model", o.model, "fit a scattering model instead of a file", "NAME:PARAM=VALUE,...");
   cli.option("-o,--output", o.output, "file to write", "FILE.sqt");
   cli.option("--method", o.method, "aligned, or paper (one tree a view and channel, for comparison)", "NAME");
-  cli.option("--order", o.order, "finest HEALPix order, 3-12 (paper: 1-8); 0 = 10 (paper: 6)", "N");
+  cli.option("--order", o.order, "finest HEALPix order, 3-12 (paper: 1-8); 0 = 10, 12 where lobes need it (paper: 6)",
+             "N");
   cli.option("--views", o.views, "view directions, 2-64; 0 = as many as the function's bends ask for (paper: 24)", "N");
   cli.option("--threshold", o.threshold,
              "paper: families whose values differ by at most this share of the slice's mean are consolidated", "X");
   cli.option("--max-error", o.max_error, "aligned: find the smallest file with at most this error", "E");
   cli.option("--max-bytes", o.max_bytes, "aligned: find the best fit of at most this size", "N");
+  cli.option("--min-peak", o.min_peak,
+             "aligned: lobes at view angles of 20, 45 and 70 deg reach at least this share of the data's, 0-1; 0 = no "
+             "matter; without it 0.9, of phase functions 0.98",
+             "P");
   cli.option("--report", o.report, "write sizes and errors as JSON", "FILE.json");
   cli.option(
       "--curve", o.curve,

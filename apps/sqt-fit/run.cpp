@@ -31,8 +31,15 @@ struct Outcome {
   std::vector<std::byte> file;
   std::shared_ptr<const sqt::Bundle> bundle;
   std::vector<sqt::ErrorFigures> errors;
-  bool error_met = true, bytes_met = true;
+  bool error_met = true, bytes_met = true, peak_met = true;
 };
+
+// Heights of lobes that are asked for when the user says nothing.
+constexpr double kSurfacePeak = 0.9, kPhasePeak = 0.98;
+double min_peak(const SqtFitOptions& o, const FitInput& input) {
+  if (o.min_peak >= 0) return o.min_peak;
+  return input.function->info().quantity == sqt::Quantity::phase ? kPhasePeak : kSurfacePeak;
+}
 
 void check_options(const SqtFitOptions& o) {
   if (o.input.empty() == o.model.empty()) throw UsageError("give one input file or --model");
@@ -44,6 +51,8 @@ void check_options(const SqtFitOptions& o) {
   const bool paper = o.method == "paper";
   if (paper && (o.max_error != 0 || o.max_bytes != 0))
     throw UsageError("--max-error and --max-bytes need --method aligned; see --threshold and --curve");
+  if (paper && o.min_peak >= 0) throw UsageError("--min-peak needs --method aligned");
+  if (!(o.min_peak <= 1)) throw UsageError(strf("--min-peak %g is out of range; give 0 to 1", o.min_peak));
   if (o.order && (o.order < (paper ? 1 : 3) || o.order > (paper ? 8 : 12)))
     throw UsageError(strf("--order %lld is out of range; give %s, or 0", o.order, paper ? "1 to 8" : "3 to 12"));
   if (o.views && (o.views < 2 || o.views > 64))
@@ -87,7 +96,8 @@ sqt::AlignedSource::Options source_options(const SqtFitOptions& o) {
   sqt::AlignedSource::Options options;
   if (o.views) options.views = static_cast<size_t>(o.views);
   if (o.order)
-    options.max_order = static_cast<int>(o.order), options.base_order = std::min(options.base_order, options.max_order);
+    options.order_fixed = true, options.max_order = static_cast<int>(o.order),
+    options.base_order = std::min(options.base_order, options.max_order);
   return options;
 }
 
@@ -111,6 +121,32 @@ sqt::PaperOptions paper_options(const SqtFitOptions& o) {
   return options;
 }
 
+// Promises that were not kept, and lobes that are too low or too high; errors under --strict.
+void judge_fit(const SqtFitOptions& o, const FitInput& input, const sqt::Reference& reference, const Outcome& out) {
+  std::string text;
+  auto add = [&text](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  if (!out.bytes_met) add(strf("%lld bytes cannot be kept: the smallest file has %zu", o.max_bytes, out.file.size()));
+  if (!out.error_met)
+    add(strf("an error of %g cannot be kept: %s has %.4g", o.max_error, o.max_bytes ? "this fit" : "the best fit",
+             out.errors.back().l1));
+  if (!out.peak_met) {
+    const std::array<double, 3> peaks = reference.least_peaks(*out.bundle);
+    add(strf("lobes at view angles of 20/45/70 deg reach %.3f %.3f %.3f of the data's, %g is asked for (--min-peak)",
+             peaks[0], peaks[1], peaks[2], min_peak(o, input)));
+  }
+  if (!text.empty() && o.strict)
+    throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "relax the target or leave out --strict");
+  if (!text.empty()) warn(text);
+  const double allowed = min_peak(o, input);
+  for (size_t c = 0; c + 1 < out.errors.size() && allowed > 0; ++c) {
+    const sqt::ErrorFigures& e = out.errors[c];
+    if (std::max({e.peak_ratio_20, e.peak_ratio_45, e.peak_ratio_70}) * allowed <= 1) continue;
+    warn(strf("lobes at view angles of 20/45/70 deg are %.3f %.3f %.3f of the data's at %g um: higher than measured",
+              e.peak_ratio_20, e.peak_ratio_45, e.peak_ratio_70, input.function->info().wavelength_um[c]));
+    break;
+  }
+}
+
 Json report_json(const SqtFitOptions& o, const FitInput& input, const Outcome& out, double seconds) {
   Json j = Json::object();
   j.set("input", input.provenance.input);
@@ -122,6 +158,8 @@ Json report_json(const SqtFitOptions& o, const FitInput& input, const Outcome& o
   j.set("seconds", seconds);
   j.set("error_met", out.error_met);
   j.set("bytes_met", out.bytes_met);
+  j.set("peak_met", out.peak_met);
+  if (o.method == "aligned") j.set("min_peak", min_peak(o, input));
   j.set("conventions", input.provenance.conventions);
   j.set("units", "value 1/sr without cosine; rmse 1/sr; other errors relative");
   j.set("overall", error_json(out.errors.back()));
@@ -198,7 +236,7 @@ int run_sqt_fit(const SqtFitOptions& o) {
   Outcome out;
   std::unique_ptr<sqt::AlignedSource> source;
   if (o.method == "aligned") {
-    const sqt::FitTarget target{o.max_error, static_cast<size_t>(o.max_bytes)};
+    const sqt::FitTarget target{o.max_error, static_cast<size_t>(o.max_bytes), min_peak(o, input)};
     sqt::FitResult result = sqt::fit_to(
         *input.function, reference, source_options(o), target,
         [&](const sqt::AlignedSource& s) { return container_bytes(input, s); }, advance(0.8));
@@ -207,6 +245,7 @@ int run_sqt_fit(const SqtFitOptions& o) {
     out.errors = reference.measure(*out.bundle);
     out.file = pack_sqt(result.fit, input.provenance, out.errors);
     out.error_met = result.error_met;
+    out.peak_met = result.peak_met;
     out.bytes_met = !o.max_bytes || out.file.size() <= static_cast<size_t>(o.max_bytes);
   } else {
     const sqt::PaperData data = sqt::fit_paper(*input.function, paper_options(o), advance(0.8));
@@ -217,17 +256,7 @@ int run_sqt_fit(const SqtFitOptions& o) {
   progress.finish();
   const double seconds = watch.seconds();
   print_summary(o, out, seconds);
-  if (!out.error_met || !out.bytes_met) {
-    std::string text;
-    if (!out.bytes_met)
-      text = strf("%lld bytes cannot be kept: the smallest file has %zu", o.max_bytes, out.file.size());
-    if (!out.error_met)
-      text += strf("%san error of %g cannot be kept: %s has %.4g", text.empty() ? "" : "; ", o.max_error,
-                   o.max_bytes ? "this fit" : "the best fit", out.errors.back().l1);
-    if (o.strict)
-      throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "relax the target or leave out --strict");
-    warn(text);
-  }
+  judge_fit(o, input, reference, out);
   if (!o.output.empty()) write_file(o.output, out.file);
   if (!o.report.empty()) write_file(o.report, report_json(o, input, out, seconds).text());
   if (!o.curve.empty()) write_curve(o, input, reference, source.get());

@@ -53,6 +53,10 @@ std::shared_ptr<const sqt::Bundle> aligned_of(const Params& header, std::span<co
   layout.theta = angles_of(l.at("theta"));
   layout.phi_count = static_cast<size_t>(l.integer("phi_count", 1, 10000));
   layout.channels = d.function.wavelength_um.size();
+  layout.refined = l.boolean("refined", false);
+  if (l.find("spectra"))
+    layout.spectra.resize(static_cast<size_t>(l.integer("spectra", 1, static_cast<long long>(layout.channels))) *
+                          layout.channels);
   d.totals.theta = t.find("theta") ? angles_of(t.at("theta")) : sqt::total_angles(layout.theta);
   d.totals.phi_count = static_cast<size_t>(t.integer("phi_count", 1, 10000));
   d.totals.magnitude_um = t.at("wavelength_um").as_numbers();
@@ -135,8 +139,9 @@ SqtFile parse_sqt(std::span<const std::byte> bytes, const std::string& file_name
   const auto coding = reader.get<uint32_t>(), text_size = reader.get<uint32_t>();
   const auto checksum = reader.get<uint64_t>();
   if (!reader.ok()) throw fail(bytes.size(), "the file ends within its first 48 bytes");
-  if (version != kSqtVersion)
-    throw fail(8, strf("SQT version %u", version), strf("this program reads version %d", kSqtVersion));
+  if (version < kSqtOldest || version > kSqtVersion)
+    throw fail(8, strf("SQT version %u", version),
+               strf("this program reads versions %d to %d", kSqtOldest, kSqtVersion));
   if (header_size > kMaxHeader || text_size > kMaxHeader || raw_size > kMaxRaw || coding > 1)
     throw fail(12, "implausible sizes in the SQT header");
   if (header_size > reader.left() || payload_size != reader.left() - header_size)

@@ -14,7 +14,8 @@
 
 namespace suite {
 
-inline constexpr int kSqtVersion = 3;
+// Versions read. A file is written as the oldest that can say what it holds.
+inline constexpr int kSqtOldest = 3, kSqtVersion = 4;
 
 // Where a fit came from; all of it goes into the header.
 struct SqtProvenance {

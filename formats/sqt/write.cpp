@@ -55,12 +55,12 @@ Json head(const char* method, const sqt::Function::Info& function, const SqtProv
 }
 
 std::vector<std::byte> frame(const Json& header, std::span<const std::byte> payload, size_t raw_size,
-                             sqt_file::Coding coding) {
+                             sqt_file::Coding coding, int version) {
   const std::string text = header.text(0);
   const std::vector<std::byte> packed = sqt_file::lzma_compress(std::as_bytes(std::span(text)));
   std::vector<std::byte> out(sizeof sqt_file::kMagic);
   std::memcpy(out.data(), sqt_file::kMagic, sizeof sqt_file::kMagic);
-  put<uint32_t>(out, kSqtVersion);
+  put<uint32_t>(out, static_cast<uint32_t>(version));
   put<uint32_t>(out, static_cast<uint32_t>(packed.size()));
   put<uint64_t>(out, payload.size());
   put<uint64_t>(out, raw_size);
@@ -110,6 +110,8 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   layout.set("quality", l.quality);
   layout.set("theta", numbers(l.theta));
   layout.set("phi_count", l.phi_count);
+  if (l.refined) layout.set("refined", true);
+  if (!l.spectra.empty()) layout.set("spectra", l.spectra.size() / l.channels);
   header.set("layout", std::move(layout));
   Json totals = Json::object();
   if (t.theta != sqt::total_angles(l.theta)) totals.set("theta", numbers(t.theta));
@@ -124,7 +126,8 @@ std::vector<std::byte> pack_sqt(const sqt::AlignedFit& fit, const SqtProvenance&
   put<uint32_t>(payload, static_cast<uint32_t>(fit.totals_bytes.size()));
   payload.insert(payload.end(), fit.totals_bytes.begin(), fit.totals_bytes.end());
   payload.insert(payload.end(), fit.sheets_bytes.begin(), fit.sheets_bytes.end());
-  return frame(header, payload, payload.size(), sqt_file::plain);
+  return frame(header, payload, payload.size(), sqt_file::plain,
+               l.refined || !l.spectra.empty() ? kSqtVersion : kSqtOldest);
 }
 
 std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance& provenance,
@@ -163,7 +166,7 @@ std::vector<std::byte> pack_sqt(const sqt::PaperData& data, const SqtProvenance&
     for (const uint8_t o : orders) put(raw, o);
     for (const auto& leaf : slice) put(raw, leaf.value);
   }
-  return frame(header, sqt_file::lzma_compress(raw), raw.size(), sqt_file::lzma);
+  return frame(header, sqt_file::lzma_compress(raw), raw.size(), sqt_file::lzma, kSqtOldest);
 }
 
 }  // namespace suite

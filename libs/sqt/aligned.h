@@ -3,10 +3,11 @@
 //
 // f(out, in) = s(theta) 2^( blend over views of [ value + slope . (position in the leaf) ] ), in the cell coordinates
 // of lobe_map.h. s(theta) makes the integral of f |cos| equal to the total that the data had before reduction. Values
-// of a node are averages of log2 f over its cell for every view and channel; children are coded as differences from the
-// plane through their parent, transformed over views and channels (cosine transforms), quantised with a step that
-// shrinks with the weight of the cell in the cosine-weighted error, and coded by prefix codes in contexts
-// (block_code.h).
+// of a leaf are such that the mean of f over its cell is that of the data, those of a node above the averages of its
+// children's, for every view and channel; children are coded as differences from the
+// plane through their parent, transformed over views and channels (cosine transforms, or the spectra of the data),
+// quantised with a step that shrinks with the weight of the cell in the cosine-weighted error (as its values say, or
+// finer as the node states), and coded by prefix codes in contexts (block_code.h).
 //
 // Based on: Goodenough & Brown, section IV-D-4 (the quad-tree, totals before reduction); S. Rusinkiewicz 1998 (half
 // vector); Said & Pearlman 1996 (pyramid with prediction); rate-distortion pruning: Chou, Lookabaugh & Gray, IEEE TIT
@@ -37,6 +38,12 @@ struct AlignedLayout {
   size_t phi_count = 1;       // view azimuths per polar angle, uniform from 0
   size_t channels = 0;
   double quality = 0;  // base quantisation step, log2 units; the only knob of the coder
+  // Nodes may state a finer step: where averages of logarithms do not show the narrow lobe below.
+  bool refined = false;
+  // Orthonormal rows over the channels that take the place of the cosine transform, [row][channel], in units of
+  // 1/kSpectrumUnit; empty: cosines. Fewer rows than channels: nothing lies across them.
+  std::vector<int16_t> spectra;
+  static constexpr float kSpectrumUnit = 16384;
   size_t views() const { return theta.size() * phi_count; }
   size_t width() const { return views() * channels; }
 };
@@ -89,6 +96,7 @@ class AlignedSource {
     double fold_error = 1;           // bilateral data are stored once when that costs at most this cosine-weighted l1
     int base_order = 6;              // every cell of this order is asked; less when views x channels are very many
     int max_order = 10;              // further only where it matters
+    bool order_fixed = false;        // max_order is what was asked for: never more
     double detail = 2e-6;            // share of the whole a cell's variation must have to be divided further
   };
   AlignedSource(const Function& function, const Options& options, const std::function<void(double)>& progress = {});
@@ -107,7 +115,8 @@ class AlignedSource {
 // decoded: receives what decode_sheets would return, when not null.
 std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality,
                                      std::vector<AlignedSheet>* decoded = nullptr);
-// Error: a payload that is not one (runs past its end, more than max_leaves leaves).
+// Error: a payload that is not one (runs past its end, more than max_leaves leaves). Of layout.spectra the size counts;
+// the numbers are the payload's.
 std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
                                         size_t max_leaves = size_t{1} << 22);
 // log2 of the scale that gives decoded sheets the totals of the data.

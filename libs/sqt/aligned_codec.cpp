@@ -43,8 +43,15 @@ std::vector<double> fourier_matrix(size_t n) {
 BlockTransform::BlockTransform(const AlignedLayout& layout)
     : views_(layout.views()), channels_(layout.channels), stride_((views_ + 31) / 32 * 32) {
   const size_t nt = layout.theta.size(), np = layout.phi_count;
-  const std::vector<double> t = cosine_matrix(nt), p = fourier_matrix(np), c = cosine_matrix(channels_);
-  channel_.assign(c.begin(), c.end());
+  const std::vector<double> t = cosine_matrix(nt), p = fourier_matrix(np);
+  if (layout.spectra.empty()) {
+    const std::vector<double> c = cosine_matrix(channels_);
+    channel_.assign(c.begin(), c.end());
+  } else {
+    channel_.resize(channels_ * channels_, 0.0f);
+    for (size_t j = 0; j < layout.spectra.size(); ++j)
+      channel_[j] = static_cast<float>(layout.spectra[j]) / AlignedLayout::kSpectrumUnit;
+  }
   // View frequencies in the order of their height.
   std::vector<std::pair<int, size_t>> order;
   for (size_t k = 0; k < views_; ++k) order.push_back({static_cast<int>(k / np + (k % np + 1) / 2), k});
@@ -128,12 +135,16 @@ ViewLanes::ViewLanes(const AlignedLayout& layout)
     }
 }
 
+namespace {
+constexpr double kLeastStep = -9, kMostStep = 1;  // log2 of the steps there are
+}
+
 StepRule::StepRule(const AlignedLayout& layout, double reference)
     : layout_(layout), reference_(reference), log2_quality_(portable_log2(layout.quality)), lanes_(layout) {
   for (const float w : lanes_.weight) norm_ += w;
 }
 
-float StepRule::step(const Center& d, int order, const float* mean) const {
+double StepRule::wanted(const Center& d, int order, const float* mean) const {
   constexpr double kWeightPower = 0.75, kAreaPower = 0.5;
   EightFloats sums{};
   for (size_t v = 0; v < lanes_.views; v += 8) {
@@ -147,10 +158,19 @@ float StepRule::step(const Center& d, int order, const float* mean) const {
   const float sum = ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
   const double weight = portable_log2(std::max(1e-30f, sum / norm_)) - reference_;
   const double area = -2.0 * (order - 4);  // log2, relative to order 4
-  double step = log2_quality_ - kWeightPower * weight - kAreaPower * area;
-  step = std::clamp(step, -9.0, 1.0);
+  return log2_quality_ - kWeightPower * weight - kAreaPower * area;
+}
+
+float StepRule::step(const Center& d, int order, const float* mean, int finer) const {
+  const double step = std::clamp(wanted(d, order, mean) - finer, kLeastStep, kMostStep);
   // Quarter powers of two: the last bits of the weight do not matter.
   return portable_exp2(0.25f * static_cast<float>(std::floor(4 * step + 0.5)));
+}
+
+int StepRule::finer(const Center& d, int order, const float* mean, const float* should) const {
+  const double stated = wanted(d, order, mean), right = wanted(d, order, should);
+  if (std::clamp(right, kLeastStep, kMostStep) > std::clamp(stated, kLeastStep, kMostStep) - 1) return 0;
+  return static_cast<int>(std::clamp(std::floor(stated - right + 0.5), 0.0, double{BlockCode::kMostFiner}));
 }
 
 int step_reference(const AlignedTotals& totals, const AlignedLayout& layout) {
@@ -268,7 +288,7 @@ class SheetWalk {
       return;
     }
     if (lattice_.size() + 4 > max_nodes_) throw Error("SQT payload is damaged: more nodes than allowed");
-    const float step = steps_.step(center, node.order, mean_of(i));
+    const float step = steps_.step(center, node.order, mean_of(i), find_finer(i));
     if (targets_) targets_->differences(lattice_, i, difference_);
     const int32_t block = convey(3, step, node.parent >= 0 ? block_[static_cast<size_t>(node.parent)] : -1);
     block_[i] = block;
@@ -276,6 +296,17 @@ class SheetWalk {
     for (size_t d = 0; d < 3; ++d) details[d] = change(d, block, step) ? change_row(d) : nullptr;
     lattice_.divide(i, details);
     if (targets_) targets_->divided(lattice_, i);
+  }
+  // Octaves by which a divided node's step is finer: stated below nodes that have some.
+  int find_finer(size_t i) {
+    if (!layout_.refined) return 0;
+    finer_.resize(lattice_.size(), 0);
+    const int32_t parent = lattice_.node(i).parent;
+    const int above = parent >= 0 ? finer_[static_cast<size_t>(parent)] : -1;
+    if (above != 0)
+      finer_[i] = static_cast<uint8_t>(
+          blocks_.code_finer(coder_, targets_ ? static_cast<uint32_t>(targets_->finer(i)) : 0, above));
+    return finer_[i];
   }
   // Quantises (encoder) or not (decoder) and codes the rows of differences.
   int32_t convey(size_t count, float step, int32_t above) {
@@ -321,6 +352,7 @@ class SheetWalk {
   CodedLattice lattice_;
   BlockCode blocks_;
   std::vector<int32_t> block_;  // [node] of divided nodes
+  std::vector<uint8_t> finer_;  // [node] of divided nodes
   std::vector<int32_t> levels_;
   std::vector<int16_t> changes_;
   std::vector<Center> centers_;  // of the level's nodes

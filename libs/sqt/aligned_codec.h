@@ -40,14 +40,17 @@ class StepRule {
   // reference: log2 of the mean weight of a cell direction.
   StepRule(const AlignedLayout& layout, double reference);
   // Of a cell; mean: log2 values of the views, averaged over channels; padded_row(views) of them, what follows the
-  // views counts for nothing.
-  float step(const Center& center, int order, const float* mean) const;
+  // views counts for nothing. finer: octaves that the node states (AlignedLayout::refined).
+  float step(const Center& center, int order, const float* mean, int finer) const;
+  // The octaves a node should state so that the step is that of a cell of these mean values instead; 0 to kMostFiner.
+  int finer(const Center& center, int order, const float* mean, const float* should) const;
 
  private:
   const AlignedLayout& layout_;
   double reference_, log2_quality_;
   ViewLanes lanes_;
   float norm_ = 0;
+  double wanted(const Center& center, int order, const float* mean) const;  // log2 of the step, not limited
 };
 
 // Mean log2 weight that StepRule refers to, from the totals; rounded so that it can be stored in a byte.
@@ -58,6 +61,8 @@ class Targets {
  public:
   virtual ~Targets() = default;
   virtual bool split(size_t node) = 0;
+  // Octaves by which the step of a divided node is finer than its values say.
+  virtual int finer(size_t node) = 0;
   // Differences [detail][view][channel] that the block of this node should convey, given what was decoded so far.
   virtual void differences(const CodedLattice& lattice, size_t node, std::span<float> details) = 0;
   virtual void root(size_t node, std::span<const float> predicted, std::span<float> difference) = 0;

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "sqt/aligned_source.h"
 #include "sqt/range_coder.h"
+#include "sqt/source_means.h"
 
 namespace suite::sqt {
 
@@ -14,26 +15,30 @@ namespace {
 
 // Which nodes of the data are worth dividing at a quality: bottom-up, a family stays when what it saves in squared
 // error (in units of squared steps) outweighs its bits.
-std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet,
-                           const StepRule& steps) {
+struct Reduction {
+  std::vector<uint8_t> keep, finer;  // [node]: whether it stays divided; octaves by which its step is finer
+};
+Reduction prune(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, const StepRule& steps) {
   constexpr double kBitPrice =
       0.14;  // squared steps per bit: 2 ln 2 / 12 at high rate, a little more with the dead zone
-  const size_t width = layout.width(), channels = layout.channels;
-  std::vector<float> mean(padded_row(layout.views()), 0.0f);
-  std::vector<uint8_t> keep(sheet.data.size(), 0);
+  const size_t width = layout.width();
+  NodeLevels levels(layout);
+  Reduction reduction{std::vector<uint8_t>(sheet.data.size(), 0), std::vector<uint8_t>(sheet.data.size(), 0)};
   std::vector<double> benefit(sheet.data.size(), 0.0);
   for (size_t i = sheet.data.size(); i-- > 0;) {
     const Lattice::Node& node = sheet.data.node(i);
     if (node.first_child < 0) continue;
-    const std::span<const float> value = sheet.data.value(i);
     const Dir middle = center_of(node.id);
     const Center center{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)};
-    for (size_t v = 0; v < layout.views(); ++v) {
-      float sum = 0;
-      for (size_t c = 0; c < channels; ++c) sum += value[v * channels + c];
-      mean[v] = sum / static_cast<float>(channels);
+    levels.look(layout, sheet, i);
+    int finer = 0;
+    if (layout.refined) {
+      finer = steps.finer(center, node.id.order(), levels.value.data(), levels.mean.data());
+      // Below a node that states none no other may.
+      for (int k = 0; k < node.child_count; ++k)
+        if (reduction.finer[static_cast<size_t>(node.first_child + k)]) finer = std::max(1, finer);
     }
-    const float step = steps.step(center, node.id.order(), mean.data());
+    const float step = steps.step(center, node.id.order(), levels.value.data(), finer);
     const float* detail = &sheet.details[static_cast<size_t>(sheet.detail_index[i]) * 3 * width];
     double gain = 0, bits = 6;
     for (size_t j = 0; j < 3 * width; ++j) {
@@ -46,29 +51,36 @@ std::vector<uint8_t> prune(const AlignedLayout& layout, const AlignedSource::Imp
     benefit[i] = gain - kBitPrice * bits;
     for (int k = 0; k < node.child_count; ++k)
       benefit[i] += std::max(0.0, benefit[static_cast<size_t>(node.first_child + k)]);
-    keep[i] = benefit[i] > 0;
+    reduction.keep[i] = benefit[i] > 0;
+    if (reduction.keep[i]) reduction.finer[i] = static_cast<uint8_t>(finer);
   }
-  return keep;
+  return reduction;
 }
 
 class SourceTargets final : public Targets {
  public:
   SourceTargets(const AlignedLayout& layout, LogScale scale, const AlignedSource::Impl::Sheet& sheet,
-                std::vector<uint8_t> keep)
-      : layout_(layout), scale_(scale), sheet_(sheet), keep_(std::move(keep)), predicted_(4 * layout.width()) {}
-  bool split(size_t node) override { return keep_[source(node)] != 0; }
+                Reduction reduction)
+      : layout_(layout),
+        scale_(scale),
+        sheet_(sheet),
+        reduction_(std::move(reduction)),
+        values_(reduced_values(layout, sheet, reduction_.keep)),
+        predicted_(4 * layout.width()) {}
+  bool split(size_t node) override { return reduction_.keep[source(node)] != 0; }
+  int finer(size_t node) override { return reduction_.finer[source(node)]; }
   void differences(const CodedLattice& lattice, size_t node, std::span<float> details) override {
     for (uint32_t k = 0; k < 4; ++k)
       for (size_t v = 0; v < layout_.views(); ++v)
         for (size_t c = 0; c < layout_.channels; ++c)
           predicted_[k * layout_.width() + v * layout_.channels + c] =
               scale_.value(static_cast<float>(lattice.predicted(node, k, c * layout_.views() + v)));
-    family_details(layout_, sheet_, source(node), predicted_, details);
+    family_details(layout_, sheet_, source(node), values_, predicted_, details);
   }
   void root(size_t node, std::span<const float> predicted, std::span<float> difference) override {
     if (source_.size() <= node) source_.push_back(node);
-    const std::span<const float> value = sheet_.data.value(node);
-    for (size_t j = 0; j < value.size(); ++j) difference[j] = value[j] - predicted[j];
+    const float* value = &values_[node * difference.size()];
+    for (size_t j = 0; j < difference.size(); ++j) difference[j] = value[j] - predicted[j];
   }
   void divided(const CodedLattice& lattice, size_t node) override {
     const CodedLattice::Node& here = lattice.node(node);
@@ -81,12 +93,15 @@ class SourceTargets final : public Targets {
   const AlignedLayout& layout_;
   LogScale scale_;
   const AlignedSource::Impl::Sheet& sheet_;
-  std::vector<uint8_t> keep_;
-  std::vector<float> predicted_;
+  Reduction reduction_;
+  std::vector<float> values_, predicted_;
   std::vector<size_t> source_;
 };
 
 constexpr size_t kHeadBytes = 3;  // reference, offset, fraction bits
+size_t contexts_of(const AlignedLayout& layout) {
+  return layout.refined ? BlockCode::kContexts : BlockCode::kPlainContexts;
+}
 
 }  // namespace
 
@@ -95,7 +110,7 @@ std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality
   layout.quality = quality;
   const AlignedSource::Impl& m = source.impl();
   const BlockTransform transform(layout);
-  PrefixEncoder coder(BlockCode::kContexts);
+  PrefixEncoder coder(contexts_of(layout));
   const int reference = step_reference(m.totals, layout);
   const StepRule steps(layout, 0.25 * reference);
   for (const auto& sheet : m.sheets) {
@@ -106,20 +121,29 @@ std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality
   }
   std::vector<std::byte> bytes{static_cast<std::byte>(reference + 128), static_cast<std::byte>(m.scale.offset + 128),
                                static_cast<std::byte>(m.scale.fraction_bits)};
+  for (const int16_t s : layout.spectra) {
+    const auto bits = static_cast<uint16_t>(s);
+    bytes.push_back(static_cast<std::byte>(bits & 0xFF)), bytes.push_back(static_cast<std::byte>(bits >> 8));
+  }
   const std::vector<std::byte> coded = coder.finish();
   bytes.insert(bytes.end(), coded.begin(), coded.end());
   return bytes;
 }
 
-std::vector<AlignedSheet> decode_sheets(const AlignedLayout& layout, std::span<const std::byte> payload,
+std::vector<AlignedSheet> decode_sheets(const AlignedLayout& asked, std::span<const std::byte> payload,
                                         size_t max_leaves) {
-  if (payload.size() < kHeadBytes) throw Error("SQT payload is damaged: it ends too early");
+  AlignedLayout layout = asked;
+  const size_t head = kHeadBytes + 2 * layout.spectra.size();
+  if (payload.size() < head) throw Error("SQT payload is damaged: it ends too early");
+  for (size_t i = 0; i < layout.spectra.size(); ++i)
+    layout.spectra[i] = static_cast<int16_t>(std::to_integer<int>(payload[kHeadBytes + 2 * i]) |
+                                             std::to_integer<int>(payload[kHeadBytes + 2 * i + 1]) << 8);
   const int reference = std::to_integer<int>(payload[0]) - 128;
   const LogScale scale{std::to_integer<int>(payload[1]) - 128, std::to_integer<int>(payload[2])};
   if (std::abs(scale.offset) > LogScale::kMostOffset || scale.fraction_bits < LogScale::kLeastBits ||
       scale.fraction_bits > LogScale::kMostBits)
     throw Error("SQT payload is damaged: a scale that does not exist");
-  PrefixDecoder coder(payload.subspan(kHeadBytes), BlockCode::kContexts);
+  PrefixDecoder coder(payload.subspan(head), contexts_of(layout));
   const BlockTransform transform(layout);
   const StepRule steps(layout, 0.25 * reference);
   std::vector<AlignedSheet> sheets(static_cast<size_t>(layout.sheets));

@@ -10,7 +10,9 @@
 #include "base/parallel.h"
 #include "math/sampling.h"
 #include "sqt/lobe_detection.h"
+#include "sqt/source_means.h"
 #include "sqt/source_totals.h"
+#include "sqt/spectra.h"
 #include "sqt/view_placement.h"
 
 namespace suite::sqt {
@@ -170,7 +172,7 @@ void level_unknown_roots(const AlignedLayout& layout, AlignedSource::Impl::Sheet
 
 // The pyramid in the lattice's order, with slopes.
 AlignedSource::Impl::Sheet assemble(const AlignedLayout& layout, const Pyramid& pyramid) {
-  AlignedSource::Impl::Sheet sheet{Lattice({layout.upper_only, layout.half_stored}, layout.width()), {}, {}, {}};
+  AlignedSource::Impl::Sheet sheet{Lattice({layout.upper_only, layout.half_stored}, layout.width()), {}, {}, {}, {}};
   Lattice& data = sheet.data;
   std::vector<ptrdiff_t> parent(data.size(), -1);
   size_t begin = 0;
@@ -203,79 +205,6 @@ LogScale scale_of(const std::vector<AlignedSource::Impl::Sheet>& sheets) {
       for (const float v : sheet.data.value(i)) low = std::min(low, v), high = std::max(high, v);
   return LogScale::of(low, high);
 }
-
-// Transformed differences of every divided node from the plane of the data.
-void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet) {
-  const size_t width = layout.width();
-  const BlockTransform transform(layout);
-  sheet.detail_index.assign(sheet.data.size(), -1);
-  std::vector<size_t> divided;
-  for (size_t i = 0; i < sheet.data.size(); ++i)
-    if (sheet.data.node(i).first_child >= 0)
-      sheet.detail_index[i] = static_cast<int32_t>(divided.size()), divided.push_back(i);
-  sheet.details.resize(divided.size() * 3 * width);
-  parallel_for(0, divided.size(), 64, [&](size_t begin, size_t end) {
-    std::vector<float> details(3 * width), predicted(4 * width);
-    for (size_t n = begin; n < end; ++n) {
-      for (uint32_t k = 0; k < 4; ++k) sheet.data.predict(divided[n], k, {&predicted[k * width], width});
-      family_details(layout, sheet, divided[n], predicted, details);
-      for (size_t d = 0; d < 3; ++d)
-        transform.forward({&details[d * width], width}, {&sheet.details[(n * 3 + d) * width], width});
-    }
-  });
-}
-
-}  // namespace
-
-void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
-                    std::span<const float> predicted, std::span<float> details) {
-  const size_t views = layout.views(), channels = layout.channels, width = layout.width();
-  const Lattice::Node& family = sheet.data.node(source);
-  std::vector<int> known(views, 0);
-  for (size_t v = 0; v < views; ++v) {
-    unsigned present = 0;
-    size_t child[4] = {}, next = static_cast<size_t>(family.first_child);
-    for (uint32_t k = 0; k < 4; ++k) {
-      if (!(family.child_mask & (1u << k))) continue;
-      child[k] = next++;
-      if (sheet.valid[child[k] * views + v]) present |= 1u << k;
-    }
-    known[v] = present != 0;
-    for (size_t c = 0; c < channels; ++c) {
-      const size_t j = v * channels + c;
-      float r[4] = {};
-      for (uint32_t k = 0; k < 4; ++k)
-        if (present & (1u << k)) r[k] = sheet.data.value(child[k])[j] - predicted[k * width + j];
-      complete_differences(present, r);
-      details[j] = 0.25f * (-r[0] + r[1] - r[2] + r[3]);
-      details[width + j] = 0.25f * (-r[0] - r[1] + r[2] + r[3]);
-      details[2 * width + j] = 0.25f * (r[0] - r[1] - r[2] + r[3]);
-    }
-  }
-  // Views from which the cell lies below the horizon follow their nearest neighbour: nobody will look.
-  fill_unknown(layout, known, details, 3);
-}
-
-void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::span<float> rows, size_t count) {
-  const size_t np = layout.phi_count, nt = layout.theta.size(), channels = layout.channels, width = layout.width();
-  for (size_t p = 0; p < np; ++p)
-    for (size_t t = 0; t < nt; ++t) {
-      if (known[t * np + p]) continue;
-      size_t from = nt;
-      for (size_t distance = 1; distance < nt && from == nt; ++distance) {
-        if (t >= distance && known[(t - distance) * np + p])
-          from = t - distance;
-        else if (t + distance < nt && known[(t + distance) * np + p])
-          from = t + distance;
-      }
-      for (size_t r = 0; r < count; ++r)
-        for (size_t c = 0; c < channels; ++c)
-          rows[r * width + (t * np + p) * channels + c] =
-              from < nt ? rows[r * width + (from * np + p) * channels + c] : 0.0f;
-    }
-}
-
-namespace {
 
 // Cosine-weighted relative l1 between a function and the mean of its two mirror images.
 double cost_of_folding(const Function& function) {
@@ -380,10 +309,14 @@ AlignedSource::AlignedSource(const Function& function, const Options& asked,
         surveyor.survey(CellId::of(Lattice::kRootOrder, i), parts[0]);
     m.sheets.push_back(assemble(layout, parts[0]));
     leaves.push_back(leaves_of(layout, m.sheets.back()));
-    transform_details(layout, m.sheets.back());
+    find_means(layout, m.sheets.back());
+    find_details(layout, m.sheets.back());
   }
   m.scale = scale_of(m.sheets);
   survey_totals(function, layout, leaves, m.sheets, m.totals);
+  layout.refined = needs_finer_steps(layout, m.totals, m.sheets);
+  layout.spectra = choose_spectra(layout, m.totals, m.sheets);
+  for (Impl::Sheet& sheet : m.sheets) transform_details(layout, sheet);
   survey_dirac(function, layout, m.totals);
   if (surface)  // no surface returns more than it receives
     for (size_t t = 0; t < m.totals.theta.size() * m.totals.phi_count; ++t)

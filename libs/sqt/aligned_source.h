@@ -16,14 +16,20 @@ struct AlignedSource::Impl {
     // Of divided nodes, in units of log2: transformed differences from the plane of the data itself, [3][width].
     std::vector<int32_t> detail_index;  // [node] -> row of details, -1 for leaves
     std::vector<float> details;
+    std::vector<float> mean;  // [node][view][channel] of f itself over the cell, 1/sr
   };
   std::vector<Sheet> sheets;
   LogScale scale;  // that holds the averages
 };
 
+// Fills sheet.details with the differences of every divided node from the plane of the data, [3][view][channel].
+void find_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet);
+// Transforms them over views and channels.
+void transform_details(const AlignedLayout& layout, AlignedSource::Impl::Sheet& sheet);
 // Differences [3][view][channel] of a family of the data from predictions of the four children, [4][view][channel].
+// values: [node][view][channel], of the data or what a reduced tree should have.
 void family_details(const AlignedLayout& layout, const AlignedSource::Impl::Sheet& sheet, size_t source,
-                    std::span<const float> predicted, std::span<float> details);
+                    std::span<const float> values, std::span<const float> predicted, std::span<float> details);
 // Rows [view][channel]: views that are not known take the values of the nearest known view of the same azimuth.
 void fill_unknown(const AlignedLayout& layout, std::span<const int> known, std::span<float> rows, size_t count);
 

@@ -18,7 +18,7 @@ constexpr size_t kClasses = 8, kPlaces = 3, kBefore = 4;
 constexpr size_t kLevel = 0, kLast = kLevel + kClasses * kPlaces * kBefore, kRootLevel = kLast + kClasses,
                  kRootCount = kRootLevel + 2, kCount = kRootCount + 1, kMask = kCount + 12, kChannels = kMask + 15,
                  kSplit = kChannels + 5;
-static_assert(kSplit + 20 <= BlockCode::kContexts);
+static_assert(kSplit + 20 <= BlockCode::kPlainContexts);
 
 // Class of the levels around: of the weighted sum of their sizes.
 using Bytes = uint8_t __attribute__((vector_size(32)));

@@ -20,7 +20,9 @@ class BlockTransform;
 
 class BlockCode {
  public:
-  static constexpr size_t kContexts = 160;
+  // Of all kinds; the last are those of code_finer, which plain layouts have not.
+  static constexpr size_t kContexts = 170, kPlainContexts = 160;
+  static constexpr int kMostFiner = 31;
   BlockCode(const AlignedLayout& layout, const BlockTransform& transform);
 
   // Levels [detail][channel][view] of the root that comes next (one detail), or of a divided node (three). above: the
@@ -33,6 +35,12 @@ class BlockCode {
   // Which children of a node are divided; block: of the node; around: of its neighbours, how many are divided (0..4).
   template <class Coder>
   uint32_t code_split(Coder& coder, uint32_t mask, int32_t block, int around);
+  // Octaves by which a node's step is finer than its values say; above: of the node above, -1: a root.
+  template <class Coder>
+  uint32_t code_finer(Coder& coder, uint32_t octaves, int above) {
+    const uint32_t n = coder.symbol(kPlainContexts + static_cast<size_t>(above < 9 ? above + 1 : 9), octaves);
+    return n < kMostFiner ? n : kMostFiner;
+  }
 
  private:
   uint8_t* sizes(int32_t block) { return &sizes_[static_cast<size_t>(block) * 3 * channels_ * stride_]; }

@@ -13,7 +13,7 @@ namespace suite::sqt {
 namespace {
 
 constexpr double kLimit = 80 * kDegree;
-constexpr int kRings = 128, kSpokes = 128;  // of half directions, for totals
+constexpr int kRings = 256, kSpokes = 64;  // of half directions, for totals
 constexpr size_t kPoints = 2 * kRings * kSpokes;
 const double kPeakAngles[3] = {20 * kDegree, 45 * kDegree, 70 * kDegree};
 
@@ -25,8 +25,9 @@ double near_height(double u) {  // 1 - z by inversion of the cumulative (1 + a) 
 }
 double near_pdf(double s) { return (1 + kNear) * kNear / ((s + kNear) * (s + kNear)) / (2 * kPi); }
 
-// Rings for totals: even in log(s + a), so that narrow lobes and wide ones have their share of them.
-constexpr double kFine = 1e-4;
+// Rings for totals: even in log(s + a), so that narrow lobes (down to 0.01 deg) and wide ones have their share of them.
+constexpr double kFine = 1e-8;
+constexpr double kGolden = 0.6180339887498949;  // turns a ring against the one before, of a spoke
 const double kRange = std::log((1 + kFine) / kFine);
 double ring_height(double u) { return kFine * std::expm1(kRange * u); }
 double ring_pdf(double s) { return 1 / ((s + kFine) * kRange * 2 * kPi); }  // per steradian
@@ -92,6 +93,7 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
     total_.insert(total_.end(), W.begin(), W.end());
     for (const double w : W) findings_.largest_total = std::max(findings_.largest_total, w);
   }
+  find_peaks();
   std::vector<double> f(channels_), back(channels_);
   double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
   for (size_t n = 0; n < std::min<size_t>(pairs, 50000); ++n) {
@@ -127,7 +129,7 @@ std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, D
     for (int a = 0; a < n_r; ++a)
       for (int b = 0; b < n_phi; ++b) {
         const double s = ring_height((a + 0.5) / n_r), r = std::sqrt(s * (2 - s)),
-                     phi = 2 * kPi * (b + 0.5 * (a & 1)) / n_phi;
+                     phi = 2 * kPi * (b + std::fmod(kGolden * a, 1.0)) / n_phi;
         const Dir h{r * std::cos(phi), r * std::sin(phi), 1 - s};
         Dir in = h * (2 * dot(h, out)) - out;
         if (!(in.z > 0) || !(dot(h, out) > 0)) continue;
@@ -168,6 +170,48 @@ Reference::Brief Reference::brief(const Bundle& bundle) const {
   for (const Sums& s : parts)
     all.error += s.error, all.data += s.data, all.square += s.square, all.data_square += s.data_square;
   return {all.data > 0 ? all.error / all.data : 0, all.data_square > 0 ? std::sqrt(all.square / all.data_square) : 0};
+}
+
+void Reference::find_peaks() {
+  parallel_for(0, planes_.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t a = begin; a < end; ++a) {
+      Plane& plane = planes_[a];
+      plane.out = dir_from_angles(kPeakAngles[a], 0);
+      plane.peak.assign(channels_, 0.0);
+      std::vector<double> f(channels_);
+      const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
+      for (int k = -last; k <= last; ++k) {
+        const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
+        if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
+        function_.value(plane.out, in, f);
+        if (!std::all_of(f.begin(), f.end(), [](double v) { return std::isfinite(v); })) continue;
+        plane.in.push_back(in);
+        for (size_t c = 0; c < channels_; ++c) plane.peak[c] = std::max(plane.peak[c], f[c]);
+      }
+    }
+  });
+}
+
+std::array<double, 3> Reference::peaks(const Bundle& bundle, size_t channel) const {
+  std::array<double, 3> ratio;
+  for (size_t a = 0; a < 3; ++a) {
+    const Plane& plane = planes_[a];
+    double peak = 0;
+    for (const Dir in : plane.in) peak = std::max(peak, bundle.value(plane.out, in, channel));
+    ratio[a] = plane.peak[channel] > 0 ? peak / plane.peak[channel] : 1;
+  }
+  return ratio;
+}
+
+std::array<double, 3> Reference::least_peaks(const Bundle& bundle) const {
+  std::vector<std::array<double, 3>> all(channels_);
+  parallel_for(0, channels_, 1, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) all[c] = peaks(bundle, c);
+  });
+  std::array<double, 3> least = all[0];
+  for (const auto& ratio : all)
+    for (size_t a = 0; a < 3; ++a) least[a] = std::min(least[a], ratio[a]);
+  return least;
 }
 
 std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
@@ -220,7 +264,6 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
   // Totals, peaks and sampling weights, channel by channel.
   parallel_for(0, channels_, 1, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
-      std::vector<double> f(channels_), g(channels_);
       for (size_t t = 0; t < theta_.size(); ++t) {
         const Dir view = dir_from_angles(theta_[t], 0.3);
         const double W = integrate(
@@ -242,20 +285,8 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
           if (p > 0) out[c].max_weight = std::max(out[c].max_weight, bundle.eval(view, *in, c) / p / whole);
         }
       }
-      double* ratio[3] = {&out[c].peak_ratio_20, &out[c].peak_ratio_45, &out[c].peak_ratio_70};
-      for (int a = 0; a < 3; ++a) {
-        double peak_f = 0, peak_g = 0;
-        const Dir view = dir_from_angles(kPeakAngles[a], 0);
-        const int last = function_.info().domain == Domain::sphere ? 1800 : 900;  // tenths of a degree
-        for (int k = -last; k <= last; ++k) {
-          const Dir in = dir_from_angles(std::abs(k) * 0.1 * kDegree, k < 0 ? kPi : 0);
-          if (weighted_ && std::fabs(in.z) < std::cos(kLimit)) continue;
-          function_.value(view, in, f);
-          if (std::isfinite(f[c]))
-            peak_f = std::max(peak_f, f[c]), peak_g = std::max(peak_g, bundle.value(view, in, c));
-        }
-        *ratio[a] = peak_f > 0 ? peak_g / peak_f : 1;
-      }
+      const std::array<double, 3> ratio = peaks(bundle, c);
+      out[c].peak_ratio_20 = ratio[0], out[c].peak_ratio_45 = ratio[1], out[c].peak_ratio_70 = ratio[2];
     }
   });
   ErrorFigures& all = out[channels_];

@@ -13,6 +13,7 @@
 // Pairs where the data are not valid are left out. The uniform sums are estimated with half of the pairs drawn near the
 // mirror direction and weighed accordingly.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -39,6 +40,11 @@ class Reference {
   };
   Brief brief(const Bundle& bundle) const;
   double l1(const Bundle& bundle) const { return brief(bundle).l1; }
+  // Largest g over largest f in the plane of incidence at view angles of 20, 45 and 70 deg, of a channel. Phase
+  // functions and intensities: the plane through the pole.
+  std::array<double, 3> peaks(const Bundle& bundle, size_t channel) const;
+  // The same of the channel where it is smallest, at every angle.
+  std::array<double, 3> least_peaks(const Bundle& bundle) const;
   // Unphysical data, measured on the way.
   struct Findings {
     double largest_total = 0;      // over view angles up to 80 deg and channels
@@ -61,6 +67,13 @@ class Reference {
   std::vector<double> theta_;   // of the totals
   std::vector<double> total_;   // [theta][channel]
   std::vector<uint8_t> valid_;  // [theta][point] of the integration
+  struct Plane {                // of incidence at a view angle of the peaks
+    Dir out;
+    std::vector<Dir> in;       // where the data are valid
+    std::vector<double> peak;  // [channel], of the data
+  };
+  std::array<Plane, 3> planes_;
+  void find_peaks();
   Findings findings_;
   // Totals per channel; points where not every channel is finite do not count.
   std::vector<double> integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& f, Dir out) const;

@@ -8,15 +8,19 @@ namespace suite::sqt {
 namespace {
 
 constexpr double kFinest = 0.001, kCoarsest = 16;  // qualities searched
+constexpr int kFinestOrder = 12;                   // of cells that lobes may ask for
+constexpr size_t kMostViews = 64;                  // that they may ask for
 
 struct Trial {
   AlignedFit fit;
+  std::shared_ptr<const Bundle> bundle;
   double l1;
 };
 
 Trial attempt(const AlignedSource& source, const Reference& reference, double quality) {
-  Trial t{encode_aligned(source, quality), 0};
-  t.l1 = reference.l1(*make_bundle(t.fit.data));
+  Trial t{encode_aligned(source, quality), nullptr, 0};
+  t.bundle = make_bundle(t.fit.data);
+  t.l1 = reference.l1(*t.bundle);
   return t;
 }
 
@@ -59,9 +63,11 @@ AlignedSource::Options suited(AlignedSource::Options options, double l1) {
 
 namespace {
 
-// The best a source can do for a target.
+double least(const std::array<double, 3>& peaks) { return *std::min_element(peaks.begin(), peaks.end()); }
+
+// The best a source can do for a target; quality: where there is neither an error nor a size to keep.
 FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& reference, const FitTarget& target,
-                   const std::function<size_t(const AlignedSource&)>& container,
+                   double quality_otherwise, const std::function<size_t(const AlignedSource&)>& container,
                    const std::function<void(double)>& progress) {
   FitResult result;
   result.source = std::move(owned);
@@ -76,10 +82,11 @@ FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& refere
     Trial t = attempt(source, reference, quality);
     result.fit = std::move(t.fit);
     result.l1 = t.l1;
+    result.peaks = reference.least_peaks(*t.bundle);
   };
   const size_t around = target.max_bytes ? container(source) : 0;
   if (target.max_l1 <= 0 && target.max_bytes == 0) {
-    take(kDefaultQuality);
+    take(quality_otherwise);
   } else {
     const double finest = std::log(kFinest), coarsest = std::log(kCoarsest);
     double fits = finest,
@@ -99,6 +106,7 @@ FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& refere
   }
   result.error_met = target.max_l1 <= 0 || result.l1 <= target.max_l1;
   result.bytes_met = !target.max_bytes || bytes_of(result.fit) + around <= target.max_bytes;
+  result.peak_met = least(result.peaks) >= target.min_peak;
   progress(left);
   return result;
 }
@@ -106,7 +114,31 @@ FitResult fit_from(std::unique_ptr<AlignedSource> owned, const Reference& refere
 bool better(const FitResult& a, const FitResult& b, const FitTarget& target) {
   if (a.bytes_met != b.bytes_met) return a.bytes_met;
   if (a.error_met != b.error_met) return a.error_met;
+  if (a.peak_met != b.peak_met) return a.peak_met;
+  if (!a.peak_met && target.max_l1 <= 0 && !target.max_bytes) return least(a.peaks) > least(b.peaks);
   return target.max_l1 > 0 && a.error_met ? bytes_of(a.fit) < bytes_of(b.fit) : a.l1 < b.l1;
+}
+
+// Ways to raise the lobes of a fit, the cheapest first.
+struct Rise {
+  AlignedSource::Options options;
+  double quality;
+};
+std::vector<Rise> rises(const AlignedSource::Options& options, const FitTarget& target) {
+  std::vector<Rise> all;
+  Rise next{options, kDefaultQuality};
+  if (!options.order_fixed && options.max_order < kFinestOrder) {
+    next.options.max_order = kFinestOrder, next.options.detail *= 0.25;
+    all.push_back(next);
+  }
+  if (target.max_l1 > 0 || target.max_bytes) return all;
+  next.quality *= 0.5;
+  all.push_back(next);
+  if (!options.views) {
+    next.options.view_error *= 0.1, next.options.most_views = kMostViews;
+    all.push_back(next);
+  }
+  return all;
 }
 
 }  // namespace
@@ -115,26 +147,35 @@ FitResult fit_to(const Function& function, const Reference& reference, const Ali
                  const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,
                  const std::function<void(double)>& progress) {
   double left = 1;  // of the progress
-  auto fit = [&](const AlignedSource::Options& o, double share) {
+  auto fit = [&](const AlignedSource::Options& o, double quality, double share) {
     const std::function<void(double)> part = [&progress, share](double fraction) {
       if (progress) progress(0.5 * share * fraction);
     };
     left -= share;
-    return fit_from(std::make_unique<AlignedSource>(function, o, part), reference, target, container, part);
+    return fit_from(std::make_unique<AlignedSource>(function, o, part), reference, target, quality, container, part);
   };
-  if (target.max_l1 <= 0 && !target.max_bytes) return fit(options, 1);
-  FitResult best = fit(target.max_l1 > 0 ? suited(options, target.max_l1) : options, 1.0 / 3);
-  const double l1 = target.max_l1 > 0 ? target.max_l1 : best.l1;
-  auto consider = [&](const AlignedSource::Options& o) {
-    FitResult other = fit(o, left / 2);
-    if (better(other, best, target)) best = std::move(other);
+  const bool free = target.max_l1 <= 0 && !target.max_bytes;
+  AlignedSource::Options used = target.max_l1 > 0 ? suited(options, target.max_l1) : options;
+  FitResult best = fit(used, kDefaultQuality, free ? 0.5 : 1.0 / 3);
+  auto consider = [&](const AlignedSource::Options& o, double quality = kDefaultQuality) {
+    FitResult other = fit(o, quality, left / 2);
+    if (!better(other, best, target)) return;
+    best = std::move(other);
+    used = o;
   };
-  if (target.max_l1 <= 0) consider(suited(options, l1));
-  if (!options.frame && best.source->function().quantity == Quantity::bsdf &&
-      best.source->layout().frame != LobeFrame::half) {
-    AlignedSource::Options half = suited(options, l1);
-    half.frame = LobeFrame::half;
-    consider(half);
+  if (!free) {
+    const double l1 = target.max_l1 > 0 ? target.max_l1 : best.l1;
+    if (target.max_l1 <= 0) consider(suited(options, l1));
+    if (!options.frame && best.source->function().quantity == Quantity::bsdf &&
+        best.source->layout().frame != LobeFrame::half) {
+      AlignedSource::Options half = suited(options, l1);
+      half.frame = LobeFrame::half;
+      consider(half);
+    }
+  }
+  for (const Rise& rise : rises(used, target)) {
+    if (best.peak_met) break;
+    consider(rise.options, rise.quality);
   }
   if (progress) progress(left);
   return best;

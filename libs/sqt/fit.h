@@ -1,5 +1,6 @@
 // Finding the quality of the aligned method that keeps a promise: an error, a size, or both.
 #pragma once
+#include <array>
 #include <functional>
 #include <limits>
 
@@ -13,12 +14,15 @@ inline constexpr double kDefaultQuality = 0.08;  // log2 units
 struct FitTarget {
   double max_l1 = 0;     // cosine-weighted relative L1 over all channels; 0 = none
   size_t max_bytes = 0;  // of the whole file; 0 = none
+  double min_peak = 0;   // least height of the lobes, fit over data, at 20, 45 and 70 deg; 0 = none
 };
 
 struct FitResult {
   std::unique_ptr<AlignedSource> source;
   AlignedFit fit;
   double l1 = 0;
+  std::array<double, 3> peaks{1, 1, 1};  // least over the channels; Reference::least_peaks
+  bool peak_met = true;
   bool error_met = true, bytes_met = true;
 };
 
@@ -33,6 +37,9 @@ AlignedSource::Options suited(AlignedSource::Options options, double l1);
 // vectors (MERL) have steps there that cost most in others once the error asked is about as small as they are.
 // Both: the smallest file that keeps the error, if it also keeps the size; else the best that fits, error_met = false.
 // A promise that cannot be kept gives the nearest result and the flag.
+// min_peak: where the lobes of that fit stay lower, finer cells, then finer steps, then more views are tried, in this
+// order and together, until they do not; under max_l1 or max_bytes finer cells only, as far as these allow. What the
+// options fix (order_fixed, views) stays as it is. The fit with the highest lobes when none keeps it, peak_met = false.
 // container: bytes a file takes beside trees and totals. progress(fraction) may be null.
 FitResult fit_to(const Function& function, const Reference& reference, const AlignedSource::Options& options,
                  const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,

@@ -39,6 +39,7 @@ class Lattice {
   const Node& node(size_t i) const { return nodes_[i]; }
   std::span<float> value(size_t i) { return {&value_[i * width_], width_}; }
   std::span<const float> value(size_t i) const { return {&value_[i * width_], width_}; }
+  std::span<const float> values() const { return value_; }  // [node][width]
   std::span<const float> slope(size_t i, int axis) const {
     return {&slope_[(2 * i + static_cast<size_t>(axis)) * width_], width_};
   }

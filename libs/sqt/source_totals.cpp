@@ -8,12 +8,40 @@
 
 namespace suite::sqt {
 
+namespace {
+
+// Where a leaf is asked: in its middle; the finest, which may hold a narrow lobe, where their values were asked.
+struct SurveyedPoint {
+  Dir direction;
+  double area;
+  ptrdiff_t node;
+};
+std::vector<SurveyedPoint> points_of(const AlignedLayout& layout, const std::vector<SurveyedLeaf>& leaves) {
+  constexpr int kFine = 9;  // order
+  std::vector<SurveyedPoint> points;
+  points.reserve(leaves.size());
+  for (const SurveyedLeaf& leaf : leaves) {
+    const double area =
+        cell_solid_angle(leaf.id.order()) * (layout.half_stored && mirrored(leaf.id) != leaf.id ? 2 : 1);
+    if (leaf.id.order() < kFine)
+      points.push_back({center_of(leaf.id), area, leaf.node});
+    else
+      for (int k = 0; k < 4; ++k)
+        points.push_back({direction_in(leaf.id, {k & 1 ? 0.75 : 0.25, k & 2 ? 0.75 : 0.25}), 0.25 * area, leaf.node});
+  }
+  return points;
+}
+
+}  // namespace
+
 void survey_totals(const Function& function, const AlignedLayout& layout,
                    const std::vector<std::vector<SurveyedLeaf>>& leaves,
                    const std::vector<AlignedSource::Impl::Sheet>& sheets, AlignedTotals& totals) {
   const size_t channels = layout.channels;
   const Function::Info& info = function.info();
   const ThetaGrid grid(layout.theta);
+  std::vector<std::vector<SurveyedPoint>> points;
+  for (const std::vector<SurveyedLeaf>& of_sheet : leaves) points.push_back(points_of(layout, of_sheet));
   std::vector<size_t> order(channels);
   for (size_t c = 0; c < channels; ++c)
     order[c] = static_cast<size_t>(
@@ -31,10 +59,9 @@ void survey_totals(const Function& function, const AlignedLayout& layout,
       std::fill(sum.begin(), sum.end(), 0.0);
       for (size_t s = 0; s < leaves.size(); ++s) {
         const LobeMap map(layout.frame, out, s == 1);
-        for (const SurveyedLeaf& leaf : leaves[s]) {
-          const double area =
-              cell_solid_angle(leaf.id.order()) * (layout.half_stored && mirrored(leaf.id) != leaf.id ? 2 : 1);
-          const Dir d = center_of(leaf.id);
+        for (const SurveyedPoint& leaf : points[s]) {
+          const double area = leaf.area;
+          const Dir d = leaf.direction;
           const double cosine = map.cosine(d);
           if (layout.upper_only && !(cosine > 0)) continue;
           function.value(out, map.incident(d), f);

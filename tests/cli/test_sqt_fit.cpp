@@ -81,6 +81,25 @@ TEST(SqtFitCli, PromisesThatCannotBeKept) {
   EXPECT_FALSE(file_exists(out));
 }
 
+TEST(SqtFitCli, LowLobesAreToldWithTheirNumbers) {
+  // Regression: cells too coarse for a lobe clipped it without a word.
+  const TempFolder folder;
+  const std::string clipped = kFit + "--model ward:diffuse=0.2,specular=0.1,roughness=0.02 --views 9 --order 6 -q -o " +
+                              (folder / "w.sqt") + " --report " + (folder / "r.json");
+  const CommandResult r = run_command(clipped);
+  EXPECT_EQ(r.code, 0);
+  EXPECT_NE(r.err.find("lobes at view angles of 20/45/70 deg reach 0."), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("0.9 is asked for (--min-peak)"), std::string::npos) << r.err;
+  const Params p = Params::parse_file(folder / "r.json");
+  EXPECT_FALSE(p.at("peak_met").as_bool());
+  EXPECT_LT(p.at("overall").number("peak_ratio_45"), 0.9);
+  EXPECT_EQ(run_command(clipped + " --min-peak 0.1 --strict").code, 0);
+  EXPECT_EQ(run_command(clipped + " --min-peak 0.1").err.find("lobes"), std::string::npos);
+  EXPECT_EQ(run_command(clipped + " --strict").code, 1);
+  EXPECT_EQ(run_command(clipped + " --min-peak 1.5").code, 2);
+  EXPECT_EQ(run_command(kFit + kRough + "--method paper --min-peak 0.5 -o " + (folder / "p.sqt")).code, 2);
+}
+
 TEST(SqtFitCli, RefusesBadInput) {
   const TempFolder folder;
   const std::string out = " -o " + (folder / "x.sqt");
