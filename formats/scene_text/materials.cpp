@@ -3,6 +3,7 @@
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
+#include "formats/sqt/sqt.h"
 #include "optics/models.h"
 
 namespace suite::scene_text {
@@ -13,6 +14,12 @@ Outside read_outside(const Params& p) {
   if (!rule) return Outside::error;
   constexpr Outside rules[] = {Outside::error, Outside::hold, Outside::zero};
   return rules[rule->as_choice({"error", "hold", "zero"})];
+}
+// 'outside' of a material is the medium there, or what a fitted quad-tree is worth outside its wavelengths.
+bool is_rule(const Params& p) {
+  if (p.kind() == Params::Kind::map || p.kind() == Params::Kind::list) return false;
+  const std::string text = p.as_text();
+  return text == "error" || text == "hold" || text == "zero";
 }
 }  // namespace
 
@@ -58,6 +65,16 @@ std::string Reader::embed(const Params& p) {
   return embedded_[path] = name;
 }
 
+void Reader::read_stored(const Params& p, ModelSpec& spec) {
+  const bool with_rule = p.kind() == Params::Kind::map;
+  const Params file = with_rule ? p.at("file") : p;
+  spec.texts["file"] = embed(file);
+  if (with_rule && p.has("outside")) spec.texts["outside"] = to_text(read_outside(p));
+  auto& bundle = stored_[spec.texts["file"]];
+  if (!bundle) bundle = read_sqt(input(file)).bundle;
+  spec.bundle = bundle;
+}
+
 void Reader::read_model(const Params& p, ModelSpec& spec) {
   const Params model = p.at("model");
   spec.model = model.as_text();
@@ -73,7 +90,10 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
         spec.curves[parameter.name] = read_curve_value(*value);
         break;
       case ModelParameter::Kind::text:
-        spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
+        if (parameter.name == "file")
+          read_stored(*value, spec);
+        else if (parameter.name != "outside" || is_rule(*value))
+          spec.texts[parameter.name] = value->as_text();
         break;
     }
   }
@@ -96,7 +116,9 @@ void Reader::read_material(const std::string& id, const Params& p) {
   if (const auto maps = p.find("maps"))
     for (const Params& map : maps->items()) m.property_maps.push_back(reference(map));
   if (const auto inside = p.find("inside")) m.inside = reference(*inside);
-  if (const auto outside = p.find("outside")) m.outside = reference(*outside);
+  const bool stored = p.has("model") && p.text("model", "") == "sqt";
+  if (const auto outside = p.find("outside"); outside && !(stored && is_rule(*outside)))
+    m.outside = reference(*outside);
   const bool boundary = m.inside.given() || m.outside.given();
   if (p.has("model") || (!m.map.given() && !boundary)) {
     read_model(p, m.material.surface);

@@ -53,8 +53,12 @@ void Reader::read_phase(const Params& p, ModelSpec& spec) {
       spec.numbers[parameter.name] = value->as_number();
     else if (parameter.kind == ModelParameter::Kind::curve)
       spec.curves[parameter.name] = read_curve_value(*value);
+    else if (parameter.name == "file")
+      read_stored(*value, spec);
+    else if (parameter.name == "outside")
+      spec.texts[parameter.name] = value->as_choice({"error", "hold"}) == 0 ? "error" : "hold";
     else
-      spec.texts[parameter.name] = parameter.name == "file" ? embed(*value) : value->as_text();
+      spec.texts[parameter.name] = value->as_text();
   }
   check_phase(spec, model.where());
 }

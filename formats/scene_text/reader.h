@@ -30,6 +30,8 @@ class Reader {
   Curve read_curve_map(const Params& p);
   void read_model(const Params& p, ModelSpec& spec);
   std::string embed(const Params& p);
+  // A fitted quad-tree: the name of a file, or {file, outside}; and the rule that a key of the model names.
+  void read_stored(const Params& p, ModelSpec& spec);
   void read_phase(const Params& p, ModelSpec& spec);
   std::optional<Curve> relative_index(const Params& p);
   // media.cpp
@@ -76,6 +78,7 @@ class Reader {
   Draft& draft_;
   std::map<std::string, Curve> curves_;
   std::map<std::string, std::string> hashes_;    // resolved path -> sha256
+  std::map<std::string, std::shared_ptr<const sqt::Bundle>> stored_;  // name in the scene -> what it holds
   std::map<std::string, std::string> embedded_;  // resolved path -> name in the scene
 };
 

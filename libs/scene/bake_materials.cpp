@@ -1,4 +1,5 @@
 // Materials and the maps that vary them: names become numbers; what a curve, a class or a map cannot be is filed.
+#include "optics/stored_range.h"
 #include "scene/baker.h"
 
 namespace suite {
@@ -22,6 +23,11 @@ void Baker::check_coverage(const DraftMaterial& m) {
                  what.c_str(), curve.low_um(), curve.high_um(), w.low_um, w.high_um));
   };
   for (const auto& [name, curve] : m.material.surface.curves) check(name, curve);
+  for (const SpectralWindow& w : draft_.windows)
+    if (const std::string text = beyond_stored(m.material.surface, w.low_um, w.high_um); !text.empty())
+      add("SP104", m.where,
+          strf("material '%s': %s, the window is %g to %g um", m.material.id.c_str(), text.c_str(), w.low_um,
+               w.high_um));
   for (const DraftPropertyMap& map : draft_.property_maps)
     for (const Reference& r : m.property_maps)
       if (r.name == map.map.name) check_map_coverage(m, map.map, check);

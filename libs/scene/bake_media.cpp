@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include "optics/stored_range.h"
 #include "scene/bake.h"
 
 namespace suite {
@@ -50,12 +51,16 @@ class MediaBaker {
     std::map<std::string, const Curve*> curves{
         {"absorption", &m.medium.absorption}, {"scattering", &m.medium.scattering}, {"index", &m.medium.index}};
     for (const auto& [name, curve] : m.medium.phase.curves) curves["phase function's " + name] = &curve;
-    for (const SpectralWindow& w : draft_.windows)
+    for (const SpectralWindow& w : draft_.windows) {
+      if (const std::string text = beyond_stored(m.medium.phase, w.low_um, w.high_um); !text.empty())
+        add("SP104", m.where,
+            strf("medium '%s': %s, the window is %g to %g um", m.medium.id.c_str(), text.c_str(), w.low_um, w.high_um));
       for (const auto& [name, curve] : curves)
         if (!curve->covers(w.low_um, w.high_um))
           add("SP104", m.where,
               strf("medium '%s': %s is given from %g to %g um, the window is %g to %g um", m.medium.id.c_str(),
                    name.c_str(), curve->low_um(), curve->high_um(), w.low_um, w.high_um));
+    }
   }
 
   // Media that share cells are grids on top of each other: coefficients add up, each with its phase function.

@@ -70,7 +70,7 @@ with open(os.path.join(args.out, "scene.yaml"), "w") as scene:
     print("scene: 1\nname: spheres\norigin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 150}", file=scene)
     print("windows_um: [[0.4, 0.7]]\nmaterials:\n  backdrop: {model: lambert, reflectance: 0.2}", file=scene)
     for name in names:
-        print("  %s: {model: sqt, file: %s}" % (identifier(name), os.path.basename(found[name])), file=scene)
+        print("  %s: {model: sqt, file: %s, outside: hold}" % (identifier(name), os.path.basename(found[name])), file=scene)
     print("objects:\n  backdrop: {plane: {width: 0, depth: 0}, material: backdrop}", file=scene)
     print("  ball: {sphere: {radius: 1}, material: backdrop}", file=scene)
     print("world:\n  - {place: backdrop, translate: [0, 0, -1], tag: backdrop}", file=scene)

@@ -221,11 +221,32 @@ TEST_F(ScenePrep, CityAndForestInSmall) {
   EXPECT_EQ(s.meshes.at(1).triangle_count(), 800u);
 }
 
+TEST_F(ScenePrep, FitsSayWhatHoldsBeyondTheirWavelengths) {
+  // Regression: a fit in three colours was taken for the whole spectrum without a word.
+  const std::string fit = "'" SUITE_BIN_DIR "/sqt-fit' -q --views 3 --order 4 -o '" + folder_.path() + "/grey.sqt' ";
+  ASSERT_EQ(run_command(fit + "--model lambert:reflectance=0.3").code, 0);
+  const auto scene = [&](const std::string& surface) {
+    std::string text = kGood;
+    text.replace(text.find("model: lambert"), 32, surface);
+    write_file(folder_ / "fit.yaml", text + "windows_um: [[0.5, 0.9]]\n");
+    return run("fit.yaml -o fit.h5");
+  };
+  const CommandResult r = scene("model: sqt, file: grey.sqt");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.out, HasSubstr("SP104"));
+  EXPECT_THAT(r.out, HasSubstr("'grey.sqt' stands for 0.5225 to 0.5775 um, the window is 0.5 to 0.9 um"));
+  EXPECT_THAT(r.out, HasSubstr("fit.yaml:2"));
+  EXPECT_EQ(scene("model: sqt, file: grey.sqt, outside: error").code, 1);
+  EXPECT_EQ(scene("model: sqt, file: grey.sqt, outside: hold").code, 0);
+  EXPECT_EQ(scene("model: sqt, file: {file: grey.sqt, outside: zero}").code, 0);
+  EXPECT_EQ(scene("model: sqt, file: {file: grey.sqt, outside: clamp}").code, 1);
+}
+
 TEST_F(ScenePrep, CalibrationRange) {
   // Everything but the measured panel, whose SQT another tool makes.
   const std::string scene = SUITE_SOURCE_DIR "/sample_scenes/calibration_range";
   std::string text = read_text(scene + "/scene.yaml");
-  const std::string measured = "model: sqt, file: satin.sqt";
+  const std::string measured = "model: sqt, file: satin.sqt, outside: hold";
   text.replace(text.find(measured), measured.size(), "model: lambert, reflectance: 0.3");
   write_file(folder_ / "range.yaml", text);
   const CommandResult r = run("range.yaml -o range.h5 --strict --path '" + scene + "'");

@@ -120,7 +120,7 @@ TEST_F(SqtAnisotropic, TheHighlightLiesAcrossTheMarks) {
   write_file(path("scene.yaml"),
              "scene: 1\nname: brushed\nwindows_um: [[0.5, 0.6]]\nmaterials:\n"
              "  analytic: {model: ward, diffuse: 0.1, specular: 0.3, roughness: 0.15, roughness_y: 0.45}\n"
-             "  fitted: {model: sqt, file: brushed.sqt}\n"
+             "  fitted: {model: sqt, file: brushed.sqt, outside: hold}\n"
              "objects:\n  a: {plane: {width: 8, depth: 8}, material: analytic}\n"
              "  b: {plane: {width: 8, depth: 8}, material: fitted}\n"
              "world:\n  - {place: a, translate: [-20, 0, 0]}\n  - {place: b}\n"

@@ -2,13 +2,14 @@
 // table.
 //
 // At a wavelength between two stored ones the shape is the mean of theirs, weighed by nearness (each normalised to its
-// total), and is scaled to the total of that wavelength; outside the stored range the nearest holds. Sampling picks one
-// of the two shapes with the same weights, so that a knot's density is exactly its shape's mixture.
-// Based on: Goodenough & Brown, section IV-D-4 and V-A.
+// total), and is scaled to the total of that wavelength; outside the stored range what the spec declares. Sampling
+// picks one of the two shapes with the same weights, so that a knot's density is exactly its shape's mixture. Based on:
+// Goodenough & Brown, section IV-D-4 and V-A.
 #include <algorithm>
 #include <cmath>
 
 #include "optics/models/rows.h"
+#include "optics/stored_range.h"
 #include "sqt/aligned.h"
 #include "sqt/bundle.h"
 
@@ -31,7 +32,8 @@ Between locate(const std::vector<double>& ascending, double x) {
 
 class Sqt final : public ScatterModel {
  public:
-  Sqt(std::shared_ptr<const sqt::Bundle> bundle, const SpectralState& state) : bundle_(std::move(bundle)) {
+  Sqt(std::shared_ptr<const sqt::Bundle> bundle, const StoredRange& range, const SpectralState& state)
+      : bundle_(std::move(bundle)) {
     const sqt::Bundle::Info& info = bundle_->info();
     // Channels in ascending wavelength (RGB data come red first).
     std::vector<std::pair<double, size_t>> order;
@@ -44,6 +46,8 @@ class Sqt final : public ScatterModel {
       shape.low = order[shape.low].second, shape.high = order[shape.high].second;
       shape_.push_back(shape);
       magnitude_.push_back(locate(info.magnitude_um, bin.center_um()));
+      const bool beyond = bin.center_um() < range.low_um || bin.center_um() > range.high_um;
+      most_.push_back(beyond && range.outside == Outside::zero ? 0 : 1);
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
   }
@@ -126,11 +130,12 @@ class Sqt final : public ScatterModel {
   }
   double at_bin(const std::vector<double>& W, size_t i) const {
     const Between& m = magnitude_[i];
-    return std::min(1.0, (1 - m.t) * W[m.low] + m.t * W[m.high]);
+    return std::min(most_[i], (1 - m.t) * W[m.low] + m.t * W[m.high]);
   }
 
   std::shared_ptr<const sqt::Bundle> bundle_;
   std::vector<Between> shape_, magnitude_;  // per bin
+  std::vector<double> most_;                // per bin: the largest total, 0 where nothing is stored and `zero` declared
   std::vector<Between> knot_;               // per knot
 };
 
@@ -172,7 +177,8 @@ std::vector<ModelSpec> examples() {
     return std::shared_ptr<const sqt::Bundle>(sqt::make_bundle(sqt::encode_aligned(source, 0.1).data));
   };
   static const std::shared_ptr<const sqt::Bundle> plain = fitted(0), with_dirac = fitted(0.08);
-  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}}, plain}, {"sqt", {}, {}, {{"file", "lacquer.sqt"}}, with_dirac}};
+  return {{"sqt", {}, {}, {{"file", "glossy.sqt"}, {"outside", "hold"}}, plain},
+          {"sqt", {}, {}, {{"file", "lacquer.sqt"}, {"outside", "hold"}}, with_dirac}};
 }
 
 }  // namespace
@@ -181,14 +187,18 @@ ModelRow sqt_row() {
   using P = ModelParameter;
   return {"sqt",
           "fitted spherical quad-tree (Goodenough & Brown 2017)",
-          {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0}},
+          {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0},
+           {"outside", P::Kind::text, "",
+            "beyond half a spacing from the outermost channels (alone: 5 % of its wavelength): error, hold or zero", 0,
+            0, false}},
           false,
           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
             if (!spec.bundle) throw Error("model 'sqt': the file '" + spec.texts.at("file") + "' has not been loaded");
             if (spec.bundle->info().function.quantity != sqt::Quantity::bsdf)
               throw Error("model 'sqt': '" + spec.texts.at("file") + "' does not hold a surface function",
                           "fit a BRDF or BTDF");
-            return std::make_unique<Sqt>(spec.bundle, state);
+            for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "model");
+            return std::make_unique<Sqt>(spec.bundle, stored_range(spec), state);
           },
           examples};
 }

@@ -2,14 +2,14 @@
 //
 // Phase functions here depend on the scattering angle alone, so the tree is read once: at angles that lie closer than
 // its finest cells near the forward peak, as means over the azimuth. Between two stored wavelengths the shape is the
-// mean of theirs, weighed by nearness; outside the stored range the nearest holds. Normalised: how much is scattered is
-// the medium's to say.
-// Based on: Goodenough & Brown, section IV-D (quad-trees for phase functions).
+// mean of theirs, weighed by nearness; outside the stored range the nearest when that is declared. Normalised: how much
+// is scattered is the medium's to say. Based on: Goodenough & Brown, section IV-D (quad-trees for phase functions).
 #include <cmath>
 
 #include "optics/models/common.h"
 #include "optics/phases/cosine_table.h"
 #include "optics/phases/rows.h"
+#include "optics/stored_range.h"
 #include "sqt/aligned.h"
 #include "sqt/bundle.h"
 
@@ -119,13 +119,19 @@ PhaseRow sqt_phase_row() {
   using P = ModelParameter;
   return {"sqt",
           "fitted spherical quad-tree of a phase function (Goodenough & Brown 2017)",
-          {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0}},
+          {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0},
+           {"outside", P::Kind::text, "",
+            "beyond half a spacing from the outermost channels (alone: 5 % of its wavelength): error or hold", 0, 0,
+            false}},
           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const PhaseFunction> {
             const std::string name = spec.texts.at("file");
             if (!spec.bundle) throw Error("phase function 'sqt': the file '" + name + "' has not been loaded");
             if (spec.bundle->info().function.quantity != sqt::Quantity::phase)
               throw Error("phase function 'sqt': '" + name + "' does not hold a phase function",
                           "fit one, e.g. sqt-fit --model hg:g=0.8");
+            if (stored_range(spec).outside == Outside::zero)
+              throw Error("phase function 'sqt': 'outside: zero' leaves nothing to normalise", "error or hold");
+            for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "phase function");
             return std::make_unique<SqtPhase>(*spec.bundle, state);
           },
           []() -> std::vector<ModelSpec> {
@@ -137,7 +143,7 @@ PhaseRow sqt_phase_row() {
               const sqt::AlignedSource source(Haze(), options);
               return std::shared_ptr<const sqt::Bundle>(sqt::make_bundle(sqt::encode_aligned(source, 0.05).data));
             }();
-            return {{"sqt", {}, {}, {{"file", "haze.sqt"}}, haze}};
+            return {{"sqt", {}, {}, {{"file", "haze.sqt"}, {"outside", "hold"}}, haze}};
           }};
 }
 
