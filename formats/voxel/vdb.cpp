@@ -75,6 +75,10 @@ VoxelData read_vdb(const std::string& path, const std::string& density, const st
     const double cells = double(box.dim().x()) * box.dim().y() * box.dim().z();
     if (!(cells <= kMostVdbCells))
       throw Error(where, strf("grid '%s' covers %g cells", density.c_str(), cells), "at most 2^28");
+    // A small file that asks for much memory is a damaged one: a node of 128^3 cells takes a kilobyte and more.
+    if (const auto bytes = static_cast<double>(file_size(path)); cells > 1.6e7 + 1024 * bytes)
+      throw Error(where, strf("grid '%s' covers %g cells in a file of %g bytes", density.c_str(), cells, bytes),
+                  "at most 1.6e7 and 1024 a byte");
     // A box far larger than what is in it is a wrong place of a node rather than a cloud.
     if (const auto active = static_cast<double>(fog->activeVoxelCount()); cells > 1e6 && cells > 1e5 * active)
       throw Error(where, strf("grid '%s': %g active voxels stand in a box of %g cells", density.c_str(), active, cells),

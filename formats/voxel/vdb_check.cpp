@@ -39,7 +39,7 @@ class Walk {
     for (const auto& [name, d] : all_)
       if (wanted.count(name) && !d.parent.empty()) wanted.insert(d.parent);
     for (const auto& [name, d] : all_)
-      if (wanted.count(name) && d.type == kFloats) grid(d);
+      if (wanted.count(name)) grid(d);
   }
 
  private:
@@ -107,6 +107,7 @@ class Walk {
     if (compression_ & ~7u) throw r_.error(strf("compression %u is not known", compression_), complete());
     half_ = metadata();
     if (half_ != d.half) throw r_.error("the grid is and is not one of halves", complete());
+    if (d.type != kFloats) return;  // its type and metadata are asked for, no more
     transform();
     if (!d.parent.empty()) return;
     if (r_.get<int32_t>("the number of buffers") != 1) throw r_.error("a tree of several buffers", complete());
@@ -173,6 +174,7 @@ class Walk {
     if (left_out == 5) r_.take(8, "inactive values");
     if (left_out >= 3 && left_out <= 5) r_.take(mask_bytes, "a mask of inactive values");
     const size_t bytes = ((compression_ & 2) && left_out != 6 ? active : count) * (half_ ? 2 : 4);
+    if (half_ && bytes == 0) return;  // of no halves not even the size is stored
     if (!(compression_ & 5)) {
       r_.take(bytes, "values");
       return;
@@ -186,7 +188,7 @@ class Walk {
   }
 
   ByteReader r_;
-  std::map<std::string, Descriptor> all_;
+  std::multimap<std::string, Descriptor> all_;  // by name, which several may have
   std::vector<Mask<8>> leaves_;
   uint32_t compression_ = 0;
   bool half_ = false;

@@ -180,7 +180,7 @@ TEST_F(Hostile, AResultThatCannotBeWrittenLeavesTheOthersAndTheState) {
 TEST_F(Hostile, ASignalKeepsWhatIsDoneAndResumeGoesOnFromIt) {
   prepare();
   const std::string place = "position_m: [0, 0, 9], look_at_m: [0, 1, 0]";
-  write_file(folder_ / "long.yaml", sim(camera("a", place) + camera("b", place, 48, 6000)));
+  write_file(folder_ / "long.yaml", sim(camera("a", place) + camera("b", place, 48, 3000)));
   const CommandResult r =
       run("bash -c 'set -m; dirsig-render long.yaml -o out --state -j 1 & pid=$!; "
           "while [ ! -e out/a.png ]; do sleep 0.02; done; sleep 0.3; kill -INT $pid; wait $pid'");
