@@ -82,6 +82,7 @@ class Walk {
   // What is known of each leaf: a byte and a size, each packed, as they are (0 bytes) or missing (-1). The library
   // follows these sizes, whatever the size of the whole.
   void delayed(std::span<const std::byte> value) {
+    if (value.empty()) return;
     ByteReader inner(value, r_.file());
     const auto leaves = inner.get<uint32_t>("the number of leaves");
     if (leaves > r_.size() / 64) throw r_.error(strf("metadata of %u leaves", leaves), complete());
