@@ -75,14 +75,11 @@ VoxelData read_vdb(const std::string& path, const std::string& density, const st
     const double cells = double(box.dim().x()) * box.dim().y() * box.dim().z();
     if (!(cells <= kMostVdbCells))
       throw Error(where, strf("grid '%s' covers %g cells", density.c_str(), cells), "at most 2^28");
-    // A small file that asks for much memory is a damaged one: a node of 128^3 cells takes a kilobyte and more.
-    if (const auto bytes = static_cast<double>(file_size(path)); cells > 1.6e7 + 1024 * bytes)
-      throw Error(where, strf("grid '%s' covers %g cells in a file of %g bytes", density.c_str(), cells, bytes),
-                  "at most 1.6e7 and 1024 a byte");
-    // A box far larger than what is in it is a wrong place of a node rather than a cloud.
-    if (const auto active = static_cast<double>(fog->activeVoxelCount()); cells > 1e6 && cells > 1e5 * active)
+    // A small file whose few voxels stand in a huge box has a node in a wrong place, and would take much memory.
+    const auto bytes = static_cast<double>(file_size(path)), active = static_cast<double>(fog->activeVoxelCount());
+    if (cells > 1.6e7 + 100 * bytes && cells > 8 * active)
       throw Error(where, strf("grid '%s': %g active voxels stand in a box of %g cells", density.c_str(), active, cells),
-                  "at least one in 100000");
+                  "at least one in 8, or a box of at most 1.6e7 cells and 100 for each byte of the file");
     VoxelData data;
     data.cells = {static_cast<uint32_t>(box.dim().x()), static_cast<uint32_t>(box.dim().y()),
                   static_cast<uint32_t>(box.dim().z())};

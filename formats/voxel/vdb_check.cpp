@@ -74,13 +74,24 @@ class Walk {
         throw r_.error(strf("metadata of type %s take %u bytes", type.c_str(), size), complete());
       const auto value = r_.take(size, "metadata");
       if (name == "is_saved_as_half_float" && type == "bool") half = value[0] != std::byte{0};
-      if (type == "__delayedload") {
-        uint32_t leaves = 0;
-        if (size >= 4) std::memcpy(&leaves, value.data(), 4);
-        if (size < 4 || leaves > r_.size() / 64) throw r_.error(strf("metadata of %u leaves", leaves), complete());
-      }
+      if (type == "__delayedload") delayed(value);
     }
     return half;
+  }
+
+  // What is known of each leaf: a byte and a size, each packed, as they are (0 bytes) or missing (-1). The library
+  // follows these sizes, whatever the size of the whole.
+  void delayed(std::span<const std::byte> value) {
+    if (value.empty()) return;
+    ByteReader inner(value, r_.file());
+    const auto leaves = inner.get<uint32_t>("the number of leaves");
+    if (leaves > r_.size() / 64) throw r_.error(strf("metadata of %u leaves", leaves), complete());
+    for (const size_t width : {size_t{1}, size_t{8}}) {
+      const auto packed = inner.get<uint32_t>("the size of packed metadata");
+      if (packed == UINT32_MAX) continue;
+      inner.take(packed ? packed : width * leaves, "packed metadata");
+    }
+    if (inner.left()) throw r_.error("metadata of leaves are of another size", complete());
   }
 
   void descriptor() {
