@@ -3,6 +3,7 @@
 namespace suite {
 
 namespace {
+constexpr double kFarthest = 1e13;  // m; beyond, a millimetre is lost in double
 constexpr const char* kFirst[] = {"east_m", "ecef_x_m", "latitude_deg", "easting_m"};
 constexpr const char* kNames[][4] = {{"east_m", "north_m", "up_m", nullptr},
                                      {"ecef_x_m", "ecef_y_m", "ecef_z_m", nullptr},
@@ -71,7 +72,13 @@ Quat PoseFields::orientation() const {
 }
 
 Vec3 PoseFields::position(const MotionContext& context) const {
-  const PoseColumns kind = columns(context);
+  const Vec3 p = position_in(columns(context), context);
+  if (!(length(p) <= kFarthest))
+    throw error(strf("a position %g m away", length(p)), strf("at most %g m from the origin", kFarthest));
+  return p;
+}
+
+Vec3 PoseFields::position_in(PoseColumns kind, const MotionContext& context) const {
   try {
     switch (kind) {
       case PoseColumns::enu:

@@ -15,13 +15,15 @@ struct PoseFields {
   std::function<std::string(const char* name)> text;               // of a name that is there
   std::function<Error(std::string what, std::string hint)> error;  // located at the whole
 
-  // Error: no position, an incomplete one, or names of two frames; a frame that needs an origin the scene lacks.
+  // Error: no position, an incomplete one, names of two frames, or one absurdly far away; a frame that needs an origin
+  // the scene lacks.
   Vec3 position(const MotionContext& context) const;
   // Also: an incomplete or doubled orientation, a quaternion of length 0.
   Pose pose(const MotionContext& context) const;
 
  private:
   PoseColumns columns(const MotionContext& context) const;
+  Vec3 position_in(PoseColumns kind, const MotionContext& context) const;
   UtmPoint utm() const;
   Geodetic geodetic() const;
   Quat orientation() const;

@@ -1,0 +1,173 @@
+// Mistakes that people make, each beside what they are told: the place, the true cause and the cure.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "support/run_command.h"
+
+namespace suite {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kScene =
+    "scene: 1\norigin: {latitude_deg: 49.4, longitude_deg: 8.7, height_m: 100}\nwindows_um: [[0.4, 0.9]]\n"
+    "materials:\n  grey: {model: lambert, reflectance: 0.2}\n"
+    "objects:\n  floor: {plane: {width: 20, depth: 20}, material: grey}\n  ball: {sphere: {radius: 1}, material: "
+    "grey}\n"
+    "world:\n  - {place: floor}\n  - {place: ball, translate: [0, 0, 2]}\n";
+const std::string kSimulation =
+    "scene: scene.h5\nsun: {direction: {zenith_deg: 30, azimuth_deg: 135}}\nsensors:\n"
+    "  - kind: frame_camera\n    name: eye\n    position_m: [1, 0, 50]\n    look_at_m: [0, 0, 0]\n"
+    "    focal_length_mm: 35\n    columns: 4\n    rows: 4\n    pitch_um: 100\n    paths: 4\n"
+    "    bands: [{name: green, center_um: 0.55, fwhm_um: 0.01}]\n";
+
+struct Mistake {
+  const char* name;
+  const char *right, *wrong;  // what is replaced in the text, and by what
+  std::vector<const char*> told;
+  bool accepted = false;  // with a warning
+};
+
+// The message points with a caret at the wrong place, which is where `wrong` stands, or near it.
+std::string replaced(std::string text, const Mistake& m) {
+  const size_t at = text.find(m.right);
+  if (at == std::string::npos) throw std::logic_error(m.name);
+  return text.replace(at, std::string(m.right).size(), m.wrong);
+}
+
+class Messages : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    write("nanometres.txt", "400 0.1\n500 0.2\n900 0.3\n");
+    write("short.txt", "0.748 0.1\n1.2 0.2\n2.5 0.3\n");
+    write("measured.bsdf", "tensor_file and so on");
+    write("scene.yaml", kScene);
+    ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static void write(const std::string& name, const std::string& text) {
+    write_file(*folder_ / name, std::string_view(text));
+  }
+  static CommandResult run(const std::string& command) {
+    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
+  }
+  static void check(const Mistake& m, const CommandResult& r) {
+    EXPECT_EQ(r.code, m.accepted ? 0 : 1) << m.name;
+    for (const char* told : m.told) EXPECT_THAT(r.out + r.err, HasSubstr(told)) << m.name;
+  }
+  static TempFolder* folder_;
+};
+TempFolder* Messages::folder_ = nullptr;
+
+TEST_F(Messages, OfScenes) {
+  const std::vector<Mistake> table{
+      {"misspelt key", "reflectance:", "reflectence:", {"5:26", "'reflectence'", "did you mean 'reflectance'"}},
+      {"tab", "  grey:", "\tgrey:", {"5:1", "tab", "spaces"}},
+      {"window in nm", "[[0.4, 0.9]]", "[[400, 900]]", {"3:14", "in nanometres? then 0.4 to 0.9 um"}},
+      {"curve in nm",
+       "reflectance: 0.2",
+       "reflectance: nanometres.txt",
+       {"SP104", "in nanometres? then 0.4 to 0.9 um"}},
+      {"curve too short", "reflectance: 0.2", "reflectance: short.txt", {"SP104", "from 0.748 to 2.5 um"}},
+      {"on what is no terrain", "translate: [0, 0, 2]", "on: floor", {"11:22", "'floor' is no terrain", "give z"}},
+      {"Celsius", "reflectance: 0.2", "reflectance: 0.2, temperature_k: 25", {"SP107", "298.15 K"}, true},
+      {"measurement as a fit",
+       "model: lambert, reflectance: 0.2",
+       "model: sqt, file: measured.bsdf",
+       {"5:28", "no SQT file", "sqt-fit measured.bsdf -o measured.sqt"}},
+      {"absurd motion",
+       "translate: [0, 0, 2]",
+       "motion: {kind: keyframes, keys: [{time_s: 0, position_m: [0, 0, 3]}, {time_s: 5, position_m: [1.0e18, 0, 3]}]}",
+       {"11:", "1e+18 m away", "1e+13 m"}},
+  };
+  for (const Mistake& m : table) {
+    write("wrong.yaml", replaced(kScene, m));
+    check(m, run("scene-prep wrong.yaml -o wrong.h5"));
+  }
+}
+
+TEST_F(Messages, OfSimulations) {
+  const std::vector<Mistake> table{
+      {"band in nm", "center_um: 0.55, fwhm_um: 0.01", "center_um: 550, fwhm_um: 10", {"13:", "then 0.55 um"}},
+      {"geodetic keys",
+       "position_m: [1, 0, 50]",
+       "position: {latitude_deg: 49.4, longitude_deg: 8.7, height_m: 150}",
+       {"6:5", "no geodetic place", "kind: platform"}},
+      {"scene text for a scene",
+       "scene.h5",
+       "scene.yaml",
+       {"1:8", "a prepared scene (.h5)", "scene-prep scene.yaml -o scene.h5"}},
+      {"unknown preview", "sensors:", "output: {preview: [gren]}\nsensors:", {"'gren'", "did you mean 'green'"}},
+  };
+  for (const Mistake& m : table) {
+    write("sim.yaml", replaced(kSimulation, m));
+    check(m, run("dirsig-render sim.yaml -o out"));
+    EXPECT_FALSE(file_exists(*folder_ / "out/eye.img")) << m.name;
+  }
+  check({"scene text for a simulation", "", "", {"text of a scene", "scene-prep"}},
+        run("dirsig-render scene.yaml -o out"));
+}
+
+// One class without a material is one fault, however many pixels have it.
+TEST_F(Messages, CountsAnUnmappedClassOnce) {
+  write("classes.pgm", "P2\n4 4\n3\n1 1 1 1\n1 1 1 1\n1 1 1 1\n3 3 3 3\n");
+  std::string text = kScene;
+  text.replace(
+      text.find("objects:"), 0,
+      "  land: {map: cover}\nmaps:\n  cover: {type: class, file: classes.pgm, materials: {1: grey}, projection: drape, "
+      "drape: {origin: [-10, 10], gsd: 5}}\n");
+  write("wrong.yaml", text);
+  const CommandResult r = run("scene-prep wrong.yaml -o wrong.h5");
+  EXPECT_THAT(r.out + r.err, HasSubstr("SP502] x1")) << r.out << r.err;
+}
+
+// A terrain that brings its own coordinates tells where an origin was meant to be.
+TEST_F(Messages, OfMisplacedOrigins) {
+  const std::string dem = SUITE_SOURCE_DIR "/sample_scenes/calibration_range/dem_hd_sub.tif";
+  const auto scene = [&](double latitude, double longitude) {
+    return strf(
+        "scene: 1\norigin: {latitude_deg: %g, longitude_deg: %g, height_m: 100}\nmaterials:\n"
+        "  grey: {model: lambert, reflectance: 0.2}\nobjects:\n  land: {terrain: '%s', height: ellipsoid, "
+        "material: grey}\nworld:\n  - {place: land}\n",
+        latitude, longitude, dem.c_str());
+  };
+  const struct {
+    double latitude, longitude;
+    const char* told;
+  } table[] = {
+      {8.7, 49.4, "exchanged"}, {49.4, -8.7, "longitude the wrong sign"}, {-49.4, 8.7, "latitude the wrong sign"}};
+  for (const auto& row : table) {
+    write("wrong.yaml", scene(row.latitude, row.longitude));
+    const CommandResult r = run("scene-prep wrong.yaml -o wrong.h5");
+    EXPECT_THAT(r.out + r.err, HasSubstr("SP505"));
+    EXPECT_THAT(r.out + r.err, HasSubstr(row.told));
+    EXPECT_THAT(r.out + r.err, HasSubstr("it covers latitudes 49.")) << "the extent of what is there";
+  }
+  write("right.yaml", scene(49.4, 8.7));
+  const CommandResult right = run("scene-prep right.yaml -o right.h5");
+  EXPECT_EQ(right.code, 0) << right.err;
+  EXPECT_EQ((right.out + right.err).find("SP505"), std::string::npos);
+}
+
+TEST_F(Messages, OfForeignMeasurements) {
+  const struct {
+    const char *name, *text, *told;
+  } table[] = {{"radiance.xml", "<?xml version=\"1.0\"?>\n<WindowElement></WindowElement>", "Radiance/Window XML"},
+               {"data.alta", "#DIM 3 1\n#VS 1\n", "ALTA"},
+               {"packed.zip", "PK\x03\x04 more", "zip archive"}};
+  for (const auto& row : table) {
+    write(row.name, row.text);
+    const CommandResult r = run(std::string("sqt-fit ") + row.name + " -o fit.sqt");
+    EXPECT_EQ(r.code, 1) << row.name;
+    EXPECT_THAT(r.err, HasSubstr(row.told));
+  }
+}
+
+}  // namespace
+}  // namespace suite
