@@ -10,6 +10,7 @@ namespace {
 constexpr double kFinest = 0.001, kCoarsest = 16;  // qualities searched
 constexpr int kFinestOrder = 12;                   // of cells that lobes may ask for
 constexpr size_t kMostViews = 64;                  // that they may ask for
+constexpr double kWorthIt = 0.02;                  // by how much lobes must rise if they stay too low all the same
 
 struct Trial {
   AlignedFit fit;
@@ -115,7 +116,7 @@ bool better(const FitResult& a, const FitResult& b, const FitTarget& target) {
   if (a.bytes_met != b.bytes_met) return a.bytes_met;
   if (a.error_met != b.error_met) return a.error_met;
   if (a.peak_met != b.peak_met) return a.peak_met;
-  if (!a.peak_met && target.max_l1 <= 0 && !target.max_bytes) return least(a.peaks) > least(b.peaks);
+  if (!a.peak_met && target.max_l1 <= 0 && !target.max_bytes) return least(a.peaks) > least(b.peaks) + kWorthIt;
   return target.max_l1 > 0 && a.error_met ? bytes_of(a.fit) < bytes_of(b.fit) : a.l1 < b.l1;
 }
 

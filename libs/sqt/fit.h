@@ -39,8 +39,8 @@ AlignedSource::Options suited(AlignedSource::Options options, double l1);
 // A promise that cannot be kept gives the nearest result and the flag.
 // min_peak: where the lobes of that fit stay lower, finer cells, then finer steps, then more views are tried, in this
 // order and together, until they do not; under max_l1 or max_bytes finer cells only, as far as these allow. What the
-// options fix (order_fixed, views) stays as it is. The fit with the highest lobes when none keeps it, peak_met = false.
-// container: bytes a file takes beside trees and totals. progress(fraction) may be null.
+// options fix (order_fixed, views) stays as it is. When none keeps it: the first that no later one exceeds by more than
+// 0.02, peak_met = false. container: bytes a file takes beside trees and totals. progress(fraction) may be null.
 FitResult fit_to(const Function& function, const Reference& reference, const AlignedSource::Options& options,
                  const FitTarget& target, const std::function<size_t(const AlignedSource&)>& container,
                  const std::function<void(double)>& progress = {});
