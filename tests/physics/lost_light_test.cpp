@@ -118,7 +118,8 @@ TEST(WaterBed, PointLampsAboveAreMissedBelowAreNot) {
 // What an opaque thing shadows is not missing, however much water lies before it.
 TEST(WaterBed, OpaqueBlockerBehindTheWater) {
   const auto scene = water_bed(smooth(kIndex));
-  scene->meshes.push_back(quad(400, 0, 0));
+  scene->materials.push_back(material("black", lambert(0)));  // or its lower side would be lit from beside its shadow
+  scene->meshes.push_back(quad(400, 0, 2));
   scene->groups[0].placements.push_back({translation({400 * std::tan(kSunZenith), 0, 400}), TargetKind::mesh, 0});
   check_scene(*scene, "blocked");
   const auto run = render(scene, sun(0), look(1024));
