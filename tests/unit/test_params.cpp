@@ -77,7 +77,7 @@ TEST(Params, FaultsCarryPlaceSourceLineAndCaret) {
 TEST(Params, AMissingKeyNamesTheNearMissThatIsThere) {
   const Params p = parse("camera:\n  widht: 640\n");
   EXPECT_THAT(message_of([&] { p.at("camera").at("width"); }),
-              StartsWith("s.yaml:2:3: error: the key 'width' is missing; is 'widht' meant to be it?"));
+              StartsWith("s.yaml:2:3: error: unknown key 'widht'; did you mean 'width', which is missing?"));
 }
 
 TEST(Params, AKeyNobodyReadIsAnErrorWithTheNearestNameAskedFor) {
