@@ -233,9 +233,9 @@ TEST_F(ScenePrep, FitsSayWhatHoldsBeyondTheirWavelengths) {
   };
   const CommandResult r = scene("model: sqt, file: grey.sqt");
   EXPECT_EQ(r.code, 1);
-  EXPECT_THAT(r.out, HasSubstr("SP104"));
-  EXPECT_THAT(r.out, HasSubstr("'grey.sqt' stands for 0.5225 to 0.5775 um, the window is 0.5 to 0.9 um"));
-  EXPECT_THAT(r.out, HasSubstr("fit.yaml:2"));
+  EXPECT_THAT(r.err, HasSubstr("SP104"));
+  EXPECT_THAT(r.err, HasSubstr("'grey.sqt' stands for 0.5225 to 0.5775 um, the window is 0.5 to 0.9 um"));
+  EXPECT_THAT(r.err, HasSubstr("fit.yaml:2"));
   EXPECT_EQ(scene("model: sqt, file: grey.sqt, outside: error").code, 1);
   EXPECT_EQ(scene("model: sqt, file: grey.sqt, outside: hold").code, 0);
   EXPECT_EQ(scene("model: sqt, file: {file: grey.sqt, outside: zero}").code, 0);
