@@ -131,8 +131,13 @@ void judge_fit(const SqtFitOptions& o, const FitInput& input, const sqt::Referen
              out.errors.back().l1));
   if (!out.peak_met) {
     const std::array<double, 3> peaks = reference.least_peaks(*out.bundle);
-    add(strf("lobes at view angles of 20/45/70 deg reach %.3f %.3f %.3f of the data's, %g is asked for (--min-peak)",
-             peaks[0], peaks[1], peaks[2], min_peak(o, input)));
+    const std::string low =
+        strf("lobes at view angles of 20/45/70 deg reach %.3f %.3f %.3f of the data's, %g is asked for (--min-peak)",
+             peaks[0], peaks[1], peaks[2], min_peak(o, input));
+    if (o.min_peak >= 0)
+      add(low);
+    else
+      warn(low);  // nobody asked for it
   }
   if (!text.empty() && o.strict)
     throw Error(Where{input.provenance.input, 0, 0, {}, -1}, text, "relax the target or leave out --strict");
