@@ -65,8 +65,8 @@ struct Grid {
   std::vector<Seen> seen;
 };
 
-// The least of the mean variances over the alike neighbours of each half-plane; half-planes outside the picture do not
-// count. same: difference of means that is none.
+// The least of the mean variances over the alike neighbours of each half-plane. A half-plane of which the picture holds
+// less than a third of what it holds of another does not count. same: difference of means that is none.
 double variance_around(const Grid& g, long x, long y, double same) {
   const Seen& here = g.seen[static_cast<size_t>(y * g.columns + x)];
   std::array<double, kHalfPlanes> sum{};
@@ -83,9 +83,10 @@ double variance_around(const Grid& g, long x, long y, double same) {
       sum[h] += o.in[h] && counts ? there.variance : 0;
     }
   }
+  const int most = *std::max_element(there_are.begin(), there_are.end());
   double least = INFINITY;
   for (size_t h = 0; h < kHalfPlanes; ++h)
-    if (there_are[h]) least = std::min(least, sum[h] / std::max(alike[h], 1));
+    if (there_are[h] && 3 * there_are[h] >= most) least = std::min(least, sum[h] / std::max(alike[h], 1));
   return std::isfinite(least) ? least : 0;
 }
 

@@ -11,7 +11,8 @@
 //   within the share. Things of another brightness that are well resolved, as beyond an edge, do not; an event that one
 //   of two happened to see leaves a standard error as large as itself, so its neighbour does. And they have to lie all
 //   around: of the eight closed half-planes through the problem, cut to 9 x 9 problems, the one with the least mean
-//   decides, so that an edge beside a problem does not count while one that runs through it does.
+//   decides, so that an edge beside a problem does not count while one that runs through it does. Near the rim of a
+//   picture, half-planes that are mostly outside do not count.
 // - The problem's own few events. When fewer than twelve samples like the largest make up all of the sum, and the
 //   largest is at least three times the mean (no ordinary side of an edge), their count c scatters like Poisson's,
 //   and the standard error is sqrt(c + 1) of their effect on the mean, also when the scrambles happen to agree. It is
