@@ -83,8 +83,11 @@ TEST(Tails, EventsDealtEvenlyAreFewAllTheSame) {
     EXPECT_EQ(p.flagged(neighbours), 1u);
     EXPECT_TRUE(p.flags(neighbours)[10 * kSide + 10]);
   }
-  // As many of twice the mean are the lit half of a problem, and every path alike is no event at all.
+  // The lit half of a problem, dealt to the scrambles without any difference: two samples could hide. Where every
+  // path is alike there is nothing to deal.
   p.at(10, 10).largest = 2;
+  EXPECT_EQ(p.flagged(false), 1u);
+  p.at(10, 10).largest = 1;
   EXPECT_EQ(p.flagged(false), 0u);
 }
 
