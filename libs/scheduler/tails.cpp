@@ -17,7 +17,8 @@ constexpr double kAlike = 4;           // joint standard errors
 constexpr double kFew = 12;            // events like the largest
 constexpr double kLarge = 3;           // times the mean
 constexpr uint32_t kFewestPaths = 16;  // below, the largest of them tells nothing about tails
-constexpr double kPossible = 2;        // standard errors of a Poisson count
+constexpr double kPossible = 2;        // standard errors of a Poisson count; samples that an even deal may hide
+constexpr double kAgreement = 0.1;     // of what one sample moves the mean by
 constexpr double kBeyondOthers = 3;    // most of it, by the standard error that the neighbours saw
 constexpr size_t kHalfPlanes = 8;
 
@@ -27,6 +28,13 @@ double error_of_few(const TailSums& s) {
   if (s.paths < kFewestPaths || !(largest > kLarge * s.mean) || !(n * s.mean < kFew * largest)) return 0;
   const double count = n * s.mean / largest, effect = (largest - s.mean) / n;
   return std::sqrt(count + 1) * effect;
+}
+
+// Standard error of a problem whose scrambles agree better than a tenth of what one sample moves the mean by: samples
+// of few values dealt evenly, as an edge through a problem leaves them; 0 for others.
+double error_of_agreement(const TailSums& s) {
+  const double effect = (s.largest - s.mean) / s.paths;
+  return s.paths >= kFewestPaths && s.error < kAgreement * effect ? kPossible * effect : 0;
 }
 
 double least_excess(const TailSums& s) { return s.share * std::max(s.mean, s.floor); }
@@ -52,7 +60,11 @@ const std::vector<Offset>& window() {
       for (long x = -kReach; x <= kReach; ++x) {
         if (x == 0 && y == 0) continue;
         Offset o{x, y, {}};
-        for (size_t h = 0; h < kHalfPlanes; ++h) o.in[h] = normals[h][0] * x + normals[h][1] * y >= 0;
+        const bool beside = std::max(std::labs(x), std::labs(y)) == 1;
+        for (size_t h = 0; h < kHalfPlanes; ++h) {
+          const long side = normals[h][0] * x + normals[h][1] * y;
+          o.in[h] = side > 0 || (side == 0 && beside);
+        }
         made.push_back(o);
       }
     return made;
@@ -65,8 +77,8 @@ struct Grid {
   std::vector<Seen> seen;
 };
 
-// The least of the mean variances over the alike neighbours of each half-plane; half-planes outside the picture do not
-// count. same: difference of means that is none.
+// The least of the mean variances over the alike neighbours of each half-plane. A half-plane of which the picture holds
+// less than a third of what it holds of another does not count. same: difference of means that is none.
 double variance_around(const Grid& g, long x, long y, double same) {
   const Seen& here = g.seen[static_cast<size_t>(y * g.columns + x)];
   std::array<double, kHalfPlanes> sum{};
@@ -83,9 +95,10 @@ double variance_around(const Grid& g, long x, long y, double same) {
       sum[h] += o.in[h] && counts ? there.variance : 0;
     }
   }
+  const int most = *std::max_element(there_are.begin(), there_are.end());
   double least = INFINITY;
   for (size_t h = 0; h < kHalfPlanes; ++h)
-    if (there_are[h]) least = std::min(least, sum[h] / std::max(alike[h], 1));
+    if (there_are[h] && 3 * there_are[h] >= most) least = std::min(least, sum[h] / std::max(alike[h], 1));
   return std::isfinite(least) ? least : 0;
 }
 
@@ -136,9 +149,11 @@ void flag_by_neighbours(std::span<const TailSums> of, long columns, std::span<ui
 }  // namespace
 
 void flag_heavy_tails(std::span<const TailSums> of, uint32_t columns, bool neighbours, std::span<uint8_t> quality) {
-  if (neighbours) return flag_by_neighbours(of, columns, quality);
-  for (size_t i = 0; i < of.size(); ++i)
-    if (of[i].paths && exceeds(kPossible * error_of_few(of[i]), of[i])) quality[i] |= quality_heavy_tail;
+  for (size_t i = 0; i < of.size(); ++i) {
+    const double own = neighbours ? 0 : kPossible * error_of_few(of[i]);
+    if (of[i].paths && exceeds(std::max(own, error_of_agreement(of[i])), of[i])) quality[i] |= quality_heavy_tail;
+  }
+  if (neighbours) flag_by_neighbours(of, columns, quality);
 }
 
 }  // namespace suite
