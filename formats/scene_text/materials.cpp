@@ -32,7 +32,8 @@ void require_fit(const Params& named, const std::string& path) {
 }
 }  // namespace
 
-// {file, column, scale, outside} or {points: [[um, value], ...], outside} or {constant}.
+// {file, column, scale, outside}, {points: [[um, value], ...], outside}, {wavelength_um: [...], value: [...], outside}
+// or {constant}.
 Curve Reader::read_curve_map(const Params& p) {
   if (const auto c = p.find("constant")) return Curve::constant(c->as_number());
   if (const auto points = p.find("points")) {
@@ -45,6 +46,8 @@ Curve Reader::read_curve_map(const Params& p) {
     }
     return Curve(std::move(x), std::move(y), read_outside(p), points->where());
   }
+  if (const auto x = p.find("wavelength_um"))
+    return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
   CurveOptions options;
   options.outside = read_outside(p);
   options.column = static_cast<int>(p.integer("column", 1, 100000, 1));

@@ -137,7 +137,7 @@ TEST_F(SqtInspect, BadInputAndUsage) {
   EXPECT_EQ(run_command(kInspect + (*folder_ / "absent.sqt")).code, 1);
   const CommandResult wrong = run_command(kInspect + satin_ + " --compare " + satin_);
   EXPECT_EQ(wrong.code, 1);
-  contains(wrong.err, "is no measured scattering file that we know");
+  contains(wrong.err, "it is fitted already");
   const CommandResult channels = run_command(kInspect + ward_ + " --compare " + kBrdf);
   EXPECT_EQ(channels.code, 1);
   contains(channels.err, "the fit has 1 channels and the data 3");

@@ -101,7 +101,7 @@ std::string flight(double heading_deg, const std::string& instrument, double sto
 std::string broom(const std::string& extra = "") {
   return std::string(
              "    arrays: [{columns: 7, pitch_um: 100, readout: {kind: line, line_rate_hz: 1, "
-             "lines_per_capture: 3}, paths: 64, ") +
+             "lines_per_capture: 3}, paths: 4, ") +
          extra + kBand + "}]\n";
 }
 
@@ -118,8 +118,8 @@ void expect_strip(double heading_deg, const Ground& ground, const std::string& i
       const double a = r - 3.5, l = c - 3.0;
       const Vec2 here{ahead.x * a + left.x * l, ahead.y * a + left.y * l};
       const Vec3 truth = p.at(static_cast<uint32_t>(r), static_cast<uint32_t>(c));
-      // The mean place of 64 paths lies 0.04 pixels from the middle, give or take.
-      EXPECT_LT(std::hypot(truth.x - here.x, truth.y - here.y), 0.25);
+      // Somewhere within the pixel and the way of its line.
+      EXPECT_LT(std::hypot(truth.x - here.x, truth.y - here.y), 0.75);
       EXPECT_NEAR(p.radiance[static_cast<size_t>(r * 7 + c)], ground.white(here) ? 1 : 0, 1e-6) << r << ", " << c;
     }
   expect_not_mirrored(ground, p);
