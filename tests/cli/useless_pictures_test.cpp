@@ -16,7 +16,7 @@ const char* const kScene =
     "scene: 1\norigin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}\n"
     "materials:\n  ground: {model: lambert, reflectance: {wavelength_um: [0.4, 1.0], value: [0.2, 0.3], outside: "
     "hold}}\n"
-    "  black: {model: lambert, reflectance: {wavelength_um: [0.4, 1.0], value: [0, 0], outside: hold}}\n"
+    "  black: {model: lambert, reflectance: {points: [[0.4, 0], [1.0, 0]], outside: hold}}\n"
     "objects:\n  plane: {plane: {width: 400, depth: 400}, material: ground}\n  board: {box: {x0: -2, y0: -2, z0: 0, "
     "x1: "
     "2, y1: 2, z1: 3}, material: ground}\n  hole: {box: {x0: -20, y0: -20, z0: 0, x1: 20, y1: 20, z1: 1}, material: "
