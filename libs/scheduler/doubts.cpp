@@ -78,28 +78,32 @@ std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, cons
 }
 
 // Bands beyond the tabulated ends of every spectrum of the scene, where only `outside` says what the surfaces are.
+// Loading drops points far from the sensors' bands, so only the ends that are nearest to them are known here.
 std::optional<Doubt> unknown_bands(const Scene& scene, const Sensor& sensor) {
   double low = INFINITY, high = 0;
+  const auto widen = [&](double from, double to) { low = std::min(low, from), high = std::max(high, to); };
   for (const Material& m : scene.materials) {
     if (m.surface.model.empty()) continue;
-    if (m.surface.curves.empty()) return std::nullopt;
+    bool tabulated = false;
     for (const auto& [name, curve] : m.surface.curves) {
-      if (curve.is_constant()) return std::nullopt;
-      low = std::min(low, curve.low_um()), high = std::max(high, curve.high_um());
+      if (curve.is_constant()) continue;
+      tabulated = true;
+      widen(curve.low_um(), curve.high_um());
     }
+    if (!tabulated) return std::nullopt;  // the same at all wavelengths
   }
   for (const PropertyMap& m : scene.property_maps) {
-    for (const double w : m.wavelength_um) low = std::min(low, w), high = std::max(high, w);
-    for (const Curve& c : m.family) low = std::min(low, c.low_um()), high = std::max(high, c.high_um());
+    for (const double w : m.wavelength_um) widen(w, w);
+    for (const Curve& c : m.family) widen(c.low_um(), c.high_um());
   }
   for (size_t s = 0; s < sensor.states().size() && high > 0; ++s)
     for (const Band& b : sensor.bands(s))
       if (b.low_um() > high || b.high_um() < low)
         return Doubt{
             sensor.name(),
-            strf("band '%s' (%.3g um) lies outside all spectra of the scene, which reach from %.3g to %.3g um: "
-                 "what is seen there is only what their `outside` says",
-                 b.name.c_str(), b.center_um, low, high),
+            strf("band '%s' (%.3g um) lies beyond the ends of all spectra of the scene, of which the nearest is "
+                 "at %.3g um: what is seen there is only what their `outside` says",
+                 b.name.c_str(), b.center_um, b.low_um() > high ? high : low),
             "give the materials spectra that cover it, or the sensor other bands"};
   return std::nullopt;
 }

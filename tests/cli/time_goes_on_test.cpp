@@ -125,7 +125,7 @@ TEST_F(TimeGoesOn, HeadersOfStripsTellTheTimesOfAllLines) {
   ASSERT_EQ(render("output: {files: capture}\n" + light(12, false) + strip(line, two), "each").code, 0);
   EXPECT_THAT(description("each/uas_0001.img"), HasSubstr("1.14 to 1.27 s"));
   const CommandResult r = render(
-      light(12, false) + strip("rows: 2, readout: {kind: whisk, samples: 11, sample_rate_hz: 200, scan_rate_hz: 5}",
+      light(12, false) + strip("rows: 2, readout: {kind: whisk, samples: 11, sample_rate_hz: 80, scan_rate_hz: 5}",
                                "[{start: 0, stop: 2}]"),
       "whisk");
   ASSERT_EQ(r.code, 0) << r.err;

@@ -12,22 +12,30 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kScene =
-    "scene: 1\norigin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}\n"
-    "materials:\n  ground: {model: lambert, reflectance: {wavelength_um: [0.4, 1.0], value: [0.2, 0.3], outside: "
-    "hold}}\n"
-    "  black: {model: lambert, reflectance: {wavelength_um: [0.4, 1.0], value: [0, 0], outside: hold}}\n"
-    "objects:\n  plane: {plane: {width: 400, depth: 400}, material: ground}\n  board: {box: {x0: -2, y0: -2, z0: 0, "
-    "x1: "
-    "2, y1: 2, z1: 3}, material: ground}\n  hole: {box: {x0: -20, y0: -20, z0: 0, x1: 20, y1: 20, z1: 1}, material: "
-    "black}\n"
-    "world:\n  - {place: plane}\n  - {place: board, translate: [4, 0, 0]}\n  - {place: hole, translate: [100, 0, 0]}\n";
-// The same without the endless-looking plane: boards alone.
-const char* const kBoards =
-    "scene: 1\norigin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}\n"
-    "materials:\n  ground: {model: lambert, reflectance: 0.2}\n"
-    "objects:\n  board: {box: {x0: -2, y0: -2, z0: 0, x1: 2, y1: 2, z1: 3}, material: ground}\n"
-    "world:\n  - {place: board, translate: [4, 0, 0]}\n";
+const char* const kScene = R"(scene: 1
+origin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}
+materials:
+  ground: {model: lambert, reflectance: {points: [[0.4, 0.2], [1.0, 0.3]], outside: hold}}
+  black: {model: lambert, reflectance: {points: [[0.4, 0], [1.0, 0]], outside: hold}}
+objects:
+  plane: {plane: {width: 400, depth: 400}, material: ground}
+  board: {box: {x0: -2, y0: -2, z0: 0, x1: 2, y1: 2, z1: 3}, material: ground}
+  hole: {box: {x0: -20, y0: -20, z0: 0, x1: 20, y1: 20, z1: 1}, material: black}
+world:
+  - {place: plane}
+  - {place: board, translate: [4, 0, 0]}
+  - {place: hole, translate: [100, 0, 0]}
+)";
+// A board alone.
+const char* const kBoards = R"(scene: 1
+origin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}
+materials:
+  ground: {model: lambert, reflectance: 0.2}
+objects:
+  board: {box: {x0: -2, y0: -2, z0: 0, x1: 2, y1: 2, z1: 3}, material: ground}
+world:
+  - {place: board, translate: [4, 0, 0]}
+)";
 const std::string kDay = "sun: {direction: {zenith_deg: 45, azimuth_deg: 90}, irradiance: 1000}\n";
 const std::string kSky = "sky: {radiance: 50}\n";
 
@@ -45,8 +53,10 @@ class UselessPictures : public testing::Test {
     folder_ = new TempFolder;
     write_file(*folder_ / "scene.yaml", std::string_view(kScene));
     write_file(*folder_ / "boards.yaml", std::string_view(kBoards));
-    for (const char* scene : {"scene", "boards"})
-      ASSERT_EQ(run(std::string("scene-prep ") + scene + ".yaml -o " + scene + ".h5 -q").code, 0);
+    for (const char* scene : {"scene", "boards"}) {
+      const CommandResult r = run(std::string("scene-prep ") + scene + ".yaml -o " + scene + ".h5 -q");
+      ASSERT_EQ(r.code, 0) << r.err;
+    }
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -140,7 +150,8 @@ TEST_F(UselessPictures, BandsOutside) {
           camera("[0, -20, 30]", "[0, 0, 0]", 10),
       {"no source sends light in band 'pan' (10 um)"}, true);
   expect_one(kDay + camera("[0, -20, 30]", "[0, 0, 0]", 1.6),
-             {"band 'pan' (1.6 um) lies outside all spectra of the scene, which reach from 0.4 to 1 um"}, true);
+             {"band 'pan' (1.6 um) lies beyond the ends of all spectra of the scene, of which the nearest is at 1 um"},
+             true);
 }
 
 TEST_F(UselessPictures, AllZero) {

@@ -118,8 +118,10 @@ void expect_strip(double heading_deg, const Ground& ground, const std::string& i
       const double a = r - 3.5, l = c - 3.0;
       const Vec2 here{ahead.x * a + left.x * l, ahead.y * a + left.y * l};
       const Vec3 truth = p.at(static_cast<uint32_t>(r), static_cast<uint32_t>(c));
-      // Somewhere within the pixel and the way of its line.
-      EXPECT_LT(std::hypot(truth.x - here.x, truth.y - here.y), 0.75);
+      // The mean place of a pixel's paths lies inside it.
+      const Vec2 off{truth.x - here.x, truth.y - here.y};
+      EXPECT_LT(std::fabs(off.x * ahead.x + off.y * ahead.y), 0.5) << r << ", " << c;
+      EXPECT_LT(std::fabs(off.x * left.x + off.y * left.y), 0.5) << r << ", " << c;
       EXPECT_NEAR(p.radiance[static_cast<size_t>(r * 7 + c)], ground.white(here) ? 1 : 0, 1e-6) << r << ", " << c;
     }
   expect_not_mirrored(ground, p);
