@@ -110,6 +110,18 @@ void print(const std::string& name, const Count& n) {
               n.exceeding > 0 ? 100 * n.found / n.exceeding : 100, 100 * n.false_share());
 }
 
+// The flag and the rule before, two seeds against a long run or the closed form.
+void measure(const Case& c, Count& now, Count& before) {
+  const CaptureResult reference = std::isnan(c.truth) ? run(c, 2048, 1003) : CaptureResult{};
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
+    const CaptureResult r = run(c, kPaths, seed);
+    count(r, flags_of(r), c, reference, now);
+    count(r, flags_by_ratio(r), c, reference, before);
+  }
+  print(c.name, now);
+  print("  by the ratio of variances", before);
+}
+
 TEST(TailFlags, FindWhatRareEventsHide) {
   for (const Place& place : {kGap, kGlint}) {
     const Case c{place.name, squares(place.share, place.holes), full_sky(), place.holes, 10 * place.share};
@@ -133,15 +145,8 @@ TEST(TailFlags, AreSilentInQuietScenes) {
                                 {"mirror of the sky", squares(1 - 1e-9, false), full_sky(), false, 10}};
   double by_ratio_most = 0;
   for (const Case& c : cases) {
-    const CaptureResult reference = std::isnan(c.truth) ? run(c, 2048, 1003) : CaptureResult{};
     Count now, before;
-    for (uint64_t seed = 1; seed <= 2; ++seed) {
-      const CaptureResult r = run(c, kPaths, seed);
-      count(r, flags_of(r), c, reference, now);
-      count(r, flags_by_ratio(r), c, reference, before);
-    }
-    print(c.name, now);
-    print("  by the ratio of variances", before);
+    measure(c, now, before);
     EXPECT_LE(now.false_share(), 0.01) << c.name;
     EXPECT_LE(now.missed_share(), now.most_missed()) << c.name;
     by_ratio_most = std::max(by_ratio_most, before.false_share());
@@ -153,15 +158,8 @@ TEST(TailFlags, AreSilentInQuietScenes) {
 // of quiet scenes, and this is how much; what it leaves unflagged keeps its promise all the same.
 TEST(TailFlags, EdgesOnAllSidesCostFlags) {
   const Case c{"tiles", tiles(), sun_and_sky(0)};
-  const CaptureResult reference = run(c, 2048, 1003);
   Count now, before;
-  for (uint64_t seed = 1; seed <= 2; ++seed) {
-    const CaptureResult r = run(c, kPaths, seed);
-    count(r, flags_of(r), c, reference, now);
-    count(r, flags_by_ratio(r), c, reference, before);
-  }
-  print(c.name, now);
-  print("  by the ratio of variances", before);
+  measure(c, now, before);
   EXPECT_LE(now.false_share(), 0.12);
   EXPECT_LE(now.missed_share(), now.most_missed());
   EXPECT_GT(before.false_share(), 0.5) << "the rule before flags most of it, and the test sees it";
