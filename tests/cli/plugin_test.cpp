@@ -118,7 +118,7 @@ TEST_F(Plugin, BadRaysAndExceptionsAreContained) {
     const CommandResult r =
         render("{kind: troublemaker, name: bad, trouble: " + trouble + "}", "troublemaker", trouble);
     ASSERT_EQ(r.code, 0) << trouble << r.err;
-    EXPECT_THAT(r.err, HasSubstr("warning: 128 samples were not finite or negative and were left out"));
+    EXPECT_THAT(r.err, HasSubstr("rejected 128 samples that were not finite or negative"));
     const std::vector<double> image = EnviImage(*folder_ / (trouble + "/bad.img")).read_all();
     for (size_t i = 1; i < image.size(); i += 2)
       EXPECT_NEAR(image[i], 0.5, 1e-6);  // the good pixels are as they should be
