@@ -75,7 +75,7 @@ TEST_F(Messages, OfScenes) {
        "reflectance: nanometres.txt",
        {"SP104", "in nanometres? then 0.4 to 0.9 um"}},
       {"curve too short", "reflectance: 0.2", "reflectance: short.txt", {"SP104", "from 0.748 to 2.5 um"}},
-      {"on what is no terrain", "translate: [0, 0, 2]", "on: floor", {"11:22", "'floor' is no terrain", "give z"}},
+      {"on what is no terrain", "translate: [0, 0, 2]", "on: floor", {"11:23", "'floor' is no terrain", "give z"}},
       {"Celsius", "reflectance: 0.2", "reflectance: 0.2, temperature_k: 25", {"SP107", "298.15 K"}, true},
       {"measurement as a fit",
        "model: lambert, reflectance: 0.2",
@@ -116,7 +116,7 @@ TEST_F(Messages, OfSimulations) {
 
 // One class without a material is one fault, however many pixels have it.
 TEST_F(Messages, CountsAnUnmappedClassOnce) {
-  write("classes.pgm", "P2\n4 4\n3\n1 1 1 1\n1 1 1 1\n1 1 1 1\n3 3 3 3\n");
+  write("classes.pgm", "P2\n4 4\n255\n1 1 1 1\n1 1 1 1\n1 1 1 1\n3 3 3 3\n");
   std::string text = kScene;
   text.replace(
       text.find("objects:"), 0,
