@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "formats/envi/envi.h"
 #include "log.h"
+#include "scheduler/result.h"
 #include "sensor/quality.h"
 #include "study/study.h"
 #include "trace/tracer.h"
@@ -97,9 +98,6 @@ StudyOutput run_once(const std::shared_ptr<const Scene>& scene, const Simulation
   collect = &out.image;
   out.report = run_job(scene, sim.sources, sim.sensors, options);
   collect = nullptr;
-  uint32_t most = 0;
-  for (const uint32_t n : out.image.paths) most = std::max(most, n);
-  out.image.degrees = Accumulators::scrambles_for(most) - 1;
   out.file_seconds = out.report.deliver_seconds;
   out.peak_bytes = peak_bytes();
   return out;
@@ -119,7 +117,7 @@ StudyImage reference_for(const RenderOptions& o, const std::shared_ptr<const Sce
     const OwnResults own;
     read_series(file, image, false, size.pixels, size.bands);
     read_series(errors, image, true, size.pixels, size.bands);
-    image.degrees = 7;
+    image.degrees = error_degrees(sim.sensors[0]->tasks()[0].captures[0], UINT32_MAX);
     note("the reference is kept from before");
     return image;
   }

@@ -6,7 +6,7 @@
 namespace suite::render_state {
 
 inline constexpr const char* kFormat = "dirsig-render state";
-inline constexpr const char* kVersion = "2";
+inline constexpr const char* kVersion = "3";
 inline constexpr const char* kHint = "start the run anew without --resume and --more, or give it another folder";
 inline constexpr uint32_t kRangeRows = kBlockEdge;  // rows of problems that are saved together: one row of blocks
 

@@ -96,6 +96,7 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
       w.column(g + "/failures", h5::native<uint32_t>(), n * static_cast<size_t>(s.scrambles), "1");
       w.column(g + "/truncated", h5::native<float>(), n, "1");
       w.column(g + "/largest", h5::native<float>(), n, "W/(m2 sr um)");
+      w.column(g + "/squares", h5::native<double>(), n, "SI");
       w.column(g + "/missing", h5::native<double>(), n * s.values, "W/(m2 sr um)");
       w.column(g + "/missing_of", h5::native<double>(), 2 * n, "SI");
       w.column(g + "/truth", h5::native<double>(), n * s.truth_slots, "1");

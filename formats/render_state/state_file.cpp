@@ -20,7 +20,7 @@ using namespace render_state;
 struct Columns {
   CaptureShape shape;
   uint64_t valid = 0, piloted = 0, needs = 0, sums = 0, paths = 0, failures = 0, truncated = 0, largest = 0,
-           missing = 0, missing_of = 0, truth = 0;
+           squares = 0, missing = 0, missing_of = 0, truth = 0;
 };
 
 class StateFile final : public StateStore {
@@ -63,12 +63,14 @@ class StateFile final : public StateStore {
       const size_t scrambles = static_cast<size_t>(c.shape.scrambles);
       std::vector<uint32_t> paths(count), failures(count * scrambles);
       std::vector<float> truncated(count), largest(count);
+      std::vector<double> squares(count);
       get(c.paths + first * 4, paths.data(), count * 4);
       if (std::any_of(paths.begin(), paths.end(), [](uint32_t x) { return x > (1u << 31); }))
         fail("holds more paths than can be");
       get(c.failures + first * scrambles * 4, failures.data(), failures.size() * 4);
       get(c.truncated + first * 4, truncated.data(), count * 4);
       get(c.largest + first * 4, largest.data(), count * 4);
+      get(c.squares + first * 8, squares.data(), count * 8);
       for (size_t i = 0; i < count; ++i) {
         sums.set_paths(first + i, paths[i]);
         for (int s = 0; s < std::min(c.shape.scrambles, sums.scrambles()); ++s) {
@@ -80,6 +82,7 @@ class StateFile final : public StateStore {
         }
         sums.truncated(first + i) = truncated[i];
         sums.largest(first + i) = largest[i];
+        sums.squares(first + i) = squares[i];
       }
       if (sums.keeps_missing()) {
         get(c.missing + first * c.shape.values * 8, sums.missing(first).light, count * c.shape.values * 8);
@@ -116,10 +119,12 @@ class StateFile final : public StateStore {
     mark(c.valid + range, 0);
     std::vector<uint32_t> paths, failures;
     std::vector<float> truncated, largest;
+    std::vector<double> squares;
     for (size_t i = first; i < first + count; ++i) {
       paths.push_back(sums.paths(i));
       for (int s = 0; s < c.shape.scrambles; ++s) failures.push_back(s < sums.scrambles() ? sums.failures(i, s) : 0);
       truncated.push_back(sums.truncated(i)), largest.push_back(sums.largest(i));
+      squares.push_back(sums.squares(i));
     }
     if (sums.scrambles() == c.shape.scrambles) {
       // Problems, scrambles and bands lie behind one another in the accumulators as they do in the file.
@@ -134,6 +139,7 @@ class StateFile final : public StateStore {
     put(c.failures + first * static_cast<size_t>(c.shape.scrambles) * 4, failures.data(), failures.size() * 4);
     put(c.truncated + first * 4, truncated.data(), count * 4);
     put(c.largest + first * 4, largest.data(), count * 4);
+    put(c.squares + first * 8, squares.data(), count * 8);
     if (sums.keeps_missing()) {  // a hole in the file, all zeros, where nothing is missing
       put(c.missing + first * c.shape.values * 8, sums.missing_light(first), count * c.shape.values * 8);
       put(c.missing_of + first * 16, sums.missing_of(first), count * 16);
@@ -186,6 +192,7 @@ class StateFile final : public StateStore {
     c.failures = at("/failures", h5::native<uint32_t>(), "1", n * c.shape.scrambles);
     c.truncated = at("/truncated", h5::native<float>(), "1", n);
     c.largest = at("/largest", h5::native<float>(), "W/(m2 sr um)", n);
+    c.squares = at("/squares", h5::native<double>(), "SI", n);
     c.missing = at("/missing", h5::native<double>(), "W/(m2 sr um)", n * static_cast<long long>(c.shape.values));
     c.missing_of = at("/missing_of", h5::native<double>(), "SI", 2 * n);
     c.truth = at("/truth", h5::native<double>(), "1", n * static_cast<long long>(c.shape.truth_slots));

@@ -14,6 +14,7 @@ Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t 
       failures_(problems * static_cast<size_t>(scrambles)),
       truncated_(problems),
       largest_(problems),
+      squares_(problems),
       truth_slots_(truth_slots) {
   resize_large(sums_, problems * bands * static_cast<size_t>(scrambles));
   resize_large(truth_, problems * truth_slots);
@@ -110,12 +111,19 @@ Accumulators::Shortfall Accumulators::shortfall(size_t problem) const {
   return of;
 }
 
-void Accumulators::widen(size_t problem, std::span<const double> means, std::span<double> errors) const {
+std::vector<double> Accumulators::lacking(size_t problem, std::span<const double> means) const {
   const Shortfall of = shortfall(problem);
-  if (of.cut == 0 && of.missing == 0) return;
+  if (of.cut == 0 && of.missing == 0) return {};
+  std::vector<double> light(means.size());
   const double missing = of.missing / accepted(problem);
-  for (size_t b = 0; b < errors.size(); ++b)
-    errors[b] = std::hypot(errors[b], of.cut * means[b] + (of.missing > 0 ? missing * missing_light(problem)[b] : 0));
+  for (size_t b = 0; b < light.size(); ++b)
+    light[b] = of.cut * means[b] + (of.missing > 0 ? missing * missing_light(problem)[b] : 0);
+  return light;
+}
+
+double Accumulators::scatter(size_t problem, double mean) const {
+  const double n = accepted(problem);
+  return n < 2 ? 0 : std::max(0.0, squares_[problem] / n - mean * mean) / (n - 1);
 }
 
 void Accumulators::clear() {
@@ -124,6 +132,7 @@ void Accumulators::clear() {
   std::fill(failures_.begin(), failures_.end(), 0u);
   std::fill(truncated_.begin(), truncated_.end(), 0.0f);
   std::fill(largest_.begin(), largest_.end(), 0.0f);
+  std::fill(squares_.begin(), squares_.end(), 0.0);
   std::fill(truth_.begin(), truth_.end(), 0.0);
   std::fill(missing_.begin(), missing_.end(), 0.0);
   std::fill(missing_of_.begin(), missing_of_.end(), 0.0);

@@ -307,7 +307,7 @@ class Pipeline::BlockRun {
       const double accepted = sums_.accepted(slot), mean = reference_sum(slot) / accepted;
       if (std::fabs(mean - sum_before / (accepted - 1)) <= pipeline_.options_.change * mean) end_[place] = 0;
     }
-    sums_.largest(slot) = std::max(sums_.largest(slot), static_cast<float>(target[reference] - before));
+    sums_.note_sample(slot, target[reference] - before);
     sums_.truncated(slot) += static_cast<float>(path.truncated);
     if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
     if (path.missed() && sums_.keeps_missing() && bin < capture_.bins) add_missing(p, slot, bin);
@@ -326,8 +326,11 @@ class Pipeline::BlockRun {
       for (size_t i = p; i < end; ++i)
         if (workspace_.is_matte[i] && deal(workspace_.lanes[i].sample).scramble == scramble)
           workspace_.together.push_back(static_cast<uint32_t>(i));
-      if (!workspace_.together.empty()) add_matte(slot, sums_.sums(slot, static_cast<int>(scramble)));
+      if (!workspace_.together.empty()) add_matte(sums_.sums(slot, static_cast<int>(scramble)));
     }
+    // In the order of the samples, so that the sums do not depend on how these were cut into waves.
+    for (size_t i = p; i < end; ++i)
+      if (workspace_.is_matte[i]) sums_.note_sample(slot, static_cast<double>(workspace_.seen[i]));
     sums_.set_paths(slot, workspace_.lanes[end - 1].sample + 1);
     return end;
   }
@@ -345,12 +348,11 @@ class Pipeline::BlockRun {
     }
     workspace_.seen[p] = radiance;
     sums_.truncated(slot) += static_cast<float>(truncated);
-    if (direct) sums_.largest(slot) = std::max(sums_.largest(slot), radiance);
     if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
     return true;
   }
 
-  void add_matte(size_t slot, double* target) {
+  void add_matte(double* target) {
     const BandProjection& projection = pipeline_.projection_;
     if (projection.identity() && projection.bands() == 1) {
       for (const uint32_t p : workspace_.together) target[0] += static_cast<double>(workspace_.seen[p]);
@@ -362,8 +364,7 @@ class Pipeline::BlockRun {
       const double before = target[pipeline_.reference_band_];
       workspace_.matte->spectrum(p, radiance);
       projection.add(radiance, {target, projection.bands()});
-      sums_.largest(slot) =
-          std::max(sums_.largest(slot), static_cast<float>(target[pipeline_.reference_band_] - before));
+      workspace_.seen[p] = static_cast<float>(target[pipeline_.reference_band_] - before);
     }
   }
 

@@ -115,9 +115,19 @@ class Accumulators {
   uint32_t accepted(size_t problem) const { return paths_[problem] - failures(problem); }
   float& truncated(size_t problem) { return truncated_[problem]; }
   float truncated(size_t problem) const { return truncated_[problem]; }
-  // Largest single sample at the reference band, for the tail indicator.
+  // What single samples are at the reference band (of the first bin): the largest of them, for the tail indicator, and
+  // the sum of their squares, from which their scatter follows.
+  void note_sample(size_t problem, double value) {
+    largest_[problem] = std::max(largest_[problem], static_cast<float>(value));
+    squares_[problem] += value * value;
+  }
   float& largest(size_t problem) { return largest_[problem]; }
   float largest(size_t problem) const { return largest_[problem]; }
+  double& squares(size_t problem) { return squares_[problem]; }
+  double squares(size_t problem) const { return squares_[problem]; }
+  // The variance that the mean of a problem would have at the reference band if its accepted samples were independent:
+  // their variance over their number; 0 for fewer than two. mean: of the reference band.
+  double scatter(size_t problem, double mean) const;
   // Light that samples are known to have missed, with what they carried. light: its sums, bands() values. reference:
   // its sum at the reference band, and that of its squares over the chance of having met it, which is the square that
   // meeting it by chance would have summed to; infinite where nothing but an explicit sample finds it.
@@ -148,9 +158,8 @@ class Accumulators {
   };
   static constexpr double kEnoughMeetings = 20;
   Shortfall shortfall(size_t problem) const;
-  // Adds it to the standard errors of a problem: the root of the sum of squares of what the samples tell and of what
-  // the means are known to lack. spans of bands() values.
-  void widen(size_t problem, std::span<const double> means, std::span<double> standard_errors) const;
+  // What the means of a problem, bands() values, are known to lack, value by value; empty when that is nothing.
+  std::vector<double> lacking(size_t problem, std::span<const double> means) const;
   size_t truth_slots() const { return truth_slots_; }
   double* truth(size_t problem) { return truth_.data() + problem * truth_slots_; }
   const double* truth(size_t problem) const { return truth_.data() + problem * truth_slots_; }
@@ -172,6 +181,7 @@ class Accumulators {
   std::vector<double> sums_;                // [problem][scramble][band]
   std::vector<uint32_t> paths_, failures_;  // [problem], [problem][scramble]
   std::vector<float> truncated_, largest_;
+  std::vector<double> squares_;
   std::vector<double> missing_, missing_of_;  // [problem][band], [problem][reference, square]
   size_t truth_slots_;
   std::vector<double> truth_;  // [problem][slot]

@@ -6,10 +6,23 @@
 
 #include "base/memory.h"
 #include "scheduler/plan.h"
-#include "scheduler/tails.h"
+#include "scheduler/pooled_errors.h"
 #include "sensor/quality.h"
 
 namespace suite {
+
+namespace {
+
+double degrees(uint32_t most_paths, bool neighbours) {
+  const double own = Accumulators::scrambles_for(most_paths) - 1;
+  return neighbours ? pooled_degrees(own) : own;
+}
+
+}  // namespace
+
+double error_degrees(const Capture& capture, uint32_t most_paths) {
+  return degrees(most_paths, has_neighbours(capture));
+}
 
 ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band,
                              const TruthPlan& truth, const Goals& goals)
@@ -27,7 +40,8 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   r.paths.resize(n);
   r.quality.resize(n);
   resize_large(largest_, n);
-  sampled_error_.resize(n);
+  resize_large(scatter_, n);
+  light_.resize(n);
   lacks_.resize(n);
   resize_large(r.truth, n * r.truth_names.size());
   // Few enough that bands^2 products of each take neither time nor memory.
@@ -42,9 +56,9 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   const std::span<double> means(&r.radiance[problem * values], values),
       errors(&r.standard_error[problem * values], values);
   sums.estimate(slot, means, errors);
-  sampled_error_[problem] = errors[reference_band_];
-  sums.widen(slot, means, errors);
+  scatter_[problem] = sums.scatter(slot, means[reference_band_]);
   lacks_[problem] = lack_of(problem, sums, slot);
+  light_[problem] = sums.lacking(slot, means);
   const uint32_t paths = r.paths[problem] = sums.paths(slot);
   largest_[problem] = sums.largest(slot);
   uint8_t& quality = r.quality[problem];
@@ -87,24 +101,51 @@ void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const doubl
   }
 }
 
-void ResultBuilder::flag_tails() {
-  CaptureResult& r = result_;
+std::vector<TailSums> ResultBuilder::tail_sums() const {
+  const CaptureResult& r = result_;
   const size_t values = r.values_per_problem();
   std::vector<TailSums> of(r.problems());
   for (size_t i = 0; i < of.size(); ++i) {
     const Convergence goal = goals_.of(i);
+    const double error = r.standard_error[i * values + reference_band_];
     of[i] = {r.radiance[i * values + reference_band_],
-             sampled_error_[i],
+             error,
+             error,
              largest_[i],
              r.paths[i],
              goal.relative_error > 0 ? goal.relative_error : kTailShare,
              goal.absolute_floor};
   }
-  flag_heavy_tails(of, r.columns, neighbours_, r.quality);
+  return of;
+}
+
+void ResultBuilder::pool(std::span<const TailSums> tails) {
+  CaptureResult& r = result_;
+  const uint32_t most = r.paths.empty() ? 0 : *std::max_element(r.paths.begin(), r.paths.end());
+  r.error_degrees = degrees(most, neighbours_);
+  if (!neighbours_) return;
+  const std::vector<double> around = errors_around(tails, r.columns);
+  pool_errors({r.columns, r.values_per_problem(), reference_band_, scatter_, around}, degrees(most, false),
+              r.standard_error);
+}
+
+// What the means are known to lack enlarges the errors: the root of the sum of squares.
+void ResultBuilder::widen() {
+  const size_t values = result_.values_per_problem();
+  for (size_t i = 0; i < light_.size(); ++i)
+    for (size_t v = 0; v < light_[i].size(); ++v) {
+      double& error = result_.standard_error[i * values + v];
+      error = std::hypot(error, light_[i][v]);
+    }
 }
 
 CaptureResult ResultBuilder::finish() {
-  flag_tails();
+  std::vector<TailSums> tails = tail_sums();
+  pool(tails);
+  for (size_t i = 0; i < tails.size(); ++i)
+    tails[i].error = result_.standard_error[i * result_.values_per_problem() + reference_band_];
+  flag_heavy_tails(tails, result_.columns, neighbours_, result_.quality);
+  widen();
   const size_t bands = result_.bands;
   std::vector<double> sum(bands * bands, 0.0);
   for (const std::vector<double>& p : products_)

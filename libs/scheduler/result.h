@@ -7,8 +7,13 @@
 #include "scheduler/budget.h"
 #include "scheduler/scheduler.h"
 #include "scheduler/shortfall.h"
+#include "scheduler/tails.h"
 
 namespace suite {
+
+// Degrees of freedom of the standard errors of a capture whose problems take up to so many paths: one less than
+// scrambles, and what the problems beside add (pooled_errors.h).
+double error_degrees(const Capture& capture, uint32_t most_paths);
 
 // The result of a capture, taken from accumulators problem by problem, so that these need not all be there at once.
 class ResultBuilder {
@@ -25,11 +30,14 @@ class ResultBuilder {
 
  private:
   Lack lack_of(size_t problem, const Accumulators& sums, size_t slot) const;
-  void flag_tails();
+  std::vector<TailSums> tail_sums() const;  // with errors as the scrambles tell them
+  void pool(std::span<const TailSums> tails);
+  void widen();
   void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
   CaptureResult result_;
-  std::vector<double> sampled_error_;  // [problem] standard error at the reference band, as the samples tell it
-  std::vector<Lack> lacks_;            // [problem]
+  std::vector<double> scatter_;             // [problem] variance of the mean if samples were independent
+  std::vector<Lack> lacks_;                 // [problem]
+  std::vector<std::vector<double>> light_;  // [problem] what its means lack; empty = nothing
   size_t reference_band_, correlated_every_;
   bool neighbours_;  // problems beside each other look at neighbouring places
   const TruthPlan& truth_;

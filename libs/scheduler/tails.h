@@ -6,13 +6,9 @@
 // target's absolute floor where that is more). So it never fires on ratios of small numbers, and it fires where a user
 // would be misled. What a standard error may really be has three sources:
 //
-// - What the neighbours saw. Their mean variance of a path tells what this problem may have missed, if they look at the
-//   same kind of thing: a neighbour counts when the two means agree within four of their joint standard errors or
-//   within the share. Things of another brightness that are well resolved, as beyond an edge, do not; an event that one
-//   of two happened to see leaves a standard error as large as itself, so its neighbour does. And they have to lie all
-//   around: of eight half-planes beside the problem, each with the two problems next to it on its boundary and cut to
-//   9 x 9 problems, the one with the least mean decides, so that an edge beside a problem does not count while one that
-//   runs through it does. Near the rim of a picture, half-planes that are mostly outside do not count.
+// - What the neighbours on all sides saw, if they look at the same kind of thing (around.h, four problems far): their
+//   mean variance of a path tells what this problem may have missed. The reported error knows half of it already
+//   (pooled_errors.h).
 // - The problem's own few events. When fewer than twelve samples like the largest make up all of the sum, and the
 //   largest is at least three times the mean (no ordinary side of an edge), their count c scatters like Poisson's,
 //   and the standard error is sqrt(c + 1) of their effect on the mean, also when the scrambles happen to agree. It is
@@ -27,6 +23,7 @@
 // any neighbour saw leaves no trace; where problems have no neighbours only the first source exists.
 #pragma once
 #include <span>
+#include <vector>
 
 #include "sensor/sensor.h"
 
@@ -34,12 +31,17 @@ namespace suite {
 
 // One problem at the reference band.
 struct TailSums {
-  double mean = 0, error = 0;  // W/(m2 sr um); error of the mean, may be infinite (nothing is known about it: no flag)
-  float largest = 0;           // sample, W/(m2 sr um)
+  double mean = 0;     // W/(m2 sr um)
+  double error = 0;    // of the mean, as reported; may be infinite (nothing is known about it: no flag)
+  double sampled = 0;  // error of the mean as the problem's own scrambles tell it
+  float largest = 0;   // sample, W/(m2 sr um)
   uint32_t paths = 0;
   double share = 0;  // of the scale: the target for the relative error, or kTailShare
   double floor = 0;  // W/(m2 sr um), of the scale
 };
+
+// Standard errors at the reference band that the problems around each one let expect (around.h), [problem].
+std::vector<double> errors_around(std::span<const TailSums> of, uint32_t columns);
 
 // Raises quality_heavy_tail in `quality` where it holds; row-major, as many as `of`, which has whole rows of `columns`.
 // neighbours: problems beside each other look at things beside each other.

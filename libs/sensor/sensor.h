@@ -95,6 +95,7 @@ struct CaptureResult {
   size_t channels = 1, bins = 1;
   std::vector<double> radiance;          // [problem][channel][bin][band], W/(m2 sr um)
   std::vector<double> standard_error;    // [problem][channel][bin][band]
+  double error_degrees = 3;              // of freedom of the standard errors, for Student's quantile
   std::vector<uint32_t> paths;           // [problem]
   std::vector<uint8_t> quality;          // [problem], bits of QualityFlag
   std::vector<std::string> truth_names;  // "material", "range [m]", ...

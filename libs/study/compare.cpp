@@ -26,6 +26,7 @@ void append(StudyImage& image, const std::string& sensor, std::span<const Band> 
     }
   for (size_t i = 0; i < result.problems(); ++i)
     image.flagged.push_back(result.quality[i] & quality_heavy_tail ? 1 : 0);
+  image.degrees = result.error_degrees;
   image.paths.insert(image.paths.end(), result.paths.begin(), result.paths.end());
 }
 
@@ -47,7 +48,7 @@ double quantile_95(double degrees) {
 }
 
 Comparison compare_series(const StudyImage::Series& run, const StudyImage::Series& reference, const StudyImage& image,
-                          int reference_degrees) {
+                          double reference_degrees) {
   const size_t n = run.radiance.size();
   Comparison c;
   c.series = run.name;

@@ -22,7 +22,7 @@ struct StudyImage {
   std::vector<Series> series;
   std::vector<uint8_t> flagged;  // one value a problem of the first series' sensor order; empty = none
   std::vector<uint32_t> paths;   // paths of each problem; empty = unknown
-  int degrees = 3;               // of freedom of the standard errors: scrambles - 1
+  double degrees = 3;            // of freedom of the standard errors
 };
 
 // Appends a finished capture as series "sensor: band" (radiance channel, all time bins). Captures of one sensor that

@@ -119,8 +119,9 @@ TEST(RejectedSamples, IntervalsCover) {
       render(scene, sources,
              std::make_unique<Failing>(std::vector<Ray>(problems, Ray{{0, 0, 5}, {0, 0, 1}, 0}), one_band(), 256));
   int covered = 0;
+  const double t = student_t_quantile(0.95, static_cast<int>(run.result.error_degrees));
   for (size_t i = 0; i < problems; ++i)
-    covered += std::fabs(run.result.radiance[i] - 1) <= 3.182446 * run.result.standard_error[i];  // t, 3 degrees, 95 %
+    covered += std::fabs(run.result.radiance[i] - 1) <= t * run.result.standard_error[i];
   std::printf("coverage with 1 %% of samples rejected: %.4f\n", covered / double{problems});
   EXPECT_GT(covered, 0.93 * problems);
   EXPECT_LT(covered, 0.97 * problems);

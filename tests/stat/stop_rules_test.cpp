@@ -95,7 +95,6 @@ StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint
   const Sensor& s = *sensors[0];
   StudyImage made;
   append(made, s.name(), s.bands(0), static_cast<const AreaSensor&>(s).result);
-  made.degrees = Accumulators::scrambles_for(n) - 1;
   for (double& e : made.series[0].standard_error) e *= inflate;
   return made;
 }
@@ -107,18 +106,15 @@ double coverage_of(const StudyImage& image, const StudyImage& reference, double 
   return c.coverage;
 }
 
-// The lower bound was 0.93 while the flag went by ratios of variances: at 64 paths that left out 1.4 to 9.4 % of these
-// pixels, those with the smallest standard errors for their surroundings. Now nearly all count, and the bound was set
-// to what was then measured, 0.896 at 32 paths and 0.928 and more from 64 on: no flag warns of errors below 1 % of the
-// radiance.
+// Below 64 paths the means of problems take few values, and the intervals of some scenes hold more than they need.
 TEST(Coverage, NinetyFivePerCentIntervalsHold) {
   for (const auto& scene : {block(), court()})
     for (const double half_angle : {0.05, 0.3}) {
       const StudyImage reference = image_of(scene, half_angle, 1024, 1003);
-      for (const uint32_t paths : {32u, 64u, 256u}) {
+      for (const uint32_t paths : {16u, 32u, 64u, 256u}) {
         const double covered = coverage_of(image_of(scene, half_angle, paths, 3), reference, half_angle);
-        EXPECT_GT(covered, paths < 64 ? 0.89 : 0.92);
-        EXPECT_LT(covered, 0.97);
+        EXPECT_GT(covered, 0.93) << paths;
+        EXPECT_LT(covered, paths < 64 ? 0.985 : 0.97) << paths;
       }
     }
 }

@@ -131,7 +131,12 @@ TEST(TailFlags, FindWhatRareEventsHide) {
       count(r, flags_of(r), c, {}, now);
     }
     print(c.name, now);
-    EXPECT_GT(now.exceeding, 1000) << "there is something to find";
+    // In the gaps, which some path of a neighbour finds, the standard errors themselves know (99 % of the problems were
+    // beyond while each problem's scrambles alone told them); of the glints, a fiftieth as many, a tenth still hides.
+    if (place.holes)
+      EXPECT_LE(now.exceeding, 1e-3 * now.problems) << c.name;
+    else
+      EXPECT_GT(now.exceeding, 500) << "there is something to find";
     EXPECT_GE(now.found, 0.99 * now.exceeding) << c.name;
     EXPECT_LE(now.missed_share(), now.most_missed()) << c.name;
   }
@@ -151,7 +156,7 @@ TEST(TailFlags, AreSilentInQuietScenes) {
     EXPECT_LE(now.missed_share(), now.most_missed()) << c.name;
     by_ratio_most = std::max(by_ratio_most, before.false_share());
   }
-  EXPECT_GT(by_ratio_most, 0.05) << "the rule before flags without need, and the test sees it";
+  EXPECT_GT(by_ratio_most, 0.02) << "the rule before flags without need, and the test sees it";
 }
 
 // Where there is an edge within four problems on every side, of contrasts up to forty, the flag costs more than the 1 %
@@ -160,7 +165,7 @@ TEST(TailFlags, EdgesOnAllSidesCostFlags) {
   const Case c{"tiles", tiles(), sun_and_sky(0)};
   Count now, before;
   measure(c, now, before);
-  EXPECT_LE(now.false_share(), 0.12);
+  EXPECT_LE(now.false_share(), 0.06);
   EXPECT_LE(now.missed_share(), now.most_missed());
   EXPECT_GT(before.false_share(), 0.5) << "the rule before flags most of it, and the test sees it";
 }

@@ -81,13 +81,12 @@ TEST(Accumulators, shortfall_of_what_was_cut_and_missed) {
   Accumulators a(1, 2, 4, 0, true);
   a.set_paths(0, 100);
   const std::vector<double> means{3, 6};
-  std::vector<double> errors{0.3, 0};
-  a.widen(0, means, errors);
-  EXPECT_EQ(errors, (std::vector<double>{0.3, 0}));
+  EXPECT_TRUE(a.lacking(0, means).empty());
   a.truncated(0) = 25;  // T / (1 - T) = 1 / 3
-  a.widen(0, means, errors);
-  EXPECT_NEAR(errors[0], std::hypot(0.3, 1), 1e-12);
-  EXPECT_NEAR(errors[1], 2, 1e-12);
+  std::vector<double> light = a.lacking(0, means);
+  ASSERT_EQ(light.size(), 2u);
+  EXPECT_NEAR(light[0], 1, 1e-12);
+  EXPECT_NEAR(light[1], 2, 1e-12);
   a.truncated(0) = 100;
   EXPECT_NEAR(a.shortfall(0).cut, 999, 1e-6) << "paths that lose nothing";
   a.truncated(0) = 0;
@@ -96,10 +95,10 @@ TEST(Accumulators, shortfall_of_what_was_cut_and_missed) {
     a.missing(0).light[0] += 2, a.missing(0).light[1] += 4;
     *a.missing(0).reference += 2, *a.missing(0).square += 2 * 2 / 0.05;
   }
-  errors = {0, 0};
-  a.widen(0, means, errors);
-  EXPECT_NEAR(errors[0], 2 / std::sqrt(5), 1e-12);
-  EXPECT_NEAR(errors[1], 4 / std::sqrt(5), 1e-12);
+  light = a.lacking(0, means);
+  ASSERT_EQ(light.size(), 2u);
+  EXPECT_NEAR(light[0], 2 / std::sqrt(5), 1e-12);
+  EXPECT_NEAR(light[1], 4 / std::sqrt(5), 1e-12);
   a.set_paths(0, 100);
   *a.missing(0).square /= 4.01;  // 20 meetings
   EXPECT_EQ(a.shortfall(0).missing, 0);

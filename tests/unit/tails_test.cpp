@@ -15,11 +15,13 @@ constexpr uint32_t kSide = 21, kPaths = 64;
 
 // kSide x kSide problems of radiance 1 without noise.
 struct Picture {
-  std::vector<TailSums> of = std::vector<TailSums>(size_t{kSide} * kSide, {1, 0, 1, kPaths, kTailShare, 0});
+  std::vector<TailSums> of = std::vector<TailSums>(size_t{kSide} * kSide, {1, 0, 0, 1, kPaths, kTailShare, 0});
   TailSums& at(uint32_t x, uint32_t y) { return of[y * kSide + x]; }
   std::vector<uint8_t> flags(bool neighbours = true) const {
     std::vector<uint8_t> quality(of.size());
-    flag_heavy_tails(of, kSide, neighbours, quality);
+    std::vector<TailSums> sums = of;
+    for (TailSums& t : sums) t.sampled = t.error;  // as when nothing was pooled
+    flag_heavy_tails(sums, kSide, neighbours, quality);
     return quality;
   }
   size_t flagged(bool neighbours = true) const {
@@ -30,7 +32,8 @@ struct Picture {
 };
 // What `count` events of `value` among the paths leave, dealt as unevenly as chance has it on the mean.
 TailSums events(double count, double value) {
-  return {count * value / kPaths, std::sqrt(count) * value / kPaths, static_cast<float>(value), kPaths, kTailShare, 0};
+  const double error = std::sqrt(count) * value / kPaths;
+  return {count * value / kPaths, error, error, static_cast<float>(value), kPaths, kTailShare, 0};
 }
 
 // Found as 59 % of a picture without noise: the variances of rounding errors were compared with each other.
@@ -64,7 +67,7 @@ TEST(Tails, WhatEveryFourthNeighbourSawIsMissing) {
   for (uint32_t y = 0; y < kSide; ++y)
     for (uint32_t x = 0; x < kSide; ++x) {
       const bool saw = x % 2 == 0 && y % 2 == 0;
-      p.at(x, y) = saw ? events(1, 100) : TailSums{0.1, 0, 0.1f, kPaths, kTailShare, 0};
+      p.at(x, y) = saw ? events(1, 100) : TailSums{0.1, 0, 0, 0.1f, kPaths, kTailShare, 0};
     }
   const std::vector<uint8_t> flags = p.flags();
   for (uint32_t y = 0; y < kSide; ++y)
@@ -105,8 +108,8 @@ TEST(Tails, TheTargetAndItsFloorSayWhatMatters) {
 
 TEST(Tails, OddShapesAndUnknownErrors) {
   for (const uint32_t columns : {1u, 9u}) {  // a column, a row
-    std::vector<TailSums> of(9, {1, 0.1, 1, kPaths, kTailShare, 0});
-    of[0].error = of[4].error = 0;
+    std::vector<TailSums> of(9, {1, 0.1, 0.1, 1, kPaths, kTailShare, 0});
+    for (const size_t i : {0u, 4u}) of[i].error = of[i].sampled = 0;
     std::vector<uint8_t> quality(9);
     flag_heavy_tails(of, columns, true, quality);
     EXPECT_EQ(quality, (std::vector<uint8_t>{1, 0, 0, 0, 1, 0, 0, 0, 0})) << columns;
