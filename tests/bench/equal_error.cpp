@@ -1,14 +1,17 @@
-// CPU seconds to a relative RMSE of 1 % of the default estimator against the paper's (Method::paper), both at fixed
-// counts and in the same code: terrain with trees, a street with 1000 lamps at night, low satin and chrome domes under
-// sun and clear sky, and whole balls of the same, whose chrome throws the sun onto the field (a caustic: both methods
-// find it by chance only).
+// CPU seconds to the same relative RMSE of the default estimator and the paper's (Method::paper), both at fixed counts
+// and in the same code: terrain with trees, a street with 1000 lamps at night, low satin and chrome domes under sun and
+// clear sky, and whole balls of the same, whose chrome throws the sun onto the field (a caustic: both methods find it
+// by chance only).
 //
 // Every scene is rendered by both methods at three counts n / 16, n / 4 and n, in rounds of seeds of their own. Both
 // are treated alike: mean squared errors over rounds; a straight line through the three in the logarithms of error and
-// paths; where it crosses 1 % times the CPU time of a path. The errors are taken against the mean of two long runs of
-// the default of other seeds, whose own error is known from their difference and is taken off. The uncertainty is the
-// jackknife's over rounds (factors of one standard error); n' / n says how far the crossing lies from what was
-// measured. Usage: equal_error [edge of the images = 32] [rounds = 4]
+// paths; where it crosses the target times the CPU time of a path. The target is the geometric mean of what both reach
+// at n, so that none is extrapolated farther than the other; n' / n says how far. Errors are taken against the mean of
+// two long runs of the default of other seeds, whose own error is known from their difference and is taken off. The
+// uncertainty is the jackknife's over rounds (x/: a factor of one standard error); with few rounds it misses what none
+// has seen.
+//
+// Usage: equal_error [edge of the images = 32] [rounds = 4]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -226,58 +229,63 @@ struct Round {
   double square[kCounts] = {}, seconds[kCounts] = {};
 };
 
+// A method on a scene: its rounds up to `most` paths a pixel.
+struct Runs {
+  std::vector<Round> rounds;
+  uint32_t most = 0;
+  double pixels = 0, reference_square = 0;
+};
 struct Line {
-  double per_path = 0, error = 0, slope = 0, paths = 0, seconds = 0;  // paths a pixel to 1 %, seconds to 1 %
+  double per_path = 0, error = 0, slope = 0, paths = 0, seconds = 0;  // paths a pixel and seconds to the target
 };
 // Over all rounds but one; none = -1. Seconds are not finite where errors do not fall with paths.
-Line line_of(const std::vector<Round>& rounds, int left_out, double most, double reference_square, double pixels) {
+Line line_of(const Runs& runs, double target, int left_out = -1) {
   double y[kCounts] = {}, seconds[kCounts] = {}, n = 0;
-  for (int r = 0; r < static_cast<int>(rounds.size()); ++r) {
+  for (int r = 0; r < static_cast<int>(runs.rounds.size()); ++r) {
     if (r == left_out) continue;
+    const Round& round = runs.rounds[static_cast<size_t>(r)];
     ++n;
-    for (int k = 0; k < kCounts; ++k) y[k] += rounds[r].square[k], seconds[k] += rounds[r].seconds[k];
+    for (int k = 0; k < kCounts; ++k) y[k] += round.square[k], seconds[k] += round.seconds[k];
   }
-  for (int k = 0; k < kCounts; ++k) y[k] = 0.5 * std::log(y[k] / n - reference_square), seconds[k] /= n;
+  for (int k = 0; k < kCounts; ++k) y[k] = 0.5 * std::log(y[k] / n - runs.reference_square), seconds[k] /= n;
   Line line;
+  const double most = runs.most;
   // What a job costs before its first path goes out with the difference.
-  line.per_path = (seconds[2] - seconds[0]) / (pixels * most * 15 / 16);
+  line.per_path = (seconds[2] - seconds[0]) / (runs.pixels * most * 15 / 16);
   line.error = std::exp(y[2]);
   line.slope = (y[2] - y[0]) / std::log(16.0);
   const double middle = (y[0] + y[1] + y[2]) / 3;
-  line.paths = line.slope < 0 ? most / 4 * std::exp((std::log(0.01) - middle) / line.slope) : HUGE_VAL;
-  line.seconds = line.per_path * pixels * line.paths;
+  line.paths = line.slope < 0 ? most / 4 * std::exp((std::log(target) - middle) / line.slope) : HUGE_VAL;
+  line.seconds = line.per_path * runs.pixels * line.paths;
   return line;
 }
-
-struct Extrapolated {
-  Line line;
-  double log_error = 0;  // standard error of the logarithm of the seconds
-};
-Extrapolated extrapolated(const std::vector<Round>& rounds, double most, double reference_square, double pixels) {
-  Extrapolated e{line_of(rounds, -1, most, reference_square, pixels), 0};
-  const auto n = static_cast<double>(rounds.size());
+// Standard error of the logarithm of the seconds to a target, by the jackknife over rounds.
+double log_error(const Runs& runs, double target) {
   RunningStats left_out;
-  for (int r = 0; r < static_cast<int>(rounds.size()); ++r)
-    left_out.add(std::log(line_of(rounds, r, most, reference_square, pixels).seconds));
-  e.log_error = (n - 1) * left_out.stderr_of_mean();
-  return e;
+  for (int r = 0; r < static_cast<int>(runs.rounds.size()); ++r)
+    left_out.add(std::log(line_of(runs, target, r).seconds));
+  return static_cast<double>(runs.rounds.size() - 1) * left_out.stderr_of_mean();
 }
 
-Extrapolated measure(const Case& c, uint32_t edge, int rounds, Method method, uint32_t most,
-                     const Reference& reference) {
-  std::vector<Round> all(static_cast<size_t>(rounds));
+Runs measure(const Case& c, uint32_t edge, int rounds, Method method, uint32_t most, const Reference& reference) {
+  Runs runs{{}, most, static_cast<double>(edge) * edge, reference.square};
   uint64_t seed = 7;
-  for (Round& r : all)
+  for (int round = 0; round < rounds; ++round) {
+    runs.rounds.emplace_back();
     for (int k = 0; k < kCounts; ++k) {
       const Outcome o = render(c, edge, most >> (4 - 2 * k), method, seed++);
-      r.square[k] = square_between(o.radiance, reference.radiance), r.seconds[k] = o.seconds;
+      runs.rounds.back().square[k] = square_between(o.radiance, reference.radiance);
+      runs.rounds.back().seconds[k] = o.seconds;
     }
-  return extrapolated(all, most, reference.square, static_cast<double>(edge) * edge);
+  }
+  return runs;
 }
 
-void print(const char* scene, const char* method, const Extrapolated& e, uint32_t most) {
-  std::printf("%-22s %-7s %8.3f  %6.2f %% @ %-5u %6.2f %9.3f x/: %-5.2f %6.2f\n", scene, method, 1e6 * e.line.per_path,
-              100 * e.line.error, most, e.line.slope, e.line.seconds, std::exp(e.log_error), e.line.paths / most);
+void print(const char* scene, const char* method, const Runs& runs, double target) {
+  const Line line = line_of(runs, target);
+  std::printf("%-22s %-8s %8.3f  %6.2f %% @ %-5u %6.2f %10.3f x/: %-5.2f %8.2f\n", scene, method, 1e6 * line.per_path,
+              100 * line.error, runs.most, line.slope, line.seconds, std::exp(log_error(runs, target)),
+              line.paths / runs.most);
 }
 
 }  // namespace
@@ -292,16 +300,18 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "equal_error [edge of the images, 8 to 4096] [rounds, 2 to 1000]\n");
     return 2;
   }
-  std::printf("%-22s %-7s %8s  %16s %6s %9s %8s %6s\n", "scene", "method", "us/path", "error @ n", "slope", "s to 1 %",
+  std::printf("%-22s %-8s %8s  %16s %6s %10s %8s %8s\n", "scene", "method", "us/path", "error @ n", "slope", "seconds",
               "", "n'/n");
   for (const Case& c : {trees(), street(), domes(), balls()}) {
     const Reference reference = reference_of(c, edge);
-    const Extrapolated own = measure(c, edge, rounds, Method::standard, c.standard_paths, reference),
-                       theirs = measure(c, edge, rounds, Method::paper, c.paper_paths, reference);
-    print(c.name, "default", own, c.standard_paths);
-    print(c.name, "paper's", theirs, c.paper_paths);
-    std::printf("%-22s ratio %.2f x/: %.2f; the reference's own error %.2f %%\n", c.name,
-                theirs.line.seconds / own.line.seconds, std::exp(std::hypot(own.log_error, theirs.log_error)),
+    const Runs own = measure(c, edge, rounds, Method::standard, c.standard_paths, reference),
+               theirs = measure(c, edge, rounds, Method::paper, c.paper_paths, reference);
+    const double target = std::sqrt(line_of(own, 0.01).error * line_of(theirs, 0.01).error);
+    print(c.name, "default", own, target);
+    print(c.name, "paper's", theirs, target);
+    std::printf("%-22s to %.2f %%: ratio %.2f x/: %.2f; the reference's own error %.2f %%\n", c.name, 100 * target,
+                line_of(theirs, target).seconds / line_of(own, target).seconds,
+                std::exp(std::hypot(log_error(own, target), log_error(theirs, target))),
                 100 * std::sqrt(reference.square));
     std::fflush(stdout);
   }
