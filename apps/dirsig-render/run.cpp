@@ -26,6 +26,7 @@
 #include "scheduler/features.h"
 #include "scheduler/moments.h"
 #include "sensor/plugin.h"
+#include "start.h"
 #include "study.h"
 
 namespace suite {
@@ -278,6 +279,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.store = store.get();
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   options.warn = warn;
+  start_sensors(sim, options, o.output);
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());

@@ -11,6 +11,7 @@
 #include "log.h"
 #include "scheduler/result.h"
 #include "sensor/quality.h"
+#include "start.h"
 #include "study/study.h"
 #include "trace/tracer.h"
 
@@ -96,6 +97,7 @@ StudyOutput run_once(const std::shared_ptr<const Scene>& scene, const Simulation
   options.pipeline.seed = run.seed;
   if (run.reference) options.pipeline.stop = StopRule::plan, options.pipeline.method = Method::standard;
   collect = &out.image;
+  start_sensors(sim, options, "");
   out.report = run_job(scene, sim.sources, sim.sensors, options);
   collect = nullptr;
   out.file_seconds = out.report.deliver_seconds;

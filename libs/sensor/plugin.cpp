@@ -3,69 +3,16 @@
 #include <dlfcn.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "sensor/sdk/suite_sensor.h"
-#include "sensor/sensors.h"
+#include "sensor/plugin_host.h"
 
 namespace suite {
 
 namespace {
 
-// What host functions leave behind: an Error must not cross the border, so it waits here.
-struct Making {
-  const Params& params;
-  std::optional<Error> error;
-  std::string failure;
-};
-
-template <class Ask>
-int guarded(void* context, const Ask& ask) noexcept {
-  Making& m = *static_cast<Making*>(context);
-  try {
-    return ask(m.params);
-  } catch (const Error& e) {
-    if (!m.error) m.error = e;
-  } catch (...) {
-    m.failure = "a key could not be read";
-  }
-  return -1;
-}
-
-int host_number(void* context, const char* key, double* value) {
-  return guarded(context, [&](const Params& p) {
-    const auto found = p.find(key);
-    if (found) *value = found->as_number();
-    return found ? 1 : 0;
-  });
-}
-int host_numbers(void* context, const char* key, double* values, uint32_t capacity, uint32_t* count) {
-  return guarded(context, [&](const Params& p) {
-    *count = 0;
-    const auto found = p.find(key);
-    if (!found) return 0;
-    const std::vector<double> list = found->as_numbers();
-    if (list.size() > capacity)
-      throw found->error(strf("%zu numbers, the plug-in takes %u at most", list.size(), capacity));
-    std::copy(list.begin(), list.end(), values);
-    *count = static_cast<uint32_t>(list.size());
-    return 1;
-  });
-}
-int host_text(void* context, const char* key, char* buffer, uint32_t capacity) {
-  return guarded(context, [&](const Params& p) {
-    const auto found = p.find(key);
-    if (!found) return 0;
-    const std::string text = found->as_text();
-    if (text.size() + 1 > capacity) throw found->error("the text is too long for the plug-in");
-    std::memcpy(buffer, text.c_str(), text.size() + 1);
-    return 1;
-  });
-}
-void host_fail(void* context, const char* message) {
-  static_cast<Making*>(context)->failure = message ? message : "no reason given";
-}
+static_assert(SUITE_QUALITY_HEAVY_TAIL == int{quality_heavy_tail} && SUITE_QUALITY_FAILURES == int{quality_failures} &&
+              SUITE_QUALITY_TRUNCATED == int{quality_truncated} && SUITE_QUALITY_UNRESOLVED == int{quality_unresolved});
 
 // Element i of a plug-in's array, whose elements are as large as the plug-in knows them. Error: smaller than ours.
 template <class T>
@@ -92,10 +39,9 @@ Band band_of(const suite_band& b) {
 class PluginSensor final : public Sensor {
  public:
   PluginSensor(const suite_sensor_plugin& plugin, const Params& params, const SensorContext& context)
-      : deliver_(context.deliver), kind_(plugin.kind), name_(params.name("name", plugin.kind)) {
-    Making making{params, {}, {}};
-    const suite_host host{sizeof(suite_host), SUITE_SENSOR_ABI, &making,  host_number,
-                          host_numbers,       host_text,        host_fail};
+      : deliver_(context.deliver), kind_(plugin.kind), name_(params.name("name", plugin.kind)), run_(name_) {
+    PluginMaking making{params, context, {}, {}};
+    const suite_host host = making.host();
     sensor_.size = sizeof(suite_sensor);
     int failed = 1;
     try {
@@ -171,6 +117,12 @@ class PluginSensor final : public Sensor {
     return {own.min_paths, own.max_paths, own.relative_error, own.absolute_floor};
   }
 
+  void start(const RunFacts& facts) override {
+    const suite_run& run = run_.begin(facts, states_, bands_);
+    if (!sensor_.start) return;
+    call([&] { return sensor_.start(sensor_.self, &run); }, "when the run of sensor '" + name_ + "' began");
+  }
+
   void accept(CaptureResult&& r) override {
     std::vector<const char*> names;
     for (const std::string& n : r.truth_names) names.push_back(n.c_str());
@@ -184,20 +136,28 @@ class PluginSensor final : public Sensor {
                               r.standard_error.data(),
                               r.paths.data(),
                               names.data(),
-                              r.truth.data()};
-    int failed = 0;
-    try {
-      if (sensor_.accept) failed = sensor_.accept(sensor_.self, &result);
-    } catch (...) {
-      failed = 1;
-    }
-    if (failed) throw Error("the plug-in '" + kind_ + "' failed while it took the result of sensor '" + name_ + "'");
+                              r.truth.data(),
+                              r.quality.data()};
+    if (sensor_.accept)
+      call([&] { return sensor_.accept(sensor_.self, &result); }, "while it took the result of sensor '" + name_ + "'");
     std::vector<Band> bands = bands_[tasks_[r.task].captures[r.capture].state];
     ImageRows rows = rows_[r.task][r.capture];
     deliver_({*this, std::move(rows), std::move(r), std::move(bands), {}, {}, {}, "plug-in '" + kind_ + "'"});
   }
 
  private:
+  // Calls what may write files. Error: the file that could not be written, else that the plug-in failed.
+  template <class Call>
+  void call(const Call& plugin, const std::string& when) {
+    int failed = 1;
+    try {
+      failed = plugin();
+    } catch (...) {
+    }
+    run_.rethrow();
+    if (failed) throw Error("the plug-in '" + kind_ + "' failed " + when);
+  }
+
   void destroy() {
     if (sensor_.destroy && sensor_.self) sensor_.destroy(sensor_.self);
     sensor_ = {};
@@ -270,6 +230,7 @@ class PluginSensor final : public Sensor {
   std::function<void(const Delivery&)> deliver_;
   std::string kind_, name_;
   suite_sensor sensor_{};
+  PluginRun run_;
   std::vector<std::vector<Band>> bands_;
   std::vector<SpectralState> states_;
   std::vector<std::vector<double>> centers_;  // um, of the bins of each state

@@ -12,6 +12,8 @@
 
 namespace suite {
 
+struct RunFacts;  // run_facts.h
+
 struct TimeWindow {
   double begin = 0, end = 0;  // s, simulation time; begin == end is an instant
   bool operator==(const TimeWindow&) const = default;
@@ -138,6 +140,8 @@ class Sensor {
   // What a problem of a capture with own_convergence may take, instead of what the capture says for all. Asked before
   // the job starts, from one thread; at least one path.
   virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }
+  // Called before a run's first capture, from one thread, when its bins are chosen.
+  virtual void start(const RunFacts&) {}
   // Called once per capture before it is rendered, from one thread. Single rays may be asked for before.
   virtual void begin(const Capture&) {}
   // The ray of a sample. Called from many threads; does not throw.

@@ -1,10 +1,17 @@
-// Time to 1 % relative RMSE of the default estimator against the paper's (Method::paper) at a fixed count, in the same
-// code: terrain with trees, a street with 1000 lamps at night, satin and chrome objects under sun and clear sky.
+// CPU seconds to the same relative RMSE of the default estimator and the paper's (Method::paper), both at fixed counts
+// and in the same code: terrain with trees, a street with 1000 lamps at night, low satin and chrome domes under sun and
+// clear sky, and whole balls of the same, whose chrome throws the sun onto the field (a caustic: both methods find it
+// by chance only).
 //
-// Every scene is rendered by both methods, interleaved, at two counts each; errors are taken against a long run of the
-// default (another seed), whose own error is taken off. The time to 1 % follows from the error at the larger count and
-// CPU time per path: by the measured slope of the default, by the slope -1/2 of independent samples of the paper's.
-// Usage: equal_error [edge of the images = 64] [rounds = 3]
+// Every scene is rendered by both methods at three counts n / 16, n / 4 and n, in rounds of seeds of their own. Both
+// are treated alike: mean squared errors over rounds; a straight line through the three in the logarithms of error and
+// paths; where it crosses the target times the CPU time of a path. The target is the geometric mean of what both reach
+// at n, so that none is extrapolated farther than the other; n' / n says how far. Errors are taken against the mean of
+// two long runs of the default of other seeds, whose own error is known from their difference and is taken off. The
+// uncertainty is the jackknife's over rounds (x/: a factor of one standard error); with few rounds it misses what none
+// has seen.
+//
+// Usage: equal_error [edge of the images = 32] [rounds = 4]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -103,7 +110,7 @@ Case trees() {
   }
   SourceSpecs sources = terrain_sources();
   sources.sun->half_angle = 0.00465;
-  return {"terrain with trees", scene, std::move(sources), {0, -220, 190}, {0, 0, 0}, 0.1, 16, 512, 512, 8192};
+  return {"terrain with trees", scene, std::move(sources), {0, -220, 190}, {0, 0, 0}, 0.1, 16, 512, 512, 4096};
 }
 
 // Blocks of houses with streets between them, lamps 8 m high every 10 m or so, three kinds.
@@ -138,12 +145,12 @@ Case street() {
           8,
           512,
           1024,
-          8192};
+          4096};
 }
 
-// Low domes of satin paint and of polished chrome on a field, under sun and clear sky: the upper 20 degrees of spheres,
-// so that the sun they mirror goes up and not onto the field.
-Case gloss() {
+// Sixteen bodies of satin paint and of polished chrome on a field, under sun and clear sky: the parts above the field
+// of spheres of that radius with their middles at that height.
+Case gloss(const char* name, double radius, double height, double roughness, Vec3 from, Vec3 to, double half_angle) {
   auto scene =
       scene_of({mesh_of({{-60, -60, 0}, {60, -60, 0}, {60, 60, 0}, {-60, 60, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
                {material("field", lambert(0.3)),
@@ -152,8 +159,7 @@ Case gloss() {
                                    {{"diffuse", Curve::constant(0.3)}, {"specular", Curve::constant(0.2)}},
                                    {},
                                    nullptr}),
-                material("chrome", {"ggx", {{"roughness", 0.02}}, {{"f0", Curve::constant(0.65)}}, {}, nullptr})});
-  const double radius = 8;
+                material("chrome", {"ggx", {{"roughness", roughness}}, {{"f0", Curve::constant(0.65)}}, {}, nullptr})});
   for (int i = 0; i < 16; ++i) {
     Primitive ball;
     ball.kind = PrimitiveKind::sphere;
@@ -163,23 +169,27 @@ Case gloss() {
     Placement p;
     p.kind = TargetKind::primitive;
     p.target = static_cast<uint32_t>(i);
-    p.to_parent = translation({6.0 * (i % 4) - 9, 6.0 * (i / 4) - 9, -radius * std::cos(20 * kDegree)});
+    p.to_parent = translation({6.0 * (i % 4) - 9, 6.0 * (i / 4) - 9, height});
     scene->groups[0].placements.push_back(p);
   }
   SourceSpecs sources;
   sources.sun = SunSpec{dir_from_angles(0.7, 0.5), 0.00465, solar_irradiance()};
   sources.clear = ClearSkySpec{};
   resolve_sources(sources, *scene);
-  return {"satin and chrome", scene, std::move(sources), {0, -28, 30}, {0, 0, 0}, 0.3, 8, 256, 1024, 8192};
+  return {name, scene, std::move(sources), from, to, half_angle, 8, 256, 1024, 4096};
 }
+// The upper 20 degrees of large spheres: the sun they mirror goes up and not onto the field.
+Case domes() {
+  return gloss("satin, chrome domes", 8, -8 * std::cos(20 * kDegree), 0.02, {0, -28, 30}, {0, 0, 0}, 0.3);
+}
+Case balls() { return gloss("chrome balls, caustic", 2, 2, 0.05, {0, -28, 26}, {0, 0, 1}, 0.35); }
 
 struct Outcome {
-  double error = 0, seconds = 0;  // relative RMSE; CPU seconds
+  double seconds = 0;  // CPU
   std::vector<double> radiance;
 };
 
-Outcome render(const Case& c, uint32_t edge, uint32_t paths, Method method, uint64_t seed,
-               const std::vector<double>* reference) {
+Outcome render(const Case& c, uint32_t edge, uint32_t paths, Method method, uint64_t seed) {
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<Camera>(c.from, c.to, c.half_angle, edge, paths));
   JobOptions options;
@@ -190,29 +200,92 @@ Outcome render(const Case& c, uint32_t edge, uint32_t paths, Method method, uint
 
   const std::clock_t begun = std::clock();
   run_job(c.scene, c.sources, sensors, options);
-  Outcome o;
-  o.seconds = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
-  o.radiance = std::move(static_cast<Camera&>(*sensors[0]).result.radiance);
-  if (!reference) return o;
-  double square = 0, mean = 0;
-  for (size_t i = 0; i < o.radiance.size(); ++i) {
-    const double d = o.radiance[i] - (*reference)[i];
-    square += d * d, mean += (*reference)[i];
-  }
-  const auto n = static_cast<double>(o.radiance.size());
-  o.error = std::sqrt(square / n) / (mean / n);
-  return o;
+  return {static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC,
+          std::move(static_cast<Camera&>(*sensors[0]).result.radiance)};
 }
 
-// Mean squared error and CPU time per path of one method, over rounds with seeds of their own.
-struct Measured {
-  double square_few = 0, square_many = 0, seconds_few = 0, seconds_many = 0;
+// Mean of squared differences over the squared mean of b.
+double square_between(const std::vector<double>& a, const std::vector<double>& b) {
+  double square = 0, mean = 0;
+  for (size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]) * (a[i] - b[i]), mean += b[i];
+  return square * static_cast<double>(a.size()) / (mean * mean);
+}
+
+struct Reference {
+  std::vector<double> radiance;
+  double square = 0;  // its own relative squared error
+};
+Reference reference_of(const Case& c, uint32_t edge) {
+  Reference r{render(c, edge, c.reference_paths, Method::standard, 99).radiance, 0};
+  const std::vector<double> other = render(c, edge, c.reference_paths, Method::standard, 101).radiance;
+  r.square = square_between(other, r.radiance) / 4;
+  for (size_t i = 0; i < other.size(); ++i) r.radiance[i] = 0.5 * (r.radiance[i] + other[i]);
+  return r;
+}
+
+constexpr int kCounts = 3;
+// Squared errors and CPU seconds of one round at the three counts.
+struct Round {
+  double square[kCounts] = {}, seconds[kCounts] = {};
 };
 
-// Seconds to 1 %: slope = of the logarithm of the error over that of the paths.
-double seconds_to_one_percent(const Measured& m, double paths, double pixels, double slope, double& per_path) {
-  per_path = (m.seconds_many - m.seconds_few) / (pixels * paths * 0.75);
-  return per_path * pixels * paths * std::pow(std::sqrt(m.square_many) / 0.01, 1 / slope);
+// A method on a scene: its rounds up to `most` paths a pixel.
+struct Runs {
+  std::vector<Round> rounds;
+  uint32_t most = 0;
+  double pixels = 0, reference_square = 0;
+};
+struct Line {
+  double per_path = 0, error = 0, slope = 0, paths = 0, seconds = 0;  // paths a pixel and seconds to the target
+};
+// Over all rounds but one; none = -1. Seconds are not finite where errors do not fall with paths.
+Line line_of(const Runs& runs, double target, int left_out = -1) {
+  double y[kCounts] = {}, seconds[kCounts] = {}, n = 0;
+  for (int r = 0; r < static_cast<int>(runs.rounds.size()); ++r) {
+    if (r == left_out) continue;
+    const Round& round = runs.rounds[static_cast<size_t>(r)];
+    ++n;
+    for (int k = 0; k < kCounts; ++k) y[k] += round.square[k], seconds[k] += round.seconds[k];
+  }
+  for (int k = 0; k < kCounts; ++k) y[k] = 0.5 * std::log(y[k] / n - runs.reference_square), seconds[k] /= n;
+  Line line;
+  const double most = runs.most;
+  // What a job costs before its first path goes out with the difference.
+  line.per_path = (seconds[2] - seconds[0]) / (runs.pixels * most * 15 / 16);
+  line.error = std::exp(y[2]);
+  line.slope = (y[2] - y[0]) / std::log(16.0);
+  const double middle = (y[0] + y[1] + y[2]) / 3;
+  line.paths = line.slope < 0 ? most / 4 * std::exp((std::log(target) - middle) / line.slope) : HUGE_VAL;
+  line.seconds = line.per_path * runs.pixels * line.paths;
+  return line;
+}
+// Standard error of the logarithm of the seconds to a target, by the jackknife over rounds.
+double log_error(const Runs& runs, double target) {
+  RunningStats left_out;
+  for (int r = 0; r < static_cast<int>(runs.rounds.size()); ++r)
+    left_out.add(std::log(line_of(runs, target, r).seconds));
+  return static_cast<double>(runs.rounds.size() - 1) * left_out.stderr_of_mean();
+}
+
+Runs measure(const Case& c, uint32_t edge, int rounds, Method method, uint32_t most, const Reference& reference) {
+  Runs runs{{}, most, static_cast<double>(edge) * edge, reference.square};
+  uint64_t seed = 7;
+  for (int round = 0; round < rounds; ++round) {
+    runs.rounds.emplace_back();
+    for (int k = 0; k < kCounts; ++k) {
+      const Outcome o = render(c, edge, most >> (4 - 2 * k), method, seed++);
+      runs.rounds.back().square[k] = square_between(o.radiance, reference.radiance);
+      runs.rounds.back().seconds[k] = o.seconds;
+    }
+  }
+  return runs;
+}
+
+void print(const char* scene, const char* method, const Runs& runs, double target) {
+  const Line line = line_of(runs, target);
+  std::printf("%-22s %-8s %8.3f  %6.2f %% @ %-5u %6.2f %10.3f x/: %-5.2f %8.2f\n", scene, method, 1e6 * line.per_path,
+              100 * line.error, runs.most, line.slope, line.seconds, std::exp(log_error(runs, target)),
+              line.paths / runs.most);
 }
 
 }  // namespace
@@ -221,43 +294,27 @@ double seconds_to_one_percent(const Measured& m, double paths, double pixels, do
 int main(int argc, char** argv) {
   using namespace suite;
   using namespace suite::bench;
-  const auto edge = static_cast<uint32_t>(argc > 1 ? std::atol(argv[1]) : 64);
-  const int rounds = argc > 2 ? std::atoi(argv[2]) : 3;
-  const double pixels = static_cast<double>(edge) * edge;
-  std::printf("%-20s %12s %12s %12s %12s %10s %10s %8s\n", "scene", "us/path", "paper's", "error @ n", "paper's",
-              "s to 1 %", "paper's", "ratio");
-  double product = 1;
-  int count = 0;
-  for (const Case& c : {trees(), street(), gloss()}) {
-    const Outcome reference = render(c, edge, c.reference_paths, Method::standard, 99, nullptr);
-    Measured own, theirs;
-    for (int r = 0; r < rounds; ++r)
-      for (const Method method : {Method::standard, Method::paper}) {
-        Measured& m = method == Method::standard ? own : theirs;
-        const uint32_t paths = method == Method::standard ? c.standard_paths : c.paper_paths;
-        const Outcome few = render(c, edge, paths / 4, method, 7 + 2 * static_cast<uint64_t>(r), &reference.radiance);
-        const Outcome many = render(c, edge, paths, method, 8 + 2 * static_cast<uint64_t>(r), &reference.radiance);
-        m.square_few += few.error * few.error / rounds, m.square_many += many.error * many.error / rounds;
-        m.seconds_few += few.seconds / rounds, m.seconds_many += many.seconds / rounds;
-      }
-    // The reference's own error, extrapolated along the measured curve.
-    const double raw = std::clamp(0.5 * std::log2(own.square_few / own.square_many) / 2, 0.5, 0.9);
-    const double reference_square =
-        own.square_many * std::pow(static_cast<double>(c.standard_paths) / c.reference_paths, 2 * raw);
-    for (double* square : {&own.square_few, &own.square_many, &theirs.square_few, &theirs.square_many})
-      *square -= reference_square;
-    const double slope = std::clamp(0.5 * std::log2(own.square_few / own.square_many) / 2, 0.5, 0.75);
-    double own_path = 0, their_path = 0;
-    const double own_seconds = seconds_to_one_percent(own, c.standard_paths, pixels, slope, own_path),
-                 their_seconds = seconds_to_one_percent(theirs, c.paper_paths, pixels, 0.5, their_path);
-    std::printf("%-20s %12.3f %12.3f %6.2f%%@%4u %6.2f%%@%4u %10.3f %10.3f %8.2f\n", c.name, 1e6 * own_path,
-                1e6 * their_path, 100 * std::sqrt(own.square_many), c.standard_paths,
-                100 * std::sqrt(theirs.square_many), c.paper_paths, own_seconds, their_seconds,
-                their_seconds / own_seconds);
-    std::fflush(stdout);
-    product *= their_seconds / own_seconds;
-    ++count;
+  const auto edge = static_cast<uint32_t>(argc > 1 ? std::atol(argv[1]) : 32);
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 4;
+  if (edge < 8 || edge > 4096 || rounds < 2 || rounds > 1000) {
+    std::fprintf(stderr, "equal_error [edge of the images, 8 to 4096] [rounds, 2 to 1000]\n");
+    return 2;
   }
-  std::printf("geometric mean %.2f (CPU time, all threads; %u x %u pixels, %d rounds)\n",
-              std::pow(product, 1.0 / count), edge, edge, rounds);
+  std::printf("%-22s %-8s %8s  %16s %6s %10s %8s %8s\n", "scene", "method", "us/path", "error @ n", "slope", "seconds",
+              "", "n'/n");
+  for (const Case& c : {trees(), street(), domes(), balls()}) {
+    const Reference reference = reference_of(c, edge);
+    const Runs own = measure(c, edge, rounds, Method::standard, c.standard_paths, reference),
+               theirs = measure(c, edge, rounds, Method::paper, c.paper_paths, reference);
+    const double target = std::sqrt(line_of(own, 0.01).error * line_of(theirs, 0.01).error);
+    print(c.name, "default", own, target);
+    print(c.name, "paper's", theirs, target);
+    std::printf("%-22s to %.2f %%: ratio %.2f x/: %.2f; the reference's own error %.2f %%\n", c.name, 100 * target,
+                line_of(theirs, target).seconds / line_of(own, target).seconds,
+                std::exp(std::hypot(log_error(own, target), log_error(theirs, target))),
+                100 * std::sqrt(reference.square));
+    std::fflush(stdout);
+  }
+  std::printf("%u x %u pixels, %d rounds; CPU time of all threads; x/: factor of one standard error\n", edge, edge,
+              rounds);
 }

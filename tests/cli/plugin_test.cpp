@@ -3,8 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "base/files.h"
 #include "formats/envi/envi.h"
+#include "motion/scene_frame.h"
+#include "sensor/sensor.h"
+#include "spectral/state.h"
 #include "support/run_command.h"
 
 namespace suite {
@@ -80,6 +86,149 @@ TEST_F(Plugin, MayCollectOverAHemisphere) {
   const CommandResult r = render("{kind: irradiance_meter, name: meter}", "irradiance_meter", "meter");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NEAR(EnviImage(*folder_ / "meter/meter.img").read_all().at(0), 3.14159265, 1e-6);  // pi times the sky's
+}
+
+// Structures that grew since leave plug-ins of smaller ones alone.
+TEST_F(Plugin, OfOlderHeadersGoOnWorking) {
+  for (const std::string version : {"1.0", "1.2"}) {
+    const CommandResult r =
+        render("{kind: old_camera, name: old, paths: 8}", "old_camera_" + version, "old_" + version);
+    ASSERT_EQ(r.code, 0) << version << r.err;
+    const std::vector<double> image = EnviImage(*folder_ / ("old_" + version + "/old.img")).read_all();
+    ASSERT_EQ(image.size(), 16u);
+    for (const double v : image) EXPECT_NEAR(v, 0.5, 1e-6) << version;
+  }
+}
+
+// A table of numbers with a line of names above.
+struct Table {
+  std::vector<std::vector<double>> rows;
+  explicit Table(const std::string& path) {
+    std::istringstream in(read_text(path));
+    std::string line, cell;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      rows.emplace_back();
+      std::istringstream cells(line);
+      while (std::getline(cells, cell, ',')) rows.back().push_back(std::stod(cell));
+    }
+  }
+};
+// What a plug-in calls its weights of wavelengths: those of the example.
+double square_of(double um) { return um / 0.6 * um / 0.6; }
+
+TEST_F(Plugin, KnowsTheBinsThatBandsAreMadeOf) {
+  const CommandResult r = render("{kind: field_notes, name: notes, spectral_error: 0}", "field_notes", "notes");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Table bins(*folder_ / "notes/notes/bins.csv");
+  ASSERT_GT(bins.rows.size(), 20u);
+  const Band bands[] = {Band::gaussian("green", 0.55, 0.04), Band::rectangular("red", 0.65, 0.03)};
+  const std::vector<double> image = EnviImage(*folder_ / "notes/notes.img").read_all();
+  for (size_t b = 0; b < 2; ++b) {
+    double all = 0, linear = 0, weighed = 0;
+    for (const auto& bin : bins.rows) {
+      EXPECT_LT(bin[0], bin[1]);
+      const double um = 0.5 * (bin[0] + bin[1]);
+      all += bin[2 + b], linear += bin[2 + b] * um, weighed += bin[2 + b] * square_of(um);
+    }
+    EXPECT_NEAR(all, 1, 1e-12);
+    // A smooth function over the bins has its mean over the band; the sky over the ground is 0.5 of it everywhere.
+    const Curve line({0.3, 0.8}, {0.3, 0.8}, Outside::error);
+    EXPECT_NEAR(linear, band_mean(bands[b], line), 1e-6) << bands[b].name;
+    const double middle = bands[b].center_um, spread = b ? 0.03 * 0.03 / 12 : 0.04 * 0.04 / (8 * std::log(2.0));
+    EXPECT_NEAR(weighed, (middle * middle + spread) / 0.36, 2e-5) << "of a Gaussian and of a box";
+    EXPECT_NEAR(image.at(b) / 0.5, weighed, 1e-6) << "what the program made of the plug-in's weights";
+    EXPECT_GT(std::fabs(weighed - square_of(middle)), 1e-4) << "a plug-in that knew the centres only would be off";
+  }
+}
+
+TEST_F(Plugin, ChosenBinsCountInTheirBandsToo) {
+  const CommandResult r = render("{kind: field_notes, name: notes, step_um: 0.01}", "field_notes", "chosen");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Table bins(*folder_ / "chosen/notes/bins.csv");
+  const std::vector<double> image = EnviImage(*folder_ / "chosen/notes.img").read_all();
+  for (size_t b = 0; b < 2; ++b) {
+    double all = 0, weighed = 0;
+    for (const auto& bin : bins.rows) all += bin[2 + b], weighed += bin[2 + b] * square_of(0.5 * (bin[0] + bin[1]));
+    EXPECT_NEAR(all, 1, 1e-12);
+    EXPECT_NEAR(image.at(b) / 0.5, weighed, 1e-6);
+  }
+}
+
+TEST_F(Plugin, SeesErrorsAndFlagsOfItsPixels) {
+  // Under a bright lamp, with one faulty pixel.
+  const CommandResult r = render(
+      "{kind: field_notes, name: notes, faulty: 5}]\nlamps: [{kind: point, intensity: 5, positions_m: [[2, 2, 1]]}",
+      "field_notes", "flags");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Table pixels(*folder_ / "flags/notes/pixels.csv");
+  ASSERT_EQ(pixels.rows.size(), 16u);
+  const std::vector<double> image = EnviImage(*folder_ / "flags/notes.img").read_all(),
+                            error = EnviImage(*folder_ / "flags/notes_error.img").read_all(),
+                            quality = EnviImage(*folder_ / "flags/notes_quality.img").read_all();
+  for (size_t p = 0; p < 16; ++p) {
+    EXPECT_EQ(pixels.rows[p][1], quality[p]);
+    EXPECT_EQ((static_cast<int>(quality[p]) & quality_failures) != 0, p == 5) << p;
+    for (size_t b = 0; b < 2; ++b) {
+      EXPECT_FLOAT_EQ(static_cast<float>(pixels.rows[p][2 + 2 * b]), static_cast<float>(image[2 * p + b]));
+      EXPECT_FLOAT_EQ(static_cast<float>(pixels.rows[p][3 + 2 * b]), static_cast<float>(error[2 * p + b]));
+      EXPECT_GT(error[2 * p + b], 0);
+    }
+  }
+}
+
+TEST_F(Plugin, KnowsPlaceTimeAndRun) {
+  write_file(*folder_ / "placed.yaml",
+             std::string_view("scene: 1\norigin: {latitude_deg: 48.2, longitude_deg: 11.6, height_m: 500}\nmaterials: "
+                              "{grey: {model: lambert, reflectance: 0.5}}\nobjects: {p: {plane: {width: 0, depth: 0}, "
+                              "material: grey}}\nworld: [{place: p}]\n"));
+  write_file(*folder_ / "placed_sim.yaml",
+             std::string_view("scene: placed.h5\nseed: 77\nepoch: 2026-06-21T10:30:00Z\nsky: {radiance: 1}\nsensors: "
+                              "[{kind: field_notes, name: notes}]\n"));
+  const CommandResult r = run_command("cd '" + folder_->path() +
+                                      "' && " SUITE_BIN_DIR "/scene-prep placed.yaml -o placed.h5 -q && " SUITE_BIN_DIR
+                                      "/dirsig-render placed_sim.yaml -o placed -q --plugin build/libfield_notes.so");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const std::string text = read_text(*folder_ / "placed/notes/where.txt");
+  EXPECT_THAT(text, HasSubstr("second 0: 2026-06-21T10:30:00"));
+  EXPECT_THAT(text, HasSubstr("second 60: 2026-06-21T10:31:00"));
+  EXPECT_THAT(text, HasSubstr("seed: 77\n"));
+  EXPECT_THAT(text, HasSubstr("name: notes\nfolder: placed/notes\n"));
+  EXPECT_THAT(text, HasSubstr("dirsig-render placed_sim.yaml"));
+  double latitude = 0, longitude = 0, height = 0;
+  ASSERT_EQ(std::sscanf(text.c_str(), "origin: %lf,%lf,%lf", &latitude, &longitude, &height), 3) << text;
+  EXPECT_EQ(latitude, 48.2);
+  EXPECT_EQ(longitude, 11.6);
+  Vec3 east;
+  ASSERT_EQ(std::sscanf(text.substr(text.find("1 km")).c_str(), "1 km east: %lf,%lf,%lf", &east.x, &east.y, &east.z),
+            3);
+  const Vec3 expected = SceneFrame({latitude, longitude, height}).ecef_from_enu({1000, 0, 0});
+  EXPECT_LT(length(east - expected), 1e-6);
+  // Without a place and a clock nothing is made up.
+  ASSERT_EQ(render("{kind: field_notes, name: notes}", "field_notes", "nowhere").code, 0);
+  EXPECT_THAT(read_text(*folder_ / "nowhere/notes/where.txt"), testing::StartsWith("origin:\nsecond 0: \n"));
+}
+
+TEST_F(Plugin, WritesFilesWholeOrNotAtAll) {
+  CommandResult r = render("{kind: field_notes, name: notes, file: ../bins.csv}", "field_notes", "up");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("cannot write a file named '../bins.csv'"));
+  EXPECT_FALSE(file_exists(*folder_ / "up/bins.csv"));
+  // A folder stands where the file is to be: told with its path, and nothing is left beside it.
+  ASSERT_EQ(run_command("mkdir -p '" + (*folder_ / "taken/notes/bins.csv") + "'").code, 0);
+  r = render("{kind: field_notes, name: notes}", "field_notes", "taken");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("taken/notes/bins.csv"));
+  EXPECT_EQ(run_command("ls -A '" + (*folder_ / "taken/notes") + "'").out, "bins.csv\n");
+  // A study keeps no files of sensors.
+  write_file(*folder_ / "study.yaml",
+             std::string_view("scene: scene.h5\nsky: {radiance: 1}\nsensors: [{kind: field_notes, name: notes}]\n"));
+  r = run_command("cd '" + folder_->path() +
+                  "' && " SUITE_BIN_DIR
+                  "/dirsig-render study.yaml --study studied -q --study-budgets 4,8 --study-seeds 2 --plugin "
+                  "build/libfield_notes.so");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_FALSE(file_exists(*folder_ / "studied/notes/bins.csv"));
 }
 
 TEST_F(Plugin, UsersMistakesAreLocated) {

@@ -99,15 +99,6 @@ TEST_F(CurveFile, DirsigEmissivityBothLayouts) {
   EXPECT_THAT(message_of([&] { read_curve(folder_ / "cut.ems", {}); }), HasSubstr("cut.ems:"));
 }
 
-TEST_F(CurveFile, LocalDirsigFiles) {
-  const std::string folder = SUITE_LOCAL_DATA "/dirsig/";
-  if (!file_exists(folder + "background_1.ems")) GTEST_SKIP() << "needs the local DIRSIG files";
-  CurveOptions options;
-  options.outside = Outside::hold;
-  EXPECT_NEAR(read_curve(folder + "background_1.ems", options).at(0.35), 0.02, 1e-9);
-  EXPECT_NEAR(read_curve(folder + "ideal_mat_1.ems", options).at(0.35), 0, 1e-9);
-}
-
 // Reads `text` as a curve whose items are files of the folder.
 Curve joined(const std::string& folder, const std::string& text) {
   const Params p = Params::parse_text("c: " + text, "s.yaml").at("c");
@@ -166,26 +157,34 @@ TEST_F(JoinedCurves, AreRefusedWithTheirPlace) {
   EXPECT_THAT(fault("{join: [low.txt, high.txt], at_um: [1, 1.1]}"), HasSubstr("2 wavelengths for 2 curves"));
 }
 
-// The two instruments of one sample of the ECOSTRESS library meet at 2.5 um.
-TEST_F(CurveFile, LocalGrassOfTwoInstruments) {
-  const std::string grass = SUITE_LOCAL_DATA "/spectra/vegetation.grass.avena.fatua.";
-  if (!file_exists(grass + "tir.vh352.ucsb.nicolet.spectrum.txt")) GTEST_SKIP() << "needs the local library spectra";
-  const Curve c = joined(SUITE_LOCAL_DATA "/spectra",
-                         "[vegetation.grass.avena.fatua.vswir.vh352.ucsb.asd.spectrum.txt, "
-                         "vegetation.grass.avena.fatua.tir.vh352.ucsb.nicolet.spectrum.txt]");
-  EXPECT_DOUBLE_EQ(c.low_um(), 0.35);
-  EXPECT_DOUBLE_EQ(c.high_um(), 15.341);
-  EXPECT_NEAR(c.at(2.5), 0.0783, 1e-9);
-  EXPECT_NEAR(c.at(2.501), 0.04867, 1e-9);
+// A file as the ECOSTRESS library has them: percent, descending or not, over `count` wavelengths from low to high.
+std::string library_file(double low, double high, int count, bool descending, double (*percent)(double)) {
+  std::string text = strf(
+      "Name: a grass\nType: vegetation\nClass: grass\nWavelength Range: VSWIR\nMeasurement: Bidirectional "
+      "reflectance\nFirst Column: X\nSecond Column: Y\nX Units: Wavelength (micrometer)\nY Units: Reflectance "
+      "(percentage)\nFirst X Value: %g\nLast X Value: %g\nNumber of X Values: %d\nAdditional Information: \n\n",
+      descending ? high : low, descending ? low : high, count);
+  for (int k = 0; k < count; ++k) {
+    const double um = low + (high - low) * (descending ? count - 1 - k : k) / (count - 1);
+    text += strf(" %.4f\t %.4f\r\n", um, percent(um));
+  }
+  return text;
 }
 
-TEST_F(CurveFile, LocalEcostressLibrary) {
-  const std::string grass = SUITE_LOCAL_DATA "/spectra/vegetation.grass.avena.fatua.vswir.vh352.ucsb.asd.spectrum.txt";
-  if (!file_exists(grass)) GTEST_SKIP() << "needs the local library spectra";
-  const Curve c = read_curve(grass, {});
-  EXPECT_DOUBLE_EQ(c.low_um(), 0.35);
-  EXPECT_DOUBLE_EQ(c.high_um(), 2.5);
-  EXPECT_NEAR(c.at(0.351), 0.05923, 1e-9);
+// Two instruments of one sample meet where the first one ends; the second is written from long to short wavelengths.
+TEST_F(CurveFile, LibrarySpectraOfTwoInstruments) {
+  write_file(folder_ / "vswir.spectrum.txt",
+             library_file(0.35, 2.5, 2151, false, [](double um) { return 10 + 20 * um; }));
+  write_file(folder_ / "tir.spectrum.txt", library_file(2.5, 15.5, 1301, true, [](double um) { return 20 - um; }));
+  const Curve one = read_curve(folder_ / "vswir.spectrum.txt", {});
+  EXPECT_DOUBLE_EQ(one.low_um(), 0.35);
+  EXPECT_DOUBLE_EQ(one.high_um(), 2.5);
+  EXPECT_NEAR(one.at(0.351), 0.1702, 1e-9);
+  const Curve both = joined(folder_.path(), "[vswir.spectrum.txt, tir.spectrum.txt]");
+  EXPECT_DOUBLE_EQ(both.low_um(), 0.35);
+  EXPECT_DOUBLE_EQ(both.high_um(), 15.5);
+  EXPECT_NEAR(both.at(2.499), 0.5998, 1e-9);
+  EXPECT_NEAR(both.at(2.51), 0.1749, 1e-9);
 }
 
 }  // namespace

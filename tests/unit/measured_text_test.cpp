@@ -85,14 +85,27 @@ TEST(Cornell, RefusesWithPlace) {
   expect_error(message(parse, "1\n400\n1.6 0 0.3 0 1\n"), "a polar angle in rad = 1.6 is out of range");
 }
 
-TEST(Cornell, MeasuredSprayPaint) {
-  const std::string path = std::string(SUITE_LOCAL_DATA) + "/brdf/krylon_blue.brdf";
-  if (!file_exists(path)) GTEST_SKIP() << "local data absent: " << path;
-  const auto s = read_cornell(path);
-  EXPECT_EQ(s.in.size(), 1439u);
-  EXPECT_EQ(s.info.wavelength_um.size(), 31u);
-  EXPECT_EQ(s.value.size(), 1439u * 31u);
+// As large as the measurements that are made: 1439 pairs of directions, 31 wavelengths, values from a formula.
+TEST(Cornell, AWholeMeasurement) {
+  std::string text = "# a paint\n\n# num wls\n31\n";
+  for (int k = 0; k < 31; ++k) text += strf("%d ", 400 + 10 * k);
+  text += "\n";
+  const auto value = [](int n, int k) { return 0.01 * (1 + n % 97) + 0.001 * k; };
+  for (int n = 0; n < 1439; ++n) {
+    text += strf("%.6f %.6f %.6f %.6f", 0.001 * n, 0.0, 1.5 - 0.001 * n, 0.002 * n);
+    for (int k = 0; k < 31; ++k) text += strf(" %.6f", value(n, k));
+    text += "\n";
+  }
+  const auto s = parse_cornell(text, "paint.brdf");
+  ASSERT_EQ(s.in.size(), 1439u);
+  ASSERT_EQ(s.value.size(), 1439u * 31u);
+  EXPECT_NEAR(s.info.wavelength_um.at(30), 0.7, 1e-12);
   EXPECT_TRUE(s.info.isotropic);
+  for (int n = 0; n < 1439; n += 7)
+    for (int k = 0; k < 31; k += 5)
+      ASSERT_NEAR(s.value[static_cast<size_t>(31 * n + k)], value(n, k), 1e-6) << n << ' ' << k;
+  EXPECT_NEAR(s.in[700].z, std::cos(0.7), 1e-6);
+  EXPECT_NEAR(s.out[700].z, std::cos(0.8), 1e-6);
 }
 
 TEST(BrdfCsv, ColumnsInAnyOrderAndDegrees) {

@@ -99,6 +99,14 @@ typedef struct suite_convergence {
   double absolute_floor; /* radiance below which the error is judged absolutely */
 } suite_convergence;
 
+/* Bits of suite_result.quality. */
+enum suite_quality {
+  SUITE_QUALITY_HEAVY_TAIL = 1, /* rare events: the true error may be far beyond the reported one */
+  SUITE_QUALITY_FAILURES = 2,   /* samples that were NaN or negative were rejected */
+  SUITE_QUALITY_TRUNCATED = 4,  /* more than 1 % of the energy was cut at the maximum number of nodes */
+  SUITE_QUALITY_UNRESOLVED = 8  /* light behind smooth refracting surfaces was not found */
+};
+
 typedef struct suite_result {
   uint32_t size;
   uint32_t capture;
@@ -106,8 +114,46 @@ typedef struct suite_result {
   const double *radiance, *standard_error; /* [problem][band] */
   const uint32_t* paths;                   /* [problem] */
   const char* const* truth_names;
-  const double* truth; /* [problem][truth]; NaN = nothing known */
+  const double* truth;    /* [problem][truth]; NaN = nothing known */
+  const uint8_t* quality; /* [problem], bits of suite_quality; since 1.3 */
 } suite_result;
+
+/* The bins of one state and how bands are made of them: the radiance of a band is the sum over the bins of weight times
+ * the bin's radiance, which is its mean over the bin's interval. The weights of a band add up to 1. Unless the user
+ * asks for even bins (`spectral_error: 0`) bins are chosen for the spectra of the scene; a function of another kind
+ * that the plug-in weighs them with is followed as finely as suite_state.step_um says. Since 1.3. */
+typedef struct suite_bins {
+  uint32_t size;
+  uint32_t bins, bands, reserved;
+  const double *low_um, *high_um; /* [bin], ascending */
+  const double* weights;          /* [band][bin] */
+  double reference_um;
+} suite_bins;
+
+/* Where the scene is on the Earth (WGS84). Since 1.3. */
+typedef struct suite_frame {
+  uint32_t size;
+  uint32_t reserved;
+  double latitude_deg, longitude_deg, height_m; /* of the origin of the scene's ENU frame; height: ellipsoidal */
+  double ecef_from_enu[9];                      /* row-major; turns directions */
+  double ecef_origin_m[3];                      /* place in ECEF = ecef_from_enu * ENU + ecef_origin_m */
+} suite_frame;
+
+/* What is known when rendering begins; see suite_sensor.start. Since 1.3. */
+typedef struct suite_run {
+  uint32_t size;
+  uint32_t state_count;
+  const suite_bins* bins; /* [state] */
+  const char* name;       /* of the sensor, as the user gave it */
+  const char* folder;     /* for the sensor's own files, its alone; NULL: this run keeps no files (a study) */
+  const char* made_by;    /* program, version and command line, as results record them */
+  uint64_t seed;          /* of the run */
+  void* context;
+  /* Writes a file of that name into `folder`, which is made when the first one comes; the file is there whole or not at
+   * all. The name is one of a file without folders. To be called from start() and accept() only. Returns 0, or anything
+   * else when it could not be written: the host reports why and the run ends. Without a folder it does nothing. */
+  int (*write_file)(void* context, const char* name, const void* bytes, uint64_t count);
+} suite_run;
 
 /* What the host offers while a sensor is made. Each returns 1 when the key was given, 0 when not, -1 when what was
  * given is wrong (the host then reports where; the plug-in should give up). A key that is not asked for is an error of
@@ -119,6 +165,11 @@ typedef struct suite_host {
   int (*numbers)(void* context, const char* key, double* values, uint32_t capacity, uint32_t* count);
   int (*text)(void* context, const char* key, char* buffer, uint32_t capacity);
   void (*fail)(void* context, const char* message); /* why the sensor cannot be made */
+  /* Since 1.3. frame: comes in with its size set; 0 when the scene has no place on the Earth. utc: the date of a time
+   * of the simulation, as "2026-06-21T10:30:00.000000Z" (its second 0 is the epoch); 0 when the simulation has no
+   * clock. */
+  int (*frame)(void* context, suite_frame* frame);
+  int (*utc)(void* context, double time_s, char* buffer, uint32_t capacity);
 } suite_host;
 
 /* A sensor. The arrays must stay where they are until destroy(). */
@@ -139,6 +190,10 @@ typedef struct suite_sensor {
   /* May be NULL. Called before rendering, from one thread, for every problem: comes in filled with what the capture
    * says for all of them. Returns 0 or anything else for a failure. Since 1.1. */
   int (*convergence)(void* self, uint32_t capture, uint64_t problem, suite_convergence* convergence);
+  /* May be NULL. Called from one thread before a run's first capture (a study makes several runs); what it is given
+   * lives until the next run or destroy(). To see what the scene holds, the host may ask for rays and convergence
+   * before. Returns 0 or anything else for a failure. Since 1.3. */
+  int (*start)(void* self, const suite_run* run);
 } suite_sensor;
 
 typedef struct suite_sensor_plugin {
@@ -154,9 +209,10 @@ const suite_sensor_plugin* suite_sensor_plugin_entry(void);
 #ifdef __cplusplus
 } /* extern "C" */
 
+#include <cstddef>
 #include <exception>
-#include <initializer_list>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -187,6 +243,21 @@ class Keys {
     if (got < 0) throw Refused();
     return got ? buffer : otherwise;
   }
+  /* Where the scene is; nothing when it has no place on the Earth. */
+  std::optional<suite_frame> frame() const {
+    suite_frame frame = {};
+    frame.size = sizeof frame;
+    const int got = host_.frame(host_.context, &frame);
+    if (got < 0) throw Refused();
+    return got ? std::optional<suite_frame>(frame) : std::nullopt;
+  }
+  /* The date of a time of the simulation; empty when it has no clock. */
+  std::string utc(double time_s) const {
+    char buffer[64];
+    const int got = host_.utc(host_.context, time_s, buffer, sizeof buffer);
+    if (got < 0) throw Refused();
+    return got ? buffer : "";
+  }
   struct Refused : std::exception {
     const char* what() const noexcept override { return "a key was refused"; }
   };
@@ -195,12 +266,14 @@ class Keys {
   const suite_host& host_;
 };
 
-/* Base of a sensor: fill the lists in the constructor, override ray() and, if wanted, accept(). Exceptions are welcome:
- * they end at the border. */
+/* Base of a sensor: fill the lists in the constructor, override ray() and, if wanted, start() and accept(). Exceptions
+ * are welcome: they end at the border. */
 class Sensor {
  public:
   virtual ~Sensor() = default;
   virtual void ray(const suite_ray_request& request, suite_ray& ray) const = 0;
+  /* run() and bins() hold from here on. */
+  virtual void start() {}
   virtual void accept(const suite_result&) {}
   /* Asked for every problem when own_convergence is set. */
   virtual void convergence(uint32_t /*capture*/, uint64_t /*problem*/, suite_convergence&) const {}
@@ -212,7 +285,23 @@ class Sensor {
   uint32_t numbers = 4;
   bool own_convergence = false;
 
+  void begin(const suite_run& run) {
+    run_ = &run;
+    start();
+  }
+
  protected:
+  const suite_run& run() const { return *run_; }
+  /* Elements are as large as the host knows them. */
+  const suite_bins& bins(uint32_t state) const {
+    const char* first = reinterpret_cast<const char*>(run_->bins);
+    return *reinterpret_cast<const suite_bins*>(first + std::size_t{state} * run_->bins->size);
+  }
+  /* A file in run().folder, whole or not at all; from start() and accept(). */
+  void write_file(const std::string& name, const std::string& bytes) const {
+    if (run_->write_file(run_->context, name.c_str(), bytes.data(), bytes.size()))
+      throw std::runtime_error(name + " was not written");
+  }
   static suite_band gaussian(const char* name, double center_um, double fwhm_um) {
     return {sizeof(suite_band), SUITE_BAND_GAUSSIAN, name, center_um, fwhm_um, 0, nullptr, nullptr};
   }
@@ -230,6 +319,7 @@ class Sensor {
 
  private:
   std::vector<std::vector<suite_band>> bands_;
+  const suite_run* run_ = nullptr;
 };
 
 template <class T>
@@ -271,6 +361,14 @@ int make(const suite_host* host, suite_sensor* out) noexcept {
           return 1;
         }
       };
+    out->start = [](void* self, const suite_run* run) noexcept {
+      try {
+        static_cast<Sensor*>(self)->begin(*run);
+        return 0;
+      } catch (...) {
+        return 1;
+      }
+    };
     out->destroy = [](void* self) noexcept { delete static_cast<Sensor*>(self); };
     return 0;
   } catch (const std::exception& e) {
