@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "base/run_app.h"
 
@@ -86,10 +87,9 @@ void check_folder(const std::string& folder, const Simulation& sim) {
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state) {
   std::string text = strf("%zu of %zu captures are complete", finished, captures);
   if (finished) text += " in " + folder;
-  return text + (state ? "; " + folder +
-                             "/result.state.h5 holds the finished captures and strips of 8 lines: the same command "
-                             "with --resume "
-                             "in place of --state and its budget goes on from there"
+  return text + (state ? "; " + in_folder(folder, "result.state.h5") +
+                             " holds the finished captures and strips of 8 lines: the same command with --resume in "
+                             "place of --state and its budget goes on from there"
                        : "; without --state the rest is lost");
 }
 

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "budget_options.h"
 #include "continued.h"
@@ -198,7 +199,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   try {
     return run_job(scene, sim.sources, sim.sensors, options);
   } catch (const Error& e) {
-    if (!e.where().file.starts_with(folder + "/")) throw;
+    if (!e.where().file.starts_with(in_folder(folder, ""))) throw;
     size_t captures = 0;
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
@@ -281,7 +282,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());
-  write_log(o.output + "/render.json", report, options);
+  write_log(in_folder(o.output, "render.json"), report, options);
   for (const auto& sensor : sim.sensors)
     for (const TextFile& log : sensor->logs()) writer->write_text(log);
   if (!report.stopped) return 0;
