@@ -271,9 +271,11 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
+  const Facts facts(sim, scene);
+  check_wishes(sim, facts);
   make_folder(o.output);
   check_folder(o.output, sim);
-  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes), facts);
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
