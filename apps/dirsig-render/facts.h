@@ -17,6 +17,7 @@ class Facts {
   std::string utc(double seconds) const;
   // The sun at that time, as the text gives it: above the air when there is air. Nothing without one.
   std::optional<SunSpec> sun(double seconds) const;
+  bool sun_moves() const { return sun_.dated(); }
 
  private:
   std::optional<Clock> clock_;

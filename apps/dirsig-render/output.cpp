@@ -175,7 +175,7 @@ void OutputWriter::tell_moment(Image& m) const {
   if (lasts && !utc.empty())
     extra.push_back({"acquisition time range", "{" + facts_.utc(begin) + ", " + facts_.utc(end) + "}"});
   const std::optional<SunSpec> sun = facts_.sun(middle);
-  if (sun && sun->time && lasts) {
+  if (sun && facts_.sun_moves() && lasts) {
     const auto first = azimuth_elevation_deg(facts_.sun(begin)->direction),
                last = azimuth_elevation_deg(facts_.sun(end)->direction);
     extra.push_back({"sun azimuth range", strf("{%.9g, %.9g}", first[0], last[0])});

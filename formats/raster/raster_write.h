@@ -25,13 +25,13 @@ struct RasterBand {
 struct FloatRaster {
   uint32_t width = 0, height = 0;
   std::vector<RasterBand> bands;
-  std::string units;                           // of all bands; empty = none
-  std::vector<size_t> display;                 // from 0: the bands to show as red, green and blue, or one as grey
-  bool true_colour = false;                    // those three are what the eye sees as red, green and blue
-  std::optional<double> no_data;               // the number that means nothing is known, NaN too
-  std::string utc;                             // ISO 8601, "2026-06-21T10:30:00.000000Z"; empty = no date
+  std::string units;                             // of all bands; empty = none
+  std::vector<size_t> display;                   // from 0: the bands to show as red, green and blue, or one as grey
+  bool true_colour = false;                      // those three are what the eye sees as red, green and blue
+  std::optional<double> no_data;                 // the number that means nothing is known, NaN too
+  std::string utc;                               // ISO 8601, "2026-06-21T10:30:00.000000Z"; empty = no date
   std::optional<std::array<double, 2>> sun_deg;  // compass azimuth, elevation
-  std::string comment;                         // goes into the file's description
+  std::string comment;                           // goes into the file's description
   std::optional<RasterPlacement> placement;
 };
 
@@ -42,9 +42,9 @@ void write_float_tiff(const std::string& path, const FloatRaster& raster, std::s
 // layer where there is nothing to show.
 void write_exr(const std::string& path, const FloatRaster& raster, std::span<const float> values);
 
-// A GDAL virtual raster beside an image: its bands, units and no-data value, and as its geolocation arrays the first two
-// bands of `places` (longitude and latitude, WGS84, of the middle of every pixel). type: of the image, GDAL's name.
-// image, places: names of files in the same folder. GDAL before 3.9 looks for `places` from where it is started.
+// A GDAL virtual raster beside an image: its bands, units and no-data value, and as its geolocation arrays the first
+// two bands of `places` (longitude and latitude, WGS84, of the middle of every pixel). type: of the image, GDAL's name.
+// image, places: names of files in the folder of the VRT, wherever GDAL is started from.
 void write_located_vrt(const std::string& path, const FloatRaster& raster, const std::string& type,
                        const std::string& image, const std::string& places);
 

@@ -21,12 +21,12 @@ namespace suite {
 
 namespace {
 
-constexpr double kClassicLimit = 4e9;      // bytes: beyond, offsets are 64 bits wide (BigTIFF)
+constexpr double kClassicLimit = 4e9;  // bytes: beyond, offsets are 64 bits wide (BigTIFF)
 constexpr size_t kStripBytes = size_t{1} << 20;
 
-// One item of GDAL's metadata; more: its attributes after the name.
+// One item of GDAL's metadata; more: its attributes after the name. GDAL takes entities of a value apart twice.
 std::string item(const char* name, const std::string& more, const std::string& value) {
-  return strf("  <Item name=\"%s\"%s>", name, more.c_str()) + in_markup(value) + "</Item>\n";
+  return strf("  <Item name=\"%s\"%s>", name, more.c_str()) + in_markup(in_markup(value)) + "</Item>\n";
 }
 
 const char* colour_of(const FloatRaster& r, size_t band) {
@@ -88,8 +88,7 @@ void set_texts(TIFF* tiff, const FloatRaster& r) {
   TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, r.comment.c_str());
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, strf("suite %s", kVersion).c_str());
   TIFFSetField(tiff, kGdalMetadataTag, gdal_metadata(r).c_str());
-  if (r.no_data)
-    TIFFSetField(tiff, kNoDataTag, std::isnan(*r.no_data) ? "nan" : strf("%.17g", *r.no_data).c_str());
+  if (r.no_data) TIFFSetField(tiff, kNoDataTag, std::isnan(*r.no_data) ? "nan" : strf("%.17g", *r.no_data).c_str());
 }
 
 bool set_position(TIFF* tiff, const RasterPlacement& at) {
