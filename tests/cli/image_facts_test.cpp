@@ -23,7 +23,7 @@ const char* const kScene =
     "scene: 1\norigin: {latitude_deg: 49, longitude_deg: 8, height_m: 120}\n"
     "materials:\n  grass, wet: {model: lambert, reflectance: 0.25}\n  warm: {model: lambert, reflectance: 0.2, "
     "temperature_k: 310}\nobjects:\n  plane: {plane: {width: 28, depth: 28}, material: \"grass, wet\"}\n  board: {box: "
-    "{x0: 0, y0: 0, z0: 0, x1: 4, y1: 4, z1: 0.01}, material: warm}\nworld:\n  - {place: plane}\n  - {place: board, "
+    "{x0: 0, y0: 0, z0: 0, x1: 4, y1: 4, z1: 0.0005}, material: warm}\nworld:\n  - {place: plane}\n  - {place: board, "
     "tag: target}\n";
 const std::string kDay = "scene: scene.h5\nsun: {direction: {time_utc: \"2026-06-21T10:30:00Z\"}}\n";
 const std::string kColours =
