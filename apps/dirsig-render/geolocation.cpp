@@ -17,9 +17,9 @@ constexpr double kUtmReach = 9;  // degrees of longitude from the central meridi
 // Pixels as places of a map, and what the map is called in a header.
 struct Mapped {
   std::vector<Vec2> places;
-  std::vector<std::string> name;      // of the projection
-  std::vector<std::string> remarks;   // what follows the size of a pixel
-  std::string fault;                  // why there is none
+  std::vector<std::string> name;     // of the projection
+  std::vector<std::string> remarks;  // what follows the size of a pixel
+  std::string fault;                 // why there is none
 };
 
 Mapped mapped(std::span<const Vec3> enu, std::span<const Geodetic> places) {
@@ -142,7 +142,8 @@ std::vector<std::string> write_geolocation(const LocatedImage& image, const Scen
     write_glt(files.back(), image, m, *grid);
   } catch (const Error& e) {
     if (!e.where().file.empty()) throw;  // a file that cannot be written
-    warn("'" + image.base + ".img' gets no lookup table (GLT): " + e.message() + (e.hint().empty() ? "" : "; " + e.hint()));
+    warn("'" + image.base + ".img' gets no lookup table (GLT): " + e.message() +
+         (e.hint().empty() ? "" : "; " + e.hint()));
   }
   return files;
 }

@@ -20,8 +20,8 @@ struct LocatedImage {
 
 // Writes BASE_igm.img (longitude, latitude, height on WGS84; east, north, up of a scene without an origin),
 // BASE_glt.img (for every cell of a north-up UTM grid, or of scene ENU, the sample and the line that show it) and, of a
-// scene with an origin, BASE_geo.vrt (the image with the IGM as its geolocation arrays). Returns the names of the files;
-// says why there is no GLT when there is none.
+// scene with an origin, BASE_geo.vrt (the image with the IGM as its geolocation arrays). Returns the names of the
+// files; says why there is no GLT when there is none.
 std::vector<std::string> write_geolocation(const LocatedImage& image, const SceneNotes& notes);
 
 }  // namespace suite

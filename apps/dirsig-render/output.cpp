@@ -27,7 +27,7 @@ std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
 // An image while its rows come in.
 struct OutputWriter::Image {
   uint32_t columns = 0, rows = 0, next = 0;
-  size_t values = 0;                     // of radiance, per pixel
+  size_t values = 0;  // of radiance, per pixel
   ImageWishes wishes;
   Display display;                       // of header and preview
   std::map<uint32_t, Delivery> waiting;  // by first row
@@ -39,7 +39,7 @@ struct OutputWriter::Image {
   };
   std::vector<Classes> classes;
   std::vector<std::string> files;
-  std::vector<double> preview;  // [pixel][display.bands]
+  std::vector<double> preview;      // [pixel][display.bands]
   std::vector<float> all;           // [pixel][value], for formats that take a whole picture
   std::vector<float> all_quality;   // [pixel], likewise
   std::vector<Vec3> place;          // [pixel], when a geolocation is wanted
@@ -285,9 +285,10 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
   write_preview(base + ".png", m.preview, m.columns, m.rows, m.display.bands.size());
   m.files.push_back(base + ".png");
   if (m.unknown && m.wishes.quantity == Quantity::brightness_temperature)
-    warn(strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "
-              "zero, say); they are the header's data ignore value",
-              base.c_str(), m.unknown, size_t{m.columns} * m.rows * m.values));
+    warn(
+        strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "
+             "zero, say); they are the header's data ignore value",
+             base.c_str(), m.unknown, size_t{m.columns} * m.rows * m.values));
   for (const std::string& file : m.files) note("wrote " + file);
 }
 

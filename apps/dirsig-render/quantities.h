@@ -30,8 +30,8 @@ class Conversion {
  private:
   struct Part {
     size_t columns = 0;
-    std::vector<double> factor;                   // of each band
-    std::vector<BandThermometer> thermometers;    // of each band, or none
+    std::vector<double> factor;                 // of each band
+    std::vector<BandThermometer> thermometers;  // of each band, or none
   };
   size_t per_pixel_ = 0, bands_ = 0, columns_ = 0;
   std::vector<Part> parts_;

@@ -164,8 +164,8 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
   const Size size = size_of(sim);
   make_folder(o.study);
   const std::string table = in_folder(o.study, "study.csv"), identity = identity_of(o, sim, options);
-  check_outputs({table, in_folder(o.study, "study.json"), in_folder(o.study, "study.html"), in_folder(o.study, "reference.img"),
-                 in_folder(o.study, "reference_error.img")});
+  check_outputs({table, in_folder(o.study, "study.json"), in_folder(o.study, "study.html"),
+                 in_folder(o.study, "reference.img"), in_folder(o.study, "reference_error.img")});
   const bool kept = file_exists(table);
   std::vector<StudyRow> rows;
   if (kept) {

@@ -258,8 +258,8 @@ void read_classes(Keys& keys, EnviHeader& h) {
   if (!names) return;
   for (std::string& name : list_of(names->text)) h.classes.push_back({std::move(name), {}});
   if (count && static_cast<size_t>(integer_of(count->text, *count, 0, kMaxExtent)) != h.classes.size())
-    throw Error(names->where,
-                strf("'class names' has %zu names for %s classes", h.classes.size(), count->text.substr(0, 20).c_str()));
+    throw Error(names->where, strf("'class names' has %zu names for %s classes", h.classes.size(),
+                                   count->text.substr(0, 20).c_str()));
   if (!lookup) return;
   const std::vector<std::string> items = list_of(lookup->text);
   if (items.size() != 3 * h.classes.size())

@@ -81,8 +81,8 @@ std::string header_text(const EnviHeader& h) {
   if (!command_line().empty()) description += ": " + command_line();
   std::string t = "ENVI\n";
   t += "description = {" + in_braces(description, false) + "}\n";
-  t += strf("samples = %zu\nlines = %zu\nbands = %zu\nheader offset = 0\nfile type = ENVI %s\n", h.samples,
-            h.lines, h.bands, h.classes.empty() ? "Standard" : "Classification");
+  t += strf("samples = %zu\nlines = %zu\nbands = %zu\nheader offset = 0\nfile type = ENVI %s\n", h.samples, h.lines,
+            h.bands, h.classes.empty() ? "Standard" : "Classification");
   t += strf("data type = %d\ninterleave = %s\nbyte order = 0\n", static_cast<int>(h.type),
             h.interleave == Interleave::bsq   ? "bsq"
             : h.interleave == Interleave::bil ? "bil"

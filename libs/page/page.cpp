@@ -69,7 +69,8 @@ std::string frame_of(const Plot& plot, const Axis& x, const Axis& y) {
         "<line x1=\"%g\" y1=\"%.1f\" x2=\"%g\" y2=\"%.1f\" stroke=\"#ddd\"/><text x=\"%g\" y=\"%.1f\" "
         "text-anchor=\"end\">%g</text>",
         kLeft, y.place(t), kWidth - kRight, y.place(t), kLeft - 6, y.place(t) + 4, t);
-  s += strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + in_markup(plot.title) + "</text>";
+  s +=
+      strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + in_markup(plot.title) + "</text>";
   s += strf("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2, kHeight - 14) +
        in_markup(plot.x_label) + "</text>";
   s +=

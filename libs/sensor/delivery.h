@@ -50,7 +50,7 @@ struct Delivery {
   std::vector<Product> products;
   std::vector<TextFile> texts;
   std::optional<MapGrid> map;
-  std::string description;  // one sentence for the header
+  std::string description;                // one sentence for the header
   std::vector<ColumnBands> columns = {};  // from the left; empty: all columns see with `bands`
   std::optional<double> outside = {};     // radiance of pixels that see nothing by design, when there are such
   // Of strips: when the lines of the task were taken and how the picture lies, and the same of all tasks in turn.

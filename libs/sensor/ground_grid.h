@@ -14,8 +14,8 @@ namespace suite {
 struct GroundGrid {
   double west = 0, north = 0, cell = 0;  // m: outer corner of the first cell, edge of a cell; a multiple of `cell`
   uint32_t columns = 0, rows = 0;
-  // Per cell, row-major from the north-west: sample and line of the picture, from 1; negative where no pixel lies in the
-  // cell and the nearest of those around it is taken; 0 where the picture does not show the cell.
+  // Per cell, row-major from the north-west: sample and line of the picture, from 1; negative where no pixel lies in
+  // the cell and the nearest of those around it is taken; 0 where the picture does not show the cell.
   std::vector<int32_t> sample, line;
 };
 

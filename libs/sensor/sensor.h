@@ -112,8 +112,8 @@ enum QualityFlag : uint8_t {
   quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
 };
 
-// What the numbers of an image are, and what goes with it. Paths, errors, targets and products know radiance only: it is
-// turned into the quantity when it is delivered.
+// What the numbers of an image are, and what goes with it. Paths, errors, targets and products know radiance only: it
+// is turned into the quantity when it is delivered.
 enum class Quantity { radiance, toa_reflectance, brightness_temperature };
 struct ImageWishes {
   Quantity quantity = Quantity::radiance;

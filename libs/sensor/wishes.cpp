@@ -7,8 +7,7 @@ namespace suite {
 void read_units(const Params& params, ImageWishes& wishes) {
   const auto units = params.find("units");
   if (!units) return;
-  wishes.quantity =
-      static_cast<Quantity>(units->as_choice({"radiance", "toa_reflectance", "brightness_temperature"}));
+  wishes.quantity = static_cast<Quantity>(units->as_choice({"radiance", "toa_reflectance", "brightness_temperature"}));
   wishes.where = units->where();
 }
 

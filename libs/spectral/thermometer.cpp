@@ -16,7 +16,8 @@ constexpr double kWidest = 0.02;  // of a piece, relative to its wavelength
 }  // namespace
 
 BandThermometer::BandThermometer(const Band& band) {
-  static constexpr double at[3] = {-0.7745966692414834, 0, 0.7745966692414834}, share[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  static constexpr double at[3] = {-0.7745966692414834, 0, 0.7745966692414834},
+                          share[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   const std::vector<double>& x = band.response.wavelength_um();
   double sum = 0;
   for (size_t i = 0; i + 1 < x.size(); ++i) {
@@ -57,8 +58,8 @@ BandThermometer::Reading BandThermometer::read(double radiance) const {
   if (above == rows_.end()) --above;
   const Row &a = *(above - 1), &b = *above;
   const double h = b.logarithm - a.logarithm, t = (y - a.logarithm) / h, s = 1 - t;
-  const double inverse = s * s * (1 + 2 * t) * a.inverse + t * t * (1 + 2 * s) * b.inverse +
-                         s * t * h * (s * a.slope - t * b.slope);
+  const double inverse =
+      s * s * (1 + 2 * t) * a.inverse + t * t * (1 + 2 * s) * b.inverse + s * t * h * (s * a.slope - t * b.slope);
   const double slope = 6 * s * t * (b.inverse - a.inverse) / h + s * (1 - 3 * t) * a.slope + t * (1 - 3 * s) * b.slope;
   return {1 / inverse, -slope / (inverse * inverse * radiance)};
 }

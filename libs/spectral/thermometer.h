@@ -1,8 +1,8 @@
 // Brightness temperature of a band: the temperature of the blackbody whose radiance, averaged over the band's response,
 // is the one given. (brightness_temperature of planck.h is that of a single wavelength.)
 //
-// Method: Gauss-Legendre over every piece of the response, tabulated over ln T in steps of 1/64; between the rows 1/T is
-// a cubic of the radiance's logarithm with the exact slopes. Temperatures come back within 1e-8 of themselves
+// Method: Gauss-Legendre over every piece of the response, tabulated over ln T in steps of 1/64; between the rows 1/T
+// is a cubic of the radiance's logarithm with the exact slopes. Temperatures come back within 1e-8 of themselves
 // (tests/unit/thermometer_test.cpp).
 #pragma once
 #include <vector>

@@ -181,7 +181,8 @@ TEST_F(ImageFacts, ReflectanceAboveTheAir) {
 }
 
 TEST_F(ImageFacts, BrightnessTemperatureOfTheBand) {
-  const std::string light = "scene: scene.h5\noutput: {type: float64, also: [geotiff]}\nsky: {radiance: 0.5}\nsensors:\n";
+  const std::string light =
+      "scene: scene.h5\noutput: {type: float64, also: [geotiff]}\nsky: {radiance: 0.5}\nsensors:\n";
   const CommandResult r = render(light + map("units: brightness_temperature, " + kThermal, 3), "warm");
   ASSERT_EQ(r.code, 0) << r.err;
   ASSERT_EQ(render(light + map(kThermal, 3), "warm_rad").code, 0);
