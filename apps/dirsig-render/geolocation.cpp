@@ -19,35 +19,65 @@ struct Mapped {
   std::vector<Vec2> places;
   std::vector<std::string> name;     // of the projection
   std::vector<std::string> remarks;  // what follows the size of a pixel
-  std::string fault;                 // why there is none
 };
 
-Mapped mapped(std::span<const Vec3> enu, std::span<const Geodetic> places) {
-  Mapped m;
-  if (places.empty()) {
-    for (const Vec3& p : enu) m.places.push_back({p.x, p.y});
-    m.name = {"Arbitrary"}, m.remarks = {"0", "units=Meters"};
-    return m;
+// Where the pixels are, in the words of the scene: on the Earth, or on a plane.
+class Places {
+ public:
+  Places(const std::vector<Vec3>& enu, const GeodeticOrigin& origin) : enu_(enu) {
+    if (origin.given) frame_.emplace(Geodetic{origin.latitude_deg, origin.longitude_deg, origin.ellipsoid_height_m});
   }
-  // The zone of the middle of all longitudes; those of one picture lie on one side of the Earth.
+  bool on_earth() const { return frame_.has_value(); }
+  size_t size() const { return enu_.size(); }
+  bool known(size_t i) const { return std::isfinite(enu_[i].x); }
+  const Vec3& enu(size_t i) const { return enu_[i]; }
+  Geodetic geodetic(size_t i) const { return frame_->geodetic_from_enu(enu_[i]); }
+  // Longitude, latitude and height, or east, north and up; NaN when unknown.
+  std::array<double, 3> triple(size_t i) const {
+    if (!known(i)) return {NAN, NAN, NAN};
+    if (!on_earth()) return {enu_[i].x, enu_[i].y, enu_[i].z};
+    const Geodetic g = geodetic(i);
+    return {g.longitude_deg, g.latitude_deg, g.height_m};
+  }
+
+ private:
+  const std::vector<Vec3>& enu_;
+  std::optional<SceneFrame> frame_;
+};
+
+// The UTM grid of the middle of all places; the picture shows one side of the Earth. Error where UTM ends.
+UtmZone zone_of(const Places& places) {
   double x = 0, y = 0, latitude = 0, count = 0, most = 0;
-  for (const Geodetic& p : places) {
-    if (!std::isfinite(p.latitude_deg)) continue;
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (!places.known(i)) continue;
+    const Geodetic p = places.geodetic(i);
     x += std::cos(p.longitude_deg * kDegree), y += std::sin(p.longitude_deg * kDegree);
     latitude += p.latitude_deg, ++count;
     most = std::max(most, p.latitude_deg > 0 ? p.latitude_deg / 84 : p.latitude_deg / -80);
   }
-  if (!(count > 0)) return m.fault = "nothing was hit", m;
-  if (most > 1) return m.fault = "it reaches beyond 84 N or 80 S, where UTM ends", m;
-  const UtmZone zone = standard_utm_zone({latitude / count, std::atan2(y, x) / kDegree, 0});
+  if (!(count > 0)) throw Error("nothing was hit");
+  if (most > 1) throw Error("it reaches beyond 84 N or 80 S, where UTM ends");
+  return standard_utm_zone({latitude / count, std::atan2(y, x) / kDegree, 0});
+}
+
+// Error: why there is no map.
+Mapped mapped(const Places& places) {
+  Mapped m;
+  if (!places.on_earth()) {
+    for (size_t i = 0; i < places.size(); ++i) m.places.push_back({places.enu(i).x, places.enu(i).y});
+    m.name = {"Arbitrary"}, m.remarks = {"0", "units=Meters"};
+    return m;
+  }
+  const UtmZone zone = zone_of(places);
   const double meridian = 6 * zone.zone - 183;
-  for (const Geodetic& p : places) {
-    if (!std::isfinite(p.latitude_deg)) {
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (!places.known(i)) {
       m.places.push_back({NAN, NAN});
       continue;
     }
+    const Geodetic p = places.geodetic(i);
     if (std::fabs(std::remainder(p.longitude_deg - meridian, 360)) > kUtmReach)
-      return m.fault = strf("it reaches beyond %g degrees from the meridian of UTM zone %d", kUtmReach, zone.zone), m;
+      throw Error(strf("it reaches beyond %g degrees from the meridian of UTM zone %d", kUtmReach, zone.zone));
     const UtmPoint u = utm_from_geodetic(p, zone);
     m.places.push_back({u.easting, u.northing});
   }
@@ -56,26 +86,28 @@ Mapped mapped(std::span<const Vec3> enu, std::span<const Geodetic> places) {
   return m;
 }
 
-void write_igm(const std::string& path, const LocatedImage& image, std::span<const Geodetic> places) {
+void write_igm(const std::string& path, const LocatedImage& image, const Places& places) {
   EnviHeader h = bare(image.header);
   h.type = EnviType::float64;
   h.interleave = Interleave::bsq;
   h.bands = 3;
   h.map_info.clear(), h.coordinate_system.clear();
   h.ignore_value = std::nan("");
-  h.band_names = places.empty() ? std::vector<std::string>{"east [m]", "north [m]", "up [m]"}
-                                : std::vector<std::string>{"longitude [deg]", "latitude [deg]", "height [m]"};
-  h.description = (places.empty() ? "input geometry: east, north and up in scene ENU"
-                                  : "input geometry: longitude, latitude and ellipsoidal height, WGS84") +
+  h.band_names = places.on_earth() ? std::vector<std::string>{"longitude [deg]", "latitude [deg]", "height [m]"}
+                                   : std::vector<std::string>{"east [m]", "north [m]", "up [m]"};
+  h.description = (places.on_earth() ? "input geometry: longitude, latitude and ellipsoidal height, WGS84"
+                                     : "input geometry: east, north and up in scene ENU") +
                   std::string(" of the middle of what each pixel saw") + image.about;
-  std::vector<double> values;
-  values.reserve(3 * image.place.size());
-  for (size_t i = 0; i < image.place.size(); ++i)
-    if (places.empty())
-      values.insert(values.end(), {image.place[i].x, image.place[i].y, image.place[i].z});
-    else
-      values.insert(values.end(), {places[i].longitude_deg, places[i].latitude_deg, places[i].height_m});
-  write_envi(path, h, values);
+  EnviWriter writer(path, h);
+  std::vector<double> row;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const std::array<double, 3> at = places.triple(i);
+    row.insert(row.end(), at.begin(), at.end());
+    if ((i + 1) % h.samples) continue;
+    writer.append(row);
+    row.clear();
+  }
+  writer.commit();
 }
 
 void write_glt(const std::string& path, const LocatedImage& image, const Mapped& m, const GroundGrid& grid) {
@@ -94,11 +126,14 @@ void write_glt(const std::string& path, const LocatedImage& image, const Mapped&
   h.description = "geographic lookup table: sample and line of '" +
                   std::filesystem::path(image.base).filename().string() +
                   ".img' that show a cell; negative: the nearest neighbour, 0: not seen" + image.about;
-  std::vector<double> values;
-  values.reserve(2 * grid.sample.size());
-  for (size_t i = 0; i < grid.sample.size(); ++i)
-    values.insert(values.end(), {static_cast<double>(grid.sample[i]), static_cast<double>(grid.line[i])});
-  write_envi(path, h, values);
+  EnviWriter writer(path, h);
+  std::vector<double> row(2 * size_t{grid.columns});
+  for (size_t first = 0; first < grid.sample.size(); first += grid.columns) {
+    for (size_t c = 0; c < grid.columns; ++c)
+      row[2 * c] = grid.sample[first + c], row[2 * c + 1] = grid.line[first + c];
+    writer.append(row);
+  }
+  writer.commit();
 }
 
 void write_vrt(const std::string& path, const LocatedImage& image) {
@@ -113,38 +148,33 @@ void write_vrt(const std::string& path, const LocatedImage& image) {
                     h.type == EnviType::uint16    ? "UInt16"
                     : h.type == EnviType::float64 ? "Float64"
                                                   : "Float32",
-                    name + ".img", name + "_igm.img");
+                    image.scale, name + ".img", name + "_igm.img");
 }
 
 }  // namespace
 
 std::vector<std::string> write_geolocation(const LocatedImage& image, const SceneNotes& notes) {
-  std::vector<Geodetic> places;
-  if (notes.origin.given) {
-    const SceneFrame frame({notes.origin.latitude_deg, notes.origin.longitude_deg, notes.origin.ellipsoid_height_m});
-    for (const Vec3& p : image.place)
-      places.push_back(std::isfinite(p.x) ? frame.geodetic_from_enu(p) : Geodetic{NAN, NAN, NAN});
-  }
+  const Places places(image.place, notes.origin);
   std::vector<std::string> files{image.base + "_igm.img"};
   write_igm(files[0], image, places);
-  if (!places.empty()) {
+  if (places.on_earth()) {
     files.push_back(image.base + "_geo.vrt");
     write_vrt(files.back(), image);
   }
-  Mapped m = mapped(image.place, places);
+  Mapped m;
+  std::optional<GroundGrid> grid;
   try {
-    if (!m.fault.empty()) throw Error(m.fault);
+    m = mapped(places);
     const auto columns = static_cast<uint32_t>(image.header.samples);
-    const double cell = image.pixel_m > 0 ? image.pixel_m : spacing_of(m.places, columns).pixel();
-    const std::optional<GroundGrid> grid = ground_grid(m.places, columns, cell);
+    grid = ground_grid(m.places, columns, image.pixel_m > 0 ? image.pixel_m : spacing_of(m.places, columns).pixel());
     if (!grid) throw Error("nothing was hit");
-    files.push_back(image.base + "_glt.img");
-    write_glt(files.back(), image, m, *grid);
   } catch (const Error& e) {
-    if (!e.where().file.empty()) throw;  // a file that cannot be written
     warn("'" + image.base + ".img' gets no lookup table (GLT): " + e.message() +
          (e.hint().empty() ? "" : "; " + e.hint()));
+    return files;
   }
+  files.push_back(image.base + "_glt.img");
+  write_glt(files.back(), image, m, *grid);
   return files;
 }
 

@@ -14,6 +14,7 @@ struct LocatedImage {
   std::string base;                // file name without ".img"
   const EnviHeader& header;        // of the radiance
   const std::string& about;        // for descriptions: whose and from what
+  double scale = 1;                // what one of its numbers stands for
   double pixel_m = 0;              // of the grid; 0 = from the data
   const std::vector<Vec3>& place;  // scene ENU, row-major, one a pixel; NaN = nothing was hit
 };

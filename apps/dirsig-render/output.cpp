@@ -270,7 +270,8 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
   write_whole(m, base);
   if (m.wishes.geolocation) {
     const std::string about = m.who + m.description + "; " + notes_.engine;
-    const auto more = write_geolocation({base, m.radiance->header(), about, m.wishes.pixel_m, m.place}, notes_);
+    const double scale = spec_.type == OutputSpec::Type::uint16 ? spec_.scale : 1;
+    const auto more = write_geolocation({base, m.radiance->header(), about, scale, m.wishes.pixel_m, m.place}, notes_);
     m.files.insert(m.files.end(), more.begin(), more.end());
   }
   std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";

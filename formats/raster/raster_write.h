@@ -43,9 +43,10 @@ void write_float_tiff(const std::string& path, const FloatRaster& raster, std::s
 void write_exr(const std::string& path, const FloatRaster& raster, std::span<const float> values);
 
 // A GDAL virtual raster beside an image: its bands, units and no-data value, and as its geolocation arrays the first
-// two bands of `places` (longitude and latitude, WGS84, of the middle of every pixel). type: of the image, GDAL's name.
+// two bands of `places` (longitude and latitude, WGS84, of the middle of every pixel). type: of the image, GDAL's name;
+// scale: what one of its numbers stands for, 1 = they are in the units.
 // image, places: names of files in the folder of the VRT, wherever GDAL is started from.
-void write_located_vrt(const std::string& path, const FloatRaster& raster, const std::string& type,
+void write_located_vrt(const std::string& path, const FloatRaster& raster, const std::string& type, double scale,
                        const std::string& image, const std::string& places);
 
 }  // namespace suite

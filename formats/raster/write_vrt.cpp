@@ -27,14 +27,15 @@ std::string geolocation(const std::string& places) {
 
 }  // namespace
 
-void write_located_vrt(const std::string& path, const FloatRaster& r, const std::string& type, const std::string& image,
-                       const std::string& places) {
+void write_located_vrt(const std::string& path, const FloatRaster& r, const std::string& type, double scale,
+                       const std::string& image, const std::string& places) {
   std::string t = strf("<VRTDataset rasterXSize=\"%u\" rasterYSize=\"%u\">\n", r.width, r.height);
   t += geolocation(places);
   for (size_t b = 0; b < r.bands.size(); ++b) {
     t += "  <VRTRasterBand dataType=\"" + type + strf("\" band=\"%zu\">\n", b + 1);
     t += "    <Description>" + in_markup(r.bands[b].name) + "</Description>\n";
     if (!r.units.empty()) t += "    <UnitType>" + in_markup(r.units) + "</UnitType>\n";
+    if (scale != 1) t += strf("    <Scale>%.17g</Scale>\n", scale);
     if (r.no_data)
       t += "    <NoDataValue>" + (std::isnan(*r.no_data) ? "nan" : strf("%.17g", *r.no_data)) + "</NoDataValue>\n";
     t +=

@@ -220,7 +220,7 @@ TEST_F(ImageFacts, BrightnessTemperatureOfTheBand) {
 // Counts cannot hold NaN: 0 stands for it, and the header says so.
 TEST_F(ImageFacts, TemperaturesAsCounts) {
   ASSERT_EQ(render("scene: scene.h5\noutput: {type: uint16, scale: 0.01}\nsky: {radiance: 0.5}\nsensors:\n" +
-                       map("units: brightness_temperature, " + kThermal, 3),
+                       map("units: brightness_temperature, geolocation: true, " + kThermal, 3),
                    "counts")
                 .code,
             0);
@@ -228,6 +228,7 @@ TEST_F(ImageFacts, TemperaturesAsCounts) {
   const std::vector<double> v = values("counts/map.img");
   EXPECT_GT(std::count(v.begin(), v.end(), 0), 20);
   EXPECT_GT(std::count_if(v.begin(), v.end(), [](double x) { return x > 15000 && x < 32000; }), 20);
+  EXPECT_THAT(read_text(*folder_ / "counts/map_geo.vrt"), HasSubstr("<Scale>0.01"));
 }
 
 // Chips that see with other responses are turned by these.
