@@ -47,6 +47,8 @@ void describe(const FloatRaster& r, OIIO::ImageSpec& spec) {
     spec.attribute("sun_azimuth_deg", static_cast<float>((*r.sun_deg)[0]));
     spec.attribute("sun_elevation_deg", static_cast<float>((*r.sun_deg)[1]));
   }
+  // Unknown, as Exif has it; without a date the library would put in that of today.
+  spec.attribute("DateTime", "    :  :     :  :  ");
   if (r.utc.size() < 19) return;
   spec.attribute("acquisition_time", r.utc);
   // The attributes of the standard: whole seconds of local time, which is UTC here.

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "base/files.h"
 #include "formats/raster/raster.h"
@@ -90,6 +92,21 @@ TEST_F(RasterWrite, AnExrBeginsWithThePicture) {
   plain.display.clear();
   write_exr(folder_ / "b.exr", plain, v);
   EXPECT_EQ(read_raster(folder_ / "b.exr").channels, 4u);
+}
+
+// The same picture is the same file, whenever it is written.
+TEST_F(RasterWrite, FilesDoNotKnowTheHour) {
+  FloatRaster r = small();
+  for (const std::string& utc : {std::string(), r.utc}) {
+    r.utc = utc;
+    for (const char* name : {"a", "b"}) {
+      write_exr(folder_ / (std::string(name) + ".exr"), r, numbers(r));
+      write_float_tiff(folder_ / (std::string(name) + ".tif"), r, numbers(r));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    }
+    EXPECT_EQ(read_bytes(folder_ / "a.exr"), read_bytes(folder_ / "b.exr"));
+    EXPECT_EQ(read_bytes(folder_ / "a.tif"), read_bytes(folder_ / "b.tif"));
+  }
 }
 
 }  // namespace
