@@ -208,7 +208,8 @@ TEST(SqtFitCli, OutputsAreCheckedFirst) {
     EXPECT_EQ(run_command("cd " + folder.path() + " && " + kFit + twice).code, 2) << twice;
   EXPECT_EQ(read_text(csv), text);
   for (const char* option : {"--report", "--curve"}) {
-    const CommandResult r = run_command(kFit + csv + " -o " + (folder / "o.sqt") + " " + option + " /proc/nowhere/x.csv");
+    const CommandResult r =
+        run_command(kFit + csv + " -o " + (folder / "o.sqt") + " " + option + " /proc/nowhere/x.csv");
     EXPECT_EQ(r.code, 1);
     EXPECT_NE(r.err.find("/proc/nowhere/x.csv: error: cannot be written"), std::string::npos) << r.err;
     EXPECT_FALSE(file_exists(folder / "o.sqt"));
