@@ -1,6 +1,7 @@
 #include "continued.h"
 
 #include "base/files.h"
+#include "base/outputs.h"
 #include "base/run_app.h"
 #include "trace/tracer.h"
 
@@ -45,7 +46,7 @@ std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string
     throw UsageError("--stop change looks at its own samples and cannot be continued");
   if (options.pipeline.method == Method::paper)
     throw UsageError("--method paper is for comparisons and cannot be continued");
-  const std::string path = folder + "/result.state.h5";
+  const std::string path = in_folder(folder, "result.state.h5");
   const StateIdentity identity = identity_of(sim, options);
   if (o.resume || more) {
     if (!file_exists(path))

@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "base/run_app.h"
 
@@ -18,7 +19,7 @@ bool may_be_result(const std::string& file, const std::string& sensor) {
   if (!file.starts_with(sensor)) return false;
   const std::string rest = file.substr(sensor.size());
   if (!rest.starts_with(".") && !rest.starts_with("_")) return false;
-  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr"})
+  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr", ".vrt"})
     if (rest.ends_with(ending)) return true;
   for (const char* whole : {".csv", ".rawbh", "_brf.csv", "_fluxes.csv"})
     if (rest == whole) return true;
@@ -39,7 +40,7 @@ struct Room {
   double whole = 0, largest = 0;  // bytes: of all images, of the largest file
 };
 
-// What radiance, error, quality and truth take; products of the sensors come on top.
+// What radiance, error, quality, truth and the places of pixels take; products of the sensors come on top.
 Room room_for(const Simulation& sim) {
   Room room;
   const double value = sim.output.type == OutputSpec::Type::float64  ? 8
@@ -51,8 +52,10 @@ Room room_for(const Simulation& sim) {
         if (c.bin_by == Capture::BinBy::escape) continue;  // becomes a table
         const double values = static_cast<double>(c.problems()) * static_cast<double>(sensor->bands(c.state).size()) *
                               static_cast<double>(sensor->channels().size()) * c.bins;
+        constexpr double kPlaces = 32;  // bytes a pixel: longitude, latitude, height, and a cell of the lookup table
         const double truth = 8.0 * static_cast<double>(c.problems()) * static_cast<double>(sensor->truth().size());
         room.whole += values * (value + std::max(value, 4.0)) + truth + static_cast<double>(c.problems());
+        if (sensor->wishes(c).geolocation) room.whole += kPlaces * static_cast<double>(c.problems());
         room.largest = std::max({room.largest, values * value, truth});
       }
   }
@@ -86,10 +89,9 @@ void check_folder(const std::string& folder, const Simulation& sim) {
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state) {
   std::string text = strf("%zu of %zu captures are complete", finished, captures);
   if (finished) text += " in " + folder;
-  return text + (state ? "; " + folder +
-                             "/result.state.h5 holds the finished captures and strips of 8 lines: the same command "
-                             "with --resume "
-                             "in place of --state and its budget goes on from there"
+  return text + (state ? "; " + in_folder(folder, "result.state.h5") +
+                             " holds the finished captures and strips of 8 lines: the same command with --resume in "
+                             "place of --state and its budget goes on from there"
                        : "; without --state the rest is lost");
 }
 

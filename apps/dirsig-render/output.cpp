@@ -4,83 +4,22 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/outputs.h"
 #include "base/run_app.h"
 #include "formats/envi/envi.h"
-#include "formats/raster/raster_write.h"
+#include "geolocation.h"
 #include "preview.h"
-#include "sensor/quality.h"
-#include "spectral/planck.h"
+#include "quantities.h"
 
 namespace suite {
 
 namespace {
 
-const char* const kUnits[] = {"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"};
-
-// What radiance in W/(m2 sr um) is multiplied by. Photons are counted at the energy of the band's centre.
-double unit_factor(OutputSpec::Units units, const Band& band) {
-  if (units == OutputSpec::Units::w_cm2) return 1e-4;
-  if (units == OutputSpec::Units::photons) return band.center_um * 1e-6 / (kPlanckConstant * kSpeedOfLight);
-  return 1;
-}
-
-// The bands of the preview: named ones, or those nearest to red, green and blue; one band when there are fewer than 3.
-std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector<std::string>& names) {
-  std::vector<size_t> chosen;
-  if (!names.empty()) {
-    std::vector<std::string> known;
-    for (const Band& b : bands) known.push_back(b.name);
-    for (const std::string& name : names) {
-      const auto found = std::find(known.begin(), known.end(), name);
-      if (found == known.end())
-        throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
-      chosen.push_back(static_cast<size_t>(found - known.begin()));
-    }
-    return chosen;
-  }
-  if (bands.size() < 3) return {0};
-  for (const double wanted : {0.65, 0.55, 0.45}) {
-    size_t best = 0;
-    for (size_t b = 0; b < bands.size(); ++b)
-      if (std::fabs(bands[b].center_um - wanted) < std::fabs(bands[best].center_um - wanted)) best = b;
-    chosen.push_back(best);
-  }
-  return chosen;
-}
-
-// The tangent plane at the scene's origin as a coordinate system that other programs know.
-std::string tangent_wkt(const GeodeticOrigin& o) {
-  return strf(
-      "PROJCS[\"scene ENU\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
-      "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],"
-      "UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Orthographic\"],PARAMETER[\"latitude_of_origin\",%.12g],"
-      "PARAMETER[\"central_meridian\",%.12g],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT["
-      "\"metre\",1]]",
-      o.latitude_deg, o.longitude_deg);
-}
-
 std::string stem_of(const ImageRows& rows, OutputSpec::Files files) {
-  if (files == OutputSpec::Files::natural) files = rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
   if (files == OutputSpec::Files::capture)
     return rows.captures > 1 ? rows.image + strf("_%04zu", rows.capture_number) : rows.image;
   if (files == OutputSpec::Files::task) return rows.tasks > 1 ? rows.image + "_" + rows.task : rows.image;
   return rows.image;
-}
-
-// The header of the flags beside an image: one byte a pixel, the sum of the bits that the header names.
-EnviHeader quality_header(EnviHeader h, const std::string& about) {
-  h.extra.clear(), h.wavelength_um.clear(), h.fwhm_um.clear(), h.data_units.clear();
-  h.type = EnviType::uint8;
-  h.bands = 1;
-  h.band_names = {"quality"};
-  h.description = "quality" + about + "; a pixel is the sum of the bits that hold, 0 = none:";
-  std::string bits = "{";
-  for (const QualityBit& b : quality_bits()) {
-    h.description += strf("\n%d = %s: %s", b.bit, b.name.c_str(), b.meaning.c_str());
-    bits += strf("%s%d %s", bits.size() > 1 ? ", " : "", b.bit, b.name.c_str());
-  }
-  h.extra.push_back({"quality bits", bits + "}"});
-  return h;
 }
 
 }  // namespace
@@ -88,202 +27,300 @@ EnviHeader quality_header(EnviHeader h, const std::string& about) {
 // An image while its rows come in.
 struct OutputWriter::Image {
   uint32_t columns = 0, rows = 0, next = 0;
-  size_t values = 0;                     // of radiance, per pixel
-  std::vector<double> factor;            // of each value
-  std::vector<size_t> chosen;            // of the preview
+  size_t values = 0;  // of radiance, per pixel
+  ImageWishes wishes;
+  Display display;                       // of header and preview
   std::map<uint32_t, Delivery> waiting;  // by first row
   std::unique_ptr<EnviWriter> radiance, error, quality, truth;
   std::vector<std::unique_ptr<EnviWriter>> products;
+  struct Classes {
+    size_t column = 0;  // of the truth
+    std::unique_ptr<EnviWriter> file;
+  };
+  std::vector<Classes> classes;
   std::vector<std::string> files;
-  std::vector<double> preview;  // [pixel][chosen]
-  std::vector<std::string> names;
+  std::vector<double> preview;      // [pixel][display.bands]
   std::vector<float> all;           // [pixel][value], for formats that take a whole picture
   std::vector<float> all_quality;   // [pixel], likewise
+  std::vector<Vec3> place;          // [pixel], when a geolocation is wanted
+  size_t place_column = 0;          // of the truth: east, north and up
+  size_t unknown = 0;               // numbers that are no quantity
   std::vector<double> correlation;  // [band][band], summed over rows
   std::optional<MapGrid> map;
-  std::string description;
+  std::optional<TimeWindow> window;  // of all rows
+  std::string who, description;
+
+  std::vector<EnviWriter*> writers() const {
+    std::vector<EnviWriter*> list{radiance.get(), error.get(), quality.get()};
+    if (truth) list.push_back(truth.get());
+    for (const Classes& c : classes) list.push_back(c.file.get());
+    for (const auto& p : products) list.push_back(p.get());
+    return list;
+  }
 };
 
-OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes)
-    : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)) {}
+OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts)
+    : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)), facts_(facts) {}
 OutputWriter::~OutputWriter() = default;
 
-OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string& stem) {
-  std::unique_ptr<Image>& slot = open_[stem];
-  if (slot) return *slot;
-  slot = std::make_unique<Image>();
-  Image& m = *slot;
-  OutputSpec::Files files = spec_.files;
-  if (files == OutputSpec::Files::natural) files = d.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
-  m.columns = d.result.columns;
-  m.rows = files == OutputSpec::Files::capture ? d.result.rows
-           : files == OutputSpec::Files::task  ? d.rows.rows_of_task
-                                               : d.rows.rows_of_all;
-  m.values = d.result.values_per_problem();
-  m.chosen = preview_bands(d.bands, spec_.preview);
-  m.map = d.map;
-  const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
-  const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
-  m.description = said.empty() ? "" : "; " + said;
-  const std::string base = folder_ + "/" + stem, tail = m.description + "; " + notes_.engine;
+OutputSpec::Files OutputWriter::files_of(const ImageRows& rows) const {
+  if (spec_.files != OutputSpec::Files::natural) return spec_.files;
+  return rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+}
 
+// The header that all files of an image begin with; radiance and what is like it keep all of it.
+EnviHeader OutputWriter::common_header(const Image& m, const Delivery& d) const {
   EnviHeader h;
   h.samples = m.columns, h.lines = m.rows, h.bands = m.values;
   h.type = spec_.type == OutputSpec::Type::float64  ? EnviType::float64
            : spec_.type == OutputSpec::Type::uint16 ? EnviType::uint16
                                                     : EnviType::float32;
   h.interleave = static_cast<Interleave>(spec_.order);
-  h.data_units = kUnits[static_cast<size_t>(spec_.units)];
+  h.data_units = text_of(m.wishes.quantity, spec_.units).unit;
   for (size_t c = 0; c < d.result.channels; ++c)
     for (size_t t = 0; t < d.result.bins; ++t)
       for (const Band& b : d.bands) {
         h.band_names.push_back(b.name + (c ? " single" : "") + (d.result.bins > 1 ? strf(" t%zu", t) : ""));
         h.wavelength_um.push_back(b.center_um);
         h.fwhm_um.push_back(b.fwhm_um);
-        m.factor.push_back(unit_factor(spec_.units, b));
       }
-  m.names = h.band_names;
-  if (d.map) {
-    h.map_info = {notes_.origin.given ? "Orthographic" : "Arbitrary",
-                  "1",
-                  "1",
-                  strf("%.10g", d.map->origin.x),
-                  strf("%.10g", d.map->origin.y),
-                  strf("%.10g", d.map->gsd_x),
-                  strf("%.10g", d.map->gsd_y),
-                  notes_.origin.given ? "WGS-84" : "0",
-                  "units=Meters"};
-    if (notes_.origin.given) h.coordinate_system = tangent_wkt(notes_.origin);
-  }
-  const std::string who = " of sensor '" + d.sensor.name() + "'";
-  auto open = [&](const std::string& suffix, EnviHeader header) {
-    m.files.push_back(base + suffix + ".img");
-    return std::make_unique<EnviWriter>(m.files.back(), std::move(header));
-  };
-  h.description = "spectral radiance" + who + tail;
+  for (const size_t b : m.display.bands) h.default_bands.push_back(static_cast<int>(b) + 1);
+  if (m.map) add_map(*m.map, notes_.origin, h);
+  return h;
+}
+
+std::unique_ptr<EnviWriter> OutputWriter::open(Image& m, const std::string& base, EnviHeader header) const {
+  m.files.push_back(base + ".img");
+  return std::make_unique<EnviWriter>(m.files.back(), std::move(header));
+}
+
+void OutputWriter::open_radiance(Image& m, const Delivery& d, const std::string& base, const std::string& about) const {
+  const std::string name = text_of(m.wishes.quantity, spec_.units).name;
+  EnviHeader h = common_header(m, d);
+  h.description = name + about;
   EnviHeader e = h;
-  e.description = "standard error of the spectral radiance" + who + tail;
+  e.description = "standard error of the " + name + about;
+  const bool temperature = m.wishes.quantity == Quantity::brightness_temperature;
+  if (temperature) e.ignore_value = std::nan("");
   if (spec_.type == OutputSpec::Type::uint16) {
     std::string gains = "{";
     for (size_t i = 0; i < m.values; ++i) gains += (i ? ", " : "") + strf("%.9g", spec_.scale);
     h.extra.push_back({"data gain values", gains + "}"});
     e.type = EnviType::float32;
   }
-  m.radiance = open("", h);
-  m.error = open("_error", e);
-  m.quality = open("_quality", quality_header(h, who + tail));
-  EnviHeader t = h;
-  t.extra.clear(), t.wavelength_um.clear(), t.fwhm_um.clear(), t.data_units.clear();
-  t.type = EnviType::float64;  // positions and indices keep every digit
-  t.bands = d.result.truth_names.size();
-  t.band_names = d.result.truth_names;
-  t.ignore_value = std::nan("");
-  t.description = "truth" + who + tail + "; materials:";
-  for (size_t i = 0; i < notes_.materials.size(); ++i) t.description += strf(" %zu=%s", i, notes_.materials[i].c_str());
-  if (!notes_.tags.empty()) t.description += "; tags:";
-  for (size_t i = 0; i < notes_.tags.size(); ++i) t.description += strf(" %zu=%s", i, notes_.tags[i].c_str());
-  if (t.bands) m.truth = open("_truth", t);
+  h.ignore_value = d.outside;
+  if (temperature) h.ignore_value = h.type == EnviType::uint16 ? 0 : std::nan("");
+  m.radiance = open(m, base, h);
+  m.error = open(m, base + "_error", e);
+}
+
+void OutputWriter::open_truth(Image& m, const Delivery& d, const std::string& base, const EnviHeader& h,
+                              const std::string& about) const {
+  const std::vector<std::string>& names = d.result.truth_names;
+  if (names.empty()) return;
+  m.truth = open(m, base + "_truth", truth_header(h, names, notes_, about));
+  for (const ClassSource& source :
+       {ClassSource{"material", "nothing", notes_.materials}, ClassSource{"tag", "untagged", notes_.tags}})
+    if (const auto at = std::find(names.begin(), names.end(), source.truth); at != names.end() && !source.names.empty())
+      m.classes.push_back({static_cast<size_t>(at - names.begin()),
+                           open(m, base + "_" + source.truth, class_header(h, source, about))});
+  if (!m.wishes.geolocation) return;
+  const auto east = std::find(names.begin(), names.end(), "east [m]");
+  SUITE_CHECK(names.end() - east >= 3);
+  m.place_column = static_cast<size_t>(east - names.begin());
+}
+
+OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string& stem) {
+  std::unique_ptr<Image>& slot = open_[stem];
+  if (slot) return *slot;
+  slot = std::make_unique<Image>();
+  Image& m = *slot;
+  const OutputSpec::Files files = files_of(d.rows);
+  m.columns = d.result.columns;
+  m.rows = files == OutputSpec::Files::capture ? d.result.rows
+           : files == OutputSpec::Files::task  ? d.rows.rows_of_task
+                                               : d.rows.rows_of_all;
+  m.values = d.result.values_per_problem();
+  m.wishes = d.sensor.wishes(d.sensor.tasks()[d.result.task].captures[d.result.capture]);
+  m.display = display_of(d.bands, spec_.preview);
+  m.map = d.map;
+  const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
+  const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
+  m.description = said.empty() ? "" : "; " + said;
+  m.who = " of sensor '" + d.sensor.name() + "'";
+  const std::string base = in_folder(folder_, stem), about = m.who + m.description + "; " + notes_.engine;
+  const EnviHeader h = common_header(m, d);
+  open_radiance(m, d, base, about);
+  m.quality = open(m, base + "_quality", quality_header(h, about));
+  open_truth(m, d, base, h, about);
   for (const Product& p : d.products) {
     EnviHeader x = h;
-    x.extra.clear();
     x.bands = p.bands.size(), x.band_names = p.bands, x.data_units = p.unit;
-    if (x.bands != x.wavelength_um.size()) x.wavelength_um.clear(), x.fwhm_um.clear();
+    if (x.bands != x.wavelength_um.size()) x.wavelength_um.clear(), x.fwhm_um.clear(), x.default_bands.clear();
     x.type = p.whole_numbers                           ? EnviType::uint16
              : spec_.type == OutputSpec::Type::float64 ? EnviType::float64
                                                        : EnviType::float32;
-    x.description = p.name + who + tail;
-    m.products.push_back(open("_" + p.name, x));
+    x.description = p.name + about;
+    m.products.push_back(open(m, base + "_" + p.name, x));
   }
   return m;
 }
 
+// When the rows were taken and where the sun stood, in the headers of all files; known once the last row is there.
+void OutputWriter::tell_moment(Image& m) const {
+  const double begin = m.window->begin, end = m.window->end, middle = 0.5 * (begin + end);
+  const bool lasts = end > begin;
+  const std::string utc = facts_.utc(middle);
+  std::vector<std::pair<std::string, std::string>> extra;
+  if (lasts && !utc.empty())
+    extra.push_back({"acquisition time range", "{" + facts_.utc(begin) + ", " + facts_.utc(end) + "}"});
+  const std::optional<SunSpec> sun = facts_.sun(middle);
+  if (sun && facts_.sun_moves() && lasts) {
+    const auto first = azimuth_elevation_deg(facts_.sun(begin)->direction),
+               last = azimuth_elevation_deg(facts_.sun(end)->direction);
+    extra.push_back({"sun azimuth range", strf("{%.9g, %.9g}", first[0], last[0])});
+    extra.push_back({"sun elevation range", strf("{%.9g, %.9g}", first[1], last[1])});
+  }
+  for (EnviWriter* w : m.writers()) {
+    EnviHeader& h = w->header();
+    h.acquisition_time = utc;
+    if (sun) {
+      const auto stands = azimuth_elevation_deg(sun->direction);
+      h.sun_azimuth_deg = stands[0], h.sun_elevation_deg = stands[1];
+    }
+    h.extra.insert(h.extra.end(), extra.begin(), extra.end());
+  }
+}
+
 // The formats that take a whole picture: radiance, and the flags in a file of their own.
-void OutputWriter::write_whole(Image& m, const std::string& base) {
-  const std::string comment = strf("suite %s: ", kVersion) + command_line() + m.description;
-  std::optional<RasterPlacement> place;
+void OutputWriter::write_whole(Image& m, const std::string& base) const {
+  if (!spec_.geotiff && !spec_.exr) return;
+  const EnviHeader& h = m.radiance->header();
+  FloatRaster r;
+  r.width = m.columns, r.height = m.rows;
+  for (size_t b = 0; b < m.values; ++b) r.bands.push_back({h.band_names[b], h.wavelength_um[b], h.fwhm_um[b]});
+  r.units = h.data_units;
+  r.display = m.display.bands, r.true_colour = m.display.true_colour;
+  // What these formats hold is never a count.
+  r.no_data = m.wishes.quantity == Quantity::brightness_temperature ? std::optional(std::nan("")) : h.ignore_value;
+  r.utc = h.acquisition_time;
+  if (h.sun_azimuth_deg) r.sun_deg = {*h.sun_azimuth_deg, *h.sun_elevation_deg};
+  r.comment = strf("suite %s: ", kVersion) + command_line() + m.description;
   if (m.map) {
-    place = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
-    if (notes_.origin.given) place->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
+    r.placement = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
+    if (notes_.origin.given) r.placement->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
   }
-  if (spec_.geotiff) {
-    write_float_tiff(base + ".tif", m.columns, m.rows, m.names, m.all, comment, place);
-    write_float_tiff(base + "_quality.tif", m.columns, m.rows, {"quality"}, m.all_quality, comment, place);
-    m.files.insert(m.files.end(), {base + ".tif", base + "_quality.tif"});
+  FloatRaster q = r;
+  q.bands = {{"quality"}}, q.units.clear(), q.display.clear(), q.true_colour = false, q.no_data.reset();
+  const auto write = [&](auto function, const std::string& ending) {
+    function(base + ending, r, m.all);
+    function(base + "_quality" + ending, q, m.all_quality);
+    m.files.insert(m.files.end(), {base + ending, base + "_quality" + ending});
+  };
+  if (spec_.geotiff) write(write_float_tiff, ".tif");
+  if (spec_.exr) write(write_exr, ".exr");
+}
+
+// Numbers of a capture into the files, in the order of their rows.
+void OutputWriter::append(Image& m, const Delivery& d) const {
+  const CaptureResult& result = d.result;
+  const size_t n = result.problems();
+  std::vector<double> radiance = result.radiance, error = result.standard_error;
+  Conversion(d, m.wishes.quantity, spec_.units, facts_).apply(radiance, error);
+  for (double& x : radiance) {
+    if (spec_.geotiff || spec_.exr) m.all.push_back(static_cast<float>(x));
+    if (std::isnan(x)) ++m.unknown;
+    if (spec_.type != OutputSpec::Type::uint16) continue;
+    x = std::isnan(x) ? 0 : std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
   }
-  if (spec_.exr) {
-    write_exr(base + ".exr", m.columns, m.rows, m.names, m.all, comment);
-    write_exr(base + "_quality.exr", m.columns, m.rows, {"quality"}, m.all_quality, comment);
-    m.files.insert(m.files.end(), {base + ".exr", base + "_quality.exr"});
+  for (size_t i = 0; i < n; ++i)
+    for (const size_t b : m.display.bands) m.preview.push_back(result.radiance[i * m.values + b]);
+  m.radiance->append(radiance);
+  m.error->append(error);
+  m.quality->append(std::vector<double>(result.quality.begin(), result.quality.end()));
+  if (spec_.geotiff || spec_.exr)
+    m.all_quality.insert(m.all_quality.end(), result.quality.begin(), result.quality.end());
+  const size_t columns = result.truth_names.size();
+  if (m.truth) m.truth->append(result.truth);
+  for (Image::Classes& c : m.classes) {
+    std::vector<double> values(n);
+    for (size_t i = 0; i < n; ++i) {
+      const double id = result.truth[i * columns + c.column];
+      values[i] = std::isnan(id) ? 0 : id + 1;
+    }
+    c.file->append(values);
   }
+  for (size_t i = 0; m.wishes.geolocation && i < n; ++i) {
+    const double* at = &result.truth[i * columns + m.place_column];
+    m.place.push_back({at[0], at[1], at[2]});
+  }
+  for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
+  // Of an image in parts the correlation is the mean over its rows.
+  m.correlation.resize(result.bands * result.bands);
+  for (size_t i = 0; i < m.correlation.size(); ++i) m.correlation[i] += result.error_correlation[i] * result.rows;
+  const TimeWindow& window = d.sensor.tasks()[result.task].captures[result.capture].window;
+  if (!m.window) m.window = window;
+  m.window = TimeWindow{std::min(m.window->begin, window.begin), std::max(m.window->end, window.end)};
+  m.next += result.rows;
+}
+
+void OutputWriter::finish(Image& m, const std::string& base, std::span<const Band> bands) {
+  tell_moment(m);
+  for (EnviWriter* w : m.writers()) w->commit();
+  write_whole(m, base);
+  if (m.wishes.geolocation) {
+    const std::string about = m.who + m.description + "; " + notes_.engine;
+    const double scale = spec_.type == OutputSpec::Type::uint16 ? spec_.scale : 1;
+    const auto more = write_geolocation({base, m.radiance->header(), about, scale, m.wishes.pixel_m, m.place}, notes_);
+    m.files.insert(m.files.end(), more.begin(), more.end());
+  }
+  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
+  for (const Band& b : bands) correlation += "," + b.name;
+  for (size_t a = 0; a < bands.size(); ++a) {
+    correlation += "\n" + bands[a].name;
+    for (size_t b = 0; b < bands.size(); ++b)
+      correlation += strf(",%.4f", m.correlation[a * bands.size() + b] / m.rows);
+  }
+  m.files.push_back(base + "_error_correlation.csv");
+  write_file(m.files.back(), correlation + "\n");
+  write_preview(base + ".png", m.preview, m.columns, m.rows, m.display.bands.size());
+  m.files.push_back(base + ".png");
+  if (m.unknown && m.wishes.quantity == Quantity::brightness_temperature)
+    warn(
+        strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "
+             "zero, say); they are the header's data ignore value",
+             base.c_str(), m.unknown, size_t{m.columns} * m.rows * m.values));
+  for (const std::string& file : m.files) note("wrote " + file);
 }
 
 void OutputWriter::take(const Delivery& delivery) {
   for (const TextFile& text : delivery.texts) write_text(text);
   if (!delivery.result.columns) return;
-  const std::string stem = stem_of(delivery.rows, spec_.files);
+  const std::string stem = stem_of(delivery.rows, files_of(delivery.rows));
   Image& m = image_of(delivery, stem);
-  OutputSpec::Files files = spec_.files;
-  if (files == OutputSpec::Files::natural)
-    files = delivery.rows.lines ? OutputSpec::Files::task : OutputSpec::Files::capture;
+  const OutputSpec::Files files = files_of(delivery.rows);
   const uint32_t at = files == OutputSpec::Files::capture ? 0
                       : files == OutputSpec::Files::task  ? delivery.rows.row_in_task
                                                           : delivery.rows.row_in_all;
   m.waiting.emplace(at, delivery);
   // Captures may finish in any order; rows are written in theirs.
   for (auto next = m.waiting.find(m.next); next != m.waiting.end(); next = m.waiting.find(m.next)) {
-    const Delivery& d = next->second;
-    const size_t n = d.result.problems();
-    std::vector<double> radiance = d.result.radiance, error = d.result.standard_error;
-    for (size_t i = 0; i < n; ++i)
-      for (size_t v = 0; v < m.values; ++v) {
-        double& x = radiance[i * m.values + v];
-        x *= m.factor[v], error[i * m.values + v] *= m.factor[v];
-        if (spec_.geotiff || spec_.exr) m.all.push_back(static_cast<float>(x));
-        if (spec_.type == OutputSpec::Type::uint16) x = std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
-      }
-    for (size_t i = 0; i < n; ++i)
-      for (const size_t b : m.chosen) m.preview.push_back(d.result.radiance[i * m.values + b]);
-    m.radiance->append(radiance);
-    m.error->append(error);
-    m.quality->append(std::vector<double>(d.result.quality.begin(), d.result.quality.end()));
-    if (spec_.geotiff || spec_.exr)
-      m.all_quality.insert(m.all_quality.end(), d.result.quality.begin(), d.result.quality.end());
-    if (m.truth) m.truth->append(d.result.truth);
-    for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
-    // Of an image in parts the correlation is the mean over its rows.
-    m.correlation.resize(d.result.bands * d.result.bands);
-    for (size_t i = 0; i < m.correlation.size(); ++i) m.correlation[i] += d.result.error_correlation[i] * d.result.rows;
-    m.next += d.result.rows;
+    append(m, next->second);
     m.waiting.erase(next);
   }
   if (m.next < m.rows) return;
-  for (EnviWriter* w : {m.radiance.get(), m.error.get(), m.quality.get(), m.truth.get()})
-    if (w) w->commit();
-  for (auto& w : m.products) w->commit();
-  const std::string base = folder_ + "/" + stem;
-  write_whole(m, base);
-  std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
-  const size_t bands = delivery.bands.size();
-  for (const Band& b : delivery.bands) correlation += "," + b.name;
-  for (size_t a = 0; a < bands; ++a) {
-    correlation += "\n" + delivery.bands[a].name;
-    for (size_t b = 0; b < bands; ++b) correlation += strf(",%.4f", m.correlation[a * bands + b] / m.rows);
-  }
-  m.files.push_back(base + "_error_correlation.csv");
-  write_file(m.files.back(), correlation + "\n");
-  write_preview(base + ".png", m.preview, m.columns, m.rows, m.chosen.size());
-  m.files.push_back(base + ".png");
-  for (const std::string& file : m.files) note("wrote " + file);
+  finish(m, in_folder(folder_, stem), delivery.bands);
   open_.erase(stem);
 }
 
 void OutputWriter::write_text(const TextFile& text) {
-  write_file(folder_ + "/" + text.name, std::string_view(text.text));
-  note("wrote " + folder_ + "/" + text.name);
+  const std::string path = in_folder(folder_, text.name);
+  write_file(path, std::string_view(text.text));
+  note("wrote " + path);
 }
 
 void check_preview(const Sensor& sensor, const OutputSpec& spec) {
-  for (size_t s = 0; s < sensor.states().size(); ++s) preview_bands(sensor.bands(s), spec.preview);
+  for (size_t s = 0; s < sensor.states().size(); ++s) display_of(sensor.bands(s), spec.preview);
 }
 
 }  // namespace suite

@@ -6,20 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "formats/sim_text/sim_text.h"
+#include "facts.h"
+#include "headers.h"
 
 namespace suite {
 
-// What headers say about the scene.
-struct SceneNotes {
-  std::vector<std::string> materials, tags;
-  GeodeticOrigin origin;
-  std::string engine;  // the ray tracer
-};
-
 class OutputWriter {
  public:
-  OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes);
+  // facts must outlive it.
+  OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts);
   ~OutputWriter();
   // Takes a finished capture; images whose rows are complete are written. Error: not writable, an unknown preview band.
   void take(const Delivery& delivery);
@@ -27,11 +22,21 @@ class OutputWriter {
 
  private:
   struct Image;
+  OutputSpec::Files files_of(const ImageRows& rows) const;
   Image& image_of(const Delivery& delivery, const std::string& stem);
-  void write_whole(Image& image, const std::string& base);
+  EnviHeader common_header(const Image& image, const Delivery& delivery) const;
+  std::unique_ptr<EnviWriter> open(Image& image, const std::string& base, EnviHeader header) const;
+  void open_radiance(Image& image, const Delivery& delivery, const std::string& base, const std::string& about) const;
+  void open_truth(Image& image, const Delivery& delivery, const std::string& base, const EnviHeader& header,
+                  const std::string& about) const;
+  void append(Image& image, const Delivery& delivery) const;
+  void tell_moment(Image& image) const;
+  void write_whole(Image& image, const std::string& base) const;
+  void finish(Image& image, const std::string& base, std::span<const Band> bands);
   std::string folder_;
   OutputSpec spec_;
   SceneNotes notes_;
+  const Facts& facts_;
   std::map<std::string, std::unique_ptr<Image>> open_;  // images of which rows are still to come
 };
 

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "budget_options.h"
 #include "continued.h"
@@ -199,7 +200,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   try {
     return run_job(scene, sim.sources, sim.sensors, options);
   } catch (const Error& e) {
-    if (!e.where().file.starts_with(folder + "/")) throw;
+    if (!e.where().file.starts_with(in_folder(folder, ""))) throw;
     size_t captures = 0;
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
@@ -271,9 +272,11 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
+  const Facts facts(sim, scene);
+  check_wishes(sim, facts);
   make_folder(o.output);
   check_folder(o.output, sim);
-  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes));
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes), facts);
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
@@ -283,7 +286,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report);
   for (const auto& reads : later) note(reads->text());
-  write_log(o.output + "/render.json", report, options);
+  write_log(in_folder(o.output, "render.json"), report, options);
   for (const auto& sensor : sim.sensors)
     for (const TextFile& log : sensor->logs()) writer->write_text(log);
   if (!report.stopped) return 0;

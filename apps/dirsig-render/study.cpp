@@ -5,6 +5,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/envi/envi.h"
@@ -110,7 +111,7 @@ StudyImage reference_for(const RenderOptions& o, const std::shared_ptr<const Sce
                          const JobOptions& options, const StudyPlan& plan, bool kept, StudyImage*& collect) {
   const Size size = size_of(sim);
   StudyImage image;
-  const std::string file = o.study + "/reference.img", errors = o.study + "/reference_error.img";
+  const std::string file = in_folder(o.study, "reference.img"), errors = in_folder(o.study, "reference_error.img");
   if (!o.reference.empty()) {
     read_series(o.reference, image, false, size.pixels, size.bands);
     return image;
@@ -162,9 +163,9 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
     throw Error(Where{sim.scene_path, 0, 0, {}, -1}, "the scene is empty: there is nothing to study");
   const Size size = size_of(sim);
   make_folder(o.study);
-  const std::string table = o.study + "/study.csv", identity = identity_of(o, sim, options);
-  check_outputs({table, o.study + "/study.json", o.study + "/study.html", o.study + "/reference.img",
-                 o.study + "/reference_error.img"});
+  const std::string table = in_folder(o.study, "study.csv"), identity = identity_of(o, sim, options);
+  check_outputs({table, in_folder(o.study, "study.json"), in_folder(o.study, "study.html"),
+                 in_folder(o.study, "reference.img"), in_folder(o.study, "reference_error.img")});
   const bool kept = file_exists(table);
   std::vector<StudyRow> rows;
   if (kept) {
@@ -189,8 +190,8 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
   };
   run_study(plan, reference, tools, rows);
   const StudySummary summary = summarise(rows);
-  write_file(o.study + "/study.json", json_of(summary, rows).text());
-  write_file(o.study + "/study.html",
+  write_file(in_folder(o.study, "study.json"), json_of(summary, rows).text());
+  write_file(in_folder(o.study, "study.html"),
              html_of(page_of(summary, rows, "Error against run time: " + sim.path,
                              {command_line(), Tracer::engine() + strf(", %d threads", threads()),
                               o.reference.empty() ? strf("Reference: an independent run with %g times the largest "
@@ -198,7 +199,7 @@ int run_study_command(const RenderOptions& o, const std::shared_ptr<const Scene>
                                                          StudyPlan::kReferenceFactor)
                                                   : "Reference: " + o.reference + ", taken as exact."})));
   tell(summary);
-  note("wrote " + o.study + "/study.csv, study.json, study.html");
+  note("wrote " + in_folder(o.study, "study.csv, study.json, study.html"));
   return 0;
 }
 

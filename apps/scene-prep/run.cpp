@@ -9,6 +9,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "base/params.h"
 #include "base/progress.h"
 #include "base/report.h"
@@ -151,6 +152,8 @@ int prepare(const ScenePrepOptions& o) {
   steps.done("check");
   const Scene scene = bake_scene(draft, report);
   steps.done("bake");
+  make_folders_of({o.report});
+  if (report.ok()) make_folders_of({o.output});
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (report.ok() && !o.output.empty()) {
@@ -202,6 +205,7 @@ int inspect(const ScenePrepOptions& o) {
   check_outputs({o.export_obj, o.quick_look});
   LoadReport stored;
   const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));
+  make_folders_of({o.export_obj, o.quick_look});
   if (o.summary) print_summary(o, *scene, stored);
   if (!o.export_obj.empty())
     if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));

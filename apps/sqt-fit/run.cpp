@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "input.h"
 #include "page/page.h"
@@ -61,7 +62,7 @@ void check_options(const SqtFitOptions& o) {
     throw UsageError("--max-error, --max-bytes and --threshold must not be negative");
 }
 
-// Outputs that could not be written, or that would replace the input or each other, before any time is spent.
+// Outputs that would replace the input or each other, before any time is spent.
 void check_places(const SqtFitOptions& o) {
   namespace fs = std::filesystem;
   std::vector<std::string> files{o.output, o.report, o.curve};
@@ -69,12 +70,6 @@ void check_places(const SqtFitOptions& o) {
   note_input(o.input);
   if (const size_t at = o.model.find("table=@"); at != std::string::npos) note_input(o.model.substr(at + 7));
   check_outputs(files);
-  std::error_code ignored;
-  for (const std::string& file : files) {
-    const fs::path folder = fs::path(file).parent_path();
-    if (!folder.empty() && !fs::is_directory(folder, ignored))
-      throw Error(Where{file, 0, 0, {}, -1}, "cannot be written: there is no such folder", "make it first");
-  }
 }
 
 // Numbers about the input that no physical surface has; errors under --strict.
@@ -231,6 +226,7 @@ int run_sqt_fit(const SqtFitOptions& o) {
   check_options(o);
   check_places(o);
   const FitInput input = load_input(o);
+  make_folders_of({o.output, o.report, o.curve});
   const Stopwatch watch;
   Progress progress("fitting", 100, "%");
   auto advance = [&](double share) {

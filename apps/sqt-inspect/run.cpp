@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/inputs.h"
+#include "base/outputs.h"
 #include "check.h"
 #include "compare.h"
 #include "formats/measured/measured.h"
@@ -137,6 +138,7 @@ int inspect(const Cli&, const InspectOptions& o) {
   if (data && !function_of(*data) && (!o.error_map.empty() || !o.plot.empty()))
     throw Error(Where{o.compare, 0, 0, {}, -1}, "scattered samples have no value at every direction",
                 "--error-map and --plot compare with MERL, RGL and models only");
+  make_folders_of({o.map, o.slice, o.plot, o.sphere, o.error_map});
   draw_pictures(o, bundle, data);
   if (o.check) return run_check(o, bundle);
   if (data)

@@ -3,7 +3,9 @@
 // Values pass as double in the order [line][sample][band], whatever the type and interleave of the file, so that a
 // caller never sees either. Headers of others are read as they are; what is written is always little-endian.
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +32,13 @@ enum class EnviType {
 size_t size_of(EnviType type);  // bytes of one value
 enum class Interleave { bsq, bil, bip };
 
+// What a whole number of a classification means, and the colour it is shown in.
+struct EnviClass {
+  std::string name;
+  std::array<uint8_t, 3> rgb{};
+  bool operator==(const EnviClass&) const = default;
+};
+
 struct EnviHeader {
   size_t samples = 0, lines = 0, bands = 0;  // each 1 .. 2^31 - 1
   EnviType type = EnviType::float32;
@@ -44,6 +53,10 @@ struct EnviHeader {
   std::string coordinate_system;                           // WKT
   std::optional<double> ignore_value;                      // marks "no data"
   std::vector<int> default_bands;                          // 1-based, one or three
+  std::vector<EnviClass> classes;                          // of the values 0, 1, ...; not empty = "ENVI Classification"
+  std::string acquisition_time;                            // UTC, ISO 8601 with a Z when written here
+  std::optional<double> sun_azimuth_deg;                   // compass: clockwise from north
+  std::optional<double> sun_elevation_deg;                 // above the horizon
   std::vector<std::pair<std::string, std::string>> extra;  // any other key and its text, in file order
 
   size_t values() const { return samples * lines * bands; }
@@ -86,6 +99,8 @@ class EnviWriter {
   // rows: [line][sample][band], a whole number of lines that follow those written so far. Error when a value does not
   // fit an integer type; floating types take everything, NaN included.
   void append(std::span<const double> rows);
+  // What is told by the header alone may be completed until commit(); sizes, type and interleave stay as they are.
+  EnviHeader& header();
   void commit();  // Error unless all lines were appended
 
  private:

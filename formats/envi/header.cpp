@@ -250,6 +250,25 @@ void read_wavelengths(Keys& keys, EnviHeader& h) {
   }
 }
 
+// The classes of a classification. Names decide how many there are; colours may be missing.
+void read_classes(Keys& keys, EnviHeader& h) {
+  const Value* count = keys.find("classes");
+  const Value* names = keys.find("class names");
+  const Value* lookup = keys.find("class lookup");
+  if (!names) return;
+  for (std::string& name : list_of(names->text)) h.classes.push_back({std::move(name), {}});
+  if (count && static_cast<size_t>(integer_of(count->text, *count, 0, kMaxExtent)) != h.classes.size())
+    throw Error(names->where, strf("'class names' has %zu names for %s classes", h.classes.size(),
+                                   count->text.substr(0, 20).c_str()));
+  if (!lookup) return;
+  const std::vector<std::string> items = list_of(lookup->text);
+  if (items.size() != 3 * h.classes.size())
+    throw Error(lookup->where, strf("'class lookup' has %zu numbers for %zu classes", items.size(), h.classes.size()),
+                "red, green and blue of each class");
+  for (size_t i = 0; i < items.size(); ++i)
+    h.classes[i / 3].rgb[i % 3] = static_cast<uint8_t>(integer_of(items[i], *lookup, 0, 255));
+}
+
 }  // namespace
 
 EnviHeader parse_envi_header(std::string_view text, const std::string& file_name) {
@@ -275,7 +294,7 @@ EnviHeader parse_envi_header(std::string_view text, const std::string& file_name
   if (__builtin_mul_overflow(h.samples * h.lines, h.bands * size_of(h.type), &bytes) || bytes > size_t{1} << 60)
     throw Error(keys.at("samples").where,
                 strf("%zu samples x %zu lines x %zu bands is more than any file holds", h.samples, h.lines, h.bands));
-  keys.find("file type");  // always "ENVI Standard" here; the size of the file decides
+  keys.find("file type");  // the size of the file and its classes decide
   if (const Value* v = keys.find("description")) h.description = v->text;
   if (const Value* v = keys.find("band names")) {
     h.band_names = list_of(v->text);
@@ -293,6 +312,10 @@ EnviHeader parse_envi_header(std::string_view text, const std::string& file_name
     if (h.default_bands.size() != 1 && h.default_bands.size() != 3)
       throw Error(v->where, "'default bands' must name one band or three");
   }
+  read_classes(keys, h);
+  if (const Value* v = keys.find("acquisition time")) h.acquisition_time = v->text;
+  if (const Value* v = keys.find("sun azimuth")) h.sun_azimuth_deg = number_of(v->text, *v);
+  if (const Value* v = keys.find("sun elevation")) h.sun_elevation_deg = number_of(v->text, *v);
   h.extra = keys.rest();
   return h;
 }

@@ -55,9 +55,23 @@ void check_header(const std::string& path, const EnviHeader& h) {
     if (b < 1 || static_cast<size_t>(b) > h.bands) fail(strf("default band %d of %zu bands", b, h.bands));
   if (!h.default_bands.empty() && h.default_bands.size() != 1 && h.default_bands.size() != 3)
     fail("default bands must be one or three");
+  if (h.sun_azimuth_deg && !std::isfinite(*h.sun_azimuth_deg)) fail("the sun's azimuth is not a number");
+  if (h.sun_elevation_deg && !std::isfinite(*h.sun_elevation_deg)) fail("the sun's elevation is not a number");
   for (const auto& [key, value] : h.extra)
     if (key.empty() || key.find_first_of("={}\n") != std::string::npos || value.find('\n') != std::string::npos)
       fail("the extra key '" + key + "' cannot be written in an ENVI header");
+}
+
+std::string class_text(const std::vector<EnviClass>& classes) {
+  if (classes.empty()) return {};
+  std::vector<std::string> names;
+  std::vector<double> colours;
+  for (const EnviClass& c : classes) {
+    names.push_back(c.name);
+    colours.insert(colours.end(), c.rgb.begin(), c.rgb.end());
+  }
+  return strf("classes = %zu\n", classes.size()) + "class lookup = " + list_text(colours) +
+         "\nclass names = " + list_text(names) + "\n";
 }
 
 std::string header_text(const EnviHeader& h) {
@@ -67,8 +81,8 @@ std::string header_text(const EnviHeader& h) {
   if (!command_line().empty()) description += ": " + command_line();
   std::string t = "ENVI\n";
   t += "description = {" + in_braces(description, false) + "}\n";
-  t += strf("samples = %zu\nlines = %zu\nbands = %zu\nheader offset = 0\nfile type = ENVI Standard\n", h.samples,
-            h.lines, h.bands);
+  t += strf("samples = %zu\nlines = %zu\nbands = %zu\nheader offset = 0\nfile type = ENVI %s\n", h.samples, h.lines,
+            h.bands, h.classes.empty() ? "Standard" : "Classification");
   t += strf("data type = %d\ninterleave = %s\nbyte order = 0\n", static_cast<int>(h.type),
             h.interleave == Interleave::bsq   ? "bsq"
             : h.interleave == Interleave::bil ? "bil"
@@ -85,6 +99,10 @@ std::string header_text(const EnviHeader& h) {
     std::vector<double> bands(h.default_bands.begin(), h.default_bands.end());
     t += "default bands = " + list_text(bands) + "\n";
   }
+  t += class_text(h.classes);
+  if (!h.acquisition_time.empty()) t += "acquisition time = " + in_braces(h.acquisition_time, true) + "\n";
+  if (h.sun_azimuth_deg) t += strf("sun azimuth = %.9g\n", *h.sun_azimuth_deg);
+  if (h.sun_elevation_deg) t += strf("sun elevation = %.9g\n", *h.sun_elevation_deg);
   for (const auto& [key, value] : h.extra) t += key + " = " + value + "\n";
   return t;
 }
@@ -175,8 +193,11 @@ void EnviWriter::append(std::span<const double> rows) {
   impl_->written += count;
 }
 
+EnviHeader& EnviWriter::header() { return impl_->header; }
+
 void EnviWriter::commit() {
   SUITE_CHECK_EQ(impl_->written, impl_->header.lines);
+  check_header(impl_->path, impl_->header);
   impl_->text.write(header_text(impl_->header));
   // Everything that can fail for want of space happens before anything is renamed. The old header goes first: an image
   // without a header is plainly incomplete, an image with the header of another one is not.

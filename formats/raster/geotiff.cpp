@@ -5,28 +5,17 @@
 #include <memory>
 
 #include <geo_normalize.h>
-#include <geotiff.h>
 #include <geovalues.h>
-#include <xtiffio.h>
 
 #include "base/files.h"
 #include "formats/raster/raster.h"
+#include "formats/raster/tags.h"
 
 namespace suite {
 
 namespace {
 
-constexpr ttag_t kNoDataTag = 42113;  // GDAL_NODATA, text
-
-// libtiff talks to standard error on its own; what matters comes back as return values.
 void quiet(const char*, const char*, va_list) {}
-
-struct CloseTiff {
-  void operator()(TIFF* t) const { XTIFFClose(t); }
-};
-struct FreeKeys {
-  void operator()(GTIF* g) const { GTIFFree(g); }
-};
 
 const double* tag(TIFF* tiff, ttag_t id, uint16_t& count) {
   double* data = nullptr;
@@ -61,11 +50,24 @@ void read_transform(TIFF* tiff, GTIF* keys, const Where& where, double m[6]) {
 
 }  // namespace
 
+void be_quiet() {
+  TIFFSetErrorHandler(quiet);
+  TIFFSetWarningHandler(quiet);
+}
+
+void add_gdal_tags(TIFF* tiff) {
+  static const TIFFFieldInfo metadata[] = {
+      {kGdalMetadataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALMetadata")}};
+  static const TIFFFieldInfo no_data[] = {
+      {kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
+  if (!TIFFFindField(tiff, kGdalMetadataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, metadata, 1);
+  if (!TIFFFindField(tiff, kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, no_data, 1);
+}
+
 GeoReference read_georeference(const std::string& path) {
   const Where where{path, 0, 0, {}, -1};
   file_size(path);
-  TIFFSetErrorHandler(quiet);
-  TIFFSetWarningHandler(quiet);
+  be_quiet();
   const std::unique_ptr<TIFF, CloseTiff> tiff(XTIFFOpen(path.c_str(), "r"));
   if (!tiff) throw Error(where, "is not a TIFF file", "a GeoTIFF is expected");
   const std::unique_ptr<GTIF, FreeKeys> keys(GTIFNew(tiff.get()));
@@ -86,9 +88,7 @@ GeoReference read_georeference(const std::string& path) {
   }
   char* text = nullptr;
   uint16_t count = 0;
-  static const TIFFFieldInfo field[] = {
-      {kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
-  if (!TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff.get(), field, 1);
+  add_gdal_tags(tiff.get());
   if (const TIFFField* known = TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) {
     const bool got = TIFFFieldPassCount(known) ? TIFFGetField(tiff.get(), kNoDataTag, &count, &text)
                                                : TIFFGetField(tiff.get(), kNoDataTag, &text);

@@ -1,4 +1,4 @@
-// Rasters of floating-point numbers out: TIFF with GeoTIFF keys, and OpenEXR. See FORMAT.md.
+// Rasters of floating-point numbers out: TIFF with GeoTIFF keys and GDAL's metadata, and OpenEXR. See FORMAT.md.
 #pragma once
 #include <array>
 #include <optional>
@@ -16,12 +16,37 @@ struct RasterPlacement {
   std::optional<std::array<double, 2>> origin_deg;  // latitude, longitude of the tangent point
 };
 
-// values: row-major, first row first, channels together; stored as 32-bit floats, whole or not at all. comment: goes
-// into the file's description. Error: not writable, sizes that do not fit.
-void write_float_tiff(const std::string& path, uint32_t width, uint32_t height,
-                      const std::vector<std::string>& channels, std::span<const float> values,
-                      const std::string& comment, const std::optional<RasterPlacement>& placement);
-void write_exr(const std::string& path, uint32_t width, uint32_t height, const std::vector<std::string>& channels,
-               std::span<const float> values, const std::string& comment);
+struct RasterBand {
+  std::string name;
+  double wavelength_um = 0, fwhm_um = 0;  // 0 = none
+};
+
+// A raster and what is told about it.
+struct FloatRaster {
+  uint32_t width = 0, height = 0;
+  std::vector<RasterBand> bands;
+  std::string units;                             // of all bands; empty = none
+  std::vector<size_t> display;                   // from 0: the bands to show as red, green and blue, or one as grey
+  bool true_colour = false;                      // those three are what the eye sees as red, green and blue
+  std::optional<double> no_data;                 // the number that means nothing is known, NaN too
+  std::string utc;                               // ISO 8601, "2026-06-21T10:30:00.000000Z"; empty = no date
+  std::optional<std::array<double, 2>> sun_deg;  // compass azimuth, elevation
+  std::string comment;                           // goes into the file's description
+  std::optional<RasterPlacement> placement;
+};
+
+// values: row-major, first row first, bands together; stored as 32-bit floats, whole or not at all. Error: not
+// writable, sizes that do not fit.
+void write_float_tiff(const std::string& path, const FloatRaster& raster, std::span<const float> values);
+// The bands to show as the channels R, G and B (one as Y), and all of them under their names in the layer `bands`; no
+// layer where there is nothing to show.
+void write_exr(const std::string& path, const FloatRaster& raster, std::span<const float> values);
+
+// A GDAL virtual raster beside an image: its bands, units and no-data value, and as its geolocation arrays the first
+// two bands of `places` (longitude and latitude, WGS84, of the middle of every pixel). type: of the image, GDAL's name;
+// scale: what one of its numbers stands for, 1 = they are in the units.
+// image, places: names of files in the folder of the VRT, wherever GDAL is started from.
+void write_located_vrt(const std::string& path, const FloatRaster& raster, const std::string& type, double scale,
+                       const std::string& image, const std::string& places);
 
 }  // namespace suite

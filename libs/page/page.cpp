@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/markup.h"
 
 namespace suite {
 
@@ -13,23 +14,6 @@ namespace {
 
 constexpr double kWidth = 640, kHeight = 400, kLeft = 78, kRight = 170, kTop = 36, kBottom = 52;
 const char* kColours[] = {"#1b6ca8", "#c0392b", "#1e8449", "#8e44ad", "#b9770e", "#16808a", "#7f3f1f", "#555555"};
-
-std::string escaped(std::string_view text) {
-  std::string r;
-  for (const char c : text) {
-    if (c == '<')
-      r += "&lt;";
-    else if (c == '>')
-      r += "&gt;";
-    else if (c == '&')
-      r += "&amp;";
-    else if (c == '"')
-      r += "&quot;";
-    else
-      r += c;
-  }
-  return r;
-}
 
 // One axis: the range of its values and where they stand on the page.
 struct Axis {
@@ -85,12 +69,13 @@ std::string frame_of(const Plot& plot, const Axis& x, const Axis& y) {
         "<line x1=\"%g\" y1=\"%.1f\" x2=\"%g\" y2=\"%.1f\" stroke=\"#ddd\"/><text x=\"%g\" y=\"%.1f\" "
         "text-anchor=\"end\">%g</text>",
         kLeft, y.place(t), kWidth - kRight, y.place(t), kLeft - 6, y.place(t) + 4, t);
-  s += strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + escaped(plot.title) + "</text>";
+  s +=
+      strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + in_markup(plot.title) + "</text>";
   s += strf("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2, kHeight - 14) +
-       escaped(plot.x_label) + "</text>";
+       in_markup(plot.x_label) + "</text>";
   s +=
       strf("<text transform=\"translate(16 %g) rotate(-90)\" text-anchor=\"middle\">", (kTop + kHeight - kBottom) / 2) +
-      escaped(plot.y_label) + "</text>";
+      in_markup(plot.y_label) + "</text>";
   return s;
 }
 
@@ -134,28 +119,28 @@ std::string svg_of(const Plot& plot) {
     if (row < kHeight - kBottom)
       s += strf("<rect x=\"%g\" y=\"%g\" width=\"10\" height=\"10\" fill=\"%s\"/><text x=\"%g\" y=\"%g\">",
                 kWidth - kRight + 10, row - 9, colour, kWidth - kRight + 25, row) +
-           escaped(plot.series[i].name) + "</text>";
+           in_markup(plot.series[i].name) + "</text>";
   }
   return s + "</svg>\n";
 }
 
 std::string html_of(const Page& page) {
-  std::string h = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(page.title) +
+  std::string h = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + in_markup(page.title) +
                   "</title><link rel=\"icon\" href=\"data:,\"><style>body{font:14px "
                   "sans-serif;margin:2em;max-width:1400px}table{border-collapse:collapse;margin-bottom:1em}"
                   "td,th{padding:3px 9px;text-align:right;border-bottom:1px solid "
                   "#ddd}td:first-child,th:first-child{text-align:left}"
                   "svg{margin:4px}</style></head><body>\n<h1>" +
-                  escaped(page.title) + "</h1>\n";
-  for (const std::string& p : page.paragraphs) h += "<p>" + escaped(p) + "</p>\n";
+                  in_markup(page.title) + "</h1>\n";
+  for (const std::string& p : page.paragraphs) h += "<p>" + in_markup(p) + "</p>\n";
   for (const Plot& p : page.plots) h += svg_of(p);
   for (const PageTable& t : page.tables) {
-    h += "<h2>" + escaped(t.title) + "</h2>\n<table><tr>";
-    for (const std::string& c : t.columns) h += "<th>" + escaped(c) + "</th>";
+    h += "<h2>" + in_markup(t.title) + "</h2>\n<table><tr>";
+    for (const std::string& c : t.columns) h += "<th>" + in_markup(c) + "</th>";
     h += "</tr>\n";
     for (const auto& row : t.rows) {
       h += "<tr>";
-      for (const std::string& cell : row) h += "<td>" + escaped(cell) + "</td>";
+      for (const std::string& cell : row) h += "<td>" + in_markup(cell) + "</td>";
       h += "</tr>\n";
     }
     h += "</table>\n";

@@ -36,6 +36,12 @@ struct ImageRows {
   bool lines = false;  // captures are lines of one picture rather than pictures
 };
 
+// Columns of an image that see with responses of their own.
+struct ColumnBands {
+  uint32_t columns = 0;
+  std::vector<Band> bands;
+};
+
 struct Delivery {
   const Sensor& sensor;
   ImageRows rows;
@@ -44,7 +50,9 @@ struct Delivery {
   std::vector<Product> products;
   std::vector<TextFile> texts;
   std::optional<MapGrid> map;
-  std::string description;  // one sentence for the header
+  std::string description;                // one sentence for the header
+  std::vector<ColumnBands> columns = {};  // from the left; empty: all columns see with `bands`
+  std::optional<double> outside = {};     // radiance of pixels that see nothing by design, when there are such
   // Of strips: when the lines of the task were taken and how the picture lies, and the same of all tasks in turn.
   std::string lines_of_task = {}, lines_of_all = {};
 };

@@ -115,6 +115,17 @@ enum QualityFlag : uint8_t {
   quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
 };
 
+// What the numbers of an image are, and what goes with it. Paths, errors, targets and products know radiance only: it
+// is turned into the quantity when it is delivered.
+enum class Quantity { radiance, toa_reflectance, brightness_temperature };
+struct ImageWishes {
+  Quantity quantity = Quantity::radiance;
+  Where where = {};          // where the user asked for it, for messages
+  bool geolocation = false;  // the place of every pixel and a table that maps it, beside the image; needs the truth
+                             // `location`
+  double pixel_m = 0;        // of the table's grid; 0 = from the data
+};
+
 // A text that a sensor writes: a log, a table of results.
 struct TextFile {
   std::string name;  // file name without folder
@@ -137,6 +148,8 @@ class Sensor {
   virtual std::span<const Channel> channels() const;
   // The truth to collect for each problem: names of rows of the table in radiometry/truth.
   virtual std::span<const std::string> truth() const;
+  // What the user wants of the images of a capture.
+  virtual ImageWishes wishes(const Capture&) const { return {}; }
   // What a problem of a capture with own_convergence may take, instead of what the capture says for all. Asked before
   // the job starts, from one thread; at least one path.
   virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }

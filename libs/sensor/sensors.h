@@ -64,6 +64,10 @@ SpectralState read_state(const Params& params, std::span<const Band> bands);
 // Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the
 // renderer.
 std::vector<std::string> read_truth(const Params& params);
+// Keys `units: radiance | toa_reflectance | brightness_temperature` and `geolocation: BOOL | {pixel_m: N}`, which adds
+// `location` to the truth where it is missing. read_units: of a part of a sensor, which keeps the rest.
+ImageWishes read_wishes(const Params& params, std::vector<std::string>& truth);
+void read_units(const Params& params, ImageWishes& wishes);
 // Keys time_s and integration_time_s of sensors with one capture.
 TimeWindow read_window(const Params& params);
 

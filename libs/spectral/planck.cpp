@@ -62,6 +62,11 @@ double planck_radiance(double w, double kelvin) {
   return scale / std::expm1(x);
 }
 
+double planck_steepness(double w, double kelvin) {
+  const double x = kC2 / (w * kelvin);
+  return x / -std::expm1(-x);
+}
+
 double planck_band_radiance(double low, double high, double kelvin) {
   if (!(kelvin > 0) || !(high > low)) return 0;
   const double near = kC2 / (high * kelvin), far = low > 0 ? kC2 / (low * kelvin) : INFINITY;

@@ -13,6 +13,9 @@ inline constexpr double kStefanBoltzmann = 5.670374419184429e-8;  // W/(m2 K4), 
 // 0 in the Wien limit, uses expm1 in the Rayleigh-Jeans limit. Source: Planck 1901.
 double planck_radiance(double wavelength_um, double kelvin);
 
+// d ln(planck_radiance) / d ln(kelvin): x / (1 - e^-x) with x = hc / (wavelength k T); 1 in the Rayleigh-Jeans limit.
+double planck_steepness(double wavelength_um, double kelvin);
+
 // Radiance in [low_um, high_um], W/(m2 sr): exact series of the fractional function, relative error < 1e-12.
 // Source: Widger & Woodall, Bull. AMS 57, 1976, with the small-argument power series below x = 1.
 double planck_band_radiance(double low_um, double high_um, double kelvin);

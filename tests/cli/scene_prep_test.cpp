@@ -203,7 +203,7 @@ TEST_F(ScenePrep, UsageAndPlaces) {
   EXPECT_THAT(r.err, HasSubstr("did you mean '--output'?"));
   EXPECT_EQ(run("--summary a.h5 -o b.h5").code, 2);
   EXPECT_EQ(run("missing.yaml").code, 1);
-  EXPECT_EQ(run("good.yaml -o no/such/folder/a.h5").code, 1);
+  EXPECT_EQ(run("good.yaml -o good.yaml/a.h5").code, 1);
   EXPECT_EQ(run("good.yaml -o .").code, 1);
   EXPECT_THAT(run("--list-issues").out, HasSubstr("SP201"));
   EXPECT_THAT(run("--list-models").out, HasSubstr("lambert"));

@@ -195,6 +195,7 @@ TEST_F(SensorOutput, MapsCarryTheirCoordinates) {
   EXPECT_EQ(envi.header().map_info[3], "-7");   // west edge
   EXPECT_EQ(envi.header().map_info[4], "5.5");  // north edge
   const Raster tiff = read_raster(*folder_ / "map/map.tif"), exr = read_raster(*folder_ / "map/map.exr");
+  ASSERT_EQ(exr.channels, 2u);
   const std::vector<double> flags = EnviImage(*folder_ / "map/map_quality.img").read_all();
   for (const char* file : {"map/map_quality.tif", "map/map_quality.exr"}) {
     const Raster also = read_raster(*folder_ / file);
@@ -204,7 +205,9 @@ TEST_F(SensorOutput, MapsCarryTheirCoordinates) {
   const std::vector<double> values = envi.read_all();
   for (size_t i = 0; i < values.size(); ++i) {
     ASSERT_EQ(tiff.values[i], static_cast<float>(values[i]));
-    ASSERT_EQ(exr.values[i], static_cast<float>(values[i]));
+    // The band as the picture that viewers show, and under its name.
+    ASSERT_EQ(exr.values[2 * i], static_cast<float>(values[i]));
+    ASSERT_EQ(exr.values[2 * i + 1], static_cast<float>(values[i]));
   }
   if (run_command("command -v gdalinfo").code != 0)
     GTEST_SKIP() << "gdalinfo (Debian package gdal-bin) is not installed";

@@ -128,7 +128,7 @@ TEST(SqtFitCli, RefusesBadInput) {
     EXPECT_NE(r.err.find(c.message), std::string::npos) << c.arguments << "\n" << r.err;
     EXPECT_FALSE(file_exists(folder / "x.sqt")) << c.arguments;
   }
-  EXPECT_EQ(run_command(kFit + kWard + "-q -o /nowhere/x.sqt").code, 1);
+  EXPECT_EQ(run_command(kFit + kWard + "-q -o /proc/nowhere/x.sqt").code, 1);
 }
 
 // A table as users have them: what is harmless is taken, what is odd is said, and a fault is shown where it is.
@@ -208,9 +208,10 @@ TEST(SqtFitCli, OutputsAreCheckedFirst) {
     EXPECT_EQ(run_command("cd " + folder.path() + " && " + kFit + twice).code, 2) << twice;
   EXPECT_EQ(read_text(csv), text);
   for (const char* option : {"--report", "--curve"}) {
-    const CommandResult r = run_command(kFit + csv + " -o " + (folder / "o.sqt") + " " + option + " /nowhere/x.csv");
+    const CommandResult r =
+        run_command(kFit + csv + " -o " + (folder / "o.sqt") + " " + option + " /proc/nowhere/x.csv");
     EXPECT_EQ(r.code, 1);
-    EXPECT_NE(r.err.find("/nowhere/x.csv: error: cannot be written"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("/proc/nowhere/x.csv: error: cannot be written"), std::string::npos) << r.err;
     EXPECT_FALSE(file_exists(folder / "o.sqt"));
   }
 }

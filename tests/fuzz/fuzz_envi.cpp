@@ -11,7 +11,9 @@ TEST(Fuzz, EnviHeader) {
       "ENVI\ndescription = {two\nlines}\nsamples = 50\nlines = 49\nbands = 3\nheader offset = 0\nfile type = ENVI "
       "Standard\n"
       "data type = 1\ninterleave = bip\nbyte order = 0\nwavelength units = nm\nwavelength = {450, 550, 650}\n"
-      "band names = {\nBand 1,\nBand 2,\nBand 3}\ndata ignore value = -9999\ndefault bands = {3, 2, 1}\n";
+      "band names = {\nBand 1,\nBand 2,\nBand 3}\ndata ignore value = -9999\ndefault bands = {3, 2, 1}\n"
+      "classes = 2\nclass lookup = {0, 0, 0, 1, 2, 3}\nclass names = {none, grass}\nacquisition time = "
+      "2026-06-21T10:30:00Z\nsun azimuth = 120.5\nsun elevation = 45\n";
   const std::vector<std::string> words = {"=",
                                           "{",
                                           "}",
@@ -27,6 +29,8 @@ TEST(Fuzz, EnviHeader) {
                                           "bands = 2",
                                           "wavelength = {}",
                                           "default bands",
+                                          "class names = {a, b, c}",
+                                          "class lookup = {",
                                           std::string(1, '\0'),
                                           "\xff\xfe",
                                           "\r\n",

@@ -22,8 +22,13 @@ const std::string kBands = "bands: [{name: pan, center_um: 0.6, fwhm_um: 0.1}]";
 const std::string kSensors =
     "  - {kind: frame_camera, name: a, columns: 4, rows: 3, pitch_um: 5, focal_length_mm: 9, position_m: [0, 0, 60], "
     "look_at_m: [0, 0, 0], paths: {min: 4, max: 8, relative_error: 0.1}, " +
-    kBands + "}\n  - {kind: fisheye, name: b, size: 5, position_m: [0, 0, 2], " + kBands +
-    "}\n  - {kind: orthographic, name: c, columns: 3, rows: 3, gsd_m: 1, center_m: [0, 0], truth: [range], " + kBands +
+    kBands +
+    "}\n  - {kind: fisheye, name: b, size: 5, position_m: [0, 0, 2], units: brightness_temperature, geolocation: "
+    "true, " +
+    kBands +
+    "}\n  - {kind: orthographic, name: c, columns: 3, rows: 3, gsd_m: 1, center_m: [0, 0], truth: [range], units: "
+    "toa_reflectance, geolocation: {pixel_m: 2}, " +
+    kBands +
     "}\n  - {kind: point, name: d, collectors: [{quantity: radiance, position_m: [0, 0, 1], look: [0, 1, -1]}], " +
     kBands +
     "}\n  - {kind: goniometer, name: e, patch: {origin_m: [0, 0], size_m: [2, 2]}, height_m: 3, view_zenith_deg: [0, "

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "formats/envi/envi.h"
 #include "support/message_of.h"
+#include "support/run_command.h"
 #include "support/temp_folder.h"
 
 using namespace suite;
@@ -75,6 +76,13 @@ TEST(EnviHeader, FaultsAreLocatedAndExplained) {
       {" 560 }", " -5 }", "'wavelength': -5 is not positive"},
       {" 560 }", " 560 } trailing", "text after the closing brace"},
       {"WGS-84}", "WGS-84", "a.hdr:17:1: error: the brace opened here is never closed"},
+      {"data units = DN", "classes = 2\nclass names = {a, b, c}",
+       "a.hdr:16:1: error: 'class names' has 3 names for 2 classes"},
+      {"data units = DN", "class names = {a, b}\nclass lookup = {1, 2, 3}",
+       "a.hdr:16:1: error: 'class lookup' has 3 numbers for 2 classes; red, green and blue of each class"},
+      {"data units = DN", "class names = {a}\nclass lookup = {1, 2, 256}",
+       "'class lookup': '256' is not a valid value; give a whole number from 0 to 255"},
+      {"data units = DN", "sun azimuth = north", "'sun azimuth': 'north' is not a number"},
       {"band names = {blue, green}", "bands = 2", "a.hdr:14:1: error: duplicate key 'bands'; first given in line 5"},
   };
   for (const auto& c : cases)
@@ -131,6 +139,9 @@ TEST(Envi, MetadataSurvivesTheRoundTrip) {
   h.ignore_value = -1e300;
   h.default_bands = {2};
   h.extra = {{"sensor type", "camera"}};
+  h.acquisition_time = "2026-06-21T10:30:00.000000Z";
+  h.sun_azimuth_deg = 149.5, h.sun_elevation_deg = -0.25;
+  h.classes = {{"nothing", {0, 0, 0}}, {"grass", {10, 200, 30}}};
   write_envi(folder / "m.img", h, std::vector<double>{std::numeric_limits<double>::quiet_NaN(), 2});
   const EnviImage image(folder / "m.img");
   const EnviHeader& r = image.header();
@@ -143,6 +154,10 @@ TEST(Envi, MetadataSurvivesTheRoundTrip) {
   EXPECT_EQ(r.ignore_value, h.ignore_value);
   EXPECT_EQ(r.default_bands, h.default_bands);
   EXPECT_EQ(r.extra, h.extra);
+  EXPECT_EQ(r.acquisition_time, h.acquisition_time);
+  EXPECT_EQ(r.sun_azimuth_deg, h.sun_azimuth_deg);
+  EXPECT_EQ(r.sun_elevation_deg, h.sun_elevation_deg);
+  EXPECT_EQ(r.classes, h.classes);
   EXPECT_TRUE(std::isnan(image.read_all()[0]));
   image.require_units("W/(m2 sr um)");
   EXPECT_THAT(message_of([&] { image.require_units("K"); }),
@@ -231,4 +246,31 @@ TEST(Envi, GdalSeesTheSameBandsWavelengthsAndSizes) {
   EXPECT_THAT(out, HasSubstr("wavelength_units=Micrometers"));
   EXPECT_THAT(out, HasSubstr("Origin = (500000.000000000000000,5400000.000000000000000)"));
   EXPECT_THAT(out, HasSubstr("Computed Min/Max=0.250,7.000"));
+}
+
+// What only the end of a rendering knows may be told then.
+TEST(Envi, AHeaderIsCompletedUntilItIsWritten) {
+  const TempFolder folder;
+  EnviWriter writer(folder / "c.img", cube(1, 1, 1, EnviType::float32, Interleave::bsq));
+  writer.append(std::vector<double>{1});
+  writer.header().acquisition_time = "2026-06-21T10:30:00Z";
+  writer.header().default_bands = {2};
+  EXPECT_THAT(message_of([&] { writer.commit(); }), HasSubstr("default band 2 of 1 bands"));
+  writer.header().default_bands = {1};
+  writer.commit();
+  EXPECT_EQ(read_envi_header(folder / "c.img").acquisition_time, "2026-06-21T10:30:00Z");
+}
+
+TEST(Envi, GdalSeesClassesAndColours) {
+  if (std::system("command -v gdalinfo >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "gdalinfo (Debian package gdal-bin) is not installed";
+  const TempFolder folder;
+  EnviHeader h = cube(2, 1, 1, EnviType::uint8, Interleave::bsq);
+  h.classes = {{"nothing", {0, 0, 0}}, {"grass, wet", {10, 200, 30}}};
+  h.ignore_value = 0;
+  write_envi(folder / "k.img", h, std::vector<double>{0, 1});
+  const std::string out = run_command("gdalinfo '" + (folder / "k.img") + "'").out;
+  EXPECT_THAT(out,
+              HasSubstr("ColorInterp=Palette\n  NoData Value=0\n  Categories:\n      0: nothing\n      1: grass; wet"));
+  EXPECT_THAT(out, HasSubstr("1: 10,200,30,255"));
 }

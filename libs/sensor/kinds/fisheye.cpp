@@ -12,6 +12,7 @@ namespace {
 class Fisheye final : public SimpleSensor {
  public:
   Fisheye(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "fisheye") {
+    wishes_ = read_wishes(p, truth_);
     capture_.columns = capture_.rows = static_cast<uint32_t>(p.integer("size", 1, 100000));
     const auto [x, y, z] = p.at("position_m").as_vec3();
     position_ = {x, y, z};
@@ -32,6 +33,7 @@ class Fisheye final : public SimpleSensor {
   }
 
  private:
+  void finish(Delivery& d) const override { d.outside = 0; }
   Vec3 position_;
   bool up_ = true;
   double reach_ = 0;

@@ -18,6 +18,7 @@ class FrameCamera final : public Sensor {
     bands_ = read_bands(p.at("bands"), context);
     state_ = read_state(p, bands_);
     truth_ = read_truth(p);
+    wishes_ = read_wishes(p, truth_);
 
     Capture capture;
     capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
@@ -72,12 +73,14 @@ class FrameCamera final : public Sensor {
     deliver_(d);
   }
   std::span<const std::string> truth() const override { return truth_; }
+  ImageWishes wishes(const Capture&) const override { return wishes_; }
 
  private:
   std::function<void(const Delivery&)> deliver_;
   std::string name_;
   std::vector<Band> bands_;
   std::vector<std::string> truth_;
+  ImageWishes wishes_;
   SpectralState state_;
   std::vector<Task> tasks_;
   Vec3 position_, forward_, right_, down_;

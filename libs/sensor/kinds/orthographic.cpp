@@ -8,6 +8,7 @@ namespace {
 class Orthographic final : public SimpleSensor {
  public:
   Orthographic(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "map") {
+    wishes_ = read_wishes(p, truth_);
     capture_.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
     capture_.rows = static_cast<uint32_t>(p.integer("rows", 1, 100000));
     const double gsd = p.number_in("gsd_m", 1e-6, 1e6, "m");

@@ -42,6 +42,9 @@ class Platform final : public Sensor {
   }
   std::span<const Task> tasks() const override { return spec_.tasks; }
   std::span<const std::string> truth() const override { return spec_.truth; }
+  ImageWishes wishes(const Capture& capture) const override {
+    return spec_.arrays[spec_.segments[capture.state].array].wishes;
+  }
   int numbers() const override { return wide_ ? 8 : 4; }
 
   Convergence convergence(const Capture& capture, size_t problem) const override {
@@ -154,15 +157,23 @@ class Platform final : public Sensor {
     return p;
   }
 
+  // The bands of a segment without those that count photons.
+  std::vector<Band> radiance_bands(size_t segment) const {
+    const Segment& s = spec_.segments[segment];
+    return {s.bands.begin(), s.bands.begin() + static_cast<long>(s.radiance_bands)};
+  }
+
   // Puts the columns of an array's segments side by side.
   void deliver(const PlatformSpec::Part& part, std::map<size_t, Piece>& pieces) {
     const FocalArray& array = spec_.arrays[part.array];
     Piece& first = pieces.at(array.segments[0]);
     const size_t task = first.result.task, capture = first.result.capture;
     const bool backwards = spec_.tasks[task].captures[capture].reversed & kColumnsReversed;
-    std::vector<Band> bands(spec_.segments[array.segments[0]].bands.begin(),
-                            spec_.segments[array.segments[0]].bands.begin() + static_cast<long>(first.result.bands));
+    std::vector<Band> bands = radiance_bands(array.segments[0]);
+    std::vector<ColumnBands> columns;
     if (pieces.size() > 1) {
+      for (const auto& [segment, piece] : pieces) columns.push_back({piece.result.columns, radiance_bands(segment)});
+      if (backwards) std::reverse(columns.begin(), columns.end());
       std::vector<CaptureResult*> results;
       std::vector<std::vector<Product>*> products;
       for (auto& [segment, piece] : pieces) results.push_back(&piece.result), products.push_back(&piece.products);
@@ -173,6 +184,7 @@ class Platform final : public Sensor {
     const Capture& c = spec_.tasks[task].captures[capture];
     Delivery d{
         *this, rows_[task][capture], std::move(first.result), std::move(bands), std::move(first.products), {}, {}, {}};
+    d.columns = std::move(columns);
     const std::string who = strf("instrument '%s'", instrument.name.c_str());
     std::string spread;
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)

@@ -51,6 +51,7 @@ struct FocalArray {
   Readout readout;
   uint32_t time_bins = 1;  // parts of the exposure, each with a picture of its own
   std::optional<DetectorSpec> detector;
+  ImageWishes wishes;
   size_t instrument = 0;
   std::vector<size_t> segments;
   bool scans() const { return readout.kind == Readout::Kind::line || readout.kind == Readout::Kind::whisk; }
@@ -96,6 +97,7 @@ struct PlatformSpec {
   };
   std::vector<std::vector<Part>> parts;  // [task][capture]
   std::vector<std::string> truth;
+  ImageWishes wishes;  // of arrays that do not say
 };
 
 // platform_read.cpp. Error, located, for anything wrong, motion that does not cover the tasks included.

@@ -161,6 +161,8 @@ void read_array(const Params& p, size_t instrument, const std::string& image, Pl
   array.instrument = instrument;
   array.image = image;
   array.readout = read_readout(p);
+  array.wishes = spec.wishes;
+  read_units(p, array.wishes);
   const Params pitch = p.at("pitch_um");
   const std::vector<double> size =
       pitch.kind() == Params::Kind::list ? pitch.as_numbers() : std::vector<double>(2, pitch.as_number());
@@ -276,6 +278,7 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
     if (!jitter->still()) spec.jitter = std::move(jitter);
   }
   spec.truth = read_truth(params);
+  spec.wishes = read_wishes(params, spec.truth);
   read_carrier(params, {}, spec, context, seed, 0);
   for (const std::string& key : spec.instruments.empty() ? params.keys() : std::vector<std::string>{})
     if (const std::string near = nearest_name(key, std::vector<std::string>{"attachments", "instruments"});

@@ -1,0 +1,51 @@
+#include "facts.h"
+
+#include <cmath>
+
+#include "scheduler/moments.h"
+
+namespace suite {
+
+Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  if (sim.epoch) clock_ = Clock(*sim.epoch);
+  sun_.sun = sim.sources.sun;
+  sun_.dut1 = sim.sources.dut1;
+}
+
+std::string Facts::utc(double seconds) const { return clock_ ? to_iso8601(clock_->utc(seconds), 6) : std::string(); }
+
+std::optional<SunSpec> Facts::sun(double seconds) const {
+  if (!sun_.sun) return std::nullopt;
+  SourcesInTime sources(sun_, *scene_);
+  return sources.at(seconds).sun;
+}
+
+std::array<double, 2> azimuth_elevation_deg(Dir d) {
+  const double azimuth = std::atan2(d.x, d.y) / kDegree;
+  return {azimuth < 0 ? azimuth + 360 : azimuth, std::atan2(d.z, std::hypot(d.x, d.y)) / kDegree};
+}
+
+void check_wishes(const Simulation& sim, const Facts& facts) {
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures) {
+        const ImageWishes wishes = sensor->wishes(c);
+        if (wishes.quantity != Quantity::toa_reflectance) continue;
+        const std::optional<SunSpec> sun = facts.sun(moment_of(c));
+        if (!sun)
+          throw Error(wishes.where, "units: toa_reflectance compares with the sun's light, and there is no sun",
+                      "give the simulation a `sun`, or leave the units at radiance");
+        if (const double elevation = azimuth_elevation_deg(sun->direction)[1]; !(sun->direction.z > 0))
+          throw Error(wishes.where,
+                      strf("units: toa_reflectance needs the sun above the horizon; at %g s, when '%s' of sensor '%s' "
+                           "is taken, it stands %.2f degrees below",
+                           moment_of(c), c.name.c_str(), sensor->name().c_str(), -elevation),
+                      "leave out the captures at night, or leave the units at radiance");
+        for (const Band& b : sensor->bands(c.state))
+          if (!(band_mean(b, sun->irradiance) > 0))
+            throw Error(wishes.where, "units: toa_reflectance: the sun has no light in the band '" + b.name + "'",
+                        "leave the units of this array at radiance");
+      }
+}
+
+}  // namespace suite

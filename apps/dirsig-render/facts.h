@@ -1,0 +1,34 @@
+// What is known of a moment of the simulation: its date, and where the sun is.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/sim_text/sim_text.h"
+#include "radiometry/sources/environment.h"
+#include "scene/scene.h"
+
+namespace suite {
+
+class Facts {
+ public:
+  Facts(const Simulation& sim, std::shared_ptr<const Scene> scene);
+  // UTC of a time of the simulation in ISO 8601 with a Z; empty without an `epoch`.
+  std::string utc(double seconds) const;
+  // The sun at that time, as the text gives it: above the air when there is air. Nothing without one.
+  std::optional<SunSpec> sun(double seconds) const;
+  bool sun_moves() const { return sun_.dated(); }
+
+ private:
+  std::optional<Clock> clock_;
+  SourceSpecs sun_;
+  std::shared_ptr<const Scene> scene_;
+};
+
+// Compass azimuth (0 to 360) and elevation of a direction, degrees.
+std::array<double, 2> azimuth_elevation_deg(Dir direction);
+
+// Refuses quantities that cannot be had of a capture: a reflectance without a sun above the horizon.
+void check_wishes(const Simulation& sim, const Facts& facts);
+
+}  // namespace suite

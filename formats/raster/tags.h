@@ -1,0 +1,23 @@
+// What reading and writing GeoTIFF share. Internal to formats/raster.
+#pragma once
+#include <geotiff.h>
+#include <xtiffio.h>
+
+namespace suite {
+
+constexpr ttag_t kGdalMetadataTag = 42112;  // GDAL_METADATA, XML
+constexpr ttag_t kNoDataTag = 42113;        // GDAL_NODATA, text
+
+struct CloseTiff {
+  void operator()(TIFF* t) const { XTIFFClose(t); }
+};
+struct FreeKeys {
+  void operator()(GTIF* g) const { GTIFFree(g); }
+};
+
+// Makes libtiff know the two tags, where it does not.
+void add_gdal_tags(TIFF* tiff);
+// libtiff talks to standard error on its own; what matters comes back as return values.
+void be_quiet();
+
+}  // namespace suite
