@@ -8,6 +8,7 @@
 #include "base/run_app.h"
 #include "formats/envi/envi.h"
 #include "geolocation.h"
+#include "math/stats.h"
 #include "preview.h"
 #include "quantities.h"
 
@@ -99,7 +100,9 @@ void OutputWriter::open_radiance(Image& m, const Delivery& d, const std::string&
   EnviHeader h = common_header(m, d);
   h.description = name + about;
   EnviHeader e = h;
-  e.description = "standard error of the " + name + about;
+  e.description = "standard error of the " + name + about +
+                  strf("; an interval of 95 %% reaches %.3g standard errors to either side (Student, %.3g degrees)",
+                       student_t_quantile(0.95, static_cast<int>(d.result.error_degrees)), d.result.error_degrees);
   const bool temperature = m.wishes.quantity == Quantity::brightness_temperature;
   if (temperature) e.ignore_value = std::nan("");
   if (spec_.type == OutputSpec::Type::uint16) {
