@@ -1,7 +1,8 @@
 // How cost grows: bands, triangles, instances, lamps, cells of a medium, threads; whole renders of the terrain, and how
 // long its scene takes to load; as CSV on standard output: bench, x, unit, value (seconds of CPU of this process),
 // extra (Mrays/s, share of Embree). Usage: scaling_bench
-// [bands|bands_sqt_maps_media|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...   (default: all)
+// [bands|bands_sqt_maps_media|bands_general_kernel|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...
+// (default: all)
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,12 +32,13 @@ struct Run {
   double cpu = 0, last_capture = 0;  // seconds of the job; of its last capture
 };
 Run render(const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths, size_t bands, uint64_t seed = 1,
-           const SourceSpecs& sources = terrain_sources(), size_t captures = 1) {
+           const SourceSpecs& sources = terrain_sources(), size_t captures = 1, bool specialise = true) {
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<TerrainCamera>(edge, paths, bands, captures));
   JobOptions options;
   options.pipeline.seed = seed;
   options.pipeline.max_nodes = 8;
+  options.pipeline.specialise = specialise;
   options.progress = false;
   Run run;
   const double start = cpu_seconds();
@@ -54,20 +56,24 @@ void print(const char* bench, double x, const char* unit, double value, const Ru
               static_cast<double>(run.report.statistics.trace.rays) / seconds / 1e6, run.report.share_in_embree);
   std::fflush(stdout);
 }
-// CPU microseconds a path: of the second of two captures, for which everything is built and warm.
-void per_path(const char* bench, double x, const std::shared_ptr<Scene>& scene, uint32_t edge, uint32_t paths,
-              size_t bands, const SourceSpecs& sources = terrain_sources()) {
-  Run run = render(scene, edge, paths, bands, 1, sources, 2);
+enum class Kernel { matte, general };
+// CPU microseconds a path in that kernel: of the second of two captures, for which everything is built and warm.
+void per_path(const char* bench, double x, Kernel kernel, const std::shared_ptr<Scene>& scene, uint32_t edge,
+              uint32_t paths, size_t bands, const SourceSpecs& sources = terrain_sources(), bool specialise = true) {
+  Run run = render(scene, edge, paths, bands, 1, sources, 2, specialise);
+  if (run.report.log.back().kernel != (kernel == Kernel::matte ? "matte" : "general"))
+    throw Bug(std::string(bench) + " ran in the " + run.report.log.back().kernel + " kernel");
   print(bench, x, "us/path (CPU)", 1e6 * run.last_capture / (static_cast<double>(edge) * edge * paths), run);
 }
 
 void bands() {
   const auto scene = terrain_scene(240);
-  for (const size_t n : {1u, 4u, 16u, 64u, 224u}) per_path("bands", static_cast<double>(n), scene, 96, 16, n);
+  for (const size_t n : {1u, 4u, 16u, 64u, 224u})
+    per_path("bands", static_cast<double>(n), Kernel::matte, scene, 96, 16, n);
 }
 void triangles() {
   for (const uint32_t edge : {72u, 225u, 708u, 2237u})
-    per_path("triangles", 2.0 * (edge - 1) * (edge - 1), terrain_scene(edge), 128, 16, 1);
+    per_path("triangles", 2.0 * (edge - 1) * (edge - 1), Kernel::matte, terrain_scene(edge), 128, 16, 1);
 }
 // The terrain many times over, side by side in 1 km steps; only the middle one is seen.
 void instances() {
@@ -80,13 +86,14 @@ void instances() {
         p.to_parent = translation({1000.0 * (i - side / 2), 1000.0 * (j - side / 2), 0});
         scene->groups[0].placements.push_back(p);
       }
-    per_path("instances", side * side, scene, 96, 16, 1);
+    per_path("instances", side * side, Kernel::matte, scene, 96, 16, 1);
   }
 }
 // Lamps a few metres over the terrain, of one power in all.
 void lamps() {
   const auto scene = terrain_scene(100);
-  for (const int n : {1, 10, 100, 1000, 10000}) per_path("lamps", n, scene, 96, 32, 1, lamps_over_terrain(n));
+  for (const int n : {1, 10, 100, 1000, 10000})
+    per_path("lamps", n, Kernel::general, scene, 96, 32, 1, lamps_over_terrain(n));
 }
 // A cloud of optical depth 2 over the terrain, of n cells a side.
 void add_cloud(Scene& scene, uint32_t n) {
@@ -114,7 +121,7 @@ void media() {
     auto scene = terrain_scene(72);
     add_cloud(*scene, n);
     check_scene(*scene, "cloud");
-    per_path("media", n, scene, 96, 16, 1);
+    per_path("media", n, Kernel::general, scene, 96, 16, 1);
   }
 }
 // The terrain with everything that works per wavelength: a map that mixes a fitted glossy material of four wavelengths
@@ -154,7 +161,15 @@ std::shared_ptr<Scene> terrain_with_everything() {
 }
 void bands_with_everything() {
   const auto scene = terrain_with_everything();
-  for (const size_t n : {1u, 224u}) per_path("bands_sqt_maps_media", static_cast<double>(n), scene, 96, 16, n);
+  for (const size_t n : {1u, 224u})
+    per_path("bands_sqt_maps_media", static_cast<double>(n), Kernel::general, scene, 96, 16, n);
+}
+// The matte terrain of `bands` in the kernel for everything: what the kernel for matte scenes saves.
+void bands_in_the_general_kernel() {
+  const auto scene = terrain_scene(240);
+  for (const size_t n : {1u, 224u})
+    per_path("bands_general_kernel", static_cast<double>(n), Kernel::general, scene, 96, 16, n, terrain_sources(),
+             false);
 }
 // Reading and checking a prepared scene, the best of five.
 void load() {
@@ -209,6 +224,7 @@ int main(int argc, char** argv) {
   using namespace suite::bench;
   const std::pair<const char*, void (*)()> all[] = {{"bands", bands},
                                                     {"bands_sqt_maps_media", bands_with_everything},
+                                                    {"bands_general_kernel", bands_in_the_general_kernel},
                                                     {"triangles", triangles},
                                                     {"instances", instances},
                                                     {"lamps", lamps},

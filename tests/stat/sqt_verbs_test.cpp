@@ -79,7 +79,7 @@ const std::vector<Case>& cases() {
 // Chi-square of n draws against the density integrated over HEALPix cells of order 3, given how many draws succeeded;
 // the share that does is held to the density's integral directly (to the 0.4 % that this quadrature is good for).
 double chi_square_of(const Bundle& bundle, Dir out, size_t channel, double spoil, int n = 60000) {
-  const int order = 3, side = 40;
+  const int order = 3, side = 24;
   Pcg32 rng(7);
   std::vector<double> expected(cell_count(order), 0.0), seen(expected.size(), 0.0);
   double sum = 0;
