@@ -234,7 +234,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
-  Simulation sim = read_simulation(o.simulation, callbacks);
+  Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;

@@ -18,6 +18,11 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.positional("input", o.input, "scene text (YAML or JSON), or a prepared scene with --summary", false);
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
+  cli.option(
+      "--set", o.settings,
+      "a value in place of the text's, such as materials.grey.reflectance=0.3; items of lists by number (from 0) or "
+      "name, values in YAML, null takes a key out (repeatable)",
+      "PATH=VALUE");
   cli.option("--report", o.report,
              "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
              "FILE.json");

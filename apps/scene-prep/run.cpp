@@ -47,6 +47,7 @@ void list_models() {
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
 std::string canonical_arguments(const ScenePrepOptions& o) {
   std::string text = printable(std::filesystem::path(o.input).filename().string());
+  for (const std::string& setting : o.settings) text += " --set " + printable(setting);
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
   if (o.repair) text += " --repair";
@@ -80,7 +81,7 @@ bool up_to_date(const ScenePrepOptions& o) {
       return read_provenance(o.output);
     }();
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
-           inputs_unchanged(o.input, {o.search}, p.inputs);
+           inputs_unchanged(o.input, {o.search, {}}, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
@@ -142,7 +143,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = read_scene_text(o.input, {o.search}, report);
+  Draft draft = read_scene_text(o.input, {o.search, o.settings}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -192,10 +193,10 @@ Ray parse_ray(const std::string& text) {
 
 // Questions about a scene that has been prepared.
 int inspect(const ScenePrepOptions& o) {
-  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || o.strict || o.repair ||
-      o.quick || o.force)
+  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || !o.settings.empty() ||
+      o.strict || o.repair || o.quick || o.force)
     throw UsageError(
-        "--output, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
+        "--output, --set, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
         "scene text, not with questions about a prepared scene");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
   note_input(o.input);

@@ -46,13 +46,15 @@ void check_truth(const Params& sensor, const SensorContext& context) {
 
 }  // namespace
 
-Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks) {
-  const Params root = Params::parse_file(path);
+Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
+                           std::vector<std::string> settings) {
+  const Params root = Params::parse_file(path, settings);
   if (!root.has("sensors") && (root.has("materials") || root.has("world")))
     throw root.error("this is the text of a scene, not of a simulation",
                      "prepare it with scene-prep, and name the prepared scene by 'scene:' in a simulation text");
   Simulation sim;
   sim.path = path;
+  sim.settings = std::move(settings);
   read_scenes(root, sim);
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));

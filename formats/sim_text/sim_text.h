@@ -33,6 +33,7 @@ struct SimulationScene {
 
 struct Simulation {
   std::string path;
+  std::vector<std::string> settings;  // applied to the text
   std::vector<SimulationScene> scenes;
   std::string scene_path;  // of the first
   PipelineOptions pipeline;
@@ -50,7 +51,9 @@ struct SimulationCallbacks {
   // Origin on the Earth of a prepared scene; asked only when a motion needs to know.
   std::function<GeodeticOrigin(const std::string& path, const std::vector<SimulationScene>& scenes)> origin;
 };
-// Error located in the text for anything wrong, unread keys included.
-Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks);
+// settings: "PATH=VALUE", values in place of the text's (base/params.h). Error located in the text or setting for
+// anything wrong, unread keys included.
+Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
+                           std::vector<std::string> settings = {});
 
 }  // namespace suite
