@@ -24,30 +24,6 @@ double unit_factor(OutputSpec::Units units, const Band& band) {
   return 1;
 }
 
-// The bands of the preview: named ones, or those nearest to red, green and blue; one band when there are fewer than 3.
-std::vector<size_t> preview_bands(std::span<const Band> bands, const std::vector<std::string>& names) {
-  std::vector<size_t> chosen;
-  if (!names.empty()) {
-    std::vector<std::string> known;
-    for (const Band& b : bands) known.push_back(b.name);
-    for (const std::string& name : names) {
-      const auto found = std::find(known.begin(), known.end(), name);
-      if (found == known.end())
-        throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
-      chosen.push_back(static_cast<size_t>(found - known.begin()));
-    }
-    return chosen;
-  }
-  if (bands.size() < 3) return {0};
-  for (const double wanted : {0.65, 0.55, 0.45}) {
-    size_t best = 0;
-    for (size_t b = 0; b < bands.size(); ++b)
-      if (std::fabs(bands[b].center_um - wanted) < std::fabs(bands[best].center_um - wanted)) best = b;
-    chosen.push_back(best);
-  }
-  return chosen;
-}
-
 // The tangent plane at the scene's origin as a coordinate system that other programs know.
 std::string tangent_wkt(const GeodeticOrigin& o) {
   return strf(
@@ -90,12 +66,11 @@ struct OutputWriter::Image {
   uint32_t columns = 0, rows = 0, next = 0;
   size_t values = 0;                     // of radiance, per pixel
   std::vector<double> factor;            // of each value
-  std::vector<size_t> chosen;            // of the preview
   std::map<uint32_t, Delivery> waiting;  // by first row
   std::unique_ptr<EnviWriter> radiance, error, quality, truth;
   std::vector<std::unique_ptr<EnviWriter>> products;
   std::vector<std::string> files;
-  std::vector<double> preview;  // [pixel][chosen]
+  std::optional<Preview> preview;
   std::vector<std::string> names;
   std::vector<float> all;           // [pixel][value], for formats that take a whole picture
   std::vector<float> all_quality;   // [pixel], likewise
@@ -120,7 +95,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
            : files == OutputSpec::Files::task  ? d.rows.rows_of_task
                                                : d.rows.rows_of_all;
   m.values = d.result.values_per_problem();
-  m.chosen = preview_bands(d.bands, spec_.preview);
+  m.preview.emplace(d.bands, spec_.preview, m.columns, m.rows);
   m.map = d.map;
   const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
   const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
@@ -241,8 +216,7 @@ void OutputWriter::take(const Delivery& delivery) {
         if (spec_.geotiff || spec_.exr) m.all.push_back(static_cast<float>(x));
         if (spec_.type == OutputSpec::Type::uint16) x = std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
       }
-    for (size_t i = 0; i < n; ++i)
-      for (const size_t b : m.chosen) m.preview.push_back(d.result.radiance[i * m.values + b]);
+    m.preview->append(d.result);
     m.radiance->append(radiance);
     m.error->append(error);
     m.quality->append(std::vector<double>(d.result.quality.begin(), d.result.quality.end()));
@@ -271,7 +245,7 @@ void OutputWriter::take(const Delivery& delivery) {
   }
   m.files.push_back(base + "_error_correlation.csv");
   write_file(m.files.back(), correlation + "\n");
-  write_preview(base + ".png", m.preview, m.columns, m.rows, m.chosen.size());
+  m.preview->write(base + ".png");
   m.files.push_back(base + ".png");
   for (const std::string& file : m.files) note("wrote " + file);
   open_.erase(stem);
@@ -280,10 +254,6 @@ void OutputWriter::take(const Delivery& delivery) {
 void OutputWriter::write_text(const TextFile& text) {
   write_file(folder_ + "/" + text.name, std::string_view(text.text));
   note("wrote " + folder_ + "/" + text.name);
-}
-
-void check_preview(const Sensor& sensor, const OutputSpec& spec) {
-  for (size_t s = 0; s < sensor.states().size(); ++s) preview_bands(sensor.bands(s), spec.preview);
 }
 
 }  // namespace suite

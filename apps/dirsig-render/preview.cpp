@@ -4,34 +4,218 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/error.h"
 #include "base/run_app.h"
-#include "formats/picture/picture.h"
+#include "spectral/planck.h"
 
 namespace suite {
 
-void write_preview(const std::string& path, std::span<const double> values, uint32_t columns, uint32_t rows,
-                   size_t bands) {
-  std::vector<double> finite;
-  for (const double v : values)
-    if (std::isfinite(v)) finite.push_back(v);
-  double white = 1;
-  if (!finite.empty()) {
-    const auto at = finite.begin() + static_cast<long>(0.99 * static_cast<double>(finite.size() - 1));
-    std::nth_element(finite.begin(), at, finite.end());
-    if (*at > 0) white = *at;
+namespace {
+
+constexpr double kThermalFrom = 3;  // um: sunlight and the glow of the ground at its usual warmth cross near 4
+constexpr uint32_t kMost = 15000;   // pixels, which leaves room for a bar on a canvas
+
+// Named ones, or those nearest to red, green and blue; of thermal sensors that nearest to 10 um; the first of fewer
+// than three.
+std::vector<size_t> preview_bands(std::span<const Band> bands, const PreviewSpec& spec) {
+  std::vector<size_t> chosen;
+  std::vector<std::string> known;
+  for (const Band& b : bands) known.push_back(b.name);
+  for (const std::string& name : spec.bands) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw Error("the preview names a band '" + name + "' that the sensor does not have", name_hint(name, known));
+    chosen.push_back(static_cast<size_t>(found - known.begin()));
   }
-  constexpr uint32_t most = 16384;
-  const uint32_t stride = std::max((columns + most - 1) / most, (rows + most - 1) / most);
-  Canvas canvas(static_cast<int>((columns + stride - 1) / stride), static_cast<int>((rows + stride - 1) / stride),
-                kBlack);
-  for (uint32_t r = 0; r < rows; r += stride)
-    for (uint32_t c = 0; c < columns; c += stride) {
-      const double* v = &values[(size_t{r} * columns + c) * bands];
-      auto shade = [&](size_t k) { return srgb(v[std::min(k, bands - 1)] / white); };
-      canvas.set(static_cast<int>(c / stride), static_cast<int>(r / stride), {shade(0), shade(1), shade(2)});
+  if (!chosen.empty()) return chosen;
+  const auto nearest = [&](double wanted_um) {
+    const auto off = [&](const Band& b) { return std::fabs(b.center_um - wanted_um); };
+    return static_cast<size_t>(
+        std::min_element(bands.begin(), bands.end(), [&](auto& a, auto& b) { return off(a) < off(b); }) -
+        bands.begin());
+  };
+  const bool thermal = bands[nearest(0)].center_um > kThermalFrom;
+  if (thermal || spec.show == PreviewSpec::Show::kelvin) return {nearest(10)};
+  if (bands.size() < 3) return {0};
+  return {nearest(0.65), nearest(0.55), nearest(0.45)};
+}
+
+// The truth column that tells where nothing was hit, and how.
+struct Emptiness {
+  size_t column = SIZE_MAX;
+  bool zero = false;  // 0 says so, else NaN
+  bool at(double truth) const { return zero ? truth == 0 : std::isnan(truth); }
+};
+Emptiness emptiness_of(const std::vector<std::string>& names) {
+  for (const char* wanted : {"hits", "material", "range", "instance"})
+    for (size_t i = 0; i < names.size(); ++i)
+      if (names[i].substr(0, names[i].find(' ')) == wanted) return {i, wanted == std::string("hits")};
+  return {};
+}
+
+// Brightness temperatures of a band's mean radiance, from a table of its Planck radiance.
+class BandKelvin {
+ public:
+  BandKelvin(const Band& band, double lowest, double highest) : center_um_(band.center_um) {
+    const double from = 0.7 * brightness_temperature(center_um_, lowest),
+                 to = 1.4 * brightness_temperature(center_um_, highest);
+    constexpr int steps = 400;
+    for (int i = 0; i <= steps; ++i) {
+      kelvin_.push_back(from * std::pow(to / from, i / static_cast<double>(steps)));
+      at_center_.push_back(brightness_temperature(center_um_, mean(band, kelvin_.back())));
     }
-  write_png(path, canvas, command_line() + strf("; linear from 0 to %g W/(m2 sr um) (99th percentile), sRGB", white));
+  }
+  // The temperature seen at the band's centre is nearly that of the band: linear between the table's.
+  double of(double radiance) const {
+    if (!(radiance > 0)) return std::nan("");
+    const double seen = brightness_temperature(center_um_, radiance);
+    const auto above = std::upper_bound(at_center_.begin() + 1, at_center_.end() - 1, seen);
+    const size_t i = static_cast<size_t>(above - at_center_.begin());
+    const double t = (seen - at_center_[i - 1]) / (at_center_[i] - at_center_[i - 1]);
+    return kelvin_[i - 1] + t * (kelvin_[i] - kelvin_[i - 1]);
+  }
+
+ private:
+  static double mean(const Band& band, double kelvin) {
+    constexpr int steps = 256;
+    const double low = band.low_um(), width = (band.high_um() - low) / steps;
+    double sum = 0, all = 0;
+    for (int i = 0; i < steps; ++i) {
+      const double um = low + (i + 0.5) * width, response = band.response.at(um);
+      sum += response * planck_radiance(um, kelvin), all += response;
+    }
+    return sum / all;
+  }
+  double center_um_;
+  std::vector<double> kelvin_, at_center_;
+};
+
+// Two percentiles of what is finite; apart in any case.
+std::array<double, 2> ends_of(std::vector<double> values, const PreviewSpec& spec, double least_apart) {
+  if (spec.range) return *spec.range;
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return {0, 1};
+  const auto percentile = [&](double percent) {
+    const auto at = values.begin() + std::lround(percent / 100 * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const double low = percentile(spec.low_percent), high = percentile(spec.high_percent);
+  if (high - low >= least_apart && high > low) return {low, high};
+  if (least_apart > 0) return {(low + high - least_apart) / 2, (low + high + least_apart) / 2};
+  return high > 0 ? std::array<double, 2>{0, high} : std::array<double, 2>{0, 1};
+}
+
+}  // namespace
+
+// Where things are in a picture: without a bar nothing but the picture; with one a title above and the bar at the
+// right, and what is small is enlarged so that both are legible.
+struct Preview::Layout {
+  Layout(int columns, int rows, bool bar) {
+    enlarged = bar ? std::max(1, std::min((kLegible + rows - 1) / rows, 2 * kLegible / columns)) : 1;
+    picture_width = width = columns * enlarged, height = rows * enlarged;
+    if (!bar) return;
+    scale = std::clamp(height / 200, 1, 5);
+    top = 2 * Canvas::text_height(scale);
+    height = top + std::max(height, 100 * scale);
+    width += 16 * scale + bar_labels_width(scale);
+  }
+  static constexpr int kLegible = 400;
+  int enlarged, picture_width, width, height, scale = 1, top = 0;
+};
+
+Preview::Preview(std::span<const Band> bands, PreviewSpec spec, uint32_t columns, uint32_t rows)
+    : spec_(std::move(spec)),
+      chosen_(preview_bands(bands, spec_)),
+      columns_(columns),
+      rows_(rows),
+      stride_(std::max({1u, (columns + kMost - 1) / kMost, (rows + kMost - 1) / kMost})) {
+  for (const size_t b : chosen_) bands_.push_back(bands[b]);
+  kelvin_ = chosen_.size() == 1 && spec_.show != PreviewSpec::Show::radiance &&
+            (spec_.show == PreviewSpec::Show::kelvin || bands_[0].center_um > kThermalFrom);
+}
+
+void Preview::append(const CaptureResult& rows) {
+  const Emptiness empty = emptiness_of(rows.truth_names);
+  const size_t truths = rows.truth_names.size(), per_pixel = rows.values_per_problem();
+  for (size_t i = 0; i < rows.problems(); ++i) {
+    for (const size_t b : chosen_) values_.push_back(rows.radiance[i * per_pixel + b]);
+    nothing_.push_back(empty.column < truths && empty.at(rows.truth[i * truths + empty.column]));
+  }
+}
+
+std::vector<double> Preview::shown() const {
+  if (!kelvin_) return values_;
+  // A picture of the sky alone is one of the sky's light.
+  const bool any = std::find(nothing_.begin(), nothing_.end(), false) != nothing_.end();
+  std::vector<double> values = values_;
+  for (size_t i = 0; i < values.size(); ++i)
+    if ((any && nothing_[i]) || !(values[i] > 0)) values[i] = std::nan("");
+  double low = INFINITY, high = 0;
+  for (const double v : values)
+    if (v > 0) low = std::min(low, v), high = std::max(high, v);
+  if (high == 0) return values;
+  const BandKelvin kelvin(bands_[0], low, high);
+  for (double& v : values) v = kelvin.of(v);
+  return values;
+}
+
+double Preview::gamma(double t) const {
+  return spec_.gamma > 0 ? std::pow(std::clamp(t, 0.0, 1.0), 1 / spec_.gamma) : srgb(t) / 255.0;
+}
+
+Rgb Preview::color(double t) const {
+  if (kelvin_) return inferno(t);
+  const auto shade = static_cast<uint8_t>(std::lround(255 * gamma(t)));
+  return {shade, shade, shade};
+}
+
+void Preview::write(const std::string& path) const {
+  const std::vector<double> values = shown();
+  const std::array<double, 2> ends = ends_of(values, spec_, kelvin_ ? 0.5 : 0);
+  const bool bar = spec_.bar && chosen_.size() == 1;
+  const int columns = static_cast<int>((columns_ + stride_ - 1) / stride_),
+            rows = static_cast<int>((rows_ + stride_ - 1) / stride_);
+  const Layout at(columns, rows, bar);
+  Canvas canvas(at.width, at.height, bar ? kWhite : kBlack);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const size_t pixel = size_t{static_cast<uint32_t>(r)} * stride_ * columns_ + static_cast<uint32_t>(c) * stride_;
+      const auto t = [&](size_t k) { return (values[pixel * chosen_.size() + k] - ends[0]) / (ends[1] - ends[0]); };
+      const Rgb shade = chosen_.size() == 1 ? color(t(0)) : Rgb{color(t(0)).r, color(t(1)).g, color(t(2)).b};
+      canvas.fill(c * at.enlarged, at.top + r * at.enlarged, at.enlarged, at.enlarged, shade);
+    }
+  if (bar) {
+    const bool empty = kelvin_ && std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+    draw_legend(canvas, at, ends, empty);
+  }
+  write_png(path, canvas,
+            command_line() + strf("; linear from %g to %g %s (", ends[0], ends[1], unit()) +
+                (spec_.range ? "as asked" : strf("%g and %g %% of the values", spec_.low_percent, spec_.high_percent)) +
+                (kelvin_           ? "), inferno"
+                 : spec_.gamma > 0 ? strf("), gamma %g", spec_.gamma)
+                                   : "), sRGB"));
+}
+
+void Preview::draw_legend(Canvas& canvas, const Layout& at, std::array<double, 2> ends, bool empty) const {
+  const int s = at.scale, line = Canvas::text_height(s), x = at.picture_width + 6 * s;
+  const std::string what = kelvin_ ? "brightness temperature, " : "radiance, ";
+  for (const std::string& title : {bands_[0].name + ": " + what + unit(), what + unit(), std::string(unit())})
+    if (Canvas::text_width(title, s) <= at.width) {
+      canvas.text(2 * s, (at.top - line) / 2, title, kBlack, s);
+      break;
+    }
+  const int bottom = at.height - (empty ? 3 * line : line / 2);
+  draw_bar(
+      canvas, x, at.top + line / 2, 10 * s, bottom - at.top - line / 2, ends[0], ends[1],
+      [&](double t) { return color(t); }, s);
+  if (!empty) return;
+  canvas.fill(x, bottom + line, 10 * s, line, kGrey);
+  canvas.frame(x, bottom + line, 10 * s, line, kBlack);
+  canvas.text(x + 17 * s, bottom + line, "nothing", kBlack, s);
+}
+
+void check_preview(const Sensor& sensor, const PreviewSpec& spec) {
+  for (size_t s = 0; s < sensor.states().size(); ++s) preview_bands(sensor.bands(s), spec);
 }
 
 }  // namespace suite

@@ -19,6 +19,7 @@
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
+#include "preview.h"
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
 #include "scene/combine.h"
@@ -263,7 +264,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);
   for (const auto& sensor : sim.sensors) {
-    check_preview(*sensor, sim.output);
+    check_preview(*sensor, sim.output.preview);
     for (const std::string& truth : sensor->truth()) find_truth(truth);
     choose_bins_of(*sensor, *scene, standing);
   }

@@ -10,6 +10,34 @@ namespace suite {
 
 namespace {
 
+void read_preview(const Params& p, PreviewSpec& out) {
+  const bool map = p.kind() == Params::Kind::map;
+  if (const auto bands = map ? p.find("bands") : p) {
+    for (const Params& band : bands->items()) out.bands.push_back(band.as_text());
+    if (out.bands.size() != 1 && out.bands.size() != 3)
+      throw bands->error(strf("a preview has one band or three, found %zu", out.bands.size()));
+  }
+  if (!map) return;
+  if (const auto show = p.find("show"))
+    out.show = show->as_choice({"radiance", "kelvin"}) ? PreviewSpec::Show::kelvin : PreviewSpec::Show::radiance;
+  if (out.show == PreviewSpec::Show::kelvin && out.bands.size() == 3)
+    throw p.at("show").error("kelvin are shown of one band, three are named", "bands: [NAME]");
+  const auto two = [&](const char* key, double low, double high) -> std::optional<std::array<double, 2>> {
+    const auto pair = p.find(key);
+    if (!pair) return std::nullopt;
+    const std::vector<double> v = pair->as_numbers();
+    if (v.size() != 2 || !(v[0] >= low && v[0] < v[1] && v[1] <= high))
+      throw pair->error(strf("'%s' is not a lower and a higher value", key),
+                        strf("two numbers from %g to %g", low, high));
+    return std::array<double, 2>{v[0], v[1]};
+  };
+  if (const auto stretch = two("stretch", 0, 100)) out.low_percent = (*stretch)[0], out.high_percent = (*stretch)[1];
+  out.range = two("range", 0, kLargestNumber);
+  if (out.range && p.has("stretch")) throw p.at("stretch").error("'range' and 'stretch' exclude each other");
+  out.gamma = p.number_in("gamma", 0.1, 10, "", 0);
+  out.bar = p.boolean("bar", true);
+}
+
 void read_output(const Params& p, OutputSpec& out) {
   if (const auto type = p.find("type"))
     out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64", "uint16"}));
@@ -24,11 +52,7 @@ void read_output(const Params& p, OutputSpec& out) {
       (format.as_choice({"geotiff", "exr"}) == 0 ? out.geotiff : out.exr) = true;
   if (const auto order = p.find("interleave"))
     out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
-  if (const auto preview = p.find("preview")) {
-    for (const Params& band : preview->items()) out.preview.push_back(band.as_text());
-    if (out.preview.size() != 1 && out.preview.size() != 3)
-      throw preview->error(strf("a preview has one band or three, found %zu", out.preview.size()));
-  }
+  if (const auto preview = p.find("preview")) read_preview(*preview, out.preview);
 }
 
 // Truth that nobody collects, or that needs a scene on the Earth which is not on it.

@@ -1,6 +1,7 @@
 // A simulation as a user writes it: YAML (or JSON) that names a prepared scene, sources, sensors and output. See
 // FORMAT.md.
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,6 +13,16 @@
 
 namespace suite {
 
+// How radiance becomes a picture for people.
+struct PreviewSpec {
+  std::vector<std::string> bands;  // names of three (red, green, blue) or one; empty = chosen by wavelength
+  enum class Show { natural, radiance, kelvin } show = Show::natural;  // natural: kelvin for one band beyond 3 um
+  double low_percent = 2, high_percent = 98;   // of all values: black and white, unless there is a range
+  std::optional<std::array<double, 2>> range;  // W/(m2 sr um) or K
+  double gamma = 0;                            // 0 = that of sRGB; radiance only
+  bool bar = true;                             // beside pictures of one band
+};
+
 struct OutputSpec {
   enum class Type { float32, float64, uint16 } type = Type::float32;
   double scale = 1;  // uint16: what one count stands for, in the units
@@ -21,7 +32,7 @@ struct OutputSpec {
   enum class Files { natural, capture, task, simulation } files = Files::natural;
   enum class Units { w_m2, w_cm2, photons } units = Units::w_m2;  // per sr and um; photons per s
   bool geotiff = false, exr = false;                              // beside ENVI
-  std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
+  PreviewSpec preview;
 };
 
 // One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
