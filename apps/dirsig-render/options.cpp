@@ -12,7 +12,7 @@ AppInfo render_info() {
           "  NAME_error.img   standard error of the radiance, same bands\n"
           "  NAME_quality.img flags of every pixel, a sum of the bits that its header names\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
-          "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
+          "  NAME.png         preview: three bands, or one with a bar (thermal ones in kelvin)\n"
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
           "and render.json    what was run: every capture with its paths, seconds and errors\n"
           "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"

@@ -95,7 +95,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
            : files == OutputSpec::Files::task  ? d.rows.rows_of_task
                                                : d.rows.rows_of_all;
   m.values = d.result.values_per_problem();
-  m.preview.emplace(d.bands, spec_.preview, m.columns, m.rows);
+  m.preview.emplace(d.bands, spec_.preview_of(d.sensor.name()), m.columns, m.rows);
   m.map = d.map;
   const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
   const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;

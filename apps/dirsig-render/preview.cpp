@@ -89,17 +89,25 @@ class BandKelvin {
   std::vector<double> kelvin_, at_center_;
 };
 
-// Two percentiles of what is finite; apart in any case.
-std::array<double, 2> ends_of(std::vector<double> values, const PreviewSpec& spec, double least_apart) {
+double percentile(std::vector<double>& values, double percent) {
+  const auto at = values.begin() + std::lround(percent / 100 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Black: a percentile of each pixel's darkest band, so that no more pixels lose a colour there; white: of its
+// brightest. Pixels that are not finite do not count. The two are apart in any case.
+std::array<double, 2> ends_of(std::span<const double> values, size_t bands, const PreviewSpec& spec,
+                              double least_apart) {
   if (spec.range) return *spec.range;
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return {0, 1};
-  const auto percentile = [&](double percent) {
-    const auto at = values.begin() + std::lround(percent / 100 * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  const double low = percentile(spec.low_percent), high = percentile(spec.high_percent);
+  std::vector<double> darkest, brightest;
+  for (size_t at = 0; at < values.size(); at += bands) {
+    const auto [low, high] = std::minmax_element(&values[at], &values[at] + bands);
+    if (!std::isfinite(*low) || !std::isfinite(*high)) continue;
+    darkest.push_back(*low), brightest.push_back(*high);
+  }
+  if (darkest.empty()) return {0, 1};
+  const double low = percentile(darkest, spec.low_percent), high = percentile(brightest, spec.high_percent);
   if (high - low >= least_apart && high > low) return {low, high};
   if (least_apart > 0) return {(low + high - least_apart) / 2, (low + high + least_apart) / 2};
   return high > 0 ? std::array<double, 2>{0, high} : std::array<double, 2>{0, 1};
@@ -114,7 +122,7 @@ struct Preview::Layout {
     enlarged = bar ? std::max(1, std::min((kLegible + rows - 1) / rows, 2 * kLegible / columns)) : 1;
     picture_width = width = columns * enlarged, height = rows * enlarged;
     if (!bar) return;
-    scale = std::clamp(height / 200, 1, 5);
+    scale = std::clamp((std::min(width, height) + 140) / 280, 1, 5);
     top = 2 * Canvas::text_height(scale);
     height = top + std::max(height, 100 * scale);
     width += 16 * scale + bar_labels_width(scale);
@@ -159,6 +167,14 @@ std::vector<double> Preview::shown() const {
   return values;
 }
 
+std::vector<double> Preview::without_black(std::vector<double> values) const {
+  const size_t n = chosen_.size();
+  for (size_t i = 0; i < nothing_.size(); ++i)
+    if (nothing_[i] && std::all_of(&values[i * n], &values[i * n] + n, [](double v) { return v == 0; }))
+      std::fill_n(&values[i * n], n, std::nan(""));
+  return values;
+}
+
 double Preview::gamma(double t) const {
   return spec_.gamma > 0 ? std::pow(std::clamp(t, 0.0, 1.0), 1 / spec_.gamma) : srgb(t) / 255.0;
 }
@@ -171,7 +187,7 @@ Rgb Preview::color(double t) const {
 
 void Preview::write(const std::string& path) const {
   const std::vector<double> values = shown();
-  const std::array<double, 2> ends = ends_of(values, spec_, kelvin_ ? 0.5 : 0);
+  const std::array<double, 2> ends = ends_of(without_black(values), chosen_.size(), spec_, kelvin_ ? 0.5 : 0);
   const bool bar = spec_.bar && chosen_.size() == 1;
   const int columns = static_cast<int>((columns_ + stride_ - 1) / stride_),
             rows = static_cast<int>((rows_ + stride_ - 1) / stride_);
@@ -190,7 +206,7 @@ void Preview::write(const std::string& path) const {
   }
   write_png(path, canvas,
             command_line() + strf("; linear from %g to %g %s (", ends[0], ends[1], unit()) +
-                (spec_.range ? "as asked" : strf("%g and %g %% of the values", spec_.low_percent, spec_.high_percent)) +
+                (spec_.range ? "as asked" : strf("%g and %g %% of the pixels", spec_.low_percent, spec_.high_percent)) +
                 (kelvin_           ? "), inferno"
                  : spec_.gamma > 0 ? strf("), gamma %g", spec_.gamma)
                                    : "), sRGB"));
@@ -204,7 +220,7 @@ void Preview::draw_legend(Canvas& canvas, const Layout& at, std::array<double, 2
       canvas.text(2 * s, (at.top - line) / 2, title, kBlack, s);
       break;
     }
-  const int bottom = at.height - (empty ? 3 * line : line / 2);
+  const int bottom = std::min(at.height - (empty ? 3 * line : line / 2), at.top + 60 * line);
   draw_bar(
       canvas, x, at.top + line / 2, 10 * s, bottom - at.top - line / 2, ends[0], ends[1],
       [&](double t) { return color(t); }, s);

@@ -10,10 +10,10 @@
 namespace suite {
 
 // Collects what an image's preview needs while its rows come in, and draws it. Of three bands: red, green and blue,
-// linear between two percentiles over all three, so that colours stay in proportion, then sRGB; a pixel a detector. Of
-// one band: grey with a bar of radiance, or, when its light is thermal (beyond 3 um), colours with a bar of brightness
-// temperature, grey where the truth says that nothing was hit; small pictures are enlarged. The file's comment says
-// what was done. Pictures wider or higher than 15000 show every n-th pixel.
+// linear from the 1st percentile of each pixel's darkest band to the 99th of its brightest, then sRGB; a pixel a
+// detector. Of one band: grey with a bar of radiance, or, when its light is thermal (beyond 3 um), colours with a bar
+// of brightness temperature, grey where the truth says that nothing was hit; small pictures are enlarged. The file's
+// comment says what was done. Pictures wider or higher than 15000 show every n-th pixel.
 class Preview {
  public:
   // Error: a band that is named but not there.
@@ -23,6 +23,7 @@ class Preview {
 
  private:
   std::vector<double> shown() const;  // values_ in the unit of the picture; NaN where there is nothing
+  std::vector<double> without_black(std::vector<double> values) const;  // NaN where nothing is and nothing shines
   double gamma(double t) const;
   Rgb color(double t) const;  // of one band, from 0 to 1
   const char* unit() const { return kelvin_ ? "K" : "W/(m2 sr um)"; }

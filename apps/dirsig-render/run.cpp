@@ -264,7 +264,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);
   for (const auto& sensor : sim.sensors) {
-    check_preview(*sensor, sim.output.preview);
+    check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) find_truth(truth);
     choose_bins_of(*sensor, *scene, standing);
   }

@@ -53,6 +53,8 @@ void read_output(const Params& p, OutputSpec& out) {
   if (const auto order = p.find("interleave"))
     out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
   if (const auto preview = p.find("preview")) read_preview(*preview, out.preview);
+  if (const auto previews = p.find("previews"))
+    for (const std::string& sensor : previews->keys()) read_preview(previews->at(sensor), out.previews[sensor]);
 }
 
 // Truth that nobody collects, or that needs a scene on the Earth which is not on it.
@@ -106,6 +108,10 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
                     "give each its own `name`: it names the output files");
   }
   if (sim.sensors.empty()) throw sensors.error("a simulation needs at least one sensor");
+  for (const auto& [sensor, preview] : sim.output.previews)
+    if (!names.count(sensor))
+      throw Error(root.at("output").at("previews").where(sensor), "there is no sensor '" + sensor + "'",
+                  name_hint(sensor, std::vector<std::string>(names.begin(), names.end())));
   root.reject_unread();
   return sim;
 }

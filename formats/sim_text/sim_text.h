@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,7 @@ namespace suite {
 struct PreviewSpec {
   std::vector<std::string> bands;  // names of three (red, green, blue) or one; empty = chosen by wavelength
   enum class Show { natural, radiance, kelvin } show = Show::natural;  // natural: kelvin for one band beyond 3 um
-  double low_percent = 2, high_percent = 98;   // of all values: black and white, unless there is a range
+  double low_percent = 1, high_percent = 99;   // of all values: black and white, unless there is a range
   std::optional<std::array<double, 2>> range;  // W/(m2 sr um) or K
   double gamma = 0;                            // 0 = that of sRGB; radiance only
   bool bar = true;                             // beside pictures of one band
@@ -33,6 +34,11 @@ struct OutputSpec {
   enum class Units { w_m2, w_cm2, photons } units = Units::w_m2;  // per sr and um; photons per s
   bool geotiff = false, exr = false;                              // beside ENVI
   PreviewSpec preview;
+  std::map<std::string, PreviewSpec> previews;  // of sensors that have their own
+  const PreviewSpec& preview_of(const std::string& sensor) const {
+    const auto own = previews.find(sensor);
+    return own == previews.end() ? preview : own->second;
+  }
 };
 
 // One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
