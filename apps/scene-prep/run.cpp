@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -183,12 +184,44 @@ void print_summary(const ScenePrepOptions& o, const Scene& scene, const LoadRepo
               printable(p.arguments).c_str(), p.inputs.size(), printable(p.input_sha256).c_str());
 }
 
+// "1 2, 3" as numbers.
+std::vector<double> parse_numbers(const std::string& text, const char* option) {
+  return Params::parse_text("[" + std::regex_replace(text, std::regex("[ ,]+"), ", ") + "]", option).as_numbers();
+}
+
 Ray parse_ray(const std::string& text) {
-  const Params list = Params::parse_text("[" + std::regex_replace(text, std::regex("[ ,]+"), ", ") + "]", "--raycast");
-  const std::vector<double> v = list.as_numbers();
+  const std::vector<double> v = parse_numbers(text, "--raycast");
   const Vec3 direction = v.size() == 6 ? Vec3{v[3], v[4], v[5]} : Vec3{};
   if (!(length(direction) > 0)) throw UsageError("--raycast needs six numbers, the last three not all 0");
   return {{v[0], v[1], v[2]}, normalized(direction), 0};
+}
+
+LookAt parse_look(const ScenePrepOptions& o, const Tracer& tracer, double time) {
+  LookAt look;
+  look.box = tracer.bounds(), look.size_m = o.look_size, look.time = time;
+  if (o.look_size < 0 || !(o.look_size <= 1e9)) throw UsageError("--look-size is up to 1e9 m");
+  if (!o.look_from.empty()) {
+    const std::vector<double> v = parse_numbers(o.look_from, "--look-from");
+    if (v.size() != 2 || !(std::fabs(v[0]) <= 360 && std::fabs(v[1]) <= 90))
+      throw UsageError("--look-from is a compass azimuth and an elevation from -90 to 90, degrees");
+    look.azimuth_deg = v[0], look.elevation_deg = v[1];
+  }
+  if (o.look_at.empty()) return look;
+  if (o.look_at.find_first_of(" ,") == std::string::npos) {
+    try {
+      look.box = box_of(tracer, o.look_at);
+      look.margin = 1.1;
+    } catch (const Error& e) {
+      throw Error(Where{o.input, 0, 0, {}, -1}, "--look-at: " + e.message(), e.hint());
+    }
+    return look;
+  }
+  const std::vector<double> v = parse_numbers(o.look_at, "--look-at");
+  if (v.size() < 2 || v.size() > 3) throw UsageError("--look-at is a name, or two or three numbers, m");
+  if (!(o.look_size > 0)) throw UsageError("a place to look at needs a --look-size");
+  look.box = {};
+  look.box.grow(Vec3{v[0], v[1], v.size() == 3 ? v[2] : height_at(tracer, v[0], v[1], time).value_or(0)});
+  return look;
 }
 
 // Questions about a scene that has been prepared.
@@ -198,6 +231,8 @@ int inspect(const ScenePrepOptions& o) {
     throw UsageError(
         "--output, --set, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
         "scene text, not with questions about a prepared scene");
+  if (o.quick_look.empty() && (!o.look_at.empty() || !o.look_from.empty() || o.look_size != 0))
+    throw UsageError("--look-at, --look-from and --look-size go with --quick-look");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
   note_input(o.input);
   check_outputs({o.export_obj, o.quick_look});
@@ -211,7 +246,7 @@ int inspect(const ScenePrepOptions& o) {
   const Tracer tracer(scene, std::nullopt, {time, time});
   if (!o.raycast.empty()) std::fputs(printable_lines(describe_hit(tracer, parse_ray(o.raycast))).c_str(), stdout);
   if (!o.quick_look.empty()) {
-    const View view = view_from_above(tracer, static_cast<int>(o.pixels));
+    const View view = view_of(tracer, parse_look(o, tracer, time), static_cast<int>(o.pixels));
     write_png(o.quick_look, view.width, view.height, view.rgb, command_line());
   }
   return 0;
