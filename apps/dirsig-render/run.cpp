@@ -199,7 +199,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   try {
     return run_job(scene, sim.sources, sim.sensors, options);
   } catch (const Error& e) {
-    if (!e.where().file.starts_with(folder + "/")) throw;
+    if (!e.where().file.starts_with(folder + "/")) throw located(e, *scene, sim);
     size_t captures = 0;
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
@@ -256,10 +256,9 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   std::vector<std::shared_ptr<const LaterReads>> later;
   const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  for (const auto& sensor : sim.sensors)
-    for (const Task& task : sensor->tasks())
-      for (const Capture& c : task.captures)
-        check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+  for (size_t s = 0; s < sim.sensors.size(); ++s)
+    for (const Task& task : sim.sensors[s]->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
   for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);

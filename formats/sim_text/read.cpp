@@ -72,6 +72,20 @@ void check_truth(const Params& sensor, const SensorContext& context) {
 
 }  // namespace
 
+namespace {
+
+// What a sensor finds wrong without knowing where stands at the sensor.
+std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& context) {
+  try {
+    return make_sensor(p, context);
+  } catch (const Error& e) {
+    if (!e.where().file.empty()) throw;
+    throw p.error(e.message(), e.hint(), e.code());
+  }
+}
+
+}  // namespace
+
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
                            std::vector<std::string> settings) {
   const Params root = Params::parse_file(path, settings);
@@ -85,7 +99,8 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
   sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 1, 10000000, 10000));
-  sim.sources = read_sources(root);
+  std::vector<AskedCurve> asked;
+  sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {
     const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();
     if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
@@ -102,7 +117,9 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   const Params sensors = root.at("sensors");
   for (const Params& p : sensors.items()) {
     check_truth(p, context);
-    sim.sensors.push_back(make_sensor(p, context));
+    sim.sensors.push_back(make_sensor_at(p, context));
+    sim.sensor_where.push_back(p.where());
+    for (const AskedCurve& curve : asked) check_coverage(curve, *sim.sensors.back(), p.where());
     if (!names.insert(sim.sensors.back()->name()).second)
       throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'",
                     "give each its own `name`: it names the output files");

@@ -59,6 +59,7 @@ struct Simulation {
   std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's or the moon's date
   double dut1 = 0;           // s, UT1 - UTC
   std::vector<std::unique_ptr<Sensor>> sensors;
+  std::vector<Where> sensor_where;  // of each, in the text
   OutputSpec output;
 };
 

@@ -268,7 +268,8 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   if (p.motion) {
     if (p.on.given()) return add("SP405", p.on.where, "what moves cannot stand 'on' something");
     made.track = static_cast<uint32_t>(scene_.tracks.size());
-    scene_.tracks.push_back({strf("'%s' (line %d)", p.target.name.c_str(), p.motion_where.line), p.motion});
+    scene_.tracks.push_back(
+        {strf("'%s' (line %d of the scene's text)", p.target.name.c_str(), p.motion_where.line), p.motion});
     motion_where_.push_back(p.motion_where);
   }
   made.kind = what->kind;
