@@ -46,7 +46,7 @@ struct Emptiness {
   bool at(double truth) const { return zero ? truth == 0 : std::isnan(truth); }
 };
 Emptiness emptiness_of(const std::vector<std::string>& names) {
-  for (const char* wanted : {"hits", "material", "range", "instance"})
+  for (const char* wanted : {"hits", "material", "range", "instance", "east", "latitude", "ecef", "view"})
     for (size_t i = 0; i < names.size(); ++i)
       if (names[i].substr(0, names[i].find(' ')) == wanted) return {i, wanted == std::string("hits")};
   return {};

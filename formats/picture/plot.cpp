@@ -86,7 +86,7 @@ void draw_bar(Canvas& canvas, int x, int y, int width, int height, double low, d
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
     const int at = y + height - 1 - static_cast<int>(std::lround((k * step - low) / (high - low) * (height - 1)));
     canvas.fill(x + width, at, 4 * scale, scale, kBlack);
-    canvas.text(x + width + 7 * scale, at - 3 * scale, strf("%.6g", k * step), kBlack, scale);
+    canvas.text(x + width + 7 * scale, at - 3 * scale, strf("%.6g", k == 0 ? 0.0 : k * step), kBlack, scale);
   }
 }
 

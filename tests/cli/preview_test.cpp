@@ -84,7 +84,7 @@ TEST_F(PreviewTest, ThermalBandsShowKelvin) {
   EXPECT_EQ(with_bar(heat, 10, 10), kGrey) << "nothing";
   EXPECT_EQ(at(heat, 3, 3).r, 255) << "beside the title";
   EXPECT_THAT(read_text(folder_ / "out/heat.png"), HasSubstr("linear from 280 to 320 K (as asked), inferno"));
-  // The temperature of the band's mean radiance, not that at its centre, which is some tenths of a kelvin off here.
+  // The temperature of the band's mean radiance, not that at its centre, which is 288.1 K here.
   render("--set 'output={previews: {heat: {range: [289.9, 290.1], bar: false}}}'");
   const Raster fine = picture("heat");
   EXPECT_EQ(fine.width, 20u);
@@ -93,6 +93,10 @@ TEST_F(PreviewTest, ThermalBandsShowKelvin) {
   render("--set seed=2");
   EXPECT_THAT(read_text(folder_ / "out/heat.png"), HasSubstr("(1 and 99 % of the pixels)"));
   EXPECT_EQ(with_bar(picture("heat"), 10, 10), kGrey);
+  for (const char* truth : {"hits", "location", "range", "view_angle"}) {
+    render(std::string("--set 'sky={radiance: 0.1}' --set sensors.heat.truth=[") + truth + "]");
+    EXPECT_EQ(with_bar(picture("heat"), 10, 10), kGrey) << truth << ": the sky is no object";
+  }
   expect_near(with_bar(picture("heat"), 15, 4), inferno(1), 1, "the warmest");
 }
 
