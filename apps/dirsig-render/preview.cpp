@@ -89,21 +89,24 @@ class BandKelvin {
   std::vector<double> kelvin_, at_center_;
 };
 
-double percentile(std::vector<double>& values, double percent) {
+float percentile(std::vector<float>& values, double percent) {
   const auto at = values.begin() + std::lround(percent / 100 * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
 // Black: a percentile of each pixel's darkest band, so that no more pixels lose a colour there; white: of its
-// brightest. Pixels that are not finite do not count. The two are apart in any case.
-std::array<double, 2> ends_of(std::span<const double> values, size_t bands, const PreviewSpec& spec,
+// brightest. Pixels that are not finite do not count, nor those where nothing is and nothing shines. The two are apart
+// in any case.
+std::array<double, 2> ends_of(std::span<const float> values, const std::vector<bool>& nothing, const PreviewSpec& spec,
                               double least_apart) {
   if (spec.range) return *spec.range;
-  std::vector<double> darkest, brightest;
-  for (size_t at = 0; at < values.size(); at += bands) {
-    const auto [low, high] = std::minmax_element(&values[at], &values[at] + bands);
-    if (!std::isfinite(*low) || !std::isfinite(*high)) continue;
+  const size_t bands = values.size() / std::max(size_t{1}, nothing.size());
+  std::vector<float> darkest, brightest;
+  for (size_t i = 0; i < nothing.size(); ++i) {
+    const float* v = &values[i * bands];
+    const auto [low, high] = std::minmax_element(v, v + bands);
+    if (!std::isfinite(*low) || !std::isfinite(*high) || (nothing[i] && *low == 0 && *high == 0)) continue;
     darkest.push_back(*low), brightest.push_back(*high);
   }
   if (darkest.empty()) return {0, 1};
@@ -146,33 +149,23 @@ void Preview::append(const CaptureResult& rows) {
   const Emptiness empty = emptiness_of(rows.truth_names);
   const size_t truths = rows.truth_names.size(), per_pixel = rows.values_per_problem();
   for (size_t i = 0; i < rows.problems(); ++i) {
-    for (const size_t b : chosen_) values_.push_back(rows.radiance[i * per_pixel + b]);
+    for (const size_t b : chosen_) values_.push_back(static_cast<float>(rows.radiance[i * per_pixel + b]));
     nothing_.push_back(empty.column < truths && empty.at(rows.truth[i * truths + empty.column]));
   }
 }
 
-std::vector<double> Preview::shown() const {
-  if (!kelvin_) return values_;
+void Preview::to_kelvin() {
   // A picture of the sky alone is one of the sky's light.
   const bool any = std::find(nothing_.begin(), nothing_.end(), false) != nothing_.end();
-  std::vector<double> values = values_;
-  for (size_t i = 0; i < values.size(); ++i)
-    if ((any && nothing_[i]) || !(values[i] > 0)) values[i] = std::nan("");
   double low = INFINITY, high = 0;
-  for (const double v : values)
-    if (v > 0) low = std::min(low, v), high = std::max(high, v);
-  if (high == 0) return values;
-  const BandKelvin kelvin(bands_[0], low, high);
-  for (double& v : values) v = kelvin.of(v);
-  return values;
-}
-
-std::vector<double> Preview::without_black(std::vector<double> values) const {
-  const size_t n = chosen_.size();
-  for (size_t i = 0; i < nothing_.size(); ++i)
-    if (nothing_[i] && std::all_of(&values[i * n], &values[i * n] + n, [](double v) { return v == 0; }))
-      std::fill_n(&values[i * n], n, std::nan(""));
-  return values;
+  for (size_t i = 0; i < values_.size(); ++i) {
+    float& v = values_[i];
+    if ((any && nothing_[i]) || !(v > 0) || !std::isfinite(v)) v = std::nanf("");
+    if (v > 0) low = std::min(low, double{v}), high = std::max(high, double{v});
+  }
+  if (high == 0) return;
+  const BandKelvin kelvin(bands_[0], std::max(low, 1e-12 * high), high);
+  for (float& v : values_) v = static_cast<float>(kelvin.of(v));
 }
 
 double Preview::gamma(double t) const {
@@ -181,13 +174,14 @@ double Preview::gamma(double t) const {
 
 Rgb Preview::color(double t) const {
   if (kelvin_) return inferno(t);
+  if (std::isnan(t)) return kGrey;
   const auto shade = static_cast<uint8_t>(std::lround(255 * gamma(t)));
   return {shade, shade, shade};
 }
 
-void Preview::write(const std::string& path) const {
-  const std::vector<double> values = shown();
-  const std::array<double, 2> ends = ends_of(without_black(values), chosen_.size(), spec_, kelvin_ ? 0.5 : 0);
+void Preview::write(const std::string& path) {
+  if (kelvin_) to_kelvin();
+  const std::array<double, 2> ends = ends_of(values_, nothing_, spec_, kelvin_ ? 0.5 : 0);
   const bool bar = spec_.bar && chosen_.size() == 1;
   const int columns = static_cast<int>((columns_ + stride_ - 1) / stride_),
             rows = static_cast<int>((rows_ + stride_ - 1) / stride_);
@@ -196,12 +190,12 @@ void Preview::write(const std::string& path) const {
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
       const size_t pixel = size_t{static_cast<uint32_t>(r)} * stride_ * columns_ + static_cast<uint32_t>(c) * stride_;
-      const auto t = [&](size_t k) { return (values[pixel * chosen_.size() + k] - ends[0]) / (ends[1] - ends[0]); };
+      const auto t = [&](size_t k) { return (values_[pixel * chosen_.size() + k] - ends[0]) / (ends[1] - ends[0]); };
       const Rgb shade = chosen_.size() == 1 ? color(t(0)) : Rgb{color(t(0)).r, color(t(1)).g, color(t(2)).b};
       canvas.fill(c * at.enlarged, at.top + r * at.enlarged, at.enlarged, at.enlarged, shade);
     }
   if (bar) {
-    const bool empty = kelvin_ && std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+    const bool empty = kelvin_ && std::any_of(values_.begin(), values_.end(), [](float v) { return std::isnan(v); });
     draw_legend(canvas, at, ends, empty);
   }
   write_png(path, canvas,

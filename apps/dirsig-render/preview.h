@@ -19,11 +19,10 @@ class Preview {
   // Error: a band that is named but not there.
   Preview(std::span<const Band> bands, PreviewSpec spec, uint32_t columns, uint32_t rows);
   void append(const CaptureResult& next_rows);
-  void write(const std::string& path) const;
+  void write(const std::string& path);  // once, when all rows are there
 
  private:
-  std::vector<double> shown() const;  // values_ in the unit of the picture; NaN where there is nothing
-  std::vector<double> without_black(std::vector<double> values) const;  // NaN where nothing is and nothing shines
+  void to_kelvin();  // values_ from radiance; NaN where there is nothing
   double gamma(double t) const;
   Rgb color(double t) const;  // of one band, from 0 to 1
   const char* unit() const { return kelvin_ ? "K" : "W/(m2 sr um)"; }
@@ -35,8 +34,8 @@ class Preview {
   std::vector<size_t> chosen_;
   uint32_t columns_, rows_, stride_;
   bool kelvin_;
-  std::vector<double> values_;  // [pixel][chosen], W/(m2 sr um)
-  std::vector<bool> nothing_;   // [pixel], no sample met anything
+  std::vector<float> values_;  // [pixel][chosen], W/(m2 sr um)
+  std::vector<bool> nothing_;  // [pixel], no sample met anything
 };
 
 // Refuses, before rendering, a preview that names bands a sensor does not have.
