@@ -24,23 +24,27 @@ struct Face {
 class Faces {
  public:
   explicit Faces(const Scene& scene) : scene_(scene), holds_(scene.groups.size()) {
+    for (const Primitive& p : scene.primitives) endless_.push_back(primitive_box(p).empty());
     // Children come after parents.
     for (size_t g = scene.groups.size(); g-- > 0;)
-      for (const Placement& p : scene.groups[g].placements)
-        holds_[g] = holds_[g] || (p.kind == TargetKind::primitive ? primitive_box(scene.primitives[p.target]).empty()
-                                                                  : p.kind == TargetKind::group && holds_[p.target]);
+      for (const Placement& p : scene.groups[g].placements) holds_[g] = holds_[g] || leads(p);
     if (!holds_.empty() && holds_[0]) visit(0, {}, kNone);
   }
   std::vector<Face> all;
 
  private:
+  bool leads(const Placement& p) const {
+    return p.kind == TargetKind::primitive ? endless_[p.target] : p.kind == TargetKind::group && holds_[p.target];
+  }
   void visit(uint32_t group, const Affine3& to_world, uint32_t override_by) {
     for (const Placement& p : scene_.groups[group].placements) {
       if (all.size() >= kMostTold) return;
+      if (!leads(p)) continue;
       const Affine3 here = to_world * p.to_parent;
       const uint32_t material = override_by == kNone ? p.material_override : override_by;
-      if (p.kind == TargetKind::group && holds_[p.target]) visit(p.target, here, material);
-      if (p.kind == TargetKind::primitive && primitive_box(scene_.primitives[p.target]).empty())
+      if (p.kind == TargetKind::group)
+        visit(p.target, here, material);
+      else
         add(scene_.primitives[p.target], here, material);
     }
   }
@@ -55,7 +59,8 @@ class Faces {
     face(p.parameters[2], -1), face(p.parameters[5], 1);
   }
   const Scene& scene_;
-  std::vector<bool> holds_;  // of each group: a primitive without end
+  std::vector<bool> endless_;  // each primitive
+  std::vector<bool> holds_;    // each group: one of them, on some level
 };
 
 // Does something end the half-space that begins at `from` and goes on along `onward`?
