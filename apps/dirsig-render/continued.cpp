@@ -27,7 +27,7 @@ StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
   std::string scenes;
   for (const SimulationScene& s : sim.scenes) scenes += hash_of_file(s.path);
   return {{"scene", sim.scenes.size() == 1 ? scenes : sha256(scenes)},
-          {"simulation", hash_of_file(sim.path)},
+          {"simulation", hash_of_text(sim)},
           {"spectral bins", hash_of_bins(sim)},
           {"seed", strf("%llu", static_cast<unsigned long long>(options.pipeline.seed))},
           {"build", hash_of_file("/proc/self/exe")},
@@ -35,6 +35,12 @@ StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
 }
 
 }  // namespace
+
+std::string hash_of_text(const Simulation& sim) {
+  std::string hash = hash_of_file(sim.path);
+  for (const std::string& setting : sim.settings) hash = sha256(hash + setting);
+  return hash;
+}
 
 std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string& folder, const Simulation& sim,
                                        JobOptions& options) {

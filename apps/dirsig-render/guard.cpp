@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <filesystem>
+#include <map>
 
 #include "base/files.h"
 #include "base/inputs.h"
@@ -93,6 +94,29 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
                              " holds the finished captures and strips of 8 lines: the same command with --resume in "
                              "place of --state and its budget goes on from there"
                        : "; without --state the rest is lost");
+}
+
+Error located(const Error& fault, const Scene& scene, const Simulation& sim) {
+  if (!fault.where().file.empty()) return fault;
+  std::map<std::string, Curve> curves;  // of what the fault is about
+  const auto meant = [&](const std::string& whose) { return fault.message().starts_with(whose + ":"); };
+  for (const Material& m : scene.materials)
+    if (meant("material '" + m.id + "'")) curves = m.surface.curves;
+  for (const Medium& m : scene.media)
+    if (meant("medium '" + m.id + "'"))
+      curves = {{"absorption", m.absorption}, {"scattering", m.scattering}, {"index", m.index}};
+  for (size_t s = 0; s < sim.sensors.size(); ++s)
+    for (size_t state = 0; state < sim.sensors[s]->states().size(); ++state)
+      for (const Band& b : sim.sensors[s]->bands(state))
+        for (const auto& [name, curve] : curves)
+          if (!curve.covers(b.low_um(), b.high_um()))
+            return Error(sim.sensor_where[s],
+                         "band '" + b.name + "' of sensor '" + sim.sensors[s]->name() +
+                             strf("' reaches from %.4g to %.4g um; ", b.low_um(), b.high_um()) +
+                             fault.message().substr(0, fault.message().find(':')) + " has its " + name + " from " +
+                             curve.range_text(),
+                         "in the scene's text give a longer curve, or declare 'outside: hold' or 'zero'");
+  return Error(Where{sim.path, 0, 0, {}, -1}, fault.message(), fault.hint(), fault.code());
 }
 
 }  // namespace suite

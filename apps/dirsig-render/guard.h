@@ -14,4 +14,8 @@ void check_folder(const std::string& folder, const Simulation& simulation);
 // One sentence: how many captures are whole in the folder, and how the run goes on. state: --state keeps one.
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state);
 
+// A fault without a place, as the simulation's: at the sensor one of whose bands reaches beyond a curve of the material
+// or medium that the fault is about, else of the text as a whole.
+Error located(const Error& fault, const Scene& scene, const Simulation& simulation);
+
 }  // namespace suite

@@ -9,7 +9,7 @@ namespace suite {
 
 namespace {
 
-constexpr double kRed = 0.65, kGreen = 0.55, kBlue = 0.45, kInfrared = 0.85;  // um
+constexpr double kRed = 0.65, kGreen = 0.55, kBlue = 0.45, kInfrared = 0.85, kWindow = 10;  // um
 constexpr double kReach = 0.07, kInfraredReach = 0.15;                        // um, from there
 
 std::optional<size_t> nearest(std::span<const Band> bands, double wanted, double reach) {
@@ -60,20 +60,24 @@ std::array<uint8_t, 3> class_colour(size_t i) {
 
 }  // namespace
 
-Display display_of(std::span<const Band> bands, const std::vector<std::string>& names) {
+Display display_of(std::span<const Band> bands, const PreviewSpec& spec) {
   const auto red = nearest(bands, kRed, kReach), green = nearest(bands, kGreen, kReach),
              blue = nearest(bands, kBlue, kReach), infrared = nearest(bands, kInfrared, kInfraredReach);
-  const bool apart = red && green && *red != *green;
-  Display colour;
-  if (apart && blue && *blue != *green)
-    colour = {{*red, *green, *blue}, true};
+  const bool apart = red && green && *red != *green,
+             thermal = spec.show == PreviewSpec::Show::kelvin ||
+                       std::all_of(bands.begin(), bands.end(), [](auto& b) { return b.center_um > kThermalFrom; });
+  Display display;
+  if (thermal)
+    display = {{*nearest(bands, kWindow, INFINITY)}, false};
+  else if (apart && blue && *blue != *green)
+    display = {{*red, *green, *blue}, true};
   else if (apart && infrared)
-    colour = {{*infrared, *red, *green}, false};
+    display = {{*infrared, *red, *green}, false};
   else
-    colour = {{(bands.size() - 1) / 2}, false};
-  if (names.empty()) return colour;
-  const std::vector<size_t> chosen = named(bands, names);
-  return {chosen, colour.true_colour && chosen == colour.bands};
+    display = {{(bands.size() - 1) / 2}, false};
+  if (spec.bands.empty()) return display;
+  const std::vector<size_t> chosen = named(bands, spec.bands);
+  return {chosen, display.true_colour && chosen == display.bands};
 }
 
 EnviHeader bare(EnviHeader h) {

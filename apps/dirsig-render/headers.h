@@ -15,10 +15,12 @@ struct Display {
   std::vector<size_t> bands;
   bool true_colour = false;
 };
-// names: as the user gave them, three or one, or none: red, green and blue are the bands nearest to 0.65, 0.55 and
-// 0.45 um within 0.07 um; with a near infrared in place of a blue, infrared, red and green; else the one in the middle
-// of the list. Error: a name that no band has.
-Display display_of(std::span<const Band> bands, const std::vector<std::string>& names);
+// Named bands, three or one; or red, green and blue, the bands nearest to 0.65, 0.55 and 0.45 um within 0.07 um; with a
+// near infrared in place of a blue, infrared, red and green; else one: that nearest to 10 um of thermal sensors (all
+// bands beyond kThermalFrom) and where kelvins are asked for, and otherwise the one in the middle of the list. Error: a
+// name that no band has.
+Display display_of(std::span<const Band> bands, const PreviewSpec& spec);
+inline constexpr double kThermalFrom = 3;  // um: sunlight and the glow of the ground at its usual warmth cross near 4
 
 // What headers say about the scene.
 struct SceneNotes {

@@ -12,7 +12,7 @@ AppInfo render_info() {
           "  NAME_error.img   standard error of the radiance, same bands\n"
           "  NAME_quality.img flags of every pixel, a sum of the bits that its header names\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
-          "  NAME.png         preview (linear to the 99th percentile, sRGB)\n"
+          "  NAME.png         preview: three bands, or one with a bar (thermal ones in kelvin)\n"
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
           "and render.json    what was run: every capture with its paths, seconds and errors\n"
           "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"
@@ -20,6 +20,7 @@ AppInfo render_info() {
           "Examples:\n"
           "  dirsig-render sim.yaml -o out/\n"
           "  dirsig-render sim.yaml -o quick/ --paths 8       a quick look\n"
+          "  dirsig-render sim.yaml --set sensors.0.columns=64 --set sky=null    other values, for once\n"
           "  dirsig-render sim.yaml --target-error 1%          as many paths as each pixel needs\n"
           "  dirsig-render sim.yaml --time 10min               as many as there is time for\n"
           "  dirsig-render sim.yaml --paths 64 --state         ... and later, the same bits as with 128 at once:\n"
@@ -33,6 +34,11 @@ AppInfo render_info() {
 void declare_render(Cli& cli, RenderOptions& o) {
   cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
   cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
+  cli.option(
+      "--set", o.settings,
+      "a value in place of the text's, such as sensors.0.columns=64 or sun.direction={zenith_deg: 60, azimuth_deg: "
+      "180}; items of lists by number (from 0) or name, values in YAML, null takes a key out; may be repeated",
+      "PATH=VALUE");
   cli.option("--paths", o.paths,
              "paths per pixel instead of what the sensors ask for; MIN,MAX leaves room for a target", "N|MIN,MAX");
   cli.option("--target-error", o.target_error, "relative standard error to reach, planned from a pilot without bias",

@@ -40,7 +40,7 @@ struct OutputWriter::Image {
   };
   std::vector<Classes> classes;
   std::vector<std::string> files;
-  std::vector<double> preview;      // [pixel][display.bands]
+  std::optional<Preview> preview;
   std::vector<float> all;           // [pixel][value], for formats that take a whole picture
   std::vector<float> all_quality;   // [pixel], likewise
   std::vector<Vec3> place;          // [pixel], when a geolocation is wanted
@@ -145,7 +145,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
                                                : d.rows.rows_of_all;
   m.values = d.result.values_per_problem();
   m.wishes = d.sensor.wishes(d.sensor.tasks()[d.result.task].captures[d.result.capture]);
-  m.display = display_of(d.bands, spec_.preview);
+  const PreviewSpec& preview = spec_.preview_of(d.sensor.name());
+  m.display = display_of(d.bands, preview);
+  m.preview.emplace(d.bands, m.display.bands, preview, m.columns, m.rows);
   m.map = d.map;
   const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
   const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
@@ -236,8 +238,7 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
     if (spec_.type != OutputSpec::Type::uint16) continue;
     x = std::isnan(x) ? 0 : std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
   }
-  for (size_t i = 0; i < n; ++i)
-    for (const size_t b : m.display.bands) m.preview.push_back(result.radiance[i * m.values + b]);
+  m.preview->append(result);
   m.radiance->append(radiance);
   m.error->append(error);
   m.quality->append(std::vector<double>(result.quality.begin(), result.quality.end()));
@@ -286,7 +287,7 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
   }
   m.files.push_back(base + "_error_correlation.csv");
   write_file(m.files.back(), correlation + "\n");
-  write_preview(base + ".png", m.preview, m.columns, m.rows, m.display.bands.size());
+  m.preview->write(base + ".png");
   m.files.push_back(base + ".png");
   if (m.unknown && m.wishes.quantity == Quantity::brightness_temperature)
     warn(
@@ -320,10 +321,6 @@ void OutputWriter::write_text(const TextFile& text) {
   const std::string path = in_folder(folder_, text.name);
   write_file(path, std::string_view(text.text));
   note("wrote " + path);
-}
-
-void check_preview(const Sensor& sensor, const OutputSpec& spec) {
-  for (size_t s = 0; s < sensor.states().size(); ++s) display_of(sensor.bands(s), spec.preview);
 }
 
 }  // namespace suite

@@ -40,7 +40,4 @@ class OutputWriter {
   std::map<std::string, std::unique_ptr<Image>> open_;  // images of which rows are still to come
 };
 
-// Refuses, before rendering, a preview that names bands a sensor does not have.
-void check_preview(const Sensor& sensor, const OutputSpec& spec);
-
 }  // namespace suite

@@ -2,13 +2,45 @@
 #pragma once
 #include <span>
 #include <string>
+#include <vector>
+
+#include "formats/picture/picture.h"
+#include "formats/sim_text/sim_text.h"
+#include "headers.h"
 
 namespace suite {
 
-// PNG of one band (grey) or three (red, green, blue): each linear from 0 to the 99th percentile over all of them, so
-// that colours stay in proportion, then sRGB; the file's comment says so. values: [pixel][band]. Pictures wider or
-// higher than 16384 show every n-th pixel.
-void write_preview(const std::string& path, std::span<const double> values, uint32_t columns, uint32_t rows,
-                   size_t bands);
+// Collects what an image's preview needs while its rows come in, and draws it. Of three bands: red, green and blue,
+// linear from the 1st percentile of each pixel's darkest band to the 99th of its brightest, then sRGB; a pixel a
+// detector. Of one band: grey with a bar of radiance, or, when its light is thermal (beyond 3 um), colours with a bar
+// of brightness temperature, grey where the truth says that nothing was hit; small pictures are enlarged. The file's
+// comment says what was done. Pictures wider or higher than 15000 show every n-th pixel.
+class Preview {
+ public:
+  // chosen: three of the bands or one, as display_of tells.
+  Preview(std::span<const Band> bands, std::span<const size_t> chosen, PreviewSpec spec, uint32_t columns,
+          uint32_t rows);
+  void append(const CaptureResult& next_rows);
+  void write(const std::string& path);  // once, when all rows are there
+
+ private:
+  void to_kelvin();  // values_ from radiance; NaN where there is nothing
+  double gamma(double t) const;
+  Rgb color(double t) const;  // of one band, from 0 to 1
+  const char* unit() const { return kelvin_ ? "K" : "W/(m2 sr um)"; }
+  struct Layout;
+  void draw_legend(Canvas& canvas, const Layout& at, std::array<double, 2> ends, bool empty) const;
+
+  PreviewSpec spec_;
+  std::vector<Band> bands_;  // chosen ones
+  std::vector<size_t> chosen_;
+  uint32_t columns_, rows_, stride_;
+  bool kelvin_;
+  std::vector<float> values_;  // [pixel][chosen], W/(m2 sr um)
+  std::vector<bool> nothing_;  // [pixel], no sample met anything
+};
+
+// Refuses, before rendering, a preview that names bands a sensor does not have.
+void check_preview(const Sensor& sensor, const PreviewSpec& spec);
 
 }  // namespace suite

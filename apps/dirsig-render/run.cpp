@@ -20,6 +20,7 @@
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
+#include "preview.h"
 #include "radiometry/sources/source_table.h"
 #include "radiometry/truth/truth.h"
 #include "scene/combine.h"
@@ -200,7 +201,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   try {
     return run_job(scene, sim.sources, sim.sensors, options);
   } catch (const Error& e) {
-    if (!e.where().file.starts_with(in_folder(folder, ""))) throw;
+    if (!e.where().file.starts_with(in_folder(folder, ""))) throw located(e, *scene, sim);
     size_t captures = 0;
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
@@ -236,7 +237,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
-  Simulation sim = read_simulation(o.simulation, callbacks);
+  Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options;
@@ -257,15 +258,14 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   std::vector<std::shared_ptr<const LaterReads>> later;
   const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  for (const auto& sensor : sim.sensors)
-    for (const Task& task : sensor->tasks())
-      for (const Capture& c : task.captures)
-        check_motion(*scene, c.window.begin, c.window.end, Where{sim.path, 0, 0, {}, -1});
+  for (size_t s = 0; s < sim.sensors.size(); ++s)
+    for (const Task& task : sim.sensors[s]->tasks())
+      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
   for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);
   for (const auto& sensor : sim.sensors) {
-    check_preview(*sensor, sim.output);
+    check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) find_truth(truth);
     choose_bins_of(*sensor, *scene, standing);
   }

@@ -8,6 +8,7 @@
 #include "base/outputs.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "continued.h"
 #include "formats/envi/envi.h"
 #include "log.h"
 #include "scheduler/result.h"
@@ -83,7 +84,7 @@ Size size_of(const Simulation& sim) {
 std::string identity_of(const RenderOptions& o, const Simulation& sim, const JobOptions& options) {
   auto hash = [](const std::string& path) { return sha256(read_bytes(path, size_t{1} << 40)).substr(0, 16); };
   return strf("scene %s simulation %s build %s reference %s stop %s%s threads %d engine %s",
-              hash(sim.scene_path).c_str(), hash(sim.path).c_str(), hash("/proc/self/exe").c_str(),
+              hash(sim.scene_path).c_str(), hash_of_text(sim).substr(0, 16).c_str(), hash("/proc/self/exe").c_str(),
               o.reference.empty() ? "long-run" : hash(o.reference).c_str(),
               options.pipeline.stop == StopRule::change ? "change" : "plan",
               options.pipeline.method == Method::paper ? " method paper" : "", threads(), Tracer::engine().c_str());

@@ -10,6 +10,7 @@ AppInfo scene_prep_info() {
           "Examples:\n"
           "  scene-prep scene.yaml -o scene.h5 --report report.json\n"
           "  scene-prep --summary scene.h5\n"
+          "  scene-prep scene.h5 --quick-look tower.png --look-at tower --look-from '135 20'\n"
           "  scene-prep --list-issues\n"
           "Exit codes: 0 written, 1 refused, 2 wrong usage, 3 a bug of ours. Grammar: formats/scene_text/FORMAT.md."};
 }
@@ -18,6 +19,11 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.positional("input", o.input, "scene text (YAML or JSON), or a prepared scene with --summary", false);
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
+  cli.option(
+      "--set", o.settings,
+      "a value in place of the text's, such as materials.grey.reflectance=0.3; items of lists by number (from 0) or "
+      "name, values in YAML, null takes a key out (repeatable)",
+      "PATH=VALUE");
   cli.option("--report", o.report,
              "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
              "FILE.json");
@@ -41,8 +47,14 @@ void declare(Cli& cli, ScenePrepOptions& o) {
              "print what a ray through a prepared scene meets: from x y z along dx dy dz, ENU, m", "'X Y Z DX DY DZ'");
   cli.option("--export-obj", o.export_obj, "write the placed meshes of a prepared scene, flattened, as OBJ",
              "FILE.obj");
-  cli.option("--quick-look", o.quick_look, "write a picture of a prepared scene from above, one colour a material",
+  cli.option("--quick-look", o.quick_look, "write a picture of a prepared scene, from above, one colour a material",
              "FILE.png");
+  cli.option("--look-at", o.look_at,
+             "of the quick look: an object or tag by its name, an instance by its number, or a place, ENU, m",
+             "NAME|'X Y [Z]'");
+  cli.option("--look-size", o.look_size, "edge of what the quick look shows, m; a place needs one", "M");
+  cli.option("--look-from", o.look_from,
+             "where its viewer is: compass azimuth and elevation, degrees; without it above, north up", "'AZ EL'");
   cli.option("--pixels", o.pixels, "longer side of the quick look, 1 to 16384", "N");
 }
 

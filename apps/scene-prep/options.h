@@ -8,9 +8,10 @@
 namespace suite {
 
 struct ScenePrepOptions {
-  std::string input, output, report, raycast, explain, export_obj, quick_look;
+  std::string input, output, report, raycast, explain, export_obj, quick_look, look_at, look_from;
+  double look_size = 0;
   long long pixels = 800;
-  std::vector<std::string> search, mute, compress;
+  std::vector<std::string> search, mute, compress, settings;
   bool repair = false, quick = false, force = false;
   bool strict = false, list_issues = false, list_models = false, summary = false;
 };

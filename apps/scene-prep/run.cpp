@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -48,6 +49,7 @@ void list_models() {
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
 std::string canonical_arguments(const ScenePrepOptions& o) {
   std::string text = printable(std::filesystem::path(o.input).filename().string());
+  for (const std::string& setting : o.settings) text += " --set " + printable(setting);
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
   if (o.repair) text += " --repair";
@@ -81,7 +83,7 @@ bool up_to_date(const ScenePrepOptions& o) {
       return read_provenance(o.output);
     }();
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
-           inputs_unchanged(o.input, {o.search}, p.inputs);
+           inputs_unchanged(o.input, {o.search, {}}, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
@@ -143,7 +145,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = read_scene_text(o.input, {o.search}, report);
+  Draft draft = read_scene_text(o.input, {o.search, o.settings}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -185,21 +187,55 @@ void print_summary(const ScenePrepOptions& o, const Scene& scene, const LoadRepo
               printable(p.arguments).c_str(), p.inputs.size(), printable(p.input_sha256).c_str());
 }
 
+// "1 2, 3" as numbers.
+std::vector<double> parse_numbers(const std::string& text, const char* option) {
+  return Params::parse_text("[" + std::regex_replace(text, std::regex("[ ,]+"), ", ") + "]", option).as_numbers();
+}
+
 Ray parse_ray(const std::string& text) {
-  const Params list = Params::parse_text("[" + std::regex_replace(text, std::regex("[ ,]+"), ", ") + "]", "--raycast");
-  const std::vector<double> v = list.as_numbers();
+  const std::vector<double> v = parse_numbers(text, "--raycast");
   const Vec3 direction = v.size() == 6 ? Vec3{v[3], v[4], v[5]} : Vec3{};
   if (!(length(direction) > 0)) throw UsageError("--raycast needs six numbers, the last three not all 0");
   return {{v[0], v[1], v[2]}, normalized(direction), 0};
 }
 
+LookAt parse_look(const ScenePrepOptions& o, const Tracer& tracer, double time) {
+  LookAt look;
+  look.box = tracer.bounds(), look.size_m = o.look_size, look.time = time;
+  if (o.look_size < 0 || !(o.look_size <= 1e9)) throw UsageError("--look-size is up to 1e9 m");
+  if (!o.look_from.empty()) {
+    const std::vector<double> v = parse_numbers(o.look_from, "--look-from");
+    if (v.size() != 2 || !(std::fabs(v[0]) <= 360 && std::fabs(v[1]) <= 90))
+      throw UsageError("--look-from is a compass azimuth and an elevation from -90 to 90, degrees");
+    look.azimuth_deg = v[0], look.elevation_deg = v[1];
+  }
+  if (o.look_at.empty()) return look;
+  if (o.look_at.find_first_of(" ,") == std::string::npos) {
+    try {
+      look.box = box_of(tracer, o.look_at);
+      look.margin = 1.1;
+    } catch (const Error& e) {
+      throw Error(Where{o.input, 0, 0, {}, -1}, "--look-at: " + e.message(), e.hint());
+    }
+    return look;
+  }
+  const std::vector<double> v = parse_numbers(o.look_at, "--look-at");
+  if (v.size() < 2 || v.size() > 3) throw UsageError("--look-at is a name, or two or three numbers, m");
+  if (!(o.look_size > 0)) throw UsageError("a place to look at needs a --look-size");
+  look.box = {};
+  look.box.grow(Vec3{v[0], v[1], v.size() == 3 ? v[2] : height_at(tracer, v[0], v[1], time).value_or(0)});
+  return look;
+}
+
 // Questions about a scene that has been prepared.
 int inspect(const ScenePrepOptions& o) {
-  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || o.strict || o.repair ||
-      o.quick || o.force)
+  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || !o.settings.empty() ||
+      o.strict || o.repair || o.quick || o.force)
     throw UsageError(
-        "--output, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
+        "--output, --set, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
         "scene text, not with questions about a prepared scene");
+  if (o.quick_look.empty() && (!o.look_at.empty() || !o.look_from.empty() || o.look_size != 0))
+    throw UsageError("--look-at, --look-from and --look-size go with --quick-look");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
   note_input(o.input);
   check_outputs({o.export_obj, o.quick_look});
@@ -214,7 +250,7 @@ int inspect(const ScenePrepOptions& o) {
   const Tracer tracer(scene, std::nullopt, {time, time});
   if (!o.raycast.empty()) std::fputs(printable_lines(describe_hit(tracer, parse_ray(o.raycast))).c_str(), stdout);
   if (!o.quick_look.empty()) {
-    const View view = view_from_above(tracer, static_cast<int>(o.pixels));
+    const View view = view_of(tracer, parse_look(o, tracer, time), static_cast<int>(o.pixels));
     write_png(o.quick_look, view.width, view.height, view.rgb, command_line());
   }
   return 0;

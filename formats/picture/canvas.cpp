@@ -125,16 +125,33 @@ void Canvas::text(int x, int y, std::string_view text, Rgb color, int scale) {
   }
 }
 
-Rgb viridis(double t) {
-  static constexpr Rgb stops[] = {{68, 1, 84},    {72, 26, 108},  {71, 47, 125},  {65, 68, 135},
-                                  {57, 86, 140},  {49, 104, 142}, {42, 120, 142}, {35, 136, 142},
-                                  {31, 152, 139}, {34, 168, 132}, {53, 183, 121}, {84, 197, 104},
-                                  {122, 209, 81}, {165, 219, 54}, {210, 226, 27}, {253, 231, 37}};
+namespace {
+
+// Between 16 stops in equal steps; grey for NaN.
+Rgb between(const Rgb (&stops)[16], double t) {
   if (std::isnan(t)) return kGrey;
   const double at = std::clamp(t, 0.0, 1.0) * 15;
   const int i = std::min(14, static_cast<int>(at));
   auto mix = [&](uint8_t a, uint8_t b) { return static_cast<uint8_t>(std::lround(a + (b - a) * (at - i))); };
   return {mix(stops[i].r, stops[i + 1].r), mix(stops[i].g, stops[i + 1].g), mix(stops[i].b, stops[i + 1].b)};
+}
+
+}  // namespace
+
+Rgb viridis(double t) {
+  static constexpr Rgb stops[] = {{68, 1, 84},    {72, 26, 108},  {71, 47, 125},  {65, 68, 135},
+                                  {57, 86, 140},  {49, 104, 142}, {42, 120, 142}, {35, 136, 142},
+                                  {31, 152, 139}, {34, 168, 132}, {53, 183, 121}, {84, 197, 104},
+                                  {122, 209, 81}, {165, 219, 54}, {210, 226, 27}, {253, 231, 37}};
+  return between(stops, t);
+}
+
+Rgb inferno(double t) {
+  static constexpr Rgb stops[] = {{0, 0, 4},      {12, 8, 38},    {36, 12, 79},   {66, 10, 104},
+                                  {93, 18, 110},  {120, 28, 109}, {147, 38, 103}, {174, 48, 92},
+                                  {199, 62, 76},  {221, 81, 58},  {237, 105, 37}, {248, 133, 15},
+                                  {252, 165, 10}, {250, 198, 45}, {242, 230, 97}, {252, 255, 164}};
+  return between(stops, t);
 }
 
 Rgb diverging(double t) {

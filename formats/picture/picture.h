@@ -2,6 +2,7 @@
 // Not for measurements (those go through formats/envi and formats/raster).
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,6 +50,8 @@ class Canvas {
 // 0 dark violet ... 1 yellow, perceptually uniform (viridis; S. van der Walt & N. Smith, 2015, CC0). t is clamped, NaN
 // is grey.
 Rgb viridis(double t);
+// 0 black ... 1 light yellow through red, likewise (inferno; the same authors, CC0).
+Rgb inferno(double t);
 // -1 blue ... 0 white ... +1 red; for differences.
 Rgb diverging(double t);
 // Linear light to 8-bit sRGB (IEC 61966-2-1); clamped.
@@ -58,7 +61,13 @@ uint8_t srgb(double linear);
 // scale: of the text.
 void draw_log_bar(Canvas& canvas, int x, int y, int width, int height, double low, double high,
                   const std::string& title, int scale = 1);
-// Position of a value on that scale, 0 to 1.
+// The same from low to high (< high) on a linear scale, with ticks at round values and any colours: color_of(0) at the
+// bottom, color_of(1) at the top.
+void draw_bar(Canvas& canvas, int x, int y, int width, int height, double low, double high,
+              const std::function<Rgb(double)>& color_of, int scale = 1);
+// Width of that bar's ticks and labels, beside its own.
+int bar_labels_width(int scale = 1);
+// Position of a value on the log scale, 0 to 1.
 double log_position(double value, double low, double high);
 
 // A line plot with axes, ticks, labels and a legend in the given rectangle of the canvas.

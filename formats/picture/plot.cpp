@@ -75,6 +75,21 @@ void draw_log_bar(Canvas& canvas, int x, int y, int width, int height, double lo
     canvas.text(x + width + text, position(value) - up, end_label(value), kBlack, scale);
 }
 
+int bar_labels_width(int scale) { return 7 * scale + Canvas::text_width("-1.25e-05", scale); }
+
+void draw_bar(Canvas& canvas, int x, int y, int width, int height, double low, double high,
+              const std::function<Rgb(double)>& color_of, int scale) {
+  SUITE_CHECK(low < high && height > 1);
+  for (int j = 0; j < height; ++j) canvas.fill(x, y + j, width, 1, color_of(1 - (j + 0.5) / height));
+  canvas.frame(x, y, width, height, kBlack);
+  const double step = nice_step(high - low, std::max(2, height / (4 * Canvas::text_height(scale))));
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
+    const int at = y + height - 1 - static_cast<int>(std::lround((k * step - low) / (high - low) * (height - 1)));
+    canvas.fill(x + width, at, 4 * scale, scale, kBlack);
+    canvas.text(x + width + 7 * scale, at - 3 * scale, strf("%.6g", k == 0 ? 0.0 : k * step), kBlack, scale);
+  }
+}
+
 void draw_plot(Canvas& canvas, int x, int y, int width, int height, const PlotAxes& axes,
                std::span<const PlotLine> lines) {
   const int s = axes.scale;

@@ -47,6 +47,9 @@ std::pair<size_t, size_t> Loading::channels(const std::vector<double>& um) const
 
 Curve Loading::within(const Curve& curve) const {
   if (curve.is_constant() || needs.windows_um.empty()) return curve;
+  // One that is too short is kept as it is, for the message that says from where to where it goes.
+  for (const auto& w : needs.windows_um)
+    if (!curve.covers(w[0], w[1])) return curve;
   const auto [from, to] = channels(curve.wavelength_um());
   if (to - from == curve.value().size()) return curve;
   const auto part = [&](const std::vector<double>& v) {

@@ -163,7 +163,7 @@ bool inputs_unchanged(const std::string& path, const SceneTextOptions& options, 
 Draft read_scene_text(const std::string& path, const SceneTextOptions& options, Report& report) {
   Draft draft;
   draft.file = path;
-  const Params root = Params::parse_file(path);
+  const Params root = Params::parse_file(path, options.settings);
   draft.inputs.push_back({"", sha256(read_bytes(path))});
   // The root itself must be a map with a version; without it nothing else means anything.
   scene_text::Reader(options, report, draft).run(root);

@@ -9,7 +9,8 @@
 namespace suite {
 
 struct SceneTextOptions {
-  std::vector<std::string> search;  // folders in which files are also looked for, after the folder of the text
+  std::vector<std::string> search;    // folders in which files are also looked for, after the folder of the text
+  std::vector<std::string> settings;  // "PATH=VALUE", values in place of the text's (base/params.h)
 };
 
 // Reads the text and every file it names. Whatever is wrong goes to `report`, item by item, so that one run tells all.

@@ -10,6 +10,34 @@ namespace suite {
 
 namespace {
 
+void read_preview(const Params& p, PreviewSpec& out) {
+  const bool map = p.kind() == Params::Kind::map;
+  if (const auto bands = map ? p.find("bands") : p) {
+    for (const Params& band : bands->items()) out.bands.push_back(band.as_text());
+    if (out.bands.size() != 1 && out.bands.size() != 3)
+      throw bands->error(strf("a preview has one band or three, found %zu", out.bands.size()));
+  }
+  if (!map) return;
+  if (const auto show = p.find("show"))
+    out.show = show->as_choice({"radiance", "kelvin"}) ? PreviewSpec::Show::kelvin : PreviewSpec::Show::radiance;
+  if (out.show == PreviewSpec::Show::kelvin && out.bands.size() == 3)
+    throw p.at("show").error("kelvin are shown of one band, three are named", "bands: [NAME]");
+  const auto two = [&](const char* key, double low, double high) -> std::optional<std::array<double, 2>> {
+    const auto pair = p.find(key);
+    if (!pair) return std::nullopt;
+    const std::vector<double> v = pair->as_numbers();
+    if (v.size() != 2 || !(v[0] >= low && v[0] < v[1] && v[1] <= high))
+      throw pair->error(strf("'%s' is not a lower and a higher value", key),
+                        strf("two numbers from %g to %g", low, high));
+    return std::array<double, 2>{v[0], v[1]};
+  };
+  if (const auto stretch = two("stretch", 0, 100)) out.low_percent = (*stretch)[0], out.high_percent = (*stretch)[1];
+  out.range = two("range", 0, kLargestNumber);
+  if (out.range && p.has("stretch")) throw p.at("stretch").error("'range' and 'stretch' exclude each other");
+  out.gamma = p.number_in("gamma", 0.1, 10, "", 0);
+  out.bar = p.boolean("bar", true);
+}
+
 void read_output(const Params& p, OutputSpec& out) {
   if (const auto type = p.find("type"))
     out.type = static_cast<OutputSpec::Type>(type->as_choice({"float32", "float64", "uint16"}));
@@ -24,11 +52,9 @@ void read_output(const Params& p, OutputSpec& out) {
       (format.as_choice({"geotiff", "exr"}) == 0 ? out.geotiff : out.exr) = true;
   if (const auto order = p.find("interleave"))
     out.order = static_cast<OutputSpec::Order>(order->as_choice({"bsq", "bil", "bip"}));
-  if (const auto preview = p.find("preview")) {
-    for (const Params& band : preview->items()) out.preview.push_back(band.as_text());
-    if (out.preview.size() != 1 && out.preview.size() != 3)
-      throw preview->error(strf("a preview has one band or three, found %zu", out.preview.size()));
-  }
+  if (const auto preview = p.find("preview")) read_preview(*preview, out.preview);
+  if (const auto previews = p.find("previews"))
+    for (const std::string& sensor : previews->keys()) read_preview(previews->at(sensor), out.previews[sensor]);
 }
 
 // Truth that nobody collects, or that needs a scene on the Earth which is not on it.
@@ -46,18 +72,35 @@ void check_truth(const Params& sensor, const SensorContext& context) {
 
 }  // namespace
 
-Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks) {
-  const Params root = Params::parse_file(path);
+namespace {
+
+// What a sensor finds wrong without knowing where stands at the sensor.
+std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& context) {
+  try {
+    return make_sensor(p, context);
+  } catch (const Error& e) {
+    if (!e.where().file.empty()) throw;
+    throw p.error(e.message(), e.hint(), e.code());
+  }
+}
+
+}  // namespace
+
+Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
+                           std::vector<std::string> settings) {
+  const Params root = Params::parse_file(path, settings);
   if (!root.has("sensors") && (root.has("materials") || root.has("world")))
     throw root.error("this is the text of a scene, not of a simulation",
                      "prepare it with scene-prep, and name the prepared scene by 'scene:' in a simulation text");
   Simulation sim;
   sim.path = path;
+  sim.settings = std::move(settings);
   read_scenes(root, sim);
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
   sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 1, 10000000, 10000));
-  sim.sources = read_sources(root);
+  std::vector<AskedCurve> asked;
+  sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {
     const std::vector<double> low = p->at("origin_m").as_numbers(), size = p->at("size_m").as_numbers();
     if (low.size() != 2 || size.size() != 2) throw p->error("origin_m and size_m are two numbers each: east, north");
@@ -74,12 +117,18 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   const Params sensors = root.at("sensors");
   for (const Params& p : sensors.items()) {
     check_truth(p, context);
-    sim.sensors.push_back(make_sensor(p, context));
+    sim.sensors.push_back(make_sensor_at(p, context));
+    sim.sensor_where.push_back(p.where());
+    for (const AskedCurve& curve : asked) check_coverage(curve, *sim.sensors.back(), p.where());
     if (!names.insert(sim.sensors.back()->name()).second)
       throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'",
                     "give each its own `name`: it names the output files");
   }
   if (sim.sensors.empty()) throw sensors.error("a simulation needs at least one sensor");
+  for (const auto& [sensor, preview] : sim.output.previews)
+    if (!names.count(sensor))
+      throw Error(root.at("output").at("previews").where(sensor), "there is no sensor '" + sensor + "'",
+                  name_hint(sensor, std::vector<std::string>(names.begin(), names.end())));
   root.reject_unread();
   return sim;
 }

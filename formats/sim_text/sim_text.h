@@ -1,7 +1,9 @@
 // A simulation as a user writes it: YAML (or JSON) that names a prepared scene, sources, sensors and output. See
 // FORMAT.md.
 #pragma once
+#include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +14,16 @@
 
 namespace suite {
 
+// How radiance becomes a picture for people.
+struct PreviewSpec {
+  std::vector<std::string> bands;  // names of three (red, green, blue) or one; empty = chosen by wavelength
+  enum class Show { natural, radiance, kelvin } show = Show::natural;  // natural: kelvin for one band beyond 3 um
+  double low_percent = 1, high_percent = 99;   // of all values: black and white, unless there is a range
+  std::optional<std::array<double, 2>> range;  // W/(m2 sr um) or K
+  double gamma = 0;                            // 0 = that of sRGB; radiance only
+  bool bar = true;                             // beside pictures of one band
+};
+
 struct OutputSpec {
   enum class Type { float32, float64, uint16 } type = Type::float32;
   double scale = 1;  // uint16: what one count stands for, in the units
@@ -21,7 +33,12 @@ struct OutputSpec {
   enum class Files { natural, capture, task, simulation } files = Files::natural;
   enum class Units { w_m2, w_cm2, photons } units = Units::w_m2;  // per sr and um; photons per s
   bool geotiff = false, exr = false;                              // beside ENVI
-  std::vector<std::string> preview;  // names of three bands (red, green, blue) or one; empty = chosen by wavelength
+  PreviewSpec preview;
+  std::map<std::string, PreviewSpec> previews;  // of sensors that have their own
+  const PreviewSpec& preview_of(const std::string& sensor) const {
+    const auto own = previews.find(sensor);
+    return own == previews.end() ? preview : own->second;
+  }
 };
 
 // One of the prepared scenes that the simulation puts together; see libs/scene/combine.h.
@@ -33,6 +50,7 @@ struct SimulationScene {
 
 struct Simulation {
   std::string path;
+  std::vector<std::string> settings;  // applied to the text
   std::vector<SimulationScene> scenes;
   std::string scene_path;  // of the first
   PipelineOptions pipeline;
@@ -41,6 +59,7 @@ struct Simulation {
   std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's or the moon's date
   double dut1 = 0;           // s, UT1 - UTC
   std::vector<std::unique_ptr<Sensor>> sensors;
+  std::vector<Where> sensor_where;  // of each, in the text
   OutputSpec output;
 };
 
@@ -50,7 +69,9 @@ struct SimulationCallbacks {
   // Origin on the Earth of a prepared scene; asked only when a motion needs to know.
   std::function<GeodeticOrigin(const std::string& path, const std::vector<SimulationScene>& scenes)> origin;
 };
-// Error located in the text for anything wrong, unread keys included.
-Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks);
+// settings: "PATH=VALUE", values in place of the text's (base/params.h). Error located in the text or setting for
+// anything wrong, unread keys included.
+Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
+                           std::vector<std::string> settings = {});
 
 }  // namespace suite

@@ -41,9 +41,10 @@ Curve read_curve_value(const Params& p) {
 
 namespace {
 
-Curve read_positive(const Params& p, const char* what, const char* unit) {
+Curve read_positive(const Params& p, const char* what, const char* unit, std::vector<AskedCurve>& asked) {
   Curve c = read_curve_value(p);
   if (c.min() < 0) throw p.error(std::string("the ") + what + " is negative", std::string(unit) + ", at least 0");
+  asked.push_back({p.where(), what, c});
   return c;
 }
 
@@ -70,24 +71,24 @@ void read_disk(const Params& p, double usual_half_angle_deg, SunSpec& disk) {
   disk.disk_by_time = disk.time && !collimated && !half;
 }
 
-SunSpec read_sun(const Params& p) {
+SunSpec read_sun(const Params& p, std::vector<AskedCurve>& asked) {
   SunSpec sun;
   const auto irradiance = p.find("irradiance");
   if (!irradiance || (irradiance->kind() == Params::Kind::scalar && irradiance->as_text() == "tsis")) {
     sun.irradiance = solar_irradiance();
     sun.at_1_au = true;
   } else {
-    sun.irradiance = read_positive(*irradiance, "irradiance", "W/(m2 um)");
+    sun.irradiance = read_positive(*irradiance, "irradiance", "W/(m2 um)", asked);
   }
   read_disk(p, 0.26655, sun);  // at 1 AU: asin(6.957e8 m / 1.495978707e11 m)
   return sun;
 }
 
-MoonSpec read_moon(const Params& p) {
+MoonSpec read_moon(const Params& p, std::vector<AskedCurve>& asked) {
   MoonSpec moon;
   read_disk(p, 0.25896, moon.disk);  // at 384 400 km
   if (const auto irradiance = p.find("irradiance")) {
-    moon.disk.irradiance = read_positive(*irradiance, "irradiance", "W/(m2 um)");
+    moon.disk.irradiance = read_positive(*irradiance, "irradiance", "W/(m2 um)", asked);
     moon.by_phase = false;
   }
   const auto phase = p.find("phase_deg");
@@ -130,10 +131,10 @@ ClearSkySpec read_clear(const Params& p) {
 }
 
 // A panorama: rows from the zenith down, columns clockwise from a compass azimuth.
-SkySpec read_image(const Params& p) {
+SkySpec read_image(const Params& p, std::vector<AskedCurve>& asked) {
   SkySpec sky;
   const auto scale = p.find("radiance");
-  sky.radiance = scale ? read_positive(*scale, "radiance", "W/(m2 sr um)") : Curve::constant(1);
+  sky.radiance = scale ? read_positive(*scale, "radiance", "W/(m2 sr um)", asked) : Curve::constant(1);
   const Params file = p.at("file");
   const Raster image = read_raster(file.as_path(), size_t{1} << 24);
   if (size_t{image.width} * image.height * image.channels > size_t{1} << 27)
@@ -168,19 +169,19 @@ SkySpec read_image(const Params& p) {
   return sky;
 }
 
-SkySpec read_thermal(const Params& p) {
+SkySpec read_thermal(const Params& p, std::vector<AskedCurve>& asked) {
   SkySpec sky;
   sky.zeniths = static_cast<size_t>(p.integer("zeniths", 2, 1000, 181));
   for (const Params& layer : p.at("layers").items())
     sky.layers.push_back({layer.number_in("temperature_k", 1e-3, 1e5, "K"),
-                          read_positive(layer.at("optical_depth"), "optical depth", "vertical, of absorption")});
+                          read_positive(layer.at("optical_depth"), "optical depth", "vertical, of absorption", asked)});
   if (sky.layers.empty()) throw p.at("layers").error("a thermal sky needs at least one layer");
   return sky;
 }
 
-SkySpec read_tabulated(const Params& p) {
+SkySpec read_tabulated(const Params& p, std::vector<AskedCurve>& asked) {
   SkySpec sky;
-  sky.radiance = read_positive(p.at("radiance"), "radiance", "W/(m2 sr um)");
+  sky.radiance = read_positive(p.at("radiance"), "radiance", "W/(m2 sr um)", asked);
   sky.full_sphere = p.boolean("full_sphere", false);
   const auto table = p.find("table");
   const auto tables = p.find("tables");
@@ -211,20 +212,20 @@ SkySpec read_tabulated(const Params& p) {
   return sky;
 }
 
-void read_sky(const Params& p, SourceSpecs& sources) {
+void read_sky(const Params& p, SourceSpecs& sources, std::vector<AskedCurve>& asked) {
   const auto kind = p.find("kind");
   switch (kind ? kind->as_choice({"table", "clear", "image", "thermal"}) : 0) {
     case 1:
       sources.clear = read_clear(p);
       break;
     case 2:
-      sources.sky = read_image(p);
+      sources.sky = read_image(p, asked);
       break;
     case 3:
-      sources.sky = read_thermal(p);
+      sources.sky = read_thermal(p, asked);
       break;
     default:
-      sources.sky = read_tabulated(p);
+      sources.sky = read_tabulated(p, asked);
   }
 }
 
@@ -244,7 +245,7 @@ std::shared_ptr<const IntensityTable> read_distribution(const Params& p) {
   return t;
 }
 
-LampSpec read_lamp(const Params& p, size_t number) {
+LampSpec read_lamp(const Params& p, size_t number, std::vector<AskedCurve>& asked) {
   LampSpec lamp;
   lamp.where = p.where();
   lamp.name = p.text("name", strf("lamp %zu", number));
@@ -252,7 +253,7 @@ LampSpec read_lamp(const Params& p, size_t number) {
   lamp.kind = static_cast<LampSpec::Kind>(kind);
   if (lamp.kind == LampSpec::Kind::surface) {
     lamp.material = p.text("material");
-    lamp.radiance = read_positive(p.at("radiance"), "radiance", "W/(m2 sr um)");
+    lamp.radiance = read_positive(p.at("radiance"), "radiance", "W/(m2 sr um)", asked);
     lamp.both_sides = p.boolean("both_sides", false);
     return lamp;
   }
@@ -273,7 +274,7 @@ LampSpec read_lamp(const Params& p, size_t number) {
     lamp.axis = {v[0], v[1], v[2]};
     if (!(length(lamp.axis) > 0)) throw axis->error("the axis has no length");
   }
-  lamp.intensity = read_positive(p.at("intensity"), "intensity", "W/(sr um)");
+  lamp.intensity = read_positive(p.at("intensity"), "intensity", "W/(sr um)", asked);
   if (lamp.kind == LampSpec::Kind::spot) {
     const Params outer = p.at("outer_deg");
     lamp.outer = outer.as_number_in(0.01, 180, "degrees") * kDegree;
@@ -301,7 +302,7 @@ ModelSpec read_phase(const Params& p) {
   return spec;
 }
 
-AtmosphereSpec read_atmosphere(const Params& p) {
+AtmosphereSpec read_atmosphere(const Params& p, std::vector<AskedCurve>& asked) {
   AtmosphereSpec a;
   if (const auto heights = p.find("heights_m")) {
     a.heights = heights->as_numbers();
@@ -327,7 +328,7 @@ AtmosphereSpec read_atmosphere(const Params& p) {
     aerosol.angstrom = q->number_in("angstrom", -1, 4, "", aerosol.angstrom);
     aerosol.scale_height = q->number_in("scale_height_m", 1, 1e6, "m", aerosol.scale_height);
     if (const auto albedo = q->find("albedo")) {
-      aerosol.albedo = read_positive(*albedo, "albedo", "0 to 1");
+      aerosol.albedo = read_positive(*albedo, "albedo", "0 to 1", asked);
       if (aerosol.albedo.max() > 1) throw albedo->error("the albedo exceeds 1");
     }
     if (const auto phase = q->find("phase"))
@@ -346,11 +347,11 @@ AtmosphereSpec read_atmosphere(const Params& p) {
       const auto by_layer = g.find("layer_depths");
       if (by_layer) {
         for (const Params& c : by_layer->items())
-          gas.layers.push_back(read_positive(c, "optical depth", "vertical, of the layer"));
+          gas.layers.push_back(read_positive(c, "optical depth", "vertical, of the layer", asked));
         if (gas.layers.size() != layers)
           throw by_layer->error(strf("%zu optical depths for %zu layers", gas.layers.size(), layers));
       } else {
-        gas.column = read_positive(g.at("column_depth"), "optical depth", "vertical, of the column");
+        gas.column = read_positive(g.at("column_depth"), "optical depth", "vertical, of the column", asked);
         gas.scale_height = g.number_in("scale_height_m", 1, 1e6, "m");
       }
       a.gases.push_back(std::move(gas));
@@ -360,18 +361,30 @@ AtmosphereSpec read_atmosphere(const Params& p) {
 
 }  // namespace
 
-SourceSpecs read_sources(const Params& root) {
+void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& where) {
+  for (size_t state = 0; state < sensor.states().size(); ++state)
+    for (const Band& b : sensor.bands(state)) {
+      if (curve.curve.covers(b.low_um(), b.high_um())) continue;
+      throw Error(curve.where,
+                  curve.what + " is given from " + curve.curve.range_text() + ", and band '" + b.name +
+                      "' of sensor '" + sensor.name() + "'" + (where.line > 0 ? strf(" (line %d)", where.line) : "") +
+                      strf(" reaches from %.4g to %.4g um", b.low_um(), b.high_um()),
+                  "give a longer curve, or declare 'outside: hold' or 'zero'");
+    }
+}
+
+SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
   SourceSpecs s;
-  if (const auto sun = root.find("sun")) s.sun = read_sun(*sun);
-  if (const auto moon = root.find("moon")) s.moon = read_moon(*moon);
+  if (const auto sun = root.find("sun")) s.sun = read_sun(*sun, asked);
+  if (const auto moon = root.find("moon")) s.moon = read_moon(*moon, asked);
   if (const auto sky = root.find("sky")) {
-    read_sky(*sky, s);
+    read_sky(*sky, s, asked);
     if (s.clear && !s.sun) throw sky->error("a clear sky needs a sun", "give `sun`");
   }
   if (const auto lamps = root.find("lamps"))
-    for (const Params& lamp : lamps->items()) s.lamps.push_back(read_lamp(lamp, s.lamps.size() + 1));
+    for (const Params& lamp : lamps->items()) s.lamps.push_back(read_lamp(lamp, s.lamps.size() + 1, asked));
   if (const auto air = root.find("atmosphere")) {
-    s.atmosphere = read_atmosphere(*air);
+    s.atmosphere = read_atmosphere(*air, asked);
     if (s.clear) throw air->error("a clear sky stands for the atmosphere as well", "drop one of the two");
   }
   if (const auto earth = root.find("earth")) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,10 @@ class Params {
 
   // Error: not UTF-8, malformed YAML, duplicate key, nesting above 200, alias to an unfinished node, more than 50
   // million nodes.
-  static Params parse_file(const std::string& path);
+  // settings: "PATH=VALUE", applied in turn to what the file says. PATH: keys of maps, indices (from 0) or `name`s of
+  // the items of lists, joined by dots; the last may be a new key of its map. VALUE: YAML; null takes a key out. Places
+  // in them are told as "--set PATH". Error: no such place, malformed.
+  static Params parse_file(const std::string& path, std::span<const std::string> settings = {});
   static Params parse_text(std::string_view yaml, const std::string& file_name);
   // The same from strict JSON that a program wrote into another file: some ten times faster, but places name the file
   // only. Error: malformed JSON, duplicate key, nesting above 200.

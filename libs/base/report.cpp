@@ -76,9 +76,16 @@ std::string Report::text() const {
     }
     if (!k.hint.empty()) out += "    hint: " + k.hint + "\n";
   }
-  const size_t errors = count(Severity::error), warnings = count(Severity::warning);
-  out += strf("verdict: %s (%zu errors, %zu warnings%s)\n", ok() ? "accepted" : "refused", errors, warnings,
-              strict_ ? ", strict" : "");
+  // Many faults of few kinds are one thing to mend, however many they are.
+  const auto many = [&](Severity severity, const char* what) {
+    size_t kinds = 0;
+    for (const auto& [key, entry] : entries_) kinds += !muted_.count(key.first) && kind(key.first).severity == severity;
+    const size_t faults = count(severity);
+    return strf("%zu %s", faults, what) +
+           (faults > kinds ? strf(" of %zu %s", kinds, kinds == 1 ? "kind" : "kinds") : "");
+  };
+  out += strf("verdict: %s (%s, %s%s)\n", ok() ? "accepted" : "refused", many(Severity::error, "errors").c_str(),
+              many(Severity::warning, "warnings").c_str(), strict_ ? ", strict" : "");
   return out;
 }
 

@@ -44,6 +44,12 @@ class Checker {
     for (const uint32_t t : triangles) add(code, where(t), message);
   }
 
+  struct Against {
+    size_t triangles = 0;
+    double deepest = 0;  // cosine
+    uint32_t worst = 0;
+  };
+
   void crossings() {
     if (const auto found = self_intersecting(mesh_.positions, corners_))
       list("SP308", *found, "crosses another one");
@@ -83,14 +89,33 @@ class Checker {
         add("SP303", where(t), strf("height %.3g of its longest edge", height / edge));
       if (!mesh_.normals.empty()) against_winding(t, n);
     }
+    tell_against_winding();
     const size_t unused = static_cast<size_t>(std::count(used.begin(), used.end(), false));
     if (unused) add("SP309", {mesh_.file, 0, 0, {}, -1}, strf("%zu positions belong to no face", unused), unused);
   }
   void against_winding(uint32_t t, Vec3 n) {
+    int given = 0, against = 0;
+    double deepest = 0;
     for (size_t k = 0; k < 3; ++k)
-      if (const uint32_t code = mesh_.normals[mesh_.indices[3 * size_t{t} + k]];
-          code != kNoNormal && dot(oct_decode(code), n) < 0)
-        return add("SP311", where(t), "a vertex normal points to the other side");
+      if (const uint32_t code = mesh_.normals[mesh_.indices[3 * size_t{t} + k]]; code != kNoNormal) {
+        const double cosine = dot(oct_decode(code), n) / length(n);
+        ++given, against += cosine < 0, deepest = std::min(deepest, cosine);
+      }
+    if (!against) return;
+    Against& of = against == given ? turned_ : bent_;
+    if (of.triangles++ == 0 || deepest < of.deepest) of.deepest = deepest, of.worst = t;
+  }
+  // Two causes with cures of their own: each is told once, at its worst triangle.
+  void tell_against_winding() {
+    const auto tell = [&](const Against& of, const char* cause) {
+      if (of.triangles)
+        add("SP311", where(of.worst),
+            strf("%zu triangles %s; the worst by %.0f degrees, here", of.triangles, cause,
+                 std::acos(std::max(-1.0, of.deepest)) * 180 / kPi),
+            of.triangles);
+    };
+    tell(turned_, "whose normals all do: the faces or their normals are turned");
+    tell(bent_, "some of whose normals do: they are bent, as is usual for leaves and low polygons");
   }
 
   // Triangles on the same three places, equal or opposite way round.
@@ -142,6 +167,7 @@ class Checker {
   const SourceMesh& mesh_;
   const MeshCheck& options_;
   std::vector<uint32_t> first_, corners_;
+  Against turned_, bent_;  // triangles with normals against them
   std::vector<MeshFinding> findings_;
 };
 

@@ -12,7 +12,7 @@ namespace suite {
 struct MeshFinding {
   const char* code;               // SP301 to SP314
   size_t count = 0;               // single faults
-  std::vector<Finding> examples;  // the first three
+  std::vector<Finding> examples;  // the first three; of SP311 the worst of each cause
 };
 
 struct MeshCheck {

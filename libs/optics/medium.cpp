@@ -21,10 +21,22 @@ void check_medium(Medium& m, const Where& where) {
   check_phase(m.phase, where);
 }
 
+namespace {
+
+std::vector<float> sample(const Medium& m, const Curve& curve, const SpectralState& state) {
+  try {
+    return state.sample(curve);
+  } catch (const Error& e) {
+    throw Error(e.where(), "medium '" + m.id + "': " + e.message(), e.hint(), e.code());
+  }
+}
+
+}  // namespace
+
 BakedMedium::BakedMedium(const Medium& m, const SpectralState& state)
-    : absorption(state.sample(m.absorption)),
-      scattering(state.sample(m.scattering)),
-      index_squared(state.sample(m.index)) {
+    : absorption(sample(m, m.absorption, state)),
+      scattering(sample(m, m.scattering, state)),
+      index_squared(sample(m, m.index, state)) {
   for (float& n : index_squared) n *= n;
   if (std::any_of(scattering.begin(), scattering.end(), [](float s) { return s > 0; }))
     phase = bake_phase(m.phase, state);

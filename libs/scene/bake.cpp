@@ -6,6 +6,7 @@
 #include "motion/track.h"
 #include "scene/baker.h"
 #include "scene/curvature.h"
+#include "scene/endless_media.h"
 #include "scene/origin_check.h"
 #include "scene/unfolded.h"
 
@@ -27,8 +28,23 @@ Scene Baker::run() {
   if (draft_.curvature_m && report_.count(Severity::error) == 0) curve();
   scene_.epoch = draft_.epoch;
   const TimeSpan times = time_window();
-  if (report_.count(Severity::error) == 0) scene_.bounds = scene_bounds(scene_, times.begin, times.end);
+  if (report_.count(Severity::error) == 0) {
+    scene_.bounds = scene_bounds(scene_, times.begin, times.end);
+    tell_endless_media();
+  }
   return std::move(scene_);
+}
+
+void Baker::tell_endless_media() {
+  for (const EndlessMedium& e : endless_media(scene_, draft_.windows)) {
+    const auto surface =
+        std::find_if(draft_.geometry.begin(), draft_.geometry.end(), [&](auto& g) { return g.name == e.surface; });
+    const std::string often =
+        std::isinf(e.scatterings) ? "without ever being absorbed" : strf("about %.0f times", e.scatterings);
+    add("SP607", surface == draft_.geometry.end() ? Where{draft_.file, 0, 0, {}, -1} : surface->where,
+        "medium '" + e.medium + "' fills half of all space behind '" + e.surface +
+            "': what does not come back scatters " + often + (e.at_um > 0 ? strf(" at %g um", e.at_um) : ""));
+  }
 }
 
 Baker::Built Baker::build_mesh(const DraftGeometry& g) {
@@ -252,7 +268,8 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   if (p.motion) {
     if (p.on.given()) return add("SP405", p.on.where, "what moves cannot stand 'on' something");
     made.track = static_cast<uint32_t>(scene_.tracks.size());
-    scene_.tracks.push_back({strf("'%s' (line %d)", p.target.name.c_str(), p.motion_where.line), p.motion});
+    scene_.tracks.push_back(
+        {strf("'%s' (line %d of the scene's text)", p.target.name.c_str(), p.motion_where.line), p.motion});
     motion_where_.push_back(p.motion_where);
   }
   made.kind = what->kind;

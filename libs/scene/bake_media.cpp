@@ -110,7 +110,8 @@ class MediaBaker {
       uint32_t track = kNone;
       if (v.motion) {
         track = static_cast<uint32_t>(scene_.tracks.size());
-        scene_.tracks.push_back({strf("volume '%s' (line %d)", v.grid.name.c_str(), v.motion_where.line), v.motion});
+        scene_.tracks.push_back(
+            {strf("volume '%s' (line %d of the scene's text)", v.grid.name.c_str(), v.motion_where.line), v.motion});
         motion_where_.push_back(v.motion_where);
       }
       for (const uint32_t row : found->second) scene_.volumes.push_back({row, v.to_world, track});

@@ -63,6 +63,7 @@ class Baker {
   void place(const DraftPlacement& p, Group& group, bool world);
   TimeSpan time_window();
   void unused();
+  void tell_endless_media();
 
   const Draft& draft_;
   Report& report_;

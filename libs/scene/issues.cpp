@@ -67,6 +67,10 @@ std::vector<IssueKind> scene_issues() {
       {"SP605", error, "extinction is not absorption + scattering", "give two of the three"},
       {"SP606", warning, "a surface that bounds a medium is open",
        "paths that enter it may never leave; close it, unless it is a surface without end such as a sea's"},
+      {"SP607", warning, "a scattering medium has no end",
+       "paths in it take that much longer, up to the simulation's 'max_scatterings'; a layer is one object, 'box: {z0, "
+       "z1}' "
+       "without x and y"},
       {"SP407", error, "a motion does not cover the time that is looked at",
        "give it more keys, or a shorter 'times_s'"},
       {"SP408", warning, "an exact surface, a volume or a moving group is too large to follow the curvature",

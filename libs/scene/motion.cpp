@@ -20,8 +20,9 @@ void check_motion(const Scene& scene, double begin, double end, const Where& whe
     const TimeSpan c = scene.tracks[k].track->covered();
     if (!c.contains(begin) || !c.contains(end))
       throw Error(where,
-                  strf("the motion of %s is known from %.9g to %.9g s, it is needed from %.9g to %.9g s",
-                       scene.tracks[k].name.c_str(), c.begin, c.end, begin, end),
+                  strf("the motion of %s is known from %.9g to %.9g s, it is needed ", scene.tracks[k].name.c_str(),
+                       c.begin, c.end) +
+                      (begin == end ? strf("at %.9g s", begin) : strf("from %.9g to %.9g s", begin, end)),
                   "give it more keys, or look at another time");
   }
 }

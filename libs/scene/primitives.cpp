@@ -22,6 +22,8 @@ void check_terms(const Primitive& p, size_t fixed, const Where& where) {
 
 }  // namespace
 
+bool is_layer(std::span<const double> a) { return a[0] == 0 && a[1] == 0 && a[3] == 0 && a[4] == 0; }
+
 std::span<const PrimitiveRow> primitive_rows() {
   constexpr double tiny = 1e-9, huge = 1e9;
   static const std::vector<PrimitiveRow> rows{
@@ -36,12 +38,12 @@ std::span<const PrimitiveRow> primitive_rows() {
        {{"radius", "m", "outer radius", tiny, huge, {}}, {"inner_radius", "m", "radius of the hole", 0, huge, 0.0}}},
       {"box",
        PrimitiveKind::box,
-       "axis-aligned; UV (0, 0) to (1, 1) on every face",
-       {{"x0", "m", "low corner", -huge, huge, {}},
-        {"y0", "m", "low corner", -huge, huge, {}},
+       "axis-aligned; UV (0, 0) to (1, 1) on every face; without x and y a layer without end, UV in metres",
+       {{"x0", "m", "low corner", -huge, huge, 0.0},
+        {"y0", "m", "low corner", -huge, huge, 0.0},
         {"z0", "m", "low corner", -huge, huge, {}},
-        {"x1", "m", "high corner", -huge, huge, {}},
-        {"y1", "m", "high corner", -huge, huge, {}},
+        {"x1", "m", "high corner", -huge, huge, 0.0},
+        {"y1", "m", "high corner", -huge, huge, 0.0},
         {"z1", "m", "high corner", -huge, huge, {}}}},
       {"sphere",
        PrimitiveKind::sphere,
@@ -87,8 +89,8 @@ void check_primitive(const Primitive& p, const Where& where) {
   if (terms) check_terms(p, fixed, where);
   if (p.kind == PrimitiveKind::plane && (a[0] == 0) != (a[1] == 0))
     throw Error(where, "plane '" + p.name + "': give both width and depth, or neither for an infinite one");
-  if (p.kind == PrimitiveKind::box && !(a[0] < a[3] && a[1] < a[4] && a[2] < a[5]))
-    throw Error(where, "box '" + p.name + "' is empty", "low corner first");
+  if (p.kind == PrimitiveKind::box && !(((a[0] < a[3] && a[1] < a[4]) || is_layer(a)) && a[2] < a[5]))
+    throw Error(where, "box '" + p.name + "' is empty", "low corner first; only z0 and z1 for a layer without end");
   if (p.kind == PrimitiveKind::disk && !(a[1] < a[0]))
     throw Error(where, "disk '" + p.name + "': the hole is larger than the disk");
 }
@@ -103,7 +105,7 @@ Box3 primitive_box(const Primitive& p) {
     case PrimitiveKind::disk:
       return around(a[0], a[0], 0, 0);
     case PrimitiveKind::box:
-      return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}};
+      return is_layer(a) ? Box3{} : Box3{{a[0], a[1], a[2]}, {a[3], a[4], a[5]}};
     case PrimitiveKind::sphere:
       return around(a[0], a[0], -a[0], a[0]);
     case PrimitiveKind::cone:

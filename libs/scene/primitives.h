@@ -25,6 +25,9 @@ struct PrimitiveRow {
 // amplitude m, kx 1/m, ky 1/m, phase rad.
 std::span<const PrimitiveRow> primitive_rows();
 
+// Is the box of these parameters a layer without end, from z0 to z1?
+bool is_layer(std::span<const double> box_parameters);
+
 // Extent in the local frame; empty when infinite. Error when parameters are missing or out of range (files are not
 // trusted).
 Box3 primitive_box(const Primitive& primitive);

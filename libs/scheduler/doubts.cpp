@@ -54,6 +54,14 @@ std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const
                "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
 }
 
+// The first few of many names.
+std::string named(const std::vector<std::string>& names) {
+  constexpr size_t most = 5;
+  std::string text;
+  for (size_t i = 0; i < std::min(names.size(), most); ++i) text += (i ? ", " : "") + names[i];
+  return names.size() > most ? text + strf(" and %zu more", names.size() - most) : text;
+}
+
 // Bands in which no source sends anything, of a scene that does not glow itself.
 std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
   if (!now.any() || glows(scene) || now.atmosphere) return std::nullopt;
@@ -63,17 +71,17 @@ std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, cons
   if (now.sky && !now.sky->layers.empty()) return std::nullopt;
   if (now.sky) lights.push_back(&now.sky->radiance);
   for (const LampSpec& l : now.lamps) lights.push_back(l.kind == LampSpec::Kind::surface ? &l.radiance : &l.intensity);
-  std::string names;
+  std::vector<std::string> names;
   for (size_t s = 0; s < sensor.states().size(); ++s)
     for (const Band& b : sensor.bands(s)) {
       const bool lit = std::any_of(lights.begin(), lights.end(), [&](const Curve* c) {
         return !c->covers(b.low_um(), b.high_um()) || c->integral(b.low_um(), b.high_um()) > 0;
       });
       const std::string name = strf("'%s' (%.3g um)", b.name.c_str(), b.center_um);
-      if (!lit && names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+      if (!lit && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   if (names.empty()) return std::nullopt;
-  return Doubt{sensor.name(), "no source sends light in band " + names + " and nothing in the scene glows there",
+  return Doubt{sensor.name(), "no source sends light in band " + named(names) + " and nothing in the scene glows there",
                "give the sources spectra that reach it, the scene temperatures, or the sensor other bands"};
 }
 
@@ -158,10 +166,10 @@ std::optional<Doubt> doubt_of_outcome(const Sensor& sensor, const SensorOutcome&
     return Doubt{
         sensor.name(), "every pixel of every band is zero: no light reaches what it sees",
         "check the sources (directions, spectra), the surfaces' reflectance in its bands and what shades them"};
-  std::string names;
+  std::vector<std::string> names;
   for (size_t b = 0; b < o.bands.size(); ++b)
-    if (!o.bright[b]) names += (names.empty() ? "'" : ", '") + o.bands[b] + "'";
-  return Doubt{sensor.name(), "every pixel of band " + names + " is zero",
+    if (!o.bright[b]) names.push_back("'" + o.bands[b] + "'");
+  return Doubt{sensor.name(), "every pixel of band " + named(names) + " is zero",
                "check the spectra of the sources and of the surfaces there"};
 }
 

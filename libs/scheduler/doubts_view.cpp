@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "optics/models.h"
+#include "scene/primitives.h"
 #include "scheduler/doubts.h"
 #include "surface/material_lookup.h"
 
@@ -91,7 +92,7 @@ bool endless(const Tracer& tracer, const SourceSpecs& written) {
   const Scene& scene = tracer.scene();
   return written.earth || tracer.periodic() || uses_media(scene) || !scene.tracks.empty() || tracer.bounds().empty() ||
          std::any_of(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& p) {
-           return p.kind == PrimitiveKind::plane || p.kind == PrimitiveKind::sinusoid;
+           return p.kind == PrimitiveKind::plane || p.kind == PrimitiveKind::sinusoid || primitive_box(p).empty();
          });
 }
 

@@ -104,7 +104,11 @@ std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
     const std::string name = item.text("name");
     if (!names.insert(name).second) throw item.error("two bands are named '" + name + "'", "give each its own name");
     if (const auto response = item.find("response")) {
-      bands.push_back(Band::tabulated(name, context.curve(*response), response->where()));
+      const Curve curve = context.curve(*response);
+      if (curve.low_um() > kLongestWave)
+        throw response->error("the response is given from " + curve.range_text(),
+                              strf("0.01 to %g um are possible", kLongestWave));
+      bands.push_back(Band::tabulated(name, curve, response->where()));
       continue;
     }
     const double center = item.at("center_um").as_number();

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/primitives.h"
 #include "surface/material_lookup.h"
 
 namespace suite {
@@ -57,14 +58,83 @@ std::string describe_hit(const Tracer& tracer, const Ray& ray) {
   return out;
 }
 
-View view_from_above(const Tracer& tracer, int pixels) {
-  const Box3 box = tracer.bounds();
-  const Vec3 size = box.size();
-  if (box.empty() || !(std::max(size.x, size.y) > 0)) throw Error("the scene has no extent to look at");
-  const double gsd = std::max(size.x, size.y) / pixels;
+Box3 box_of(const Tracer& tracer, const std::string& what) {
+  const Scene& scene = tracer.scene();
+  const bool number = !what.empty() && what.find_first_not_of("0123456789") == std::string::npos;
+  std::vector<std::string> known = scene.tags;
+  for (const Mesh& m : scene.meshes) known.push_back(m.name.substr(0, m.name.find('/')));
+  for (const Primitive& p : scene.primitives) known.push_back(p.name);
+  Box3 all;
+  bool found = false;
+  for (const TracedObject& o : tracer.objects()) {
+    const std::string& name = o.mesh != kNone ? scene.meshes[o.mesh].name : scene.primitives[o.primitive].name;
+    // Tiles of a terrain have a number behind its name.
+    const bool meant = number ? std::to_string(o.instance) == what
+                              : name == what || name.substr(0, name.find('/')) == what ||
+                                    (o.tag != kNone && scene.tags[o.tag] == what);
+    if (!meant) continue;
+    found = true;
+    if (o.node != kNone) throw Error("'" + what + "' moves", "look at a place: X Y Z with a size");
+    all.grow(transformed(
+        o.mesh != kNone ? mesh_box(scene.meshes[o.mesh]) : primitive_box(scene.primitives[o.primitive]), *o.place));
+  }
+  if (!found && number) throw Error("there is no instance " + what, "numbers are those of truth images and --raycast");
+  if (!found) throw Error("there is no object or tag '" + what + "'", name_hint(what, known));
+  if (all.empty()) throw Error("'" + what + "' has no end", "look at a place: X Y Z with a size");
+  return all;
+}
+
+std::optional<double> height_at(const Tracer& tracer, double x, double y, double time) {
+  const FlushDenormals flush;
+  const Ray ray{{x, y, tracer.bounds().empty() ? 1e6 : tracer.bounds().high.z + 1}, {0, 0, -1}, time};
+  Hit hit;
+  TraceStatistics statistics;
+  tracer.nearest(std::span(&ray, 1), std::span(&hit, 1), false, statistics);
+  return hit.hit() ? std::optional(hit.position.z) : std::nullopt;
+}
+
+namespace {
+
+// The camera of a quick look: parallel rays, z up in the picture (north when looking straight down from the south).
+struct Viewer {
+  Viewer(const Tracer& tracer, const LookAt& look) {
+    const double a = look.azimuth_deg * kPi / 180, e = look.elevation_deg * kPi / 180;
+    const Dir back{std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
+    along = -back;
+    up = {-std::sin(a) * std::sin(e), -std::cos(a) * std::sin(e), std::cos(e)};
+    right = cross(along, up);
+    const Box3& box = look.box;
+    if (box.empty()) throw Error("the scene has no extent to look at", "look at a place: X Y Z with a size");
+    Box3 seen;  // x along right, y along up, z towards the viewer
+    const auto grow = [&](const Box3& b, Box3& into) {
+      for (int i = 0; i < 8 && !b.empty(); ++i) {
+        const Vec3 p{i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z};
+        into.grow(Vec3{dot(p, right), dot(p, up), dot(p, back)});
+      }
+    };
+    grow(box, seen);
+    width = look.size_m > 0 ? look.size_m : look.margin * seen.size().x;
+    height = look.size_m > 0 ? look.size_m : look.margin * seen.size().y;
+    if (!(std::max(width, height) > 0)) throw Error("what is looked at has no extent", "give a size");
+    const Vec3 middle = seen.center();
+    Box3 whole = seen;
+    grow(tracer.bounds(), whole);
+    corner = right * (middle.x - width / 2) + up * (middle.y + height / 2) +
+             back * (whole.high.z + 1 + (tracer.bounds().empty() ? 10 * std::max(width, height) : 0));
+  }
+  Dir along, up, right;
+  Vec3 corner;  // upper left
+  double width, height;
+};
+
+}  // namespace
+
+View view_of(const Tracer& tracer, const LookAt& look, int pixels) {
+  const Viewer viewer(tracer, look);
+  const double gsd = std::max(viewer.width, viewer.height) / pixels;
   View view;
-  view.width = std::max(1, static_cast<int>(std::ceil(size.x / gsd)));
-  view.height = std::max(1, static_cast<int>(std::ceil(size.y / gsd)));
+  view.width = std::max(1, static_cast<int>(std::ceil(viewer.width / gsd)));
+  view.height = std::max(1, static_cast<int>(std::ceil(viewer.height / gsd)));
   view.rgb.assign(3 * static_cast<size_t>(view.width) * static_cast<size_t>(view.height), 255);
   const Dir sun = normalized(Vec3{-1, 1, std::sqrt(2.0)});
   const MaterialLookup lookup(tracer.scene());
@@ -74,11 +144,9 @@ View view_from_above(const Tracer& tracer, int pixels) {
     std::vector<Ray> rays(static_cast<size_t>(view.width));
     std::vector<Hit> hits(rays.size());
     for (size_t j = begin; j < end; ++j) {
+      const Vec3 left = viewer.corner - viewer.up * ((static_cast<double>(j) + 0.5) * gsd);
       for (size_t i = 0; i < rays.size(); ++i)
-        rays[i] = {{box.low.x + (static_cast<double>(i) + 0.5) * gsd, box.high.y - (static_cast<double>(j) + 0.5) * gsd,
-                    box.high.z + 1},
-                   {0, 0, -1},
-                   0};
+        rays[i] = {left + viewer.right * ((static_cast<double>(i) + 0.5) * gsd), viewer.along, look.time};
       std::fill(hits.begin(), hits.end(), Hit{});
       tracer.nearest(rays, hits, true, statistics);
       for (size_t i = 0; i < rays.size(); ++i)

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/primitives.h"
+
 namespace suite {
 
 namespace {
@@ -22,6 +24,7 @@ SurfaceTangents of_cone(double r0, double r1, double h, Vec3 p, Dir n) {
 }
 
 SurfaceTangents of_box(const std::vector<double>& a, Dir n) {
+  if (is_layer(a)) return {{1, 0, 0}, {0, 1, 0}};
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (std::fabs(n[i]) > std::fabs(n[axis])) axis = i;

@@ -180,7 +180,7 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
   for (const uint32_t i : unbounded) {
     const Dir up = normalized(flat.objects[i].place->normal({0, 0, 1}));
     if (periodic && std::hypot(up.x, up.y) > 1e-9)
-      throw Error("a plane without bounds in a periodic scene is not level",
+      throw Error("a plane or layer without bounds in a periodic scene is not level",
                   "tilted planes do not repeat themselves: give it a size");
   }
   arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });

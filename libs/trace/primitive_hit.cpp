@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/primitives.h"
+
 namespace suite {
 
 namespace {
@@ -48,7 +50,16 @@ void ring(double inner, double outer, double z, double up, Vec3 o, Vec3 d, Neare
   if (r >= inner && r <= outer) n.hit = LocalHit{t, {0, 0, up}, (r - inner) / (outer - inner), turns(y, x)};
 }
 
+// Of a box without end: the two faces that it has.
+void layer(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+  for (const int side : {0, 1}) {
+    const double t = (a[static_cast<size_t>(2 + 3 * side)] - o.z) / d.z;
+    if (d.z != 0 && n.wants(t)) n.hit = LocalHit{t, {0, 0, side ? 1.0 : -1.0}, o.x + t * d.x, o.y + t * d.y};
+  }
+}
+
 void box(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+  if (is_layer(a)) return layer(a, o, d, n);
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       const double t = (a[3 * side + axis] - o[axis]) / d[axis];

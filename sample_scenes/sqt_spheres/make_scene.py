@@ -24,7 +24,7 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("folder", nargs="?", default="-")
 parser.add_argument("out")
 parser.add_argument("--bin", default="", help="where sqt-fit, scene-prep and dirsig-render are (default: the PATH)")
-parser.add_argument("--paths", type=int, default=64, help="paths per pixel")
+parser.add_argument("--paths", type=int, default=32, help="paths per pixel")
 parser.add_argument("--columns", type=int, default=640, help="pixels across")
 args = parser.parse_args()
 

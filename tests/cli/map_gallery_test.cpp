@@ -166,7 +166,7 @@ TEST_F(MapGallery, OnlyWhatTheSensorsSeeIsLoaded) {
   std::string sim = read_text(*folder_ / "sim.yaml");
   sim.resize(sim.find("  - kind: frame_camera\n    name: tir"));
   write_file(*folder_ / "visible.yaml", std::string_view(sim));
-  const CommandResult r = run("dirsig-render visible.yaml -o visible --paths 1");
+  const CommandResult r = run("dirsig-render visible.yaml -o visible --paths 1 --set output=null");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("temperatures         left out"));
   EXPECT_THAT(r.err, HasSubstr("they glow in no window"));

@@ -43,6 +43,9 @@ class Messages : public testing::Test {
     folder_ = new TempFolder;
     write("nanometres.txt", "400 0.1\n500 0.2\n900 0.3\n");
     write("short.txt", "0.748 0.1\n1.2 0.2\n2.5 0.3\n");
+    write("leaf.obj",
+          "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nvn 0 0.6 0.8\nvn 0 0.8 -0.6\nf 1//1 2//1 3//1\nf 1//1 2//1 3//1\n"
+          "f 1//2 2//2 3//3\n");
     write("measured.bsdf", "tensor_file and so on");
     write("scene.yaml", kScene);
     ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
@@ -81,6 +84,12 @@ TEST_F(Messages, OfScenes) {
        "model: lambert, reflectance: 0.2",
        "model: sqt, file: measured.bsdf",
        {"5:28", "no SQT file", "sqt-fit measured.bsdf -o measured.sqt"}},
+      {"leaf normals",
+       "{sphere: {radius: 1}",
+       "{obj: leaf.obj",
+       {"SP311] x3", "leaf.obj:7: 2 triangles whose normals all do", "leaf.obj:9: 1 triangles some of whose normals do",
+        "the worst by 127 degrees"},
+       true},
       {"absurd motion",
        "translate: [0, 0, 2]",
        "motion: {kind: keyframes, keys: [{time_s: 0, position_m: [0, 0, 3]}, {time_s: 5, position_m: [1.0e18, 0, 3]}]}",
@@ -103,6 +112,33 @@ TEST_F(Messages, OfSimulations) {
        "scene.h5",
        "scene.yaml",
        {"1:8", "a prepared scene (.h5)", "scene-prep scene.yaml -o scene.h5"}},
+      {"sunlight too short",
+       "135}}",
+       "135}, irradiance: short.txt}",
+       {"2:66", "irradiance is given from 0.748 to 2.5 um",
+        "band 'green' of sensor 'eye' (line 4) reaches from 0.5318"}},
+      {"sunlight in nm", "135}}", "135}, irradiance: nanometres.txt}", {"2:66", "in nanometres? then 0.4 to 0.9 um"}},
+      {"lamp too short",
+       "sensors:",
+       "lamps: [{kind: point, position_m: [0, 0, 9], intensity: short.txt}]\nsensors:",
+       {"3:57", "intensity is given from 0.748 to 2.5 um"}},
+      {"response in nm",
+       "center_um: 0.55, fwhm_um: 0.01",
+       "response: nanometres.txt",
+       {"13:37", "in nanometres? then 0.4 to 0.9 um"}},
+      {"preview of no sensor", "sensors:", "output: {previews: {aye: [green]}}\nsensors:", {"3:21", "'aye'", "'eye'"}},
+      {"preview without bands",
+       "sensors:",
+       "output: {preview: {show: kelvin, bands: [a, b, c]}}\nsensors:",
+       {"3:26", "of one band"}},
+      {"preview upside down",
+       "sensors:",
+       "output: {preview: {stretch: [98, 2]}}\nsensors:",
+       {"3:29", "a lower and a higher"}},
+      {"preview twice",
+       "sensors:",
+       "output: {preview: {stretch: [2, 98], range: [0, 1]}}\nsensors:",
+       {"exclude each other"}},
       {"unknown preview", "sensors:", "output: {preview: [gren]}\nsensors:", {"'gren'", "did you mean 'green'"}},
   };
   for (const Mistake& m : table) {
@@ -112,6 +148,88 @@ TEST_F(Messages, OfSimulations) {
   }
   check({"scene text for a simulation", "", "", {"text of a scene", "scene-prep"}},
         run("dirsig-render scene.yaml -o out"));
+}
+
+// What a scene lacks is told at the sensor that asks for it.
+TEST_F(Messages, OfWhatASceneLacks) {
+  const struct {
+    const char *name, *scene, *sensor;
+    std::vector<const char*> told;
+  } table[] = {
+      {"reflectance too short",
+       "--set materials.grey.reflectance=short.txt --set windows_um=null",
+       "--set seed=2",
+       {"sim.yaml:4:5", "band 'green' of sensor 'eye' reaches from 0.5318 to 0.5682 um",
+        "material 'grey' has its reflectance from 0.748 to 2.5 um"}},
+      {"medium too short",
+       "--set 'media={haze: {absorption: short.txt}}' --set materials.grey='{inside: haze}' --set windows_um=null",
+       "--set seed=2",
+       {"sim.yaml:4:5", "medium 'haze' has its absorption from 0.748 to 2.5 um"}},
+      {"keyframes too short",
+       "--set 'world.1.motion={kind: keyframes, keys: [{time_s: 0, position_m: [0, 0, 3]}, {time_s: 5, position_m: [1, "
+       "0, 3]}]}'",
+       "--set sensors.0.time_s=7",
+       {"sim.yaml:4:5", "the motion of 'ball' (line",
+        "of the scene's text) is known from 0 to 5 s, it is needed at 7 s"}},
+  };
+  write("sim.yaml", kSimulation);
+  for (const auto& row : table) {
+    const CommandResult made = run(std::string("scene-prep scene.yaml -o lacks.h5 ") + row.scene);
+    ASSERT_EQ(made.code, 0) << row.name << made.out << made.err;
+    const CommandResult r = run(std::string("dirsig-render sim.yaml -o out --set scene=lacks.h5 ") + row.sensor);
+    EXPECT_EQ(r.code, 1) << row.name;
+    for (const char* told : row.told) EXPECT_THAT(r.err, HasSubstr(told)) << row.name;
+  }
+}
+
+// A scattering medium that fills half of all space is told; a layer, an absorbing one and one with a bottom are not.
+TEST_F(Messages, OfEndlessMedia) {
+  const std::string scene = "scene-prep scene.yaml -o endless.h5 --set materials.edge='{inside: fog}' ";
+  const struct {
+    const char *fog, *objects, *world;
+    const char* told;  // null: nothing
+  } table[] = {
+      {"{scattering: 1}", "{top: {plane: {}, material: edge}}", "[{place: top}]",
+       "scatters without ever being absorbed"},
+      {"{scattering: 1, absorption: 0.001}", "{top: {plane: {}, material: edge}}", "[{place: top}]",
+       "about 1001 times"},
+      {"{scattering: 1}", "{top: {plane: {}, material: edge}}",
+       "[{place: top, translate: [0, 0, 9]}, {place: top, rotate: {euler_deg: [180, 0, 0]}}]", "SP607] x2"},
+      {"{scattering: 1}", "{top: {box: {z0: 0, z1: 9}, material: edge}}", "[{place: top}]", nullptr},
+      {"{scattering: 1, absorption: 1}", "{top: {plane: {}, material: edge}}", "[{place: top}]", nullptr},
+      {"{scattering: 1}", "{top: {plane: {}, material: edge}, bottom: {plane: {}, material: grey}}",
+       "[{place: top, translate: [0, 0, 9]}, {place: bottom}]", nullptr},
+  };
+  for (const auto& row : table) {
+    const CommandResult r = run(scene + "--set 'media={fog: " + row.fog + "}' --set 'objects=" + row.objects +
+                                "' --set 'world=" + row.world + "'");
+    EXPECT_EQ(r.code, 0) << r.err;
+    if (row.told)
+      EXPECT_THAT(r.out, HasSubstr(row.told));
+    else
+      EXPECT_EQ(r.out.find("SP607"), std::string::npos) << r.out;
+  }
+}
+
+// Other values for once: told in what comes out, part of what a state belongs to, refused at their place.
+TEST_F(Messages, OfSettings) {
+  write("sim.yaml", kSimulation);
+  ASSERT_EQ(run("dirsig-render sim.yaml -o set --state --set sensors.eye.columns=6 --set 'sky={radiance: 3}'").code, 0);
+  EXPECT_THAT(read_text(*folder_ / "set/eye.img.hdr"), HasSubstr("samples = 6"));
+  EXPECT_THAT(read_text(*folder_ / "set/render.json"), HasSubstr("--set sensors.eye.columns=6"));
+  const CommandResult same =
+      run("dirsig-render sim.yaml -o set --resume --set sensors.eye.columns=6 --set 'sky={radiance: 3}'");
+  EXPECT_EQ(same.code, 0) << same.err;
+  for (const char* other :
+       {"", "--set sensors.eye.columns=6", "--set sensors.eye.columns=6 --set 'sky={radiance: 4}'"}) {
+    const CommandResult r = run(std::string("dirsig-render sim.yaml -o set --resume ") + other);
+    EXPECT_EQ(r.code, 1) << other;
+    EXPECT_THAT(r.err, HasSubstr("belongs to another run: its simulation is")) << other;
+  }
+  const CommandResult r = run("dirsig-render sim.yaml -o wrong --set sensors.0.pahts=64");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("--set sensors.0.pahts: error: unknown key 'pahts'; did you mean 'paths'?"));
+  EXPECT_FALSE(file_exists(*folder_ / "wrong"));
 }
 
 // One class without a material is one fault, however many pixels have it.

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/files.h"
+#include "formats/raster/raster.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "optics/models.h"
 #include "support/run_command.h"
@@ -147,6 +148,78 @@ TEST_F(ScenePrep, AnswersQuestionsAboutAPreparedScene) {
   EXPECT_EQ(run("q.h5 --quick-look q.png --pixels 40").code, 0);
   EXPECT_GT(file_size(folder_ / "q.png"), 100u);
   EXPECT_EQ(run("q.h5 --quick-look q.png --pixels 0").code, 2);
+}
+
+// A tower of 2 x 2 x 10 m in the corner of a yard, by name, by number, by place, from above and from the side.
+TEST_F(ScenePrep, QuickLooksAtOneThing) {
+  write_file(
+      folder_ / "t.yaml",
+      std::string_view(
+          "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}, red: {model: lambert, reflectance: 0.1}}\n"
+          "objects:\n  yard: {plane: {width: 200, depth: 200}, material: grey}\n"
+          "  tower: {box: {x0: -1, y0: -1, z0: 0, x1: 1, y1: 1, z1: 10}, material: red}\n"
+          "  sea: {plane: {}, material: grey}\n"
+          "world:\n  - {place: yard}\n  - {place: tower, translate: [50, -50, 0], tag: keep}\n"
+          "  - {place: sea, translate: [0, 0, -1]}\n"));
+  ASSERT_EQ(run("t.yaml -o t.h5").code, 0);
+  const auto look = [&](const std::string& options) {
+    const CommandResult r = run("t.h5 --quick-look t.png --pixels 110 " + options);
+    EXPECT_EQ(r.code, 0) << options << r.err;
+    return read_raster(folder_ / "t.png");
+  };
+  const auto at = [](const Raster& r, uint32_t x, uint32_t y) {
+    return r.values[(size_t{y} * r.width + x) * r.channels];
+  };
+  const Raster whole = look("");
+  ASSERT_EQ(whole.width, 110u);
+  const float yard = at(whole, 0, 0), tower = at(whole, 82, 82);
+  ASSERT_NE(yard, tower);
+  EXPECT_EQ(at(whole, 82, 28), yard) << "north is up, east is right";
+  for (const char* same : {"--look-at tower", "--look-at keep", "--look-at 1"}) {
+    const Raster near = look(same);
+    EXPECT_EQ(at(near, 10, 10), tower) << same;
+    EXPECT_EQ(at(near, 1, 1), yard) << same << ": a margin of 5 % around it";
+  }
+  const Raster place = look("--look-at '50 -50' --look-size 8");
+  EXPECT_EQ(at(place, 55, 55), tower);
+  EXPECT_EQ(at(place, 55, 38), yard) << "2 of 8 m are the tower";
+  const Raster side = look("--look-at tower --look-from '180 0'");
+  EXPECT_EQ(side.width, 22u) << "2 of 10 m";
+  EXPECT_EQ(side.height, 110u);
+  const struct {
+    const char* options;
+    int code;
+    const char* told;
+  } wrong[] = {{"--look-at towr", 1, "did you mean 'tower'"},
+               {"--look-at 99", 1, "no instance 99"},
+               {"--look-at sea", 1, "has no end"},
+               {"--look-at '1 2'", 2, "needs a --look-size"},
+               {"--look-at '1 2 3 4' --look-size 3", 2, "two or three numbers"},
+               {"--look-from '10'", 2, "azimuth and an elevation"},
+               {"--look-size -3", 2, "--look-size is"}};
+  for (const auto& w : wrong) {
+    const CommandResult r = run(std::string("t.h5 --quick-look no.png ") + w.options);
+    EXPECT_EQ(r.code, w.code) << w.options;
+    EXPECT_THAT(r.err, HasSubstr(w.told)) << w.options;
+    EXPECT_FALSE(file_exists(folder_ / "no.png"));
+  }
+  EXPECT_EQ(run("t.h5 --summary --look-at tower").code, 2) << "without a quick look it would do nothing";
+}
+
+// Other values for once are options of the scene.
+TEST_F(ScenePrep, SetsValues) {
+  ASSERT_EQ(run("good.yaml -o s.h5").code, 0);
+  EXPECT_THAT(run("good.yaml -o s.h5").err, HasSubstr("up to date"));
+  const CommandResult other = run("good.yaml -o s.h5 --set name=other");
+  EXPECT_EQ(other.code, 0) << other.err;
+  EXPECT_EQ(other.err.find("up to date"), std::string::npos);
+  EXPECT_EQ(read_scene(folder_ / "s.h5").name, "other");
+  EXPECT_THAT(run("s.h5 --summary").out, HasSubstr("--set name=other"));
+  const CommandResult wrong = run("good.yaml -o s.h5 --set nmae=other");
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("--set nmae"));
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean 'name'"));
+  EXPECT_EQ(run("s.h5 --summary --set name=x").code, 2);
 }
 
 TEST_F(ScenePrep, StrictAndMute) {

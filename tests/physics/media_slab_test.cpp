@@ -190,6 +190,53 @@ TEST(DisortSlabControl, OnePercentOfAlbedoIsSeen) {
   }
 }
 
+// The same as one body: a box of which only z0 and z1 are given.
+std::shared_ptr<Scene> layer(const Medium& m, double z0, double z1) {
+  auto scene = std::make_shared<Scene>();
+  scene->media = {m};
+  scene->materials = {boundary(0)};
+  place(*scene, PrimitiveKind::box, {0, 0, z0, 0, 0, z1}, 0);
+  check_scene(*scene, "layer");
+  return scene;
+}
+
+TEST(Layer, TransmitsAsItsThicknessSays) {
+  // From below, inside and above, upright and slanted, near the middle and a hundred thousand kilometres off it.
+  const double absorption = 0.3, z0 = 2, z1 = 5;
+  const auto scene = layer(medium(Curve::constant(absorption), Curve::constant(0)), z0, z1);
+  EXPECT_TRUE(Tracer(scene).bounds().empty()) << "it has no end";
+  SourceSpecs sources;
+  sources.sky = uniform_sky(1, false);
+  std::vector<Ray> looks;
+  std::vector<double> expected;
+  for (const double z : {-1e3, 0.0, 2.5, 4.0, 6.0})
+    for (const double zenith : {0.0, 0.5, 1.2, 1.5})
+      for (const double x : {0.0, 1e8}) {
+        looks.push_back({{x, -3, z}, {std::sin(zenith), 0, std::cos(zenith)}, 0});
+        const double run = std::clamp(z1 - std::max(z, z0), 0.0, z1 - z0) / std::cos(zenith);
+        expected.push_back(std::exp(-absorption * run));
+      }
+  const auto run = render(scene, sources, std::make_unique<RaySensor>(looks, one_band(), 4), {});
+  for (size_t i = 0; i < looks.size(); ++i)
+    EXPECT_NEAR(run.result.radiance[i], expected[i], 1e-6) << looks[i].origin.z << " " << looks[i].direction.x;
+}
+
+TEST(Layer, ScattersAsTheTablesOfASlab) {
+  for (const size_t i : {0u, 6u, 10u}) {
+    const Case c = cases()[i];
+    const Reference reference = references().at(c.name);
+    const double tau = reference.bottom;
+    const auto scene =
+        layer(medium(Curve::constant(tau * (1 - c.albedo)), Curve::constant(tau * c.albedo), c.phase), 0, 1);
+    const Fluxes f = fluxes(scene, c, 1, 1u << 14);
+    expect_flux(f.up, f.up_error, reference.up, c.name + " up, layer");
+    expect_flux(f.down, f.down_error, reference.down, c.name + " down, layer");
+    // Half as thick it must not pass.
+    const Fluxes half = fluxes(layer(scene->media[0], 0, 0.5), c, 1, 1u << 14);
+    EXPECT_GT(std::fabs(half.up - reference.up), 4 * half.up_error + kRounding * reference.up) << c.name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Problems, DisortSlab, testing::ValuesIn(cases()),
                          [](const auto& one) { return one.param.name; });
 

@@ -40,7 +40,8 @@ class SourceKinds : public testing::TestWithParam<size_t> {
     if (const size_t at = text.find("file: sky.png"); at != std::string::npos)
       text.insert(at, "wavelength_um: [0.45, 0.55, 0.65], ");
     const Params root = Params::parse_text(text, folder_ / "example.yaml");
-    SourceSpecs s = read_sources(root);
+    std::vector<AskedCurve> asked;
+    SourceSpecs s = read_sources(root, asked);
     root.reject_unread();
     resolve_sources(s, scene);
     return s;
@@ -213,7 +214,11 @@ TEST(Sources, ReaderKnowsTheKindsOfTheTable) {
   for (const SourceRow& row : source_kinds()) {
     if (row.kind.empty()) continue;
     const std::string text = row.key == "lamps" ? "lamps: [{kind: none}]\n" : row.key + ": {kind: none}\n";
-    EXPECT_THAT(message_of([&] { read_sources(Params::parse_text(text, "x.yaml")); }), testing::HasSubstr(row.kind))
+    EXPECT_THAT(message_of([&] {
+                  std::vector<AskedCurve> asked;
+                  read_sources(Params::parse_text(text, "x.yaml"), asked);
+                }),
+                testing::HasSubstr(row.kind))
         << row.key;
   }
 }

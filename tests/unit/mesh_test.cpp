@@ -67,6 +67,35 @@ TEST(Mesh, EveryFaultIsCountedAndLocated) {
   EXPECT_EQ(count(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}}, {0, 1, 2}), "SP303"), 1u);
 }
 
+// Normals against their triangles: one finding for each cause, at the worst triangle.
+TEST(Mesh, NormalsAgainstTheirTrianglesAreToldByCause) {
+  SourceMesh m;
+  m.file = "leaf.obj";
+  const auto triangle = [&](std::array<double, 3> degrees) {  // facing up; corners whose normals are so far off that
+    const uint32_t first = static_cast<uint32_t>(m.positions.size());
+    for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}})
+      m.positions.push_back(p + Vec3{3.0 * first, 0, 0});
+    for (const double d : degrees)
+      m.normals.push_back(oct_encode({std::sin(d * kPi / 180), 0, std::cos(d * kPi / 180)}));
+    for (uint32_t k = 0; k < 3; ++k) m.indices.push_back(first + k);
+    m.lines.push_back(static_cast<int>(m.lines.size() + 1));
+  };
+  for (int i = 0; i < 50; ++i) triangle({0, 30, 60});
+  for (int i = 0; i < 20; ++i) triangle({30, 95.0 + i, 20});
+  for (int i = 0; i < 10; ++i) triangle({170.0 - i, 175, 160});
+  m.runs = {{"", "", 0, 1}};
+  const std::vector<MeshFinding> all = check_mesh_quality(m);
+  const auto found = std::find_if(all.begin(), all.end(), [](auto& f) { return f.code == std::string("SP311"); });
+  ASSERT_NE(found, all.end());
+  EXPECT_EQ(found->count, 30u);
+  ASSERT_EQ(found->examples.size(), 2u);
+  EXPECT_THAT(found->examples[0].message, testing::HasSubstr("10 triangles whose normals all do"));
+  EXPECT_THAT(found->examples[0].message, testing::HasSubstr("by 175 degrees"));
+  EXPECT_THAT(found->examples[1].message, testing::HasSubstr("20 triangles some of whose normals do"));
+  EXPECT_THAT(found->examples[1].message, testing::HasSubstr("by 114 degrees"));
+  EXPECT_EQ(found->examples[1].where.line, 70);
+}
+
 TEST(Mesh, CrossingTrianglesAreFoundSharingOrNot) {
   const std::vector<Vec3> p{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, -1}, {0.5, 0.5, 1}, {3, 3, 0}};
   EXPECT_EQ(count(soup(p, {0, 1, 2, 3, 4, 5}), "SP308"), 2u);

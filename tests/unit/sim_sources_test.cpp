@@ -17,7 +17,8 @@ namespace {
 
 SourceSpecs read(const std::string& text, const std::string& file = "x.yaml") {
   const Params root = Params::parse_text(text, file);
-  SourceSpecs s = read_sources(root);
+  std::vector<AskedCurve> asked;
+  SourceSpecs s = read_sources(root, asked);
   root.reject_unread();
   return s;
 }

@@ -217,3 +217,60 @@ TEST(Params, OnlyOneDocumentAFile) {
   EXPECT_EQ(parse("---\na: 1\n").number("a"), 1);
   EXPECT_EQ(parse("a: 1\n...\n").number("a"), 1);
 }
+
+namespace {
+const char* const kText =
+    "seed: 1\nsun: {irradiance: 1, direction: {zenith_deg: 30}}\nsensors:\n  - {name: eye, paths: 4}\n"
+    "  - {name: b0.55, paths: 8}\nshared: &s {x: 1}\nalias: *s\n";
+
+Params with(const TempFolder& folder, const std::vector<std::string>& settings) {
+  write_file(folder / "s.yaml", std::string_view(kText));
+  return Params::parse_file(folder / "s.yaml", settings);
+}
+}  // namespace
+
+TEST(Settings, ReplaceAddAndTakeOutValues) {
+  const TempFolder folder;
+  const Params p =
+      with(folder, {"sensors.0.paths=64", "sensors.b0.55.paths=65", "sun.direction={zenith_deg: 60}", "sky=[1, 2]",
+                    "sun.half_angle_deg=3", "seed=null", "sun.direction.zenith_deg=61", "alias.x=2"});
+  EXPECT_EQ(p.at("sensors")[0].integer("paths", 0, 100), 64);
+  EXPECT_EQ(p.at("sensors")[0].text("name"), "eye") << "its neighbours stay";
+  EXPECT_EQ(p.at("sensors")[1].integer("paths", 0, 100), 65) << "by name, which has a dot";
+  EXPECT_EQ(p.at("sun").at("direction").number("zenith_deg"), 61) << "in turn";
+  EXPECT_EQ(p.at("sun").number("half_angle_deg"), 3);
+  EXPECT_EQ(p.at("sky").as_numbers(), (std::vector<double>{1, 2}));
+  EXPECT_FALSE(p.has("seed"));
+  EXPECT_EQ(p.at("alias").number("x"), 2);
+  EXPECT_EQ(p.at("shared").number("x"), 1) << "a node shared by an alias is not changed with it";
+  EXPECT_EQ(p.at("sky").file(), folder / "s.yaml") << "files named in a setting are found as the text's";
+}
+
+TEST(Settings, FaultsAreToldAtTheirPlace) {
+  const TempFolder folder;
+  const struct {
+    const char *setting, *told;
+  } table[] = {
+      {"sensros.0.paths=1", "--set sensros.0.paths: error: there is no 'sensros' here; did you mean 'sensors'?"},
+      {"sensors.7.paths=1", "no item '7' in this list; its items are 0 to 1, or by name; known: eye, b0.55"},
+      {"sensors.eya.paths=1", "did you mean 'eye'"},
+      {"seed.deeper=1", "'seed' is a single value"},
+      {"sun.=1", "ends with a dot"},
+      {"sed=null", "no 'sed' to take out; did you mean 'seed'?"},
+      {"sensors.0=null", "cannot be taken out of a list"},
+      {"seed", "without a path and a value"},
+      {"=3", "without a path and a value"},
+      {"seed=[1", "--set seed: error: "},
+      {"seed={a: 1, a: 2}", "duplicate key 'a'"},
+  };
+  for (const auto& row : table)
+    EXPECT_THAT(message_of([&] { with(folder, {row.setting}); }), HasSubstr(row.told)) << row.setting;
+  // A value that is read later is located in the setting, with a caret under it.
+  const Params p = with(folder, {"sensors.eye.paths={a: few}", "sensors.eye.pahts=3"});
+  EXPECT_THAT(message_of([&] { p.at("sensors")[0].at("paths").number("a"); }),
+              HasSubstr("--set sensors.eye.paths: error: expected a finite number, found 'few'\n"
+                        "  sensors.eye.paths={a: few}\n                        ^"));
+  for (const Params& sensor : p.at("sensors").items()) sensor.find("name");
+  EXPECT_THAT(message_of([&] { p.at("sensors")[0].reject_unread(); }),
+              HasSubstr("unknown key 'pahts'; did you mean 'paths'?"));
+}

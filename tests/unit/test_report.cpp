@@ -68,7 +68,7 @@ TEST(Report, CountsEverythingAndShowsThreeExamplesPerCodeAndAsset) {
   EXPECT_THAT(text, HasSubstr("a.obj:3: fault 3"));
   EXPECT_THAT(text, Not(HasSubstr("fault 4")));
   EXPECT_THAT(text, HasSubstr("hint: use a known one"));
-  EXPECT_THAT(text, HasSubstr("verdict: refused (50 errors, 1 warnings)"));
+  EXPECT_THAT(text, HasSubstr("verdict: refused (50 errors of 1 kind, 1 warnings)"));
 }
 
 TEST(Report, MutingStrictnessAndUnknownCodes) {
