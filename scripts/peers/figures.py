@@ -15,6 +15,14 @@ def load(runs, kind, scene):
     return np.array([image_of(r, scene) for r in runs if r["kind"] == kind])
 
 
+def cost_of(runs):
+    """Of short runs of one kind: the variance of a pixel between seeds times the CPU seconds, at the largest number of paths."""
+    import numpy as np
+    rows = [r for r in runs if r["paths"] == max(r["paths"] for r in runs)]
+    images = np.array([np.load(r["image"]) for r in rows])
+    return float(images.var(axis=0, ddof=1).mean()) * sum(r["cpu_s"] for r in rows) / len(rows)
+
+
 class LongRuns:
     """Independent long runs of one program: their mean, and the variance of the mean of every pixel (mean over pixels)."""
 
@@ -67,22 +75,25 @@ def compare_blocks(ours, peer, across=8):
         return cut.reshape(n, across, rows // across, across, columns // across, channels).mean(axis=(2, 4, 5)).reshape(n, -1)
     a, b = blocks(ours.images), blocks(peer.images)
     differences = a.mean(axis=0) - b.mean(axis=0)
-    variances = a.var(axis=0, ddof=1) / len(a) + b.var(axis=0, ddof=1) / len(b)
-    lit = variances > 0
-    t2, n = differences[lit] ** 2 / variances[lit], 2 * (min(len(a), len(b)) - 1)
+    scale = float(ours.mean.mean())
+    # Images are of single precision: what shows no noise may differ by its rounding.
+    variances = a.var(axis=0, ddof=1) / len(a) + b.var(axis=0, ddof=1) / len(b) + (1e-6 * scale) ** 2
+    t2, n = differences ** 2 / variances, 2 * (min(len(a), len(b)) - 1)
     mean, variance = n / (n - 2), 2 * n * n * (n - 1) / ((n - 2) ** 2 * (n - 4))
     z = float((t2.mean() - mean) / math.sqrt(variance / len(t2)))
-    scale = float(ours.mean.mean())
     return float(np.sqrt(np.mean(differences ** 2))) / scale, float(np.sqrt(np.mean(variances))) / scale, 1 - NormalDist().cdf(z)
 
 
 def to_one_percent(points):
-    """Error and CPU seconds of growing runs -> CPU seconds at 1 %, from the line through the last two in logarithms."""
-    (e0, t0), (e1, t1) = points[-2:]
+    """Paths, error and CPU seconds of growing runs -> CPU seconds at 1 %: the error falls on as between the last two (as the square
+    root at least, as the number of paths at most), each further path takes what it took between them."""
+    (n0, e0, t0), (n1, e1, t1) = points[-2:]
     if e1 <= 1e-6:
         return None
-    slope = math.log(e1 / e0) / math.log(t1 / t0) if t1 > t0 and e1 < e0 else -0.5
-    return t1 * (0.01 / e1) ** (1 / slope)
+    slope = min(1.0, max(0.5, math.log(max(e0, e1) / e1) / math.log(n1 / n0)))
+    paths = n1 * (e1 / 0.01) ** (1 / slope)
+    each = (t1 - t0) / (n1 - n0) if t1 > t0 else t1 / n1
+    return t1 + each * (paths - n1) if paths > n1 else t1 * paths / n1
 
 
 def row_of(runs, scene, reference, edge):
@@ -95,7 +106,7 @@ def row_of(runs, scene, reference, edge):
         squares = [max(0.0, float(np.mean((image_of(r, scene) - reference.image) ** 2)) - reference.noise) for r in rows]
         errors = [math.sqrt(s) / reference.mean for s in squares]
         spread = (max(errors) - min(errors)) / 2
-        points.append((math.sqrt(sum(e * e for e in errors) / len(errors)), sum(r["cpu_s"] for r in rows) / len(rows)))
-    error, cpu_s = points[-1]
+        points.append((paths, math.sqrt(sum(e * e for e in errors) / len(errors)), sum(r["cpu_s"] for r in rows) / len(rows)))
+    _, error, cpu_s = points[-1]
     return {"scene": runs[0]["scene"], "program": runs[0]["program"], "paths": budgets[-1], "cpu_s": cpu_s,
             "mpaths_per_cpu_s": edge * edge * budgets[-1] / cpu_s / 1e6, "error": error, "error_spread": spread, "cpu_s_to_1_percent": to_one_percent(points)}

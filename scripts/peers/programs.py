@@ -1,4 +1,4 @@
-"""Runs of each program: CPU seconds of all threads without loading and building, and the image. Images lie as .npy in the folder."""
+"""Runs of each program: CPU seconds of all threads without what a run of one path takes (loading, building), and the image. Images lie as .npy in the folder."""
 import os
 import re
 import resource
@@ -7,6 +7,7 @@ import sys
 
 from peers.scenes import ROOT
 
+MANY = 1024  # paths a pixel
 BIN = os.path.join(ROOT, "build/release/bin")
 
 
@@ -52,18 +53,31 @@ class Mitsuba:
 
     def __init__(self, folder, scene, variant, sampler):
         import mitsuba as mi
-        self.mi = mi
+        self.mi, self.scene = mi, scene
         self.loaded = mi.load_file(f"{folder}/{scene}.xml", sampler=sampler)
         self.name = f"Mitsuba {mi.__version__} {variant}, {sampler}"
+        self._whole(1, 5)  # what is compiled is compiled now
+        # Of every call: tracing the kernel of a scene of many emitters or instances takes seconds; and one path.
+        self.before = min(self._whole(1, 5)[1] for _ in range(2))
+        self.seconds_of_path = None
 
-    def render(self, paths, seed):
+    def _whole(self, paths, seed):
         import numpy as np
         start = cpu()
         image = np.array(self.mi.render(self.loaded, spp=paths, seed=seed)).astype(np.float64)
         return image, cpu() - start
 
+    def render(self, paths, seed):
+        image, whole = self._whole(paths, seed)
+        if whole > 2 * self.before:
+            return image, (whole - self.before) * paths / (paths - 1)
+        # What every call takes hides the paths: one call of many tells what a path takes.
+        if self.seconds_of_path is None:
+            self.seconds_of_path = max(1e-9, (self._whole(MANY, 6)[1] - self.before) / (MANY - 1))
+        return image, self.seconds_of_path * paths
 
-def measure(program, scene, plan, folder, results):
+
+def measure(program, scene, plan, folder, results, **also):
     """scene: its name. plan: rows (kind, paths, seeds). Adds a row per run to `results`."""
     import numpy as np
     for kind, paths, seeds in plan:
@@ -71,22 +85,24 @@ def measure(program, scene, plan, folder, results):
             image, cpu_s = program.render(paths, seed)
             file = f"{folder}/images/{scene}-{re.sub('[^A-Za-z0-9_.]+', '-', program.name)}-{kind}-{paths}-{seed}.npy"
             np.save(file, image)
-            results.append({"scene": scene, "program": program.name, "kind": kind, "paths": paths, "seed": seed, "cpu_s": cpu_s, "image": file})
+            results.append({"scene": scene, "program": program.name, "kind": kind, "paths": paths, "seed": seed, "cpu_s": cpu_s, "image": file, **also})
 
 
-def run_mitsuba(folder, scenes, variant, samplers, plan_of):
-    """scenes: names. -> runs, and the scenes left out with the reason. plan_of(scene, sampler) -> plan."""
+def run_mitsuba(folder, chosen, variant, plan, most_before):
+    """chosen: scene -> samplers. Scenes of which every call takes more than most_before seconds are left out. -> runs, and the scenes left out with the reason."""
     import mitsuba as mi
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)
     results, left_out = [], {}
-    for scene in scenes:
+    for scene, samplers in chosen.items():
         for sampler in samplers:
             try:
                 program = Mitsuba(folder, scene, variant, sampler)
             except Exception as e:  # a variant without this scene's reflectance model
                 left_out[scene] = re.sub(".*: ", "", str(e).splitlines()[-1])
                 break
-            program.render(4, 5)  # what is compiled is compiled now
-            measure(program, scene, plan_of(scene, sampler), folder, results)
+            if program.before > most_before:
+                left_out[scene] = f"{program.before:.0f} CPU s a call before the first path"
+                break
+            measure(program, scene, plan, folder, results, variant=variant, sampler=sampler)
     return results, left_out

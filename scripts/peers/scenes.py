@@ -54,19 +54,17 @@ def satin(folder, _):
 
 
 def chrome(folder, _):
-    """A sphere with a narrow lobe under lamps of three sizes, on matte ground. Without red: the file has negative values there, which
-    Mitsuba adds and sqt-fit counts as 0."""
+    """A sphere with a narrow lobe under lamps of three sizes, which reflect nothing. Without red: the file has negative values there,
+    which Mitsuba adds and sqt-fit counts as 0."""
     path, lamps = os.path.relpath(CHROME, folder), ((-2.5, 0, 3.5, 2.0, 3), (0, -1, 4, 0.5, 30), (2, -1.5, 3.5, 0.12, 300))
-    panes = "".join(f'<shape type="rectangle">{turned_xml((side / 2, side / 2, 1), [("x", 180)], (x, y, z))}{diffuse(0.05)}'
+    panes = "".join(f'<shape type="rectangle">{turned_xml((side / 2, side / 2, 1), [("x", 180)], (x, y, z))}{diffuse(0)}'
                     f'<emitter type="area">{rgb("radiance", radiance)}</emitter></shape>' for x, y, z, side, radiance in lamps)
-    return Scene("chrome", (0, -8, 3), (0, 0, 0), 30,
-                 f'<shape type="sphere"><float name="radius" value="1"/><bsdf type="measured"><string name="filename" value="{path}"/></bsdf></shape>'
-                 f'<shape type="rectangle">{turned_xml((20, 20, 1), (), (0, 0, -1))}{diffuse(0.3)}</shape>{panes}',
-                 "fit: {model: sqt, file: chrome.sqt}, soil: {model: lambert, reflectance: 0.3}, "
-                 + ", ".join(f"lamp{i}: {{model: lambert, reflectance: 0.05}}" for i in range(3)),
-                 "ball: {sphere: {radius: 1}, material: fit}, ground: {plane: {width: 40, depth: 40}, material: soil}, "
+    return Scene("chrome", (0, -8, 3), (0, 0, 0), 18,
+                 f'<shape type="sphere"><float name="radius" value="1"/><bsdf type="measured"><string name="filename" value="{path}"/></bsdf></shape>{panes}',
+                 "fit: {model: sqt, file: chrome.sqt}, " + ", ".join(f"lamp{i}: {{model: lambert, reflectance: 0}}" for i in range(3)),
+                 "ball: {sphere: {radius: 1}, material: fit}, "
                  + ", ".join(f"pane{i}: {{plane: {{width: {lamp[3]}, depth: {lamp[3]}}}, material: lamp{i}}}" for i, lamp in enumerate(lamps)),
-                 ["{place: ball}", "{place: ground, translate: [0, 0, -1]}"]
+                 ["{place: ball}"]
                  + ["{place: pane%d, rotate: {axis: [1, 0, 0], angle_deg: 180}, translate: [%g, %g, %g]}" % (i, *lamp[:3]) for i, lamp in enumerate(lamps)],
                  sky=0.3, channels="gb", fitted=(CHROME, "--max-error", "0.015"),
                  lamps="lamps:\n" + "".join(f"  - {{kind: surface, name: lamp{i}, material: lamp{i}, radiance: {lamp[4]}}}\n" for i, lamp in enumerate(lamps)))
@@ -130,10 +128,10 @@ def night(folder, _):
                 x += w + rnd.uniform(1, 5)
     windows = rnd.sample(windows, 80)
     write_mesh(f"{folder}/houses", points, triangles)
-    lamps = [(-72 + 6 * i + rnd.uniform(-1, 1), y, 7) for y in (-45, -15, 15, 45) for i in range(25) for y in (y - 2, y + 2)]
+    lamps = [(-72 + 6 * i + rnd.uniform(-1, 1), street + side, 7) for street in (-45, -15, 15, 45) for i in range(25) for side in (-2, 2)]
     panes = "".join(f'<shape type="rectangle">{turned_xml((0.6, 0.7, 1), [("x", -90 * side)], (x, y, z))}'
-                    f'{diffuse(0.05)}<emitter type="area">{rgb("radiance", 4)}</emitter></shape>' for x, y, z, side in windows)
-    points_xml = "".join(f'<emitter type="point"><point name="position" x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>{rgb("intensity", 2)}</emitter>' for x, y, z in lamps)
+                    f'{diffuse(0.05)}<emitter type="area">{rgb("radiance", 1)}</emitter></shape>' for x, y, z, side in windows)
+    points_xml = "".join(f'<emitter type="point"><point name="position" x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>{rgb("intensity", 40)}</emitter>' for x, y, z in lamps)
     ground = f'<shape type="rectangle">{turned_xml((100, 100, 1))}{diffuse(0.15)}</shape>'
     return Scene("night", (0, -110, 60), (0, -5, 0), 50, ply("houses", diffuse(0.4)) + panes + points_xml + ground,
                  "wall: {model: lambert, reflectance: 0.4}, window: {model: lambert, reflectance: 0.05}, asphalt: {model: lambert, reflectance: 0.15}",
@@ -141,7 +139,7 @@ def night(folder, _):
                  "ground: {plane: {width: 200, depth: 200}, material: asphalt}",
                  ["{place: houses}", "{place: ground}"] +
                  ["{place: pane, rotate: {axis: [1, 0, 0], angle_deg: %d}, translate: [%.9g, %.9g, %.9g]}" % (-90 * side, x, y, z) for x, y, z, side in windows],
-                 lamps="lamps:\n  - {kind: surface, name: windows, material: window, radiance: 4}\n  - {kind: point, name: street, intensity: 2, positions_m: [%s]}\n"
+                 lamps="lamps:\n  - {kind: surface, name: windows, material: window, radiance: 1}\n  - {kind: point, name: street, intensity: 40, positions_m: [%s]}\n"
                        % ", ".join("[%.9g, %.9g, %.9g]" % p for p in lamps))
 
 

@@ -5,6 +5,8 @@ import struct
 from dataclasses import dataclass
 
 SUN = (0.5, -0.3, 0.8)  # towards the sun
+# Scattering events of a path, more than roulette leaves any: where programs cut, they do not cut the same light.
+NODES = 64
 
 
 @dataclass
@@ -24,7 +26,6 @@ class Scene:
     lamps: str = ""
     volumes: str = ""   # media, grids and volumes
     channels: str = ""  # of "rgb": bands of 1 nm at 0.65, 0.55, 0.45 um against those channels of Mitsuba's; else one grey band
-    nodes: int = 8      # scattering events of a path
     volumetric: bool = False
     fitted: tuple = ()  # options of sqt-fit, first of all the .bsdf, that make NAME.sqt
     exact: float = 0    # radiance of every pixel, where it is known
@@ -58,10 +59,8 @@ def mitsuba_xml(s, edge):
     if s.sun:
         lights += ('<emitter type="directional"><vector name="direction" value="%g, %g, %g"/>%s</emitter>'
                    % (*(-c for c in SUN), rgb("irradiance", s.sun)))
-    # Scattering inside media has no bound of its own there: such scenes are cut by roulette alone, and so are ours.
-    depth = -1 if s.volumetric else s.nodes + 1
     return f"""<scene version="3.0.0"><default name="sampler" value="multijitter"/>
-<integrator type="{"volpath" if s.volumetric else "path"}"><integer name="max_depth" value="{depth}"/></integrator>
+<integrator type="{"volpath" if s.volumetric else "path"}"><integer name="max_depth" value="-1"/></integrator>
 <sensor type="perspective"><float name="fov" value="{s.fov_deg}"/><transform name="to_world">
 <lookat origin="{s.camera[0]}, {s.camera[1]}, {s.camera[2]}" target="{s.target[0]}, {s.target[1]}, {s.target[2]}" up="0, 0, 1"/></transform>
 <sampler type="$sampler"><integer name="sample_count" value="16"/></sampler>
@@ -80,7 +79,7 @@ def pbrt_text(s, edge):
     return f"""LookAt {s.camera[0]} {s.camera[1]} {s.camera[2]}  {s.target[0]} {s.target[1]} {s.target[2]}  0 0 1
 Camera "perspective" "float fov" {s.fov_deg}
 Sampler "zsobol" "integer pixelsamples" 16
-Integrator "path" "integer maxdepth" {s.nodes}
+Integrator "path" "integer maxdepth" {NODES}
 Film "rgb" "integer xresolution" {edge} "integer yresolution" {edge} "string filename" "out.exr"
 PixelFilter "box"
 WorldBegin
@@ -103,7 +102,7 @@ def our_simulation(s, edge):
     centers = {"r": 0.65, "g": 0.55, "b": 0.45}
     bands = [f"{{name: {n}, center_um: {centers[n]}, fwhm_um: 0.001}}" for n in s.channels] or ["{name: grey, center_um: 0.55, fwhm_um: 0.01}"]
     return f"""scene: {s.name}.h5
-max_nodes: {64 if s.volumetric else s.nodes}
+max_nodes: {NODES}
 max_scatterings: 10000000
 {sun}{sky}{s.lamps}sensors:
   - {{kind: frame_camera, name: camera, columns: {edge}, rows: {edge}, pitch_um: {2e5 * math.tan(math.radians(s.fov_deg / 2)) / edge}, focal_length_mm: 100,
