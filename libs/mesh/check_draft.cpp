@@ -48,7 +48,9 @@ Outcome work_on(DraftGeometry& g, const MeshCheck& options, bool repair) {
 
 void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
   const std::string& asset = g.mesh.file;
-  const auto tell = [&](const char* code, const std::string& text) { report.add(code, asset, {{asset, 0, 0, {}, -1}, text}); };
+  const auto tell = [&](const char* code, const std::string& text) {
+    report.add(code, asset, {{asset, 0, 0, {}, -1}, text});
+  };
   const MeshRepairs& r = done.repairs;
   if (r.welded + r.dropped + r.turned)
     tell("SP320", strf("%zu positions welded, %zu triangles dropped, %zu turned", r.welded, r.dropped, r.turned));
@@ -58,11 +60,12 @@ void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
   if (!done.decimated) return;
   const Decimated& d = *done.decimated;
   const double share = static_cast<double>(d.after) / static_cast<double>(std::max<size_t>(1, d.before));
-  tell("SP322", strf("%zu of %zu triangles are left (%.3g); the old surface is at most %.3g m from the new one", d.after,
-                     d.before, share, d.distance * meters_per_unit(g)));
+  tell("SP322", strf("%zu of %zu triangles are left (%.3g); the old surface is at most %.3g m from the new one",
+                     d.after, d.before, share, d.distance * meters_per_unit(g)));
   if (d.refused)
     tell("SP323", "thousands of triangles meet in one vertex");
-  else if (g.decimate->to > 0 && static_cast<double>(d.after) > std::ceil(g.decimate->to * static_cast<double>(d.before)) + 1)
+  else if (g.decimate->to > 0 &&
+           static_cast<double>(d.after) > std::ceil(g.decimate->to * static_cast<double>(d.before)) + 1)
     tell("SP323", strf("%.3g of the triangles were asked for, %.3g are left", g.decimate->to, share));
 }
 

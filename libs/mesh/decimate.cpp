@@ -18,6 +18,7 @@ namespace suite {
 
 namespace {
 
+constexpr int kMostTries = 6;
 constexpr size_t kMostFaces = 4096;  // at a vertex; OpenMesh walks around it for every face it gets there
 
 struct Traits : OpenMesh::DefaultTraits {
@@ -29,7 +30,22 @@ struct Traits : OpenMesh::DefaultTraits {
     uint32_t look = 0;                 // run and smoothing group
   };
 };
-using Mesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
+using HalfEdges = OpenMesh::TriMesh_ArrayKernelT<Traits>;
+
+// Squared distance of a point from a triangle. Based on: C. Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+double distance2(const Vec3& p, const std::array<Vec3, 3>& t) {
+  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
+  double nearest = HUGE_VAL;
+  bool inside = true;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 a = t[k], edge = t[(k + 1) % 3] - a, to = p - a;
+    const Vec3 off = to - edge * std::clamp(dot(to, edge) / dot(edge, edge), 0.0, 1.0);
+    nearest = std::min(nearest, dot(off, off));
+    inside = inside && dot(cross(edge, to), n) >= 0;
+  }
+  const double height = dot(p - t[0], n);
+  return inside ? height * height / dot(n, n) : nearest;
+}
 
 // Forbids what would change more than the shape: see decimate.h.
 template <class M>
@@ -38,14 +54,15 @@ class ModBordersT : public OpenMesh::Decimater::ModBaseT<M> {
   DECIMATING_MODULE(ModBordersT, M, Borders);
   explicit ModBordersT(M& mesh) : Base(mesh, true), mesh_(mesh) {}
 
-  double rim = 0;  // how far an open edge may move
+  double rim = 0;               // how far an open edge may move
+  double tolerance = HUGE_VAL;  // how far edges and faces may move in one step
 
   void initialize() override {
     fixed_.assign(mesh_.n_vertices(), false);
     for (const auto v : mesh_.vertices()) fixed_[static_cast<size_t>(v.idx())] = on_border(v);
   }
   float collapse_priority(const CollapseInfo& c) override {
-    return fixed_[static_cast<size_t>(c.v0.idx())] || splits(c) || cuts_rim(c) || folds(c)
+    return fixed_[static_cast<size_t>(c.v0.idx())] || splits(c) || cuts_rim(c) || folds(c) || strays(c)
                ? static_cast<float>(Base::ILLEGAL_COLLAPSE)
                : static_cast<float>(Base::LEGAL_COLLAPSE);
   }
@@ -104,6 +121,26 @@ class ModBordersT : public OpenMesh::Decimater::ModBaseT<M> {
     return false;
   }
 
+  // Vertices may be all within the tolerance (which ModHausdorff sees to) and a ridge between two of them be gone.
+  bool strays(const CollapseInfo& c) const {
+    if (!std::isfinite(tolerance)) return false;
+    const auto place = [](const typename M::Point& p) { return Vec3{p[0], p[1], p[2]}; };
+    std::vector<Vec3> old;
+    std::vector<std::array<Vec3, 3>> fresh;
+    for (const auto f : mesh_.vf_range(c.v0)) {
+      std::array<Vec3, 3> p, q;
+      size_t k = 0;
+      for (const auto v : mesh_.fv_range(f)) p[k] = place(mesh_.point(v)), q[k] = v == c.v0 ? place(c.p1) : p[k], ++k;
+      old.push_back((p[0] + p[1] + p[2]) / 3);
+      if (f != c.fl && f != c.fr) fresh.push_back(q);
+    }
+    for (const auto v : mesh_.vv_range(c.v0)) old.push_back((place(c.p0) + place(mesh_.point(v))) / 2);
+    return std::any_of(old.begin(), old.end(), [&](const Vec3& p) {
+      return std::none_of(fresh.begin(), fresh.end(),
+                          [&](const auto& t) { return distance2(p, t) <= tolerance * tolerance; });
+    });
+  }
+
   M& mesh_;
   std::vector<bool> fixed_;
 };
@@ -121,7 +158,7 @@ std::vector<uint32_t> looks(const SourceMesh& mesh) {
   return result;
 }
 
-void build(const SourceMesh& source, const std::vector<uint32_t>& corners, const Manifold& m, Mesh& mesh) {
+void build(const SourceMesh& source, const std::vector<uint32_t>& corners, const Manifold& m, HalfEdges& mesh) {
   const std::vector<uint32_t> look = looks(source);
   mesh.request_vertex_status(), mesh.request_edge_status(), mesh.request_halfedge_status(), mesh.request_face_status();
   mesh.request_face_normals();  // quadrics are made of them
@@ -130,7 +167,7 @@ void build(const SourceMesh& source, const std::vector<uint32_t>& corners, const
     mesh.add_vertex({at.x, at.y, at.z});
   }
   for (size_t t = 0; t < look.size(); ++t) {
-    const auto v = [&](size_t k) { return Mesh::VertexHandle(static_cast<int>(m.corners[3 * t + k])); };
+    const auto v = [&](size_t k) { return HalfEdges::VertexHandle(static_cast<int>(m.corners[3 * t + k])); };
     const auto f = mesh.add_face(v(0), v(1), v(2));
     SUITE_CHECK_EQ(static_cast<size_t>(f.idx()), t);
     mesh.data(f).look = look[t];
@@ -143,11 +180,11 @@ void build(const SourceMesh& source, const std::vector<uint32_t>& corners, const
   mesh.update_face_normals();
 }
 
-void collapse(Mesh& mesh, size_t target, double error) {
-  OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
-  OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
-  OpenMesh::Decimater::ModHausdorffT<Mesh>::Handle hausdorff;
-  ModBordersT<Mesh>::Handle borders;
+void collapse(HalfEdges& mesh, size_t target, double error) {
+  OpenMesh::Decimater::DecimaterT<HalfEdges> decimater(mesh);
+  OpenMesh::Decimater::ModQuadricT<HalfEdges>::Handle quadric;
+  OpenMesh::Decimater::ModHausdorffT<HalfEdges>::Handle hausdorff;
+  ModBordersT<HalfEdges>::Handle borders;
   decimater.add(quadric);
   decimater.module(quadric).unset_max_err();
   decimater.add(borders);
@@ -156,6 +193,7 @@ void collapse(Mesh& mesh, size_t target, double error) {
   // Corners far from the origin carry their rounding.
   decimater.module(borders).rim = std::isfinite(error) ? error : 1e-9 * size;
   if (std::isfinite(error)) {
+    decimater.module(borders).tolerance = error;
     decimater.add(hausdorff);
     decimater.module(hausdorff).set_tolerance(error);
   }
@@ -163,31 +201,49 @@ void collapse(Mesh& mesh, size_t target, double error) {
   decimater.decimate_to_faces(0, target);
 }
 
+// Removed vertices are kept within `tolerance`; `done.distance` is what that comes to between them.
+Decimated attempt(SourceMesh& mesh, const std::vector<uint32_t>& corners, const Manifold& m, double to,
+                  double tolerance) {
+  const size_t n = corners.size() / 3;
+  HalfEdges half_edges;
+  build(mesh, corners, m, half_edges);
+  collapse(half_edges, static_cast<size_t>(std::ceil(to * static_cast<double>(n))), tolerance);
+  std::vector<bool> kept(n);
+  for (size_t t = 0; t < n; ++t) {
+    const HalfEdges::FaceHandle f(static_cast<int>(t));
+    kept[t] = !half_edges.status(f).deleted();
+    for (size_t k = 0; k < 3 && kept[t]; ++k) mesh.indices[3 * t + k] = half_edges.data(f).source[k];
+    if (kept[t] && m.turned[t]) std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+  }
+  Decimated done;
+  done.before = n;
+  done.after = n - keep_triangles(mesh, kept);
+  done.distance = done.after ? farthest(mesh.positions, corners, mesh.indices) : 0;
+  return done;
+}
+
 }  // namespace
 
 Decimated decimate_mesh(SourceMesh& mesh, double to, double error) {
   tidy_mesh(mesh);
   Decimated done;
-  const size_t n = mesh.indices.size() / 3;
-  done.before = done.after = n;
+  done.before = done.after = mesh.indices.size() / 3;
   const std::vector<uint32_t> corners = welded_corners(mesh.positions, mesh.indices);
   std::vector<uint32_t> faces(mesh.positions.size(), 0);
   for (const uint32_t v : corners) done.refused |= ++faces[v] > kMostFaces;
   if (done.refused) return done;
   const Manifold m = manifold(mesh.positions, corners);
   omerr().disable();
-  Mesh half_edges;
-  build(mesh, corners, m, half_edges);
-  collapse(half_edges, static_cast<size_t>(std::ceil(to * static_cast<double>(n))), error);
-  std::vector<bool> kept(n);
-  for (size_t t = 0; t < n; ++t) {
-    const Mesh::FaceHandle f(static_cast<int>(t));
-    kept[t] = !half_edges.status(f).deleted();
-    for (size_t k = 0; k < 3 && kept[t]; ++k) mesh.indices[3 * t + k] = half_edges.data(f).source[k];
-    if (kept[t] && m.turned[t]) std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+  double tolerance = error;
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    SourceMesh lighter = mesh;
+    const Decimated one = attempt(lighter, corners, m, to, tolerance);
+    if (one.distance <= error) {
+      mesh = std::move(lighter);
+      return one;
+    }
+    tolerance *= 0.9 * error / one.distance;
   }
-  done.after = n - keep_triangles(mesh, kept);
-  done.distance = done.after ? farthest(mesh.positions, corners, mesh.indices) : 0;
   return done;
 }
 

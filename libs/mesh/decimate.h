@@ -6,13 +6,13 @@ namespace suite {
 
 struct Decimated {
   size_t before = 0, after = 0;  // triangles that have an area
-  double distance = 0;           // farthest that the old surface is from the new one, mesh units, looked for at corners,
-                                 // middles of edges and centres of triangles
-  bool refused = false;          // thousands of triangles meet in one vertex: the mesh is as it was
+  double distance = 0;   // farthest that the old surface is from the new one, mesh units, looked for at corners,
+                         // middles of edges and centres of triangles
+  bool refused = false;  // thousands of triangles meet in one vertex: the mesh is as it was
 };
 
 // Takes vertices away, those first that change the shape least, until `to` (0 to 1) of the triangles are left or
-// nothing can go that moves the surface by no more than `error` (mesh units, infinite: any). What stays keeps its place,
+// nothing can go that leaves `distance` at most `error` (mesh units, infinite: any). What stays keeps its place,
 // normal, texture coordinates, material and group: vertices on borders between any of these stay all, and open edges
 // keep their shape (to `error`; exactly where it is infinite). Welds and drops triangles without area first. Based on:
 // M. Garland & P. Heckbert, "Surface simplification using quadric error metrics", 1997, as in OpenMesh.

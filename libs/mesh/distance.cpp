@@ -15,12 +15,12 @@ namespace suite {
 double farthest(std::span<const Vec3> positions, std::span<const uint32_t> from, std::span<const uint32_t> to) {
   using Plain = CGAL::Simple_cartesian<double>;  // distances need no exact predicates
   using Triangles = std::vector<Plain::Triangle_3>;
-  using Primitive = CGAL::AABB_triangle_primitive<Plain, Triangles::const_iterator>;
+  using Item = CGAL::AABB_triangle_primitive<Plain, Triangles::const_iterator>;
   const auto point = [](const Vec3& p) { return Plain::Point_3(p.x, p.y, p.z); };
   Triangles triangles;
   for (size_t c = 0; c + 2 < to.size(); c += 3)
     triangles.emplace_back(point(positions[to[c]]), point(positions[to[c + 1]]), point(positions[to[c + 2]]));
-  CGAL::AABB_tree<CGAL::AABB_traits<Plain, Primitive>> tree(triangles.cbegin(), triangles.cend());
+  CGAL::AABB_tree<CGAL::AABB_traits<Plain, Item>> tree(triangles.cbegin(), triangles.cend());
   tree.accelerate_distance_queries();
   std::vector<double> farthest_of(from.size() / 3, 0.0);
   parallel_for(0, farthest_of.size(), 256, [&](size_t begin, size_t end) {

@@ -15,7 +15,7 @@ namespace PMP = CGAL::Polygon_mesh_processing;
 namespace {
 
 constexpr const char* kPieceOf = "f:piece";  // the number of a face's piece
-constexpr size_t kMostNested = 2000;  // every pair of closed pieces may have to be compared
+constexpr size_t kMostNested = 2000;         // every pair of closed pieces may have to be compared
 
 struct Piece {
   std::vector<uint32_t> triangles;
@@ -37,12 +37,14 @@ void find_inconsistent(std::span<const uint32_t> corners, const std::vector<bool
   for (size_t t = 0; t < turned.size(); ++t)
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t a = corners[3 * t + k], b = corners[3 * t + (k + 1) % 3];
-      edges.push_back({uint64_t{std::min(a, b)} << 32 | std::max(a, b), static_cast<uint32_t>(t), (a < b) != turned[t]});
+      edges.push_back(
+          {uint64_t{std::min(a, b)} << 32 | std::max(a, b), static_cast<uint32_t>(t), (a < b) != turned[t]});
     }
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key < b.key; });
   for (size_t i = 0, end; i < edges.size(); i = end) {
     for (end = i; end < edges.size() && edges[end].key == edges[i].key;) ++end;
-    if (end - i == 2 && edges[i].forward == edges[i + 1].forward) pieces[piece_of[edges[i].triangle]].consistent = false;
+    if (end - i == 2 && edges[i].forward == edges[i + 1].forward)
+      pieces[piece_of[edges[i].triangle]].consistent = false;
   }
 }
 
@@ -60,10 +62,10 @@ void find_inside(const Surface& mesh, std::vector<Piece>& pieces) {
   auto volume = only.add_property_map<Surface::Face_index, std::size_t>("f:volume").first;
   auto component = only.add_property_map<Surface::Face_index, std::size_t>("f:component").first;
   std::vector<size_t> levels;
-  PMP::volume_connected_components(only, volume,
-                                   CGAL::parameters::do_orientation_tests(false)
-                                       .face_connected_component_map(component)
-                                       .nesting_levels(std::ref(levels)));
+  PMP::volume_connected_components(
+      only, volume,
+      CGAL::parameters::do_orientation_tests(false).face_connected_component_map(component).nesting_levels(
+          std::ref(levels)));
   for (const auto f : only.faces()) pieces[ids[f]].inside = levels[component[f]] > 0;
 }
 

@@ -72,8 +72,8 @@ struct DraftGeometry {
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
   size_t fill_holes = 0;    // holes of at most so many edges are closed
   std::optional<DecimationRule> decimate;
-  double tile_m = 0;        // largest extent of one terrain tile
-  bool failed = false;      // could not be read, which has been filed: only the name is sure
+  double tile_m = 0;    // largest extent of one terrain tile
+  bool failed = false;  // could not be read, which has been filed: only the name is sure
 };
 
 struct DraftPlacement {

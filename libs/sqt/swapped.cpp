@@ -11,7 +11,8 @@ namespace {
 
 class Swapped : public Function {
  public:
-  explicit Swapped(std::shared_ptr<const Function> function) : function_(std::move(function)), info_(function_->info()) {
+  explicit Swapped(std::shared_ptr<const Function> function)
+      : function_(std::move(function)), info_(function_->info()) {
     info_.source += ", directions exchanged";
   }
   const Info& info() const override { return info_; }
