@@ -19,6 +19,7 @@ namespace suite {
 namespace {
 
 constexpr int kMostTries = 6;
+constexpr double kRim = 1e-3;        // of the mesh's diagonal: how far borders may move when nothing says how far
 constexpr size_t kMostFaces = 4096;  // at a vertex; OpenMesh walks around it for every face it gets there
 
 struct Traits : OpenMesh::DefaultTraits {
@@ -54,26 +55,24 @@ class ModBordersT : public OpenMesh::Decimater::ModBaseT<M> {
   DECIMATING_MODULE(ModBordersT, M, Borders);
   explicit ModBordersT(M& mesh) : Base(mesh, true), mesh_(mesh) {}
 
-  double rim = 0;               // how far an open edge may move
+  double rim = 0;               // how far open edges and borders may move
+  std::span<const float> uvs;   // of the source
   double tolerance = HUGE_VAL;  // how far edges and faces may move in one step
 
-  void initialize() override {
-    fixed_.assign(mesh_.n_vertices(), false);
-    for (const auto v : mesh_.vertices()) fixed_[static_cast<size_t>(v.idx())] = on_border(v);
-  }
+  void initialize() override {}
   float collapse_priority(const CollapseInfo& c) override {
-    return fixed_[static_cast<size_t>(c.v0.idx())] || splits(c) || cuts_rim(c) || folds(c) || strays(c)
-               ? static_cast<float>(Base::ILLEGAL_COLLAPSE)
-               : static_cast<float>(Base::LEGAL_COLLAPSE);
+    return leaves_border(c) || bends_border(c) || folds(c) || strays(c) ? static_cast<float>(Base::ILLEGAL_COLLAPSE)
+                                                                        : static_cast<float>(Base::LEGAL_COLLAPSE);
   }
-  // The faces that stay get what the faces that go had at the vertex that stays.
+  // The faces that stay get what the face that goes on their side of the edge had at the vertex that stays.
   void preprocess_collapse(const CollapseInfo& c) override {
-    const uint32_t source = source_at(c.fl.is_valid() ? c.fl : c.fr, c.v1);
-    for (const auto f : mesh_.vf_range(c.v0))
-      if (f != c.fl && f != c.fr)
-        for (size_t k = 0; k < 3; ++k)
-          if (auto& data = mesh_.data(f); data.vertex[k] == c.v0.idx())
-            data.vertex[k] = c.v1.idx(), data.source[k] = source;
+    for (const auto f : mesh_.vf_range(c.v0)) {
+      if (f == c.fl || f == c.fr) continue;
+      const auto side = !c.fr.is_valid() || (c.fl.is_valid() && same_side(f, c.fl, c.v0)) ? c.fl : c.fr;
+      auto& data = mesh_.data(f);
+      for (size_t k = 0; k < 3; ++k)
+        if (data.vertex[k] == c.v0.idx()) data.vertex[k] = c.v1.idx(), data.source[k] = source_at(side, c.v1);
+    }
   }
 
  private:
@@ -83,27 +82,46 @@ class ModBordersT : public OpenMesh::Decimater::ModBaseT<M> {
     while (data.vertex[k] != v.idx()) ++k;
     return data.source[k];
   }
-  bool on_border(typename M::VertexHandle v) const {
-    typename M::FaceHandle first;
-    for (const auto f : mesh_.vf_range(v)) {
-      if (!first.is_valid()) first = f;
-      if (source_at(f, v) != source_at(first, v) || mesh_.data(f).look != mesh_.data(first).look) return true;
-    }
-    return false;
+  bool same_side(typename M::FaceHandle f, typename M::FaceHandle g, typename M::VertexHandle v) const {
+    return source_at(f, v) == source_at(g, v) && mesh_.data(f).look == mesh_.data(g).look;
   }
-  // Is the edge itself a border?
-  bool splits(const CollapseInfo& c) const {
-    return c.fl.is_valid() && c.fr.is_valid() && source_at(c.fl, c.v1) != source_at(c.fr, c.v1);
+  // Is an edge at v0 open, or do its two sides differ at one of its ends?
+  bool is_border(typename M::HalfedgeHandle h) const {
+    const auto o = mesh_.opposite_halfedge_handle(h);
+    if (mesh_.is_boundary(h) || mesh_.is_boundary(o)) return true;
+    const auto f = mesh_.face_handle(h), g = mesh_.face_handle(o);
+    return !same_side(f, g, mesh_.to_vertex_handle(h)) || !same_side(f, g, mesh_.from_vertex_handle(h));
   }
-  bool cuts_rim(const CollapseInfo& c) const {
-    if (!mesh_.is_boundary(c.v0)) return false;
+  // A vertex on a border may only go along it, and one where borders meet or end not at all.
+  bool leaves_border(const CollapseInfo& c) const {
+    size_t borders = 0;
+    for (const auto h : mesh_.voh_range(c.v0)) borders += is_border(h);
+    return borders != 0 && (borders != 2 || !is_border(c.v0v1));
+  }
+  // Does the border move by more than `rim`, or the texture along it?
+  bool bends_border(const CollapseInfo& c) const {
     for (const auto h : mesh_.voh_range(c.v0)) {
-      if (!mesh_.is_boundary(h) && !mesh_.is_boundary(mesh_.opposite_halfedge_handle(h))) continue;
       const auto other = mesh_.to_vertex_handle(h);
-      if (other == c.v1) continue;
+      if (other == c.v1 || !is_border(h)) continue;
       const auto along = c.p1 - mesh_.point(other), to = c.p0 - mesh_.point(other);
       const double share = std::clamp((to | along) / along.sqrnorm(), 0.0, 1.0);
       if (!((to - along * share).norm() <= rim)) return true;
+      for (const auto f : {c.fl, c.fr})
+        if (f.is_valid() && slides(f, c, h, share)) return true;
+    }
+    return false;
+  }
+  // Do the texture coordinates on the side of `f` change along the border by more than a hundredth of the picture?
+  bool slides(typename M::FaceHandle f, const CollapseInfo& c, typename M::HalfedgeHandle h, double share) const {
+    if (uvs.empty()) return false;
+    const auto other = mesh_.to_vertex_handle(h);
+    for (const auto g : {mesh_.face_handle(h), mesh_.face_handle(mesh_.opposite_halfedge_handle(h))}) {
+      if (!g.is_valid() || !same_side(g, f, c.v0)) continue;
+      for (size_t i = 0; i < 2; ++i) {
+        const auto uv = [&](uint32_t v) { return static_cast<double>(uvs[2 * size_t{v} + i]); };
+        const double at = uv(source_at(g, other)), end = uv(source_at(f, c.v1));
+        if (std::fabs(at + share * (end - at) - uv(source_at(f, c.v0))) > 0.01) return true;
+      }
     }
     return false;
   }
@@ -142,7 +160,6 @@ class ModBordersT : public OpenMesh::Decimater::ModBaseT<M> {
   }
 
   M& mesh_;
-  std::vector<bool> fixed_;
 };
 
 // Run and smoothing group of every triangle as one number.
@@ -180,7 +197,7 @@ void build(const SourceMesh& source, const std::vector<uint32_t>& corners, const
   mesh.update_face_normals();
 }
 
-void collapse(HalfEdges& mesh, size_t target, double error) {
+void collapse(HalfEdges& mesh, std::span<const float> uvs, size_t target, double error) {
   OpenMesh::Decimater::DecimaterT<HalfEdges> decimater(mesh);
   OpenMesh::Decimater::ModQuadricT<HalfEdges>::Handle quadric;
   OpenMesh::Decimater::ModHausdorffT<HalfEdges>::Handle hausdorff;
@@ -188,10 +205,10 @@ void collapse(HalfEdges& mesh, size_t target, double error) {
   decimater.add(quadric);
   decimater.module(quadric).unset_max_err();
   decimater.add(borders);
-  double size = 0;
-  for (const auto v : mesh.vertices()) size = std::max(size, mesh.point(v).max_abs());
-  // Corners far from the origin carry their rounding.
-  decimater.module(borders).rim = std::isfinite(error) ? error : 1e-9 * size;
+  Box3 box;
+  for (const auto v : mesh.vertices()) box.grow(Vec3{mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]});
+  decimater.module(borders).rim = std::isfinite(error) ? error : kRim * length(box.size());
+  decimater.module(borders).uvs = uvs;
   if (std::isfinite(error)) {
     decimater.module(borders).tolerance = error;
     decimater.add(hausdorff);
@@ -207,7 +224,7 @@ Decimated attempt(SourceMesh& mesh, const std::vector<uint32_t>& corners, const 
   const size_t n = corners.size() / 3;
   HalfEdges half_edges;
   build(mesh, corners, m, half_edges);
-  collapse(half_edges, static_cast<size_t>(std::ceil(to * static_cast<double>(n))), tolerance);
+  collapse(half_edges, mesh.uvs, static_cast<size_t>(std::ceil(to * static_cast<double>(n))), tolerance);
   std::vector<bool> kept(n);
   for (size_t t = 0; t < n; ++t) {
     const HalfEdges::FaceHandle f(static_cast<int>(t));

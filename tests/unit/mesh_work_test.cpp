@@ -144,9 +144,7 @@ TEST(MeshDecimation, KeepsMaterialsAndOpenEdges) {
   const Decimated done = decimate_mesh(m, 0, HUGE_VAL);
   EXPECT_EQ(done.before, 3200u);
   EXPECT_EQ(done.after, m.indices.size() / 3);
-  // The border between the materials keeps its 41 vertices, so two fans onto it must stay.
-  EXPECT_GE(done.after, 80u);
-  EXPECT_LE(done.after, 120u);
+  EXPECT_LE(done.after, 20u);  // straight borders and rims need their ends only
   EXPECT_LT(done.distance, 1e-9);
   ASSERT_EQ(m.runs.size(), 2u);
   EXPECT_NEAR(area(m, 0, m.runs[1].first_triangle), left, 1e-9);
