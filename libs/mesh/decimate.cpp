@@ -19,7 +19,7 @@ namespace suite {
 namespace {
 
 constexpr int kMostTries = 6;
-constexpr double kRim = 1e-3;        // of the mesh's diagonal: how far borders may move when nothing says how far
+constexpr double kRim = 5e-3;        // of the diagonal of the mesh: how far borders may move when nothing says how far
 constexpr size_t kMostFaces = 4096;  // at a vertex; OpenMesh walks around it for every face it gets there
 
 struct Traits : OpenMesh::DefaultTraits {
