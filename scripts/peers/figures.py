@@ -86,12 +86,14 @@ def compare_blocks(ours, peer, across=8):
 
 def to_one_percent(points):
     """Paths, error and CPU seconds of growing runs -> CPU seconds at 1 %: the error falls on as between the last two (as the square
-    root at least, as the number of paths at most), each further path takes what it took between them."""
+    root at least, as the number of paths at most) for as far again, then as the square root; each further path takes what it took
+    between them."""
     (n0, e0, t0), (n1, e1, t1) = points[-2:]
     if e1 <= 1e-6:
         return None
     slope = min(1.0, max(0.5, math.log(max(e0, e1) / e1) / math.log(n1 / n0)))
-    paths = n1 * (e1 / 0.01) ** (1 / slope)
+    again = (n1 / n0) ** slope  # what the error falls by
+    paths = n1 * (e1 / 0.01) ** (1 / slope) if e1 / again < 0.01 else n1 * n1 / n0 * (e1 / again / 0.01) ** 2
     each = (t1 - t0) / (n1 - n0) if t1 > t0 else t1 / n1
     return t1 + each * (paths - n1) if paths > n1 else t1 * paths / n1
 
