@@ -34,14 +34,26 @@ struct Outcome {
 
 double meters_per_unit(const DraftGeometry& g) { return std::cbrt(std::fabs(g.to_local.determinant())); }
 
+// Squares of distances and areas must be numbers.
+bool measurable(const SourceMesh& mesh) {
+  Box3 box;
+  for (const Vec3& p : mesh.positions) box.grow(p);
+  return mesh.positions.empty() || length(box.size()) < 1e70;
+}
+
 Outcome work_on(DraftGeometry& g, const MeshCheck& options, bool repair) {
   Outcome done;
   if (repair) done.repairs = repair_mesh(g.mesh);
-  if (g.fill_holes) done.filled = fill_holes(g.mesh, g.fill_holes);
+  const bool workable = measurable(g.mesh);
+  if (g.fill_holes && workable) done.filled = fill_holes(g.mesh, g.fill_holes);
   done.findings = check_mesh_quality(g.mesh, options);
   if (!g.decimate) return done;
   if (g.normals != NormalRule::file) g.mesh.normals.clear();  // they are made anew, so theirs are no borders
   const double error = g.decimate->error_m > 0 ? g.decimate->error_m / meters_per_unit(g) : HUGE_VAL;
+  if (!workable) {
+    done.decimated = Decimated{g.mesh.indices.size() / 3, g.mesh.indices.size() / 3, 0, true};
+    return done;
+  }
   done.decimated = decimate_mesh(g.mesh, g.decimate->to, error);
   return done;
 }
@@ -63,7 +75,7 @@ void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
   tell("SP322", strf("%zu of %zu triangles are left (%.3g); the old surface is at most %.3g m from the new one",
                      d.after, d.before, share, d.distance * meters_per_unit(g)));
   if (d.refused)
-    tell("SP323", "thousands of triangles meet in one vertex");
+    tell("SP323", "thousands of triangles meet in one vertex, or the mesh is absurdly large");
   else if (g.decimate->to > 0 &&
            static_cast<double>(d.after) > std::ceil(g.decimate->to * static_cast<double>(d.before)) + 1)
     tell("SP323", strf("%.3g of the triangles were asked for, %.3g are left", g.decimate->to, share));

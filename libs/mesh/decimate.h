@@ -15,8 +15,9 @@ struct Decimated {
 // nothing can go that leaves `distance` at most `error` (mesh units, infinite: any). What stays keeps its place,
 // normal, texture coordinates, material and group. Open edges and borders between any of these move by no more than
 // `error` (a 200th of the mesh's diagonal where it is infinite), texture along them by no more than a hundredth of
-// the picture in one step; where borders meet nothing moves. Welds and drops triangles without area first. Based on: M.
-// Garland & P. Heckbert, "Surface simplification using quadric error metrics", 1997, as in OpenMesh.
+// the picture in one step; where borders meet nothing moves. Welds and drops triangles without area first. Extents must
+// be below 1e70. Based on: M. Garland & P. Heckbert, "Surface simplification using quadric error metrics", 1997, as in
+// OpenMesh.
 Decimated decimate_mesh(SourceMesh& mesh, double to, double error);
 
 // Internal to the library: the distance above, between triangles given by their corners.

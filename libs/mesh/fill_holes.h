@@ -12,6 +12,7 @@ struct FilledHoles {
 // Closes every hole of at most `most_edges` edges with triangles between its corners: those of smallest dihedral angles
 // and area (P. Liepa, "Filling holes in meshes", 2003). They are flat, and have
 // group, material and texture coordinates of what lies beside them. Welds and drops triangles without area first.
+// Extents must be below 1e70.
 FilledHoles fill_holes(SourceMesh& mesh, size_t most_edges);
 
 }  // namespace suite
