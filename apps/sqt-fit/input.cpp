@@ -9,6 +9,7 @@
 #include "optics/model_function.h"
 #include "sqt/narrow_lobe.h"
 #include "sqt/scattered.h"
+#include "sqt/swapped.h"
 
 namespace suite {
 
@@ -56,6 +57,7 @@ FitInput load_input(const SqtFitOptions& options) {
       input.function = std::move(*function);
     else
       input.function = interpolated(std::get<1>(measured), options.input);
+    if (options.swap) input.function = sqt::swapped(std::move(input.function));
     input.provenance.input = options.input;
     input.provenance.input_sha256 = sha256(read_bytes(options.input));
   }

@@ -45,6 +45,8 @@ void declare(Cli& cli, SqtFitOptions& o) {
   cli.option("--model", o.model, "fit a scattering model instead of a file", "NAME:PARAM=VALUE,...");
   cli.option("-o,--output", o.output, "file to write", "FILE.sqt");
   cli.option("--method", o.method, "aligned, or paper (one tree a view and channel, for comparison)", "NAME");
+  cli.flag("--swap", o.swap,
+           "the data's incident direction is the viewer's (as Mitsuba and pbrt take .bsdf files), not the light's");
   cli.option("--order", o.order, "finest HEALPix order, 3-12 (paper: 1-8); 0 = 10, 12 where lobes need it (paper: 6)",
              "N");
   cli.option("--views", o.views, "view directions, 2-64; 0 = as many as the function's bends ask for (paper: 24)", "N");

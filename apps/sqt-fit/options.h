@@ -11,7 +11,7 @@ struct SqtFitOptions {
   std::string method = "aligned";
   long long order = 0, views = 0, max_bytes = 0;
   double threshold = 0.1, max_error = 0, min_peak = -1;  // min_peak < 0: not given
-  bool strict = false;
+  bool swap = false, strict = false;
 };
 
 AppInfo sqt_fit_info();

@@ -44,6 +44,8 @@ double min_peak(const SqtFitOptions& o, const FitInput& input) {
 
 void check_options(const SqtFitOptions& o) {
   if (o.input.empty() == o.model.empty()) throw UsageError("give one input file or --model");
+  if (o.swap && o.input.empty())
+    throw UsageError("--swap goes with a file: models know which direction is the light's");
   if (o.output.empty() && o.report.empty() && o.curve.empty())
     throw UsageError("give -o FILE.sqt (or --report, --curve)");
   if (std::filesystem::path(o.curve).extension() == ".html")

@@ -54,6 +54,14 @@ void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {
   // y up, z towards the viewer (the usual modelling tools) becomes z up, -y towards the viewer.
   if (const auto up = p.find("up"))
     if (up->as_choice({"z", "y"}) == 1) g.to_local = g.to_local * Affine3{{1, 0, 0, 0, 0, -1, 0, 1, 0}, {}};
+  if (p.has("fill_holes")) g.fill_holes = static_cast<size_t>(p.integer("fill_holes", 3, 1000));
+  if (const auto decimate = p.find("decimate")) {
+    if (!decimate->has("to") && !decimate->has("error_m"))
+      throw decimate->error("'decimate' says neither how far nor how exactly", "give 'to', 'error_m' or both");
+    g.decimate = DecimationRule{};
+    if (decimate->has("to")) g.decimate->to = decimate->number_in("to", 0, 1, "of the triangles");
+    if (decimate->has("error_m")) g.decimate->error_m = decimate->number_in("error_m", 1e-9, 1e9, "m");
+  }
   g.mesh = read_obj(input(p.at("obj")), report_);
 }
 

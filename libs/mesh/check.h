@@ -23,8 +23,8 @@ struct MeshCheck {
 // Safe to call for different meshes from several threads. Positions must be finite.
 std::vector<MeshFinding> check_mesh_quality(const SourceMesh& mesh, const MeshCheck& options = {});
 
-// Checks (and first repairs, when asked to) every mesh of a draft, several at a time; findings come in the order of the
-// draft.
+// Checks every mesh of a draft, several at a time, after it was repaired (when asked to) and its holes closed (when the
+// draft says so), and then decimates those that are to be; findings come in the order of the draft.
 void check_draft_meshes(Draft& draft, const MeshCheck& options, bool repair, Report& report);
 
 // Internal to the library: -----------------------------------------------------------------------------------------

@@ -1,15 +1,12 @@
-// Orientation spreads over manifold edges from the first triangle of each piece; a closed piece is then turned outwards
-// by the sign of its volume. Based on: the usual flood over the dual graph.
 #include "mesh/repair.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <map>
-#include <numeric>
 #include <set>
 
-#include "mesh/check.h"
+#include "mesh/orient.h"
 #include "mesh/weld.h"
 
 namespace suite {
@@ -33,8 +30,9 @@ size_t weld_vertices(SourceMesh& mesh, const std::vector<uint32_t>& first) {
   return welded;
 }
 
-// Keeps the triangles marked, with their lines and runs.
-size_t keep(SourceMesh& mesh, const std::vector<bool>& kept) {
+}  // namespace
+
+size_t keep_triangles(SourceMesh& mesh, const std::vector<bool>& kept) {
   size_t out = 0, run = 0;
   std::vector<SourceMesh::Run> runs;
   for (size_t t = 0; t < kept.size(); ++t) {
@@ -56,6 +54,8 @@ size_t keep(SourceMesh& mesh, const std::vector<bool>& kept) {
   return dropped;
 }
 
+namespace {
+
 size_t drop_bad(SourceMesh& mesh, const std::vector<uint32_t>& first) {
   std::vector<bool> kept(mesh.indices.size() / 3, true);
   std::set<std::array<uint32_t, 3>> seen;
@@ -67,86 +67,25 @@ size_t drop_bad(SourceMesh& mesh, const std::vector<uint32_t>& first) {
     std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
     kept[t] = v[0] != v[1] && v[1] != v[2] && v[2] != v[0] && length(cross(b - a, c - a)) > 0 && seen.insert(v).second;
   }
-  return keep(mesh, kept);
-}
-
-struct HalfEdge {
-  uint64_t key;
-  uint32_t triangle;
-  bool forward;
-};
-
-size_t orient(SourceMesh& mesh, const std::vector<uint32_t>& first) {
-  const size_t n = mesh.indices.size() / 3;
-  std::vector<HalfEdge> edges;
-  for (uint32_t t = 0; t < n; ++t)
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t a = first[mesh.indices[3 * size_t{t} + k]], b = first[mesh.indices[3 * size_t{t} + (k + 1) % 3]];
-      edges.push_back({uint64_t{std::min(a, b)} << 32 | std::max(a, b), t, a < b});
-    }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-  });
-  // Neighbours over edges of exactly two triangles; opposed: the two run the edge the same way, so one must turn.
-  struct Link {
-    uint32_t to;
-    bool opposed;
-  };
-  std::vector<std::vector<Link>> links(n);
-  std::vector<bool> open(n);
-  for (size_t i = 0; i < edges.size();) {
-    size_t end = i;
-    while (end < edges.size() && edges[end].key == edges[i].key) ++end;
-    if (end - i == 2) {
-      const bool opposed = edges[i].forward == edges[i + 1].forward;
-      links[edges[i].triangle].push_back({edges[i + 1].triangle, opposed});
-      links[edges[i + 1].triangle].push_back({edges[i].triangle, opposed});
-    } else {
-      for (size_t k = i; k < end; ++k) open[edges[k].triangle] = true;
-    }
-    i = end;
-  }
-  std::vector<int8_t> turn(n, -1);
-  size_t turned = 0;
-  for (uint32_t start = 0; start < n; ++start) {
-    if (turn[start] >= 0) continue;
-    std::vector<uint32_t> piece{start};
-    turn[start] = 0;
-    bool closed = true, consistent = true;
-    double volume = 0;
-    const Vec3 base = mesh.positions[mesh.indices[3 * size_t{start}]];
-    for (size_t at = 0; at < piece.size(); ++at) {
-      const uint32_t t = piece[at];
-      closed = closed && !open[t];
-      const auto p = [&](size_t k) { return mesh.positions[mesh.indices[3 * size_t{t} + k]] - base; };
-      volume += dot(p(0), cross(p(1), p(2))) * (turn[t] ? -1 : 1);
-      for (const Link& l : links[t]) {
-        const auto wanted = static_cast<int8_t>(turn[t] ^ (l.opposed ? 1 : 0));
-        if (turn[l.to] < 0)
-          turn[l.to] = wanted, piece.push_back(l.to);
-        else if (turn[l.to] != wanted)
-          consistent = false;
-      }
-    }
-    const auto flips =
-        static_cast<size_t>(std::count_if(piece.begin(), piece.end(), [&](uint32_t t) { return turn[t] == 1; }));
-    // Closed pieces face outwards; open ones follow their majority.
-    const bool invert = closed ? volume < 0 : 2 * flips > piece.size();
-    for (const uint32_t t : piece)
-      if (consistent && (turn[t] == 1) != invert)
-        std::swap(mesh.indices[3 * size_t{t} + 1], mesh.indices[3 * size_t{t} + 2]), ++turned;
-  }
-  return turned;
+  return keep_triangles(mesh, kept);
 }
 
 }  // namespace
 
-MeshRepairs repair_mesh(SourceMesh& mesh) {
+MeshRepairs tidy_mesh(SourceMesh& mesh) {
   MeshRepairs done;
   const std::vector<uint32_t> first = weld(mesh.positions);
   done.welded = weld_vertices(mesh, first);
   done.dropped = drop_bad(mesh, first);
-  done.turned = orient(mesh, first);
+  return done;
+}
+
+MeshRepairs repair_mesh(SourceMesh& mesh) {
+  MeshRepairs done = tidy_mesh(mesh);
+  const std::vector<bool> turn = to_be_turned(mesh.positions, welded_corners(mesh.positions, mesh.indices));
+  for (size_t t = 0; t < turn.size(); ++t)
+    if (turn[t]) std::swap(mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]);
+  done.turned = static_cast<size_t>(std::count(turn.begin(), turn.end(), true));
   return done;
 }
 

@@ -24,4 +24,12 @@ std::vector<uint32_t> weld(std::span<const Vec3> positions) {
   return first;
 }
 
+std::vector<uint32_t> welded_corners(std::span<const Vec3> positions, std::span<const uint32_t> indices) {
+  const std::vector<uint32_t> first = weld(positions);
+  std::vector<uint32_t> corners;
+  corners.reserve(indices.size());
+  for (const uint32_t v : indices) corners.push_back(first[v]);
+  return corners;
+}
+
 }  // namespace suite

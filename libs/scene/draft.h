@@ -53,6 +53,11 @@ struct SourceTerrain {
 // file: the file's own, those that are missing by its smoothing groups; facet: none; smooth: all made anew.
 enum class NormalRule { file, facet, smooth };
 
+// A lighter version of a mesh: down to this share of its triangles (0 to 1), moved by no more than error_m.
+struct DecimationRule {
+  double to = 0, error_m = 0;  // error_m 0: by any distance
+};
+
 struct DraftGeometry {
   std::string name;
   Where where;
@@ -65,8 +70,10 @@ struct DraftGeometry {
   std::map<std::string, Reference> materials;  // `usemtl` name -> material id
   NormalRule normals = NormalRule::file;
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
-  double tile_m = 0;        // largest extent of one terrain tile
-  bool failed = false;      // could not be read, which has been filed: only the name is sure
+  size_t fill_holes = 0;    // holes of at most so many edges are closed
+  std::optional<DecimationRule> decimate;
+  double tile_m = 0;    // largest extent of one terrain tile
+  bool failed = false;  // could not be read, which has been filed: only the name is sure
 };
 
 struct DraftPlacement {

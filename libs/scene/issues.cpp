@@ -51,6 +51,11 @@ std::vector<IssueKind> scene_issues() {
       {"SP315", warning, "too many triangles overlap to look for crossings",
        "the mesh is badly tangled; mend it in the modelling tool, or use --no-crossing-check"},
       {"SP320", info, "repaired", ""},
+      {"SP321", info, "holes are closed", ""},
+      {"SP322", info, "decimated", ""},
+      {"SP323", warning, "not decimated as far as asked for",
+       "what is left is held by the error allowed, by open edges, and by borders of materials, groups, texture "
+       "coordinates and normals"},
       {"SP401", error, "a placement names something that is not there", ""},
       {"SP402", error, "groups contain each other", "a group may only contain groups that do not lead back to it"},
       {"SP403", warning, "an object is never placed", "remove it, or place it in 'world' or in a group that is"},

@@ -60,7 +60,7 @@ suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced
 
 # OpenMesh and CGAL: headers in few translation units, both in libs/mesh only.
 find_package(OpenMesh REQUIRED)
-suite_vendor(openmesh OpenMeshCore)
+suite_vendor(openmesh OpenMeshCore OpenMeshTools)
 find_package(CGAL REQUIRED)
 suite_vendor(cgal CGAL::CGAL)
 

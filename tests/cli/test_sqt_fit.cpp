@@ -53,6 +53,15 @@ TEST(SqtFitCli, DrawsErrorAgainstSizeAndSeconds) {
   EXPECT_EQ(run_command(kFit + kRough + "--curve c.html").code, 2);
 }
 
+TEST(SqtFitCli, SwapIsForFilesAndIsRemembered) {
+  const TempFolder folder;
+  const std::string out = folder / "s.sqt";
+  const CommandResult r = run_command(kFit + kSatin + "-q --swap --views 5 --order 5 --min-peak 0 -o " + out);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(read_sqt(out).bundle->info().function.source.find("directions exchanged"), std::string::npos);
+  EXPECT_EQ(run_command(kFit + kRough + "--swap -o " + (folder / "x.sqt")).code, 2);
+}
+
 TEST(SqtFitCli, SameBytesForAnyThreadCount) {
   const TempFolder folder;
   std::vector<std::byte> first;

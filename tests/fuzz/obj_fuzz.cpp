@@ -1,4 +1,4 @@
-// Damaged OBJ files through reading, checking and repairing: findings or one Error, never anything else.
+// Damaged OBJ files through reading, checking, repairing, closing of holes and decimation: findings or one Error, never anything else.
 #include "base/files.h"
 #include "formats/obj/obj.h"
 #include "mesh/check.h"
@@ -19,6 +19,8 @@ void read_and_check(std::span<const std::byte> bytes) {
     if (v >= m.positions.size()) throw std::runtime_error("an index that is not there came out");
   if (!m.normals.empty() && m.normals.size() != m.positions.size()) throw std::runtime_error("a normal is missing");
   check_draft_meshes(draft, {}, false, report);
+  draft.geometry[0].fill_holes = 12;
+  draft.geometry[0].decimate = DecimationRule{0.3, 0.05};
   check_draft_meshes(draft, {}, true, report);
 }
 const std::vector<std::string> kWords{

@@ -1,0 +1,108 @@
+"""Runs of each program: CPU seconds of all threads without what a run of one path takes (loading, building), and the image. Images lie as .npy in the folder."""
+import os
+import re
+import resource
+import subprocess
+import sys
+
+from peers.scenes import ROOT
+
+MANY = 1024  # paths a pixel
+BIN = os.path.join(ROOT, "build/release/bin")
+
+
+def cpu(who=resource.RUSAGE_SELF):
+    use = resource.getrusage(who)
+    return use.ru_utime + use.ru_stime
+
+
+class Ours:
+    """One scene by our program; `prepare` must have been called."""
+
+    def __init__(self, folder, scene, edge):
+        self.folder, self.scene, self.edge = folder, scene, edge
+        self.name = "ours, scrambled Sobol"
+
+    def _run(self, *command):
+        start = cpu(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"{' '.join(command)}: {done.stderr or done.stdout}")
+        return cpu(resource.RUSAGE_CHILDREN) - start
+
+    def _whole(self, paths, seed):
+        base = f"{self.folder}/{self.scene.name}"
+        return self._run(f"{BIN}/dirsig-render", f"{base}_sim.yaml", "-o", f"{base}_out", "--threads", "2", "--paths", str(paths), "--seed", str(seed), "-q")
+
+    def prepare(self):
+        base = f"{self.folder}/{self.scene.name}"
+        if self.scene.fitted:
+            self._run(f"{BIN}/sqt-fit", *self.scene.fitted, "--swap", "-o", base + ".sqt", "-q", "--report", base + "_fit.json")
+        self._run(f"{BIN}/scene-prep", base + "_scene.yaml", "-o", base + ".h5", "--no-crossing-check")
+        self.before = min(self._whole(1, 5) for _ in range(3))  # loading and building, and one path
+
+    def render(self, paths, seed):
+        import numpy as np
+        seconds = max(1e-3, (self._whole(paths, seed) - self.before) * paths / (paths - 1))
+        image = np.fromfile(f"{self.folder}/{self.scene.name}_out/camera.img", dtype="<f4").astype(np.float64)
+        return image.reshape(-1, self.edge, self.edge).transpose(1, 2, 0), seconds
+
+
+class Mitsuba:
+    """One scene by Mitsuba in this process, whose variant has been set. Raises what Mitsuba raises when it cannot load the scene."""
+
+    def __init__(self, folder, scene, variant, sampler):
+        import mitsuba as mi
+        self.mi, self.scene = mi, scene
+        self.loaded = mi.load_file(f"{folder}/{scene}.xml", sampler=sampler)
+        self.name = f"Mitsuba {mi.__version__} {variant}, {sampler}"
+        self._whole(1, 5)  # what is compiled is compiled now
+        # Of every call: tracing the kernel of a scene of many emitters or instances takes seconds; and one path.
+        self.before = min(self._whole(1, 5)[1] for _ in range(2))
+        self.seconds_of_path = None
+
+    def _whole(self, paths, seed):
+        import numpy as np
+        start = cpu()
+        image = np.array(self.mi.render(self.loaded, spp=paths, seed=seed)).astype(np.float64)
+        return image, cpu() - start
+
+    def render(self, paths, seed):
+        image, whole = self._whole(paths, seed)
+        if whole > 2 * self.before:
+            return image, (whole - self.before) * paths / (paths - 1)
+        # What every call takes hides the paths: one call of many tells what a path takes.
+        if self.seconds_of_path is None:
+            self.seconds_of_path = max(1e-9, (self._whole(MANY, 6)[1] - self.before) / (MANY - 1))
+        return image, self.seconds_of_path * paths
+
+
+def measure(program, scene, plan, folder, results, **also):
+    """scene: its name. plan: rows (kind, paths, seeds). Adds a row per run to `results`."""
+    import numpy as np
+    for kind, paths, seeds in plan:
+        for seed in seeds:
+            image, cpu_s = program.render(paths, seed)
+            file = f"{folder}/images/{scene}-{re.sub('[^A-Za-z0-9_.]+', '-', program.name)}-{kind}-{paths}-{seed}.npy"
+            np.save(file, image)
+            results.append({"scene": scene, "program": program.name, "kind": kind, "paths": paths, "seed": seed, "cpu_s": cpu_s, "image": file, **also})
+
+
+def run_mitsuba(folder, chosen, variant, plan, most_before):
+    """chosen: scene -> samplers. Scenes of which every call takes more than most_before seconds are left out. -> runs, and the scenes left out with the reason."""
+    import mitsuba as mi
+    mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)
+    results, left_out = [], {}
+    for scene, samplers in chosen.items():
+        for sampler in samplers:
+            try:
+                program = Mitsuba(folder, scene, variant, sampler)
+            except Exception as e:  # a variant without this scene's reflectance model
+                left_out[scene] = re.sub(".*: ", "", str(e).splitlines()[-1])
+                break
+            if program.before > most_before:
+                left_out[scene] = f"{program.before:.0f} CPU s a call before the first path"
+                break
+            measure(program, scene, plan, folder, results, variant=variant, sampler=sampler)
+    return results, left_out
