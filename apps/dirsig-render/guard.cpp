@@ -37,6 +37,21 @@ void check_inputs(const std::string& folder, const Simulation& sim) {
   }
 }
 
+// Two sensors whose files would be the same ones: 'cam' writes cam_error.img, and so would a sensor 'cam_error'.
+void check_names(const Simulation& sim) {
+  for (const auto& one : sim.sensors)
+    for (size_t i = 0; i < sim.sensors.size(); ++i) {
+      const std::string& other = sim.sensors[i]->name();
+      if (!other.starts_with(one->name() + "_")) continue;
+      for (const char* ending :
+           {"error", "quality", "truth", "material", "tag", "igm", "glt", "geo", "electrons", "dn"})
+        if (other == one->name() + "_" + ending)
+          throw Error(sim.sensor_where[i],
+                      "the files of sensor '" + other + "' and of sensor '" + one->name() + "' have the same names",
+                      "give one of them another `name`");
+    }
+}
+
 struct Room {
   double whole = 0, largest = 0;  // bytes: of all images, of the largest file
 };
@@ -83,6 +98,7 @@ void check_room(const std::string& folder, const Simulation& sim) {
 }  // namespace
 
 void check_folder(const std::string& folder, const Simulation& sim) {
+  check_names(sim);
   check_inputs(folder, sim);
   check_room(folder, sim);
 }

@@ -8,7 +8,7 @@
 namespace suite {
 
 // Refuses, before anything is rendered, a folder in which results of these sensors would replace inputs of the run
-// (UsageError), or that has no room for their images (Error).
+// (UsageError), or that has no room for their images, and sensors whose files would have the same names (Error).
 void check_folder(const std::string& folder, const Simulation& simulation);
 
 // One sentence: how many captures are whole in the folder, and how the run goes on. state: --state keeps one.

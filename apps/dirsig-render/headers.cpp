@@ -10,7 +10,7 @@ namespace suite {
 namespace {
 
 constexpr double kRed = 0.65, kGreen = 0.55, kBlue = 0.45, kInfrared = 0.85, kWindow = 10;  // um
-constexpr double kReach = 0.07, kInfraredReach = 0.15;                        // um, from there
+constexpr double kReach = 0.07, kInfraredReach = 0.15;                                      // um, from there
 
 std::optional<size_t> nearest(std::span<const Band> bands, double wanted, double reach) {
   std::optional<size_t> best;
@@ -65,7 +65,7 @@ Display display_of(std::span<const Band> bands, const PreviewSpec& spec) {
              blue = nearest(bands, kBlue, kReach), infrared = nearest(bands, kInfrared, kInfraredReach);
   const bool apart = red && green && *red != *green,
              thermal = spec.show == PreviewSpec::Show::kelvin ||
-                       std::all_of(bands.begin(), bands.end(), [](auto& b) { return b.center_um > kThermalFrom; });
+                       std::all_of(bands.begin(), bands.end(), [](auto&b) { return b.center_um > kThermalFrom; });
   Display display;
   if (thermal)
     display = {{*nearest(bands, kWindow, INFINITY)}, false};

@@ -11,7 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr uint32_t kMost = 15000;   // pixels, which leaves room for a bar on a canvas
+constexpr uint32_t kMost = 15000;  // pixels, which leaves room for a bar on a canvas
 
 // The truth column that tells where nothing was hit, and how.
 struct Emptiness {

@@ -77,9 +77,9 @@ class Reader {
   Report& report_;
   Draft& draft_;
   std::map<std::string, Curve> curves_;
-  std::map<std::string, std::string> hashes_;    // resolved path -> sha256
+  std::map<std::string, std::string> hashes_;                         // resolved path -> sha256
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> stored_;  // name in the scene -> what it holds
-  std::map<std::string, std::string> embedded_;  // resolved path -> name in the scene
+  std::map<std::string, std::string> embedded_;                       // resolved path -> name in the scene
 };
 
 }  // namespace suite::scene_text

@@ -139,6 +139,12 @@ TEST_F(Messages, OfSimulations) {
        "sensors:",
        "output: {preview: {stretch: [2, 98], range: [0, 1]}}\nsensors:",
        {"exclude each other"}},
+      {"files of the same names",
+       "fwhm_um: 0.01}]",
+       "fwhm_um: 0.01}]\n  - {kind: orthographic, name: eye_error, columns: 4, rows: 4, gsd_m: 1, center_m: [0, 0], "
+       "paths: 4, "
+       "bands: [{name: green, center_um: 0.55, fwhm_um: 0.01}]}",
+       {"14:5", "'eye_error' and of sensor 'eye' have the same names"}},
       {"unknown preview", "sensors:", "output: {preview: [gren]}\nsensors:", {"'gren'", "did you mean 'green'"}},
   };
   for (const Mistake& m : table) {

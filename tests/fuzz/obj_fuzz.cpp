@@ -1,4 +1,5 @@
-// Damaged OBJ files through reading, checking, repairing, closing of holes and decimation: findings or one Error, never anything else.
+// Damaged OBJ files through reading, checking, repairing, closing of holes and decimation: findings or one Error, never
+// anything else.
 #include "base/files.h"
 #include "formats/obj/obj.h"
 #include "mesh/check.h"
