@@ -32,9 +32,10 @@ void check_wishes(const Simulation& sim, const Facts& facts) {
       for (const Capture& c : task.captures) {
         const ImageWishes wishes = sensor->wishes(c);
         if (wishes.geolocation && sim.periodic)
-          throw Error(sim.sensor_where[s],
-                      "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
-                      "leave out one of the two");
+          throw Error(
+              sim.sensor_where[s],
+              "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
+              "leave out one of the two");
         if (wishes.quantity != Quantity::toa_reflectance) continue;
         const std::optional<SunSpec> sun = facts.sun(moment_of(c));
         if (!sun)

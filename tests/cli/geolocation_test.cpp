@@ -240,7 +240,8 @@ TEST_F(Geolocation, CostsNothingWhenItIsNotAskedFor) {
 
 // Places of a scene that repeats itself all lie in its cell: on a map its pictures would be folded.
 TEST_F(Geolocation, APeriodicSceneIsRefused) {
-  const std::string sim = "periodic: {origin_m: [-60, -60], size_m: [120, 120]}\n" + read_text(*folder_ / "earth_sim.yaml");
+  const std::string sim =
+      "periodic: {origin_m: [-60, -60], size_m: [120, 120]}\n" + read_text(*folder_ / "earth_sim.yaml");
   write_file(*folder_ / "periodic.yaml", std::string_view(sim));
   const CommandResult r = run("dirsig-render periodic.yaml -o periodic -q");
   EXPECT_EQ(r.code, 1);
