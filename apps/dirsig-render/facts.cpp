@@ -26,10 +26,16 @@ std::array<double, 2> azimuth_elevation_deg(Dir d) {
 }
 
 void check_wishes(const Simulation& sim, const Facts& facts) {
-  for (const auto& sensor : sim.sensors)
+  for (size_t s = 0; s < sim.sensors.size(); ++s) {
+    const std::unique_ptr<Sensor>& sensor = sim.sensors[s];
     for (const Task& task : sensor->tasks())
       for (const Capture& c : task.captures) {
         const ImageWishes wishes = sensor->wishes(c);
+        if (wishes.geolocation && sim.periodic)
+          throw Error(
+              sim.sensor_where[s],
+              "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
+              "leave out one of the two");
         if (wishes.quantity != Quantity::toa_reflectance) continue;
         const std::optional<SunSpec> sun = facts.sun(moment_of(c));
         if (!sun)
@@ -46,6 +52,7 @@ void check_wishes(const Simulation& sim, const Facts& facts) {
             throw Error(wishes.where, "units: toa_reflectance: the sun has no light in the band '" + b.name + "'",
                         "leave the units of this array at radiance");
       }
+  }
 }
 
 }  // namespace suite

@@ -28,7 +28,8 @@ class Facts {
 // Compass azimuth (0 to 360) and elevation of a direction, degrees.
 std::array<double, 2> azimuth_elevation_deg(Dir direction);
 
-// Refuses quantities that cannot be had of a capture: a reflectance without a sun above the horizon.
+// Refuses what cannot be had of a capture: a reflectance without a sun above the horizon, places of a scene that
+// repeats itself.
 void check_wishes(const Simulation& sim, const Facts& facts);
 
 }  // namespace suite

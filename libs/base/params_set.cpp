@@ -106,6 +106,8 @@ void apply(Params::Document& document, const std::string& setting) {
     throw Error(where, "a setting without a path and a value", "PATH=VALUE, such as sensors.0.paths=64");
   if (utf8_bytes(setting) < setting.size() || setting.find('\0') != std::string::npos)
     throw Error(where, "this is not UTF-8");
+  if (setting.find_first_not_of(" \t\n\r", equals + 1) == std::string::npos)
+    throw Error(where, "a setting without a value", "null takes a key out, \"\" is an empty text");
   document.settings.push_back(setting);
   const Node* before = document.root;
   // Spaces stand for the path, so that places in the value are places in the setting.

@@ -40,7 +40,8 @@ struct TailSums {
   double floor = 0;  // W/(m2 sr um), of the scale
 };
 
-// Standard errors at the reference band that the problems around each one let expect (around.h), [problem].
+// Standard errors at the reference band that the problems around each one let expect (around.h), [problem]: those two
+// problems far, or where nobody there knows of any, four.
 std::vector<double> errors_around(std::span<const TailSums> of, uint32_t columns);
 
 // Raises quality_heavy_tail in `quality` where it holds; row-major, as many as `of`, which has whole rows of `columns`.

@@ -238,6 +238,17 @@ TEST_F(Geolocation, CostsNothingWhenItIsNotAskedFor) {
         << file;
 }
 
+// Places of a scene that repeats itself all lie in its cell: on a map its pictures would be folded.
+TEST_F(Geolocation, APeriodicSceneIsRefused) {
+  const std::string sim =
+      "periodic: {origin_m: [-60, -60], size_m: [120, 120]}\n" + read_text(*folder_ / "earth_sim.yaml");
+  write_file(*folder_ / "periodic.yaml", std::string_view(sim));
+  const CommandResult r = run("dirsig-render periodic.yaml -o periodic -q");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("periodic.yaml:5:5: error: geolocation: a scene that repeats itself"));
+  EXPECT_FALSE(file_exists(*folder_ / "periodic/frame.img"));
+}
+
 // A table that would be too large is no reason to lose the pictures.
 TEST_F(Geolocation, TooFineAGridIsTold) {
   std::string sim = read_text(*folder_ / "earth_sim.yaml");

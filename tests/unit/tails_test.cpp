@@ -106,6 +106,17 @@ TEST(Tails, TheTargetAndItsFloorSayWhatMatters) {
   EXPECT_EQ(p.flagged(), 0u);
 }
 
+// Found on open ground beside a building: on some side none of the two next problems had met it, and nothing was known.
+TEST(Tails, WhatIsMetSeldomIsKnownFromFurtherAway) {
+  Picture p;
+  for (uint32_t i = 0; i < kSide; ++i) p.at(7, i) = p.at(13, i) = p.at(i, 7) = p.at(i, 13) = events(1, 2);
+  for (TailSums& s : p.of) s.mean = 1;
+  const std::vector<double> errors = errors_around(p.of, kSide);
+  EXPECT_GT(errors[10 * kSide + 10], 0) << "three problems away on all sides";
+  EXPECT_LT(errors[10 * kSide + 10], 2.0 / kPaths);
+  EXPECT_EQ(errors[2 * kSide + 2], 0) << "negative control: on the side of the rim nobody knows";
+}
+
 TEST(Tails, OddShapesAndUnknownErrors) {
   for (const uint32_t columns : {1u, 9u}) {  // a column, a row
     std::vector<TailSums> of(9, {1, 0.1, 0.1, 1, kPaths, kTailShare, 0});

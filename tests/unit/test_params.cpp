@@ -260,6 +260,7 @@ TEST(Settings, FaultsAreToldAtTheirPlace) {
       {"sensors.0=null", "cannot be taken out of a list"},
       {"seed", "without a path and a value"},
       {"=3", "without a path and a value"},
+      {"seed= ", "--set seed: error: a setting without a value; null takes a key out"},
       {"seed=[1", "--set seed: error: "},
       {"seed={a: 1, a: 2}", "duplicate key 'a'"},
   };
