@@ -36,12 +36,12 @@ BALLS = {"gloss": "ward:diffuse=0.15,specular=0.25,roughness=0.25", "soil": "rpv
 
 CASES: Dict[str, Case] = {
     "calibration_range": Case("sample_scenes/calibration_range", camera(0, 32, 18, 148),
-                              ("sqt-fit satin_purple_rgb.bsdf -o satin.sqt -q --order 5", PREP)),
+                              ("sqt-fit satin_purple_rgb.bsdf -o satin.sqt -q --order 4", PREP)),
     "map_gallery": Case("sample_scenes/map_gallery", {**camera(0, 26, 18, 500), **camera(1, 26, 18, 500)}),
     "night_street": Case("sample_scenes/night_street", prepare=("python3 make_scene.py . 32 18", PREP),
-                         sets={"sensors.0.pitch_um": 300}),
+                         sets={"sensors.0.pitch_um": 300}, paths=64),
     "orbit_pass": Case("sample_scenes/orbit_pass", {**array(0, 1, 12, 12, 351), **array(1, 1, 12, 12, 351), **array(2, 1, 12, 12, 351)}),
-    "plume": Case("sample_scenes/plume", camera(0, 24, 16, 400), edges=HEAVY),
+    "plume": Case("sample_scenes/plume", camera(0, 24, 16, 400), paths=32, edges=HEAVY),
     "sqt_spheres": Case("sample_scenes/sqt_spheres", prepare=(
         "mkdir fits", *(f"sqt-fit --model {model} --order 4 -o fits/{name}.sqt -q" for name, model in BALLS.items()),
         'python3 make_scene.py fits . --columns 32 --paths 1 --bin "$BIN"')),
@@ -49,13 +49,13 @@ CASES: Dict[str, Case] = {
     "warm_roof": Case("sample_scenes/warm_roof", {**camera(0, 16, 12, 800), **camera(1, 16, 12, 800), **camera(2, 16, 12, 800)}),
     "study_smooth": Case("sample_scenes/study/smooth", camera(0, 24, 24, 26.7)),
     "study_terrain": Case("sample_scenes/study/terrain"),
-    "study_gap": Case("sample_scenes/study/gap", camera(0, 24, 24, 26.7), paths=64, edges=HEAVY),
-    "study_glint": Case("sample_scenes/study/glint", camera(0, 24, 24, 26.7), paths=64, edges=HEAVY),
+    "study_gap": Case("sample_scenes/study/gap", camera(0, 24, 24, 26.7), paths=256, edges=HEAVY),
+    "study_glint": Case("sample_scenes/study/glint", camera(0, 24, 24, 26.7), paths=256, edges=HEAVY),
     "paper_method": Case("sample_scenes/study/terrain", options="--method paper --stop plan"),
     "rami_hom03": Case("sample_scenes/rami_hom03", {}, RAMI_PREP, "sim_nir_20.yaml", paths=512, edges=HEAVY),
     "rami_reciprocal": Case("sample_scenes/rami_hom03", {"sensors.0.by_reciprocity": "true", "sensors.0.strata": 4}, RAMI_PREP,
                             "sim_nir_20.yaml", paths=64, edges=(4,)),
     "furnace": Case("tests/golden/scenes/furnace"),
-    "slab": Case("tests/golden/scenes/slab"),
-    "forest": Case("tests/golden/scenes/forest", prepare=("python3 make_tables.py", PREP)),
+    "slab": Case("tests/golden/scenes/slab", paths=64),
+    "forest": Case("tests/golden/scenes/forest", prepare=("python3 make_tables.py", PREP), paths=64),
 }
