@@ -7,6 +7,10 @@
 
 namespace suite {
 
+namespace {
+constexpr double kRounding = 1e-12;  // relative variance of equal samples, from their sums
+}
+
 Accumulators::Accumulators(size_t problems, size_t bands, int scrambles, size_t truth_slots, bool missing)
     : bands_(bands),
       scrambles_(scrambles),
@@ -123,7 +127,9 @@ std::vector<double> Accumulators::lacking(size_t problem, std::span<const double
 
 double Accumulators::scatter(size_t problem, double mean) const {
   const double n = accepted(problem);
-  return n < 2 ? 0 : std::max(0.0, squares_[problem] / n - mean * mean) / (n - 1);
+  if (n < 2) return 0;
+  const double variance = squares_[problem] / n - mean * mean;
+  return variance > kRounding * mean * mean ? variance / (n - 1) : 0;
 }
 
 void Accumulators::clear() {

@@ -25,6 +25,10 @@ class Rows {
   const double* of(size_t problem, size_t columns, size_t values) const {
     return row(static_cast<long>(problem / columns)) + problem % columns * values;
   }
+  // Does it tell others anything? Whether it was changed already or not.
+  bool tells(size_t problem, const PoolInput& in) const {
+    return std::isfinite(errors_[problem * in.values + in.reference]);
+  }
   void keep(long y) {
     if (y >= rows()) return;
     double* const to = &kept_[static_cast<size_t>(y % (2 * kReach + 1)) * width_];
@@ -63,17 +67,19 @@ double weigh(const Rows& squares, const PoolInput& in, long x, long y, Neighbour
       if (u == x && v == y) continue;
       const auto there = static_cast<size_t>(v * columns + u);
       const double square = squares.row(v)[static_cast<size_t>(u) * in.values + in.reference];
-      const double w = mine > 0 && in.scatter[there] > 0 ? likeness(in.scatter[there], mine) : 0;
-      alike += w, scatter += w * in.scatter[there], like += w * square, all += square;
+      const double theirs = in.scatter[there];
+      const double w = !squares.tells(there, in) ? 0 : mine > 0 && theirs > 0 ? likeness(theirs, mine) : mine == theirs;
+      alike += w, scatter += w * theirs, like += w * square, all += square;
       n.problem[n.count] = there, n.weight[n.count++] = w;
     }
-  const double own_kind = alike > 0 ? like * mine / scatter : 0, around = in.around[here] * in.around[here];
+  const double own_kind = scatter > 0 ? like * mine / scatter : 0, around = in.around[here] * in.around[here];
   if (around > own_kind && all > 0) {
     std::fill_n(n.weight.begin(), n.count, around / all);
     return kPriorDegrees;
   }
   if (!(alike > 0)) return 0;
-  for (size_t k = 0; k < n.count; ++k) n.weight[k] *= mine / scatter;
+  const double share = scatter > 0 ? mine / scatter : 1 / alike;
+  for (size_t k = 0; k < n.count; ++k) n.weight[k] *= share;
   return kPriorDegrees * std::min(1.0, alike);
 }
 

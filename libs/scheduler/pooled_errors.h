@@ -13,7 +13,8 @@
 //
 // - r S: S is the variance that the mean would have if its samples were independent; r, how much better than that they
 //   are dealt, is sum w_j E_j^2 / sum w_j S_j over the 24 problems around, w_j = 1 / (1 + log2(S_j / S)^2), so that
-//   smooth problems are compared with smooth ones and edges with edges;
+//   smooth problems are compared with smooth ones and edges with edges (where the reference value has no S, as in a
+//   band without light, with those that have none either: the mean of their E_j^2);
 // - what those of about the same mean saw on all sides (around.h): samples that never met the rare light have no S.
 //
 // p = kPriorDegrees, in proportion less where fewer than one is alike (sum w_j < 1). Where B is known far better than
