@@ -66,4 +66,17 @@ double variance_around(const SeenGrid& g, long x, long y, double same, long reac
   return std::isfinite(least) ? least : 0;
 }
 
+double variance_nearby(const SeenGrid& g, long x, long y, double same) {
+  const double mean = g.seen[static_cast<size_t>(y * g.columns + x)].mean;
+  double sum = 0, alike = 0;
+  for (const Offset& o : window(4)) {
+    const long u = x + o.x, v = y + o.y;
+    if (u < 0 || v < 0 || u >= g.columns || v >= g.rows) continue;
+    const Seen& there = g.seen[static_cast<size_t>(v * g.columns + u)];
+    if (!(std::fabs(there.mean - mean) <= same)) continue;
+    sum += there.variance, alike += 1;
+  }
+  return alike > 0 ? sum / alike : 0;
+}
+
 }  // namespace suite

@@ -31,4 +31,8 @@ struct SeenGrid {
 // is none. reach: of the half-planes, 2 or 4 problems.
 double variance_around(const SeenGrid& grid, long x, long y, double same, long reach);
 
+// The mean over all problems within four, on whatever side, whose means differ by `same` at most: less careful about
+// edges, and never 0 where one of them varies.
+double variance_nearby(const SeenGrid& grid, long x, long y, double same);
+
 }  // namespace suite

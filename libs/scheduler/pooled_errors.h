@@ -16,6 +16,7 @@
 //   smooth problems are compared with smooth ones and edges with edges (where the reference value has no S, as in a
 //   band without light, with those that have none either: the mean of their E_j^2);
 // - what those of about the same mean saw on all sides (around.h): samples that never met the rare light have no S.
+//   Where that is nothing and E is 0, what any of them saw within four problems.
 //
 // p = kPriorDegrees, in proportion less where fewer than one is alike (sum w_j < 1). Where B is known far better than
 // E^2, V has (d + p)^2 / d degrees of freedom (F. Satterthwaite, 1946): 12 with four scrambles, 14 with eight;

@@ -98,6 +98,8 @@ std::vector<double> errors_around(std::span<const TailSums> of, uint32_t columns
         // Light so rare that on some side nobody near met it: further out somebody did.
         double variance = variance_around(g, x, y, least_excess(of[i]), kNear);
         if (!(variance > 0)) variance = variance_around(g, x, y, least_excess(of[i]), kReach);
+        // A standard error of 0 is wrong where anybody like it saw something.
+        if (!(variance > 0) && !(of[i].sampled > 0)) variance = variance_nearby(g, x, y, least_excess(of[i]));
         errors[i] = std::sqrt(variance / of[i].paths);
       }
   });

@@ -6,19 +6,10 @@
 #include "mesh/check.h"
 #include "mesh/repair.h"
 #include "mesh/weld.h"
+#include "tests/support/mesh_kit.h"
 
 namespace suite {
 namespace {
-
-SourceMesh soup(std::vector<Vec3> positions, std::vector<uint32_t> indices) {
-  SourceMesh m;
-  m.file = "m.obj";
-  m.positions = std::move(positions);
-  m.indices = std::move(indices);
-  for (size_t t = 0; t < m.indices.size() / 3; ++t) m.lines.push_back(static_cast<int>(t + 1));
-  m.runs = {{"", "", 0, 1}};
-  return m;
-}
 
 SourceMesh cube() {
   std::vector<Vec3> p;

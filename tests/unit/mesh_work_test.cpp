@@ -8,19 +8,10 @@
 #include "mesh/decimate.h"
 #include "mesh/fill_holes.h"
 #include "mesh/repair.h"
+#include "tests/support/mesh_kit.h"
 
 namespace suite {
 namespace {
-
-SourceMesh with_runs(std::vector<Vec3> positions, std::vector<uint32_t> indices) {
-  SourceMesh m;
-  m.file = "m.obj";
-  m.positions = std::move(positions);
-  m.indices = std::move(indices);
-  for (size_t t = 0; t < m.indices.size() / 3; ++t) m.lines.push_back(static_cast<int>(t + 1));
-  m.runs = {{"", "", 0, 1}};
-  return m;
-}
 
 // Appends a cube that faces outwards.
 void add_cube(SourceMesh& m, Vec3 low, double size) {
@@ -133,7 +124,7 @@ SourceMesh sheet(double bend) {
     }
   const auto half = static_cast<uint32_t>(left.size() / 3);
   left.insert(left.end(), right.begin(), right.end());
-  SourceMesh m = with_runs(p, left);
+  SourceMesh m = soup(p, left);
   m.runs = {{"", "grass", 0, 1}, {"", "road", half, 1}};
   return m;
 }
@@ -216,7 +207,7 @@ TEST(MeshDecimation, FacetNormalsHoldEverything) {
 
 // Loose leaves, bodies along an edge, a one-sided strip: nothing to take away, or not safely; never an abort.
 TEST(MeshDecimation, OddMeshesPass) {
-  SourceMesh leaves = with_runs({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {0, 1, 2, 3, 4, 5});
+  SourceMesh leaves = soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {0, 1, 2, 3, 4, 5});
   EXPECT_EQ(decimate_mesh(leaves, 0.1, HUGE_VAL).after, 2u);
   SourceMesh cubes;
   add_cube(cubes, {0, 0, 0}, 1);

@@ -117,6 +117,21 @@ TEST(Tails, WhatIsMetSeldomIsKnownFromFurtherAway) {
   EXPECT_EQ(errors[2 * kSide + 2], 0) << "negative control: on the side of the rim nobody knows";
 }
 
+TEST(Tails, NoErrorIsNothingWhereOneNearbySawSomething) {
+  // Light met from the west only, so that to the east nobody tells: one in ten of the problems there saw it.
+  Picture p;
+  for (TailSums& s : p.of) s.error = s.sampled = 0;
+  for (uint32_t y = 0; y < kSide; y += 3)
+    for (uint32_t x = 0; x < 7; x += 3) p.at(x, y).sampled = p.at(x, y).error = 0.001;
+  p.at(12, 10).mean = 2, p.at(12, 10).sampled = 0.5;  // another kind of thing, which tells nobody
+  const std::vector<double> errors = errors_around(p.of, kSide);
+  for (uint32_t y = 0; y < kSide; ++y) {
+    EXPECT_GT(errors[y * kSide + 9], 0) << y;
+    EXPECT_LT(errors[y * kSide + 9], 0.001) << y;
+    EXPECT_EQ(errors[y * kSide + 17], 0) << "all within four are without noise";
+  }
+}
+
 TEST(Tails, OddShapesAndUnknownErrors) {
   for (const uint32_t columns : {1u, 9u}) {  // a column, a row
     std::vector<TailSums> of(9, {1, 0.1, 0.1, 1, kPaths, kTailShare, 0});
