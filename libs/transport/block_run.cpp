@@ -1,0 +1,181 @@
+#include "transport/block_run.h"
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "transport/sensor_samples.h"
+#include "transport/serve.h"
+#include "transport/workspace.h"
+
+namespace suite {
+
+BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id,
+                   const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots,
+                   RunStatistics& statistics, Pipeline::Workspace& workspace)
+    : pipeline_(pipeline),
+      sensor_(sensor),
+      capture_(capture),
+      block_(block),
+      sums_(sums),
+      slots_(slots),
+      statistics_(statistics),
+      workspace_(workspace),
+      watched_(pipeline.options_.stop == StopRule::change),
+      scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
+  for (uint32_t i = 0; i < block.problems(); ++i) {
+    next_.push_back(sums.next(slot_of(i), block.scrambles));
+    end_.push_back(to[problem_of(i)]);
+    keys_.push_back(SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i)));
+  }
+}
+
+bool BlockRun::wants(size_t i, uint32_t sample) const {
+  const Deal d = deal(sample);
+  return (block_.scrambles >> d.scramble & 1) && d.index >= sums_.taken(slot_of(i), static_cast<int>(d.scramble));
+}
+
+double BlockRun::reference_sum(size_t slot) const {
+  double sum = 0;
+  for (int s = 0; s < sums_.scrambles(); ++s) sum += sums_.sums(slot, s)[pipeline_.reference_band_];
+  return sum;
+}
+
+void BlockRun::run() {
+  const auto width = static_cast<uint32_t>(next_.size());
+  const auto paths = static_cast<uint32_t>(workspace_.width);
+  const uint32_t first = *std::min_element(next_.begin(), next_.end()),
+                 last = *std::max_element(end_.begin(), end_.end());
+  // A rule that looks at every sample must not be given many at a time. Else problems of a block take their samples
+  // before the next ones do: sums of many bands then stay in the cache.
+  const uint32_t together = watched_ ? 1 : std::max(std::min(kTogether, paths), paths / width),
+                 beside = watched_ ? width : std::max(1u, paths / kTogether);
+  for (uint32_t begin = 0; begin < width; begin += beside)
+    for (uint32_t group = first; group < last; group += together)
+      for (uint32_t i = begin; i < std::min(begin + beside, width); ++i)
+        for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
+          if (!wants(i, sample)) continue;
+          workspace_.lanes.push_back({i, sample});
+          if (workspace_.lanes.size() == paths) run_wave();
+        }
+  if (!workspace_.lanes.empty()) run_wave();
+}
+
+void BlockRun::run_wave() {
+  const auto paths = static_cast<uint32_t>(workspace_.lanes.size());
+  const uint64_t asked = __rdtsc();
+  for (uint32_t p = 0; p < paths; ++p) start(p);
+  const uint64_t started = __rdtsc();
+  const Tracer& tracer = pipeline_.surface_.tracer();
+  for (PathTracing* kernel : {workspace_.kernel.get(), workspace_.receiving.get()}) {
+    if (!kernel) continue;
+    complete(*kernel, tracer, statistics_.trace);
+    statistics_.nodes += kernel->take_nodes();
+  }
+  const uint64_t completed = __rdtsc();
+  for (uint32_t p = 0; p < paths; ++p) take(p);
+  statistics_.sensor_cycles += started - asked;
+  statistics_.path_cycles += completed - started;
+  statistics_.shade_cycles += __rdtsc() - completed;
+  workspace_.lanes.clear();
+}
+
+// Asks the sensor for the ray of a sample and starts its path.
+void BlockRun::start(uint32_t p) {
+  const auto [place, sample] = workspace_.lanes[p];
+  const auto [scramble, index] = deal(sample);
+  const size_t bins = pipeline_.state_.size();
+  // Independent numbers: every sample is the first of a sequence of its own.
+  const bool independent = pipeline_.options_.method == Method::paper;
+  const SampleStream stream =
+      independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
+  const uint32_t number = independent ? 0 : index;
+  float* const weights = &workspace_.weights[p * bins];
+  const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {weights, bins});
+  workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
+  workspace_.sink.begin(p);
+  PathTracing& kernel = workspace_.kernel_of(ray);
+  workspace_.kernels[p] = &kernel;
+  kernel.start(p, ray, stream, number);
+}
+
+// Takes what a completed path has brought.
+void BlockRun::take(uint32_t p) {
+  const auto [place, sample] = workspace_.lanes[p];
+  if (sample >= end_[place]) return;  // a rule has ended the problem meanwhile
+  const size_t slot = slot_of(place);
+  const int scramble = static_cast<int>(deal(sample).scramble);
+  const PathTracing& kernel = *workspace_.kernels[p];
+  const PathRecord& record = kernel.record(p);
+  ++statistics_.paths;
+  statistics_.truncated += record.truncated;
+  sums_.take(slot, scramble);
+  const double sum_before = watched_ ? reference_sum(slot) : 0;
+  if (!add(p, slot, scramble, sample)) {
+    ++statistics_.failures;
+    ++sums_.failures(slot, scramble);
+    return;
+  }
+  if (watched_ && sample >= pipeline_.options_.change_after) {
+    const double accepted = sums_.accepted(slot), mean = reference_sum(slot) / accepted;
+    if (std::fabs(mean - sum_before / (accepted - 1)) <= pipeline_.options_.change * mean) end_[place] = 0;
+  }
+  sums_.truncated(slot, scramble) += static_cast<float>(record.truncated);
+  if (pipeline_.truth_.wanted())
+    pipeline_.truth_.add({record, record.met ? &kernel.first(p) : nullptr}, sums_.truth(slot, scramble));
+}
+
+// Adds the light of a path to its problem; false, with nothing added, when that is no light.
+bool BlockRun::add(uint32_t p, size_t slot, int scramble, uint32_t) {
+  if (!acceptable(p, false)) return false;
+  double* const sums = sums_.sums(slot, scramble);
+  const double before = sums[pipeline_.reference_band_];
+  const bool suns = workspace_.groups > 1 || capture_.bin_by == Capture::BinBy::sun;
+  const size_t bin = suns ? 0 : bin_of(capture_, workspace_.kernels[p]->record(p));
+  if (bin < capture_.bins) {
+    add_light(p, bin, false, false, sums);
+    if (workspace_.single) add_light(p, bin, true, false, sums);
+  }
+  if (!suns) sums_.note_sample(slot, scramble, sums[pipeline_.reference_band_] - before);
+  if (sums_.keeps_missing() && bin < capture_.bins && workspace_.sink.missed(p) < RadianceSink::kNothing)
+    add_missing(p, slot, scramble, bin);
+  return true;
+}
+
+// One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
+bool BlockRun::acceptable(uint32_t p, bool lost) {
+  unsigned good = 1;
+  for (size_t group = 0; group < workspace_.groups; ++group)
+    for (const bool once : {false, true}) {
+      if (once && !workspace_.single) break;
+      for (const float L : workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)))
+        good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
+    }
+  return good;
+}
+
+// Adds one channel's light to its sums, [channel][bin][band].
+void BlockRun::add_light(uint32_t p, size_t bin, bool once, bool lost, double* sums) {
+  const BandProjection& projection = pipeline_.projection_;
+  const size_t bands = projection.bands();
+  for (size_t group = 0; group < workspace_.groups; ++group) {
+    double* const at = sums + ((once ? capture_.bins : 0) + bin + group) * bands;
+    projection.add(workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)), {at, bands});
+  }
+}
+
+// Adds what a path is known to have missed.
+void BlockRun::add_missing(uint32_t p, size_t slot, int scramble, size_t bin) {
+  if (!acceptable(p, true)) return;
+  const Accumulators::Missing missing = sums_.missing(slot, scramble);
+  double* const reference = missing.light + bin * pipeline_.projection_.bands() + pipeline_.reference_band_;
+  const double before = *reference, chance = workspace_.sink.missed(p);
+  add_light(p, bin, false, true, missing.light);
+  if (workspace_.single) add_light(p, bin, true, true, missing.light);
+  const double seen = *reference - before;
+  *missing.reference += seen;
+  *missing.square += chance > 0 ? seen * (seen / chance) : INFINITY;
+}
+
+}  // namespace suite

@@ -1,0 +1,49 @@
+// The problems of one block while they run.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "transport/pipeline.h"
+
+namespace suite {
+
+// Neighbours in a wave are samples of one problem as far as possible: their rays run so close together that a packet of
+// eight costs the ray tracer little more than one.
+inline constexpr uint32_t kTogether = 8, kWaveWidth = 64;
+
+class BlockRun {
+ public:
+  BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id,
+           const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots,
+           RunStatistics& statistics, Pipeline::Workspace& workspace);
+  // Every problem takes its samples in order; a few of one problem run together, those of the next beside them.
+  void run();
+
+ private:
+  size_t problem_of(size_t i) const { return problem_at(capture_, block_, i); }
+  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
+  bool wants(size_t i, uint32_t sample) const;
+  double reference_sum(size_t slot) const;
+  void run_wave();
+  void start(uint32_t p);
+  void take(uint32_t p);
+  bool add(uint32_t p, size_t slot, int scramble, uint32_t sample);
+  bool acceptable(uint32_t p, bool lost);
+  void add_light(uint32_t p, size_t bin, bool once, bool lost, double* sums);
+  void add_missing(uint32_t p, size_t slot, int scramble, size_t bin);
+
+  const Pipeline& pipeline_;
+  const Sensor& sensor_;
+  const Capture& capture_;
+  const Block block_;
+  Accumulators& sums_;
+  const Slots slots_;
+  RunStatistics& statistics_;
+  Pipeline::Workspace& workspace_;
+  const bool watched_;                // a rule looks at every sample
+  const float scale_;                 // that all samples of the capture have: the number of bins of time
+  std::vector<uint32_t> next_, end_;  // samples of each problem
+  std::vector<uint64_t> keys_;        // of its sample streams
+};
+
+}  // namespace suite

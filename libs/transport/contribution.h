@@ -1,0 +1,53 @@
+// What a path finds on its way, and who takes it.
+//
+// A path runs from the sensor towards the light. Whenever it gets light (an explicit sample of a light arrives, a light
+// is met by chance, matter or air emits) it makes a contribution: the throughput from the sensor up to there, times a
+// factor (the scattering towards the light, what is left of it on its way), times the light's radiance. The kernel
+// hands the contributions of a stage to a sink as one array; the throughput stays where it is (throughput.h) and does
+// not contain the factor or the radiance.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace suite {
+
+// A number times a spectrum; null = ones. One value per bin.
+struct Factor {
+  float scale = 1;
+  const float* spectrum = nullptr;
+};
+
+// Light that comes from no entry of Environment::lights.
+inline constexpr uint16_t kFromMatter = 0xffff;  // emission of surfaces and media
+inline constexpr uint16_t kFromAir = 0xfffe;     // path radiance of the air
+
+// What happened to the light between its source and the sensor.
+enum EventKind : uint8_t { by_surface = 1, by_medium = 2, by_dirac = 4 };
+
+struct Contribution {
+  uint32_t path = 0;                // lane of the kernel
+  uint16_t light = kFromMatter;     // index into Environment::lights, or kFromMatter, kFromAir
+  uint8_t events = 0;               // kinds of events on the way, a set of EventKind
+  bool asked = false;               // an explicit sample; else met by chance
+  uint32_t order = 0;               // scattering events between the light and the sensor
+  float scale = 1;                  // shares and densities (shares.h); may be negative where a sink allows it
+  Factor factor;                    // stays valid while the sink runs
+  const float* radiance = nullptr;  // of the light, per bin, W/(m2 sr um) (times what its density lacks); null = ones
+  double arrival = 0;               // m, optical path (index of refraction times way) from the light to the sensor
+  // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.
+  // Infinite where light arrived.
+  double missed = std::numeric_limits<double>::infinity();
+  bool arrived() const { return missed == std::numeric_limits<double>::infinity(); }
+};
+
+// Takes contributions. Throughputs: the algebra of the kernel.
+template <class Throughputs>
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  // All contributions of a stage, or a part of them; throughputs stand where the contributions were made.
+  virtual void add(std::span<const Contribution> stage, Throughputs& throughputs) = 0;
+};
+
+}  // namespace suite

@@ -1,0 +1,85 @@
+// Which numbers of a sample stream (math/sampling.h) a path uses for what: one table, so that no two decisions of a path
+// ever share a number.
+//
+// Stratified blocks of four numbers are spent on the first nodes of a path; later nodes, and choices that must not take
+// stratification away from others (roulette, the knot), use hashed numbers.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "math/sampling.h"
+
+namespace suite::dimensions {
+
+// Ranges of stratified blocks.
+struct Blocks {
+  uint32_t first, count;
+  constexpr uint32_t end() const { return first + count; }
+};
+inline constexpr uint32_t kNodes = 64;       // nodes of a path with stratified numbers
+inline constexpr uint32_t kFlights = 16;     // flights through media with such
+inline constexpr uint32_t kOwnLights = 8;    // lights with blocks of their own
+inline constexpr uint32_t kPerFlight = 5;    // a flight's own block, two of its scattering, two of lights
+inline constexpr Blocks kSensor{0, 1};       // the ray
+inline constexpr Blocks kScatter{1, kNodes};   // continuation (two numbers), first light (two)
+inline constexpr Blocks kSecond{128, kNodes};  // lobe (the first), second light (the last two)
+inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than four numbers
+inline constexpr Blocks kLight{512, kNodes * kOwnLights};
+inline constexpr Blocks kFlight{1024, kPerFlight * kFlights};
+
+constexpr bool disjoint() {
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight};
+  for (const Blocks& a : all)
+    for (const Blocks& b : all)
+      if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
+  return true;
+}
+static_assert(disjoint(), "two uses of the sample stream share blocks");
+
+// Purposes of hashed numbers: kind * kStride + what the kind counts.
+inline constexpr uint32_t kStride = 1u << 22;
+enum class Hashed : uint32_t { choices, scatter, second, light, flight = light + 256, end = flight + kPerFlight };
+static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
+// Of Hashed::choices.
+inline constexpr uint32_t kKnot = 1;
+constexpr uint32_t roulette(uint32_t event) { return 2 + 16 * (event % (kStride / 16)); }
+static_assert(roulette(0) != kKnot && roulette(1) - roulette(0) == 16 && roulette(kStride / 16 - 1) < kStride);
+
+inline std::array<double, 4> hashed(const SampleStream& stream, uint32_t sample, Hashed kind, uint32_t more,
+                                    uint32_t n) {
+  const uint32_t from = (static_cast<uint32_t>(kind) + more) * kStride + 4 * (n % (kStride / 4));
+  return {stream.hashed(sample, from), stream.hashed(sample, from + 1), stream.hashed(sample, from + 2),
+          stream.hashed(sample, from + 3)};
+}
+
+// What a node needs numbers for. own(i): of the i-th light that has a block of its own.
+struct Use {
+  uint32_t which;
+};
+inline constexpr Use kOfScatter{0}, kOfSecond{1};
+constexpr Use own_light(uint32_t i) { return {2 + i}; }
+
+// Numbers of the n-th surface of a path.
+inline std::array<double, 4> at_surface(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
+  const uint32_t own = use.which - 2;
+  if (n < kNodes && (use.which < 2 || own < kOwnLights)) {
+    const uint32_t first = use.which == 0 ? kScatter.first : use.which == 1 ? kSecond.first : kLight.first + own * kNodes;
+    return stream.draw(sample, first + n);
+  }
+  if (use.which < 2) return hashed(stream, sample, use.which == 0 ? Hashed::scatter : Hashed::second, 0, n);
+  return hashed(stream, sample, Hashed::light, own % 256, n);
+}
+
+// Numbers of the n-th flight, and of the scattering that ends it.
+inline std::array<double, 4> of_flight(const SampleStream& stream, uint32_t sample, uint32_t n) {
+  if (n < kFlights) return stream.draw(sample, kFlight.first + kPerFlight * n);
+  return hashed(stream, sample, Hashed::flight, 0, n);
+}
+inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
+  if (use.which + 1 >= kPerFlight)  // no block: apart from those of surfaces
+    return hashed(stream, sample, Hashed::light, 128 + use.which % 128, n);
+  if (n < kFlights) return stream.draw(sample, kFlight.first + kPerFlight * n + 1 + use.which);
+  return hashed(stream, sample, Hashed::flight, 1 + use.which, n);
+}
+
+}  // namespace suite::dimensions

@@ -1,0 +1,67 @@
+// The standard estimator: every kind of light at every node, shared with the continuations (multiple importance
+// sampling, shares.h), directions drawn at several wavelengths, Russian roulette.
+#pragma once
+#include <algorithm>
+#include <span>
+
+#include "transport/options.h"
+#include "transport/shares.h"
+
+namespace suite {
+
+struct StandardEstimator {
+  // P_k: the reference keeps at least half of the paths.
+  static int knot_probabilities(std::span<double> P) {
+    for (size_t k = 0; k < P.size(); ++k)
+      P[k] = P.size() == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(P.size() - 1);
+    return 0;
+  }
+  static int draw_knot(double u, int knots) {
+    return u < 0.5 ? 0 : 1 + std::min(knots - 2, static_cast<int>((u - 0.5) * 2 * (knots - 1)));
+  }
+  static double survival(double brightness, uint64_t events, int after, bool dirac) {
+    return suite::survival(brightness, events, after, dirac);
+  }
+  // What a light counts that continuations met by chance; other: the density of asking for it over theirs.
+  static double by_chance(const LightNature& light, double other) { return 1 / shared_density(1, other, light.disk); }
+  // What a sample that was asked for is divided by.
+  static double asked(double drawn, double by_chance, bool disk) { return shared_density(drawn, by_chance, disk); }
+  // Lights whose rays run alongside each other.
+  static bool parallel(const LightNature& light) { return light.far && !light.wide; }
+
+  template <class Kernel>
+  static void ask(Kernel& kernel, const PipelineOptions& options) {
+    bool parallel = true;
+    for (const auto& light : kernel.lights()) {
+      if (parallel && !StandardEstimator::parallel(light.nature)) kernel.set_parallel(), parallel = false;
+      for (const auto& node : kernel.nodes())
+        if (light.only)
+          kernel.propose(node, light, *light.only, 1);
+        else
+          ask_one(kernel, node, light, options);
+    }
+    if (parallel) kernel.set_parallel();
+  }
+
+ private:
+  template <class Kernel>
+  static void ask_one(Kernel& kernel, const typename Kernel::NodeAt& node, const typename Kernel::Asked& light,
+                      const PipelineOptions& options) {
+    std::array<double, 4> u = kernel.numbers(node, light.use);
+    if (light.first_number == 2) u = {u[2], u[3], 0, 0};
+    const LightReceiver at = light.nature.far ? LightReceiver{} : kernel.receiver(node);
+    const int draws = kernel.is_first(node) && !node.event ? std::min(options.lamp_draws, light.nature.draws) : 1;
+    // Strata of the choice; the other numbers are the first one's, turned round.
+    const auto turned = [](double x, int k) {
+      const double y = x + k * (1.0 / LightNature::kMostDraws);
+      return y >= 1 ? y - 1 : y;
+    };
+    for (int k = 0; k < draws; ++k) {
+      const std::array<double, 4> v =
+          draws == 1 ? u : std::array<double, 4>{(k + u[0]) / draws, turned(u[1], k), turned(u[2], k), turned(u[3], k)};
+      if (const auto sample = light.light->sample(at, v, kernel.time(node))) kernel.propose(node, light, *sample, draws);
+    }
+  }
+};
+
+}  // namespace suite

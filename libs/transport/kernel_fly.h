@@ -1,0 +1,333 @@
+// Definitions of kernel.h: how paths start, fly, and what they meet.
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "transport/kernel.h"
+
+namespace suite {
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelContext& c, size_t width,
+                                                                Throughputs& throughputs, Sink<Throughputs>& sink)
+    : surface_(c.surface),
+      environment_(c.environment),
+      options_(c.options),
+      knots_(c.optics.state().knots.size()),
+      knot_bins_(c.optics.state().knots),
+      bins_(c.optics.state().size()),
+      keep_first_(c.keep_first),
+      lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
+      surfaces_(c.surface, c.optics, width, c.keep_first),
+      space_((Estimator::knot_probabilities(std::span(probability_, knots_)),
+              SpaceContext{c.surface, c.optics, c.environment, c.options, width,
+                           std::span<const double>(probability_, knots_), lost_.get()})),
+      throughputs_(throughputs),
+      sink_(sink),
+      paths_(width),
+      records_(width),
+      firsts_(c.keep_first ? width : 0),
+      receivers_(c.receivers ? width : 0),
+      rays_(width),
+      hits_(width),
+      flights_(Space::kFills ? width : 0),
+      transmission_(bins_) {
+  list_lights();
+  for (auto* list : {&active_, &received_, &onward_}) list->reserve(width);
+  nodes_.reserve(width);
+}
+
+// Which lights are asked, far disks first, and with which numbers: the first light of two numbers takes those that the
+// scattering leaves over, the second those of the choice of lobe, and so on.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
+  for (size_t i = 0; i < environment_.lights.size(); ++i) {
+    const Light& light = *environment_.lights[i];
+    glows_ = glows_ || !(light.nature().far || light.nature().delta);
+    if (!options_.explicit_sources || !light.nature().drawn) continue;
+    Asked asked{&light, static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0, std::nullopt};
+    if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
+    asked_.push_back(asked);
+  }
+  std::stable_sort(asked_.begin(), asked_.end(),
+                   [](const Asked& a, const Asked& b) { return Estimator::parallel(a.nature) > Estimator::parallel(b.nature); });
+  uint32_t own = 0;
+  bool scatter = true, second = true;
+  for (Asked& asked : asked_) {
+    if (asked.only) continue;
+    const bool two = asked.nature.numbers <= 2;
+    const bool with_scatter = two && std::exchange(scatter, scatter && !two);
+    const bool with_second = two && !with_scatter && std::exchange(second, false);
+    asked.use = with_scatter ? dimensions::kOfScatter : with_second ? dimensions::kOfSecond : dimensions::own_light(own++);
+    asked.first_number = with_scatter || with_second ? 2 : 0;
+  }
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, const SensorRay& ray,
+                                                                const SampleStream& stream, uint32_t sample) {
+  Path& path = paths_[p];
+  path.stream = stream;
+  path.sample = sample;
+  path.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
+  path.origin = ray.ray.origin;
+  path.direction = ray.ray.direction;
+  path.time = ray.ray.time;
+  path.length = path.arrival = path.last_density = path.last_length = 0;
+  path.before = 1;
+  path.surfaces = path.scatterings = path.flights = 0;
+  path.events = 0;
+  path.knot = 0;
+  std::fill_n(path.relative, knots_, 1.0);
+  std::fill_n(path.throughput, knots_, 1.0);
+  if (knots_ > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
+  PathRecord& record = records_[p];
+  record.ray = ray.ray;
+  record.end = PathEnd::absorbed;
+  record.truncated = 0;
+  record.size = 0;
+  record.received = record.scattered_first = record.met = false;
+  space_.start(p, path);
+  if (ray.receiver == SensorRay::Receiver::none) return active_.push_back(p);
+  record.received = true;
+  receivers_[p] = ray.receiver;
+  received_.push_back(p);
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& request) {
+  for (;;) switch (stage_) {
+      case Stage::leave:
+        if (active_.empty() && received_.empty()) {
+          first_stage_ = true;
+          return false;
+        }
+        stage_ = Stage::arrive;
+        if (active_.empty()) break;  // all start at receivers
+        request_hits(request);
+        return true;
+      case Stage::arrive:
+        if constexpr (Space::kFills) fly();
+        arrive();
+        ask();
+        stage_ = Stage::look;
+        break;
+      case Stage::look:
+        if (space_.sight().next(request)) return true;
+        answer();
+        hand_over();
+        go_on();
+        first_stage_ = false;
+        stage_ = Stage::leave;
+        break;
+    }
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::request_hits(TraceRequest& request) {
+  const size_t n = active_.size();
+  for (size_t i = 0; i < n; ++i) {
+    const Path& path = paths_[active_[i]];
+    rays_[i].set(space_.ray_from(active_[i], path), path.direction, path.time, path.draw);
+  }
+  request = {TraceRequest::Kind::nearest, {rays_.data(), n}, first_stage_, {hits_.data(), n}, {}, {}};
+}
+
+// Flies every path to its next event, then weakens its light. Nothing may change a throughput before the contributions
+// that were made with it have been handed over.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
+  for (size_t i = 0; i < active_.size(); ++i) fly_one(i);
+  hand_over();
+  for (size_t i = 0; i < active_.size(); ++i)
+    if (flights_[i].weakened) throughputs_.attenuate(active_[i], flights_[i].through);
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
+  const uint32_t p = active_[slot];
+  Path& path = paths_[p];
+  Hit& hit = hits_[slot];
+  double length = hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+  if (!hit.hit() && environment_.earth) {
+    const auto met = environment_.earth->meet(path.origin, path.direction, length);
+    if (met) length = met->distance;
+  }
+  if (!throughputs_.has_room(p, Space::kDense)) throughputs_.make_room(p);
+  Contribution c = contribution(p, Space::kEmitter);
+  const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
+  flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, through, emitted);
+  const Flight& flight = flights_[slot];
+  c.radiance = flight.emitted;
+  if (c.radiance) return contribute(c);
+  throughputs_.give_back(p);
+  if (!flight.through.spectrum) throughputs_.give_back(p);
+}
+
+// Sorts paths by what they have come to.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::arrive() {
+  nodes_.clear(), onward_.clear();
+  for (uint32_t i = 0; i < active_.size(); ++i) {
+    const uint32_t p = active_[i];
+    if constexpr (Space::kScatters) {
+      const Arrival arrival = flights_[i].arrival;
+      if (arrival == Arrival::onward) onward_.push_back(p);
+      if (arrival == Arrival::scattered) {
+        ++paths_[p].scatterings;
+        paths_[p].events |= by_medium;
+        nodes_.push_back({p, i, true});
+      }
+      if (arrival != Arrival::met) continue;
+    }
+    if (hits_[i].hit() ? meet(p, i) : meet_earth(p, i)) nodes_.push_back({p, i, false});
+  }
+  nodes_met_ += nodes_.size();
+  for (const uint32_t p : std::exchange(received_, {})) receive(p);
+}
+
+// A path meets a surface. False when nothing scatters there.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint32_t slot) {
+  Path& path = paths_[p];
+  const Hit& hit = hits_[slot];
+  const bool first = is_first_surface(p);
+  path.length += hit.distance;
+  path.arrival += space_.index(p) * hit.distance;
+  const bool scatters = surfaces_.meet(p, hit, -path.direction, path.time, first);
+  enter_node(p, hit, first);
+  if (glows_) meet_glow(p, hit);
+  emit(p);
+  return scatters;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p, const Hit& hit, bool first) {
+  Path& path = paths_[p];
+  ++path.surfaces;
+  PathRecord& record = records_[p];
+  ++record.size;
+  record.end = PathEnd::absorbed;
+  if (!first || !keep_first_) return;
+  record.met = !record.scattered_first;
+  firsts_[p] = {hit, -path.direction, path.length, false, &surfaces_.interaction(p)};
+}
+
+// A path that missed the scene meets the Earth under it, if there is one; false when the path ends.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p, uint32_t slot) {
+  Path& path = paths_[p];
+  const auto met =
+      environment_.earth
+          ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
+          : std::nullopt;
+  if (!met) {
+    escape(p);
+    return false;
+  }
+  Hit& hit = hits_[slot];
+  hit = {};
+  hit.distance = met->distance;
+  hit.position = met->position;
+  hit.normal = met->normal;
+  hit.step = Earth::step;
+  hit.time = path.time;
+  const bool first = is_first_surface(p);
+  path.length += hit.distance;
+  path.arrival += hit.distance;
+  const bool scatters = surfaces_.meet_earth(p, hit, environment_.earth->material(), first);
+  enter_node(p, hit, first);
+  emit(p);
+  return scatters;
+}
+
+// The first node of a path that starts at a receiver.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
+  if constexpr (requires(Surfaces& s) { s.receive(p, hits_[0], receivers_[p]); }) {
+    Path& path = paths_[p];
+    const auto slot = static_cast<uint32_t>(active_.size());
+    active_.push_back(p);
+    Hit& hit = hits_[slot];
+    hit = {};
+    hit.position = path.origin;
+    hit.normal = path.direction;
+    hit.time = path.time;
+    surfaces_.receive(p, hit, receivers_[p]);
+    ++path.surfaces;
+    ++records_[p].size;
+    path.direction = -path.direction;  // out, as the receiver sees it, is along its normal
+    nodes_.push_back({p, slot, false});
+  }
+}
+
+// What a path meets outside the scene.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
+  const Path& path = paths_[p];
+  records_[p].end = PathEnd::escaped;
+  records_[p].escape = path.direction;
+  for (size_t i = 0; i < environment_.lights.size(); ++i) {
+    const Light& light = *environment_.lights[i];
+    if (!light.nature().far || light.nature().delta) continue;
+    const auto met = light.met_outside(path.direction, path.time);
+    if (!met) continue;
+    Contribution c = contribution(p, static_cast<uint16_t>(i));
+    c.scale = static_cast<float>(met->scale);
+    if (options_.explicit_sources && path.last_density > 0 && met->density > 0)
+      c.scale *= static_cast<float>(
+          Estimator::by_chance(light.nature(), path.before * met->density / path.last_density));
+    if (c.scale == 0) continue;
+    c.radiance = met->spectrum;
+    if (!c.radiance) {
+      const std::span<float> radiance = dense(p);
+      std::fill(radiance.begin(), radiance.end(), 0.0f);
+      light.add(path.direction, 1, radiance);
+      c.radiance = radiance.data();
+    }
+    contribute(c);
+  }
+}
+
+// A surface met by chance may shine; what an explicit sample of it brings is shared with it.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, const Hit& hit) {
+  const Path& path = paths_[p];
+  const bool shared = path.order() > 1 && options_.explicit_sources && path.last_density > 0;
+  double distance = hit.distance;
+  if (Space::kScatters && shared)  // boundaries of media may have been passed on the way
+    distance = surface_.tracer().periodic() ? path.length - path.last_length
+                                            : length(hit.position - path.last.position);
+  const double cosine = -dot(path.direction, hit.normal);
+  for (size_t i = 0; i < environment_.lights.size(); ++i) {
+    const Light& light = *environment_.lights[i];
+    if (light.nature().far || light.nature().delta) continue;
+    const auto met = light.met_surface(path.last, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
+    if (!met) continue;
+    Contribution c = contribution(p, static_cast<uint16_t>(i));
+    c.order -= 1;  // not scattered by what shines
+    c.scale = static_cast<float>(met->scale);
+    if (shared && met->density > 0)
+      c.scale *= static_cast<float>(Estimator::by_chance(
+          light.nature(), path.before * path.last_draws * met->density / path.last_density));
+    c.radiance = met->spectrum;
+    if (c.scale != 0) contribute(c);
+  }
+}
+
+// Warm surfaces.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
+  if constexpr (Surfaces::kDense > 0) {
+    if (!surfaces_.warm(p)) return;
+    const auto emission = surfaces_.emission(p, -paths_[p].direction, dense(p));
+    Contribution c = contribution(p, kFromMatter);
+    c.order -= 1;  // not scattered by what emits
+    c.factor = emission.emissivity;
+    c.radiance = emission.radiance;
+    contribute(c);
+  }
+}
+
+}  // namespace suite

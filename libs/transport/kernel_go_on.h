@@ -1,0 +1,119 @@
+// Definitions of kernel.h: continuations, roulette, and how paths end.
+#pragma once
+#include "transport/kernel.h"
+
+namespace suite {
+
+// Draws where all paths of the stage go on.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    const auto& u = paths_[nodes_[i].path].u;
+    surfaces_.prepare(i, {u[0], u[1]});
+  }
+  surfaces_.prepare_all(nodes_.size());
+  active_.assign(onward_.begin(), onward_.end());
+  for (size_t i = 0; i < nodes_.size(); ++i)
+    if (go_on(i)) active_.push_back(nodes_[i].path);
+}
+
+// One path; false when it ends here.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
+  const uint32_t p = nodes_[i].path;
+  Path& path = paths_[p];
+  records_[p].end = PathEnd::absorbed;
+  Continuation on;
+  if (!draw(i, on)) return false;
+  const double own = on.density[path.knot];
+  if (!(own > 0)) return false;
+  double shares = 0, brightest = 0;
+  for (size_t k = 0; k < knots_; ++k) {
+    path.relative[k] *= on.density[k] / own;
+    shares += probability_[k] * path.relative[k];
+    const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
+    path.throughput[k] *= double{on.weight.scale} * w / own;
+  }
+  for (size_t k = 0; k < knots_; ++k) {
+    path.relative[k] /= shares, path.throughput[k] /= shares;
+    brightest = std::max(brightest, path.throughput[k]);
+  }
+  if (!(brightest > 0) && bins_ == 1) return false;  // nothing more can arrive
+  const double alive = survives(p, brightest, on.dirac);
+  if (alive == 0 || cut(p, nodes_[i].event)) return false;
+  path.before = 1 / shares;
+  path.last_density = on.dirac ? 0 : own;
+  throughputs_.turn(p, -path.direction, on.in);
+  throughputs_.scatter(
+      p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum});
+  leave(i, on);
+  return true;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continuation& on) {
+  const NodeAt& node = nodes_[i];
+  const Path& path = paths_[node.path];
+  const Vec2 u{path.u[0], path.u[1]};
+  const std::span<float> memory = Surfaces::kDense > 0 ? dense(node.path) : std::span<float>{};
+  bool drawn;
+  if constexpr (Space::kScatters) {
+    if (node.event) {
+      const double who = dimensions::of_flight(path.stream, path.sample, path.flights)[2];
+      drawn = space_.sample(node.path, path, u, who, memory, on);
+      if (drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
+      return drawn;
+    }
+  }
+  const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
+  drawn = surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
+  if (Surfaces::kDense > 0 && drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
+  return drawn;
+}
+
+// The probability with which the path has survived; 0 when roulette ends it.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest, bool dirac) {
+  Path& path = paths_[p];
+  const double alive = Estimator::survival(brightest, path.order(), options_.roulette_after, dirac);
+  if (alive == 1) return 1;
+  if (path.stream.hashed(path.sample, dimensions::roulette(path.order() - 1)) >= alive) {
+    records_[p].end = PathEnd::roulette;
+    return 0;
+  }
+  for (size_t k = 0; k < knots_; ++k) path.throughput[k] /= alive;
+  return alive;
+}
+
+// Whether the path has as many nodes as it may have.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(uint32_t p, bool event) {
+  const Path& path = paths_[p];
+  const uint32_t most = event ? options_.max_scatterings : static_cast<uint32_t>(options_.max_nodes);
+  if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
+  records_[p].end = PathEnd::max_nodes;
+  records_[p].truncated = path.throughput[0];
+  return true;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const Continuation& on) {
+  const NodeAt& node = nodes_[i];
+  const uint32_t p = node.path;
+  Path& path = paths_[p];
+  if constexpr (Space::kScatters) {
+    ++path.flights;
+    if (node.event) {
+      path.origin = space_.place(p);
+      path.direction = on.in;
+      return;
+    }
+  }
+  const Hit& hit = hits_[node.slot];
+  path.events |= on.dirac ? by_surface | by_dirac : by_surface;
+  if (dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0) space_.cross(p, hit, surfaces_.material(p), on.in);
+  path.origin = surface_.tracer().leave(hit, on.in);
+  path.direction = on.in;
+}
+
+}  // namespace suite

@@ -1,0 +1,59 @@
+// The kernels that occur, and which of them serves a state.
+#include "transport/estimators/paper.h"
+#include "transport/estimators/standard.h"
+#include "transport/kernel_fly.h"
+#include "transport/kernel_go_on.h"
+#include "transport/kernel_light.h"
+#include "transport/media/space_field.h"
+#include "transport/surfaces_matte.h"
+
+namespace suite {
+
+const char* KernelChoice::name() const {
+  if (matte) return space == Space::air ? "matte in air" : "matte";
+  return space == Space::nothing ? "general" : space == Space::air ? "general in air" : "general in media";
+}
+
+KernelChoice choose_kernel(const KernelContext& c) {
+  KernelChoice choice;
+  if (!c.optics.media().empty())
+    choice.space = KernelChoice::Space::field;
+  else if (c.environment.atmosphere)
+    choice.space = KernelChoice::Space::air;
+  choice.matte = c.options.specialise && !c.receivers && c.options.method == Method::standard &&
+                 choice.space != KernelChoice::Space::field && MatteSurfaces::serve(c.surface, c.optics);
+  return choice;
+}
+
+bool may_lose(const KernelContext& c) {
+  const auto small = [](const auto& light) { return light->nature().drawn && !light->nature().wide; };
+  return std::any_of(c.environment.lights.begin(), c.environment.lights.end(), small) &&
+         LostLight::possible(c.surface.tracer().scene(), c.optics, c.options);
+}
+
+namespace {
+
+template <class Surfaces, class Space, class Estimator>
+std::unique_ptr<PathTracing> make(const KernelContext& c, size_t width, SpectralThroughputs& throughputs,
+                                  Sink<SpectralThroughputs>& sink) {
+  return std::make_unique<PathKernel<Surfaces, Space, SpectralThroughputs, Estimator>>(c, width, throughputs, sink);
+}
+
+}  // namespace
+
+std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const KernelContext& c, size_t width,
+                                         SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink) {
+  using Space = KernelChoice::Space;
+  const bool air = choice.space == Space::air;
+  auto* const made =
+      choice.matte ? (air ? &make<MatteSurfaces, AirSpace, StandardEstimator>
+                          : &make<MatteSurfaces, NothingSpace, StandardEstimator>)
+      : c.options.method == Method::paper
+          ? (air ? &make<AnySurfaces, AirSpace, PaperEstimator> : &make<AnySurfaces, NothingSpace, PaperEstimator>)
+      : choice.space == Space::field ? &make<AnySurfaces, FieldSpace, StandardEstimator>
+      : air                          ? &make<AnySurfaces, AirSpace, StandardEstimator>
+                                     : &make<AnySurfaces, NothingSpace, StandardEstimator>;
+  return made(c, width, throughputs, sink);
+}
+
+}  // namespace suite

@@ -1,0 +1,64 @@
+// A path on its way: what the kernel must remember of it from one event to the next.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "light/light.h"
+#include "math/sampling.h"
+#include "optics/scatter_model.h"
+#include "surface/surface.h"
+
+namespace suite {
+
+// K: knots at most.
+template <int K>
+struct Lane {
+  static constexpr int kKnots = K;
+  SampleStream stream{0, 0, 0};
+  uint32_t sample = 0;
+  uint32_t draw = 0;            // Ray::draw
+  Vec3 origin;                  // of the next segment
+  Dir direction;
+  double time = 0;              // s
+  std::array<double, 4> u;      // numbers of the current node
+  double length = 0;            // m so far
+  double arrival = 0;           // m so far, times the index of refraction
+  double relative[K];           // r_k (shares.h)
+  double throughput[K];         // at the knots, for roulette
+  double before = 1;            // A before the last event over A after it
+  double last_density = 0;      // p_h of the last event, without roulette; 0 after a Dirac event or none
+  LightReceiver last;           // that asked for light last; kept where surfaces shine
+  double last_length = 0;       // `length` there
+  int last_draws = 1;           // samples of a light that it took at most
+  int knot = 0;                 // whose shapes draw this path
+  uint32_t surfaces = 0;        // met so far, the receiver included
+  uint32_t scatterings = 0;     // in media so far
+  uint32_t flights = 0;         // through media so far
+  uint8_t events = 0;           // EventKind so far
+  uint32_t order() const { return surfaces + scatterings; }
+};
+
+enum class PathEnd : uint8_t { escaped, absorbed, roulette, max_nodes };
+
+// What remains of a path when it has ended.
+struct PathRecord {
+  Ray ray;  // the sensor's
+  PathEnd end = PathEnd::absorbed;
+  Dir escape;                    // direction in which it left the scene
+  double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
+  uint32_t size = 0;             // nodes: surfaces, the receiver included
+  bool received = false;         // node 0 is the sensor's own receiver, no surface
+  bool scattered_first = false;  // a medium scattered it before it met anything
+  bool met = false;              // `first` holds something
+};
+
+// The first surface that a path met; kept where truth is asked for.
+struct FirstMeeting {
+  Hit hit;  // object kNone: the Earth under the scene
+  Dir out;  // back along the ray, ENU
+  double distance = 0;  // m from the sensor, all segments
+  bool sunlit = false;  // the explicit sample of the sun arrived
+  const Interaction* at = nullptr;
+};
+
+}  // namespace suite

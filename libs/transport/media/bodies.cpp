@@ -1,0 +1,171 @@
+#include "transport/media/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/primitives.h"
+
+namespace suite {
+
+namespace {
+constexpr int kMostCrossings = 1 << 20;  // of one probing ray; surfaces that lie in each other end it
+// Rays go on behind a boundary along themselves, so that nothing shifts them over hundreds of boundaries; flatter ones
+// than this cosine leave it along the normal for the rest.
+constexpr double kFlattest = 0.05;
+}  // namespace
+
+Bodies::Bodies(const Surface& surface) : surface_(surface) {
+  const Scene& scene = surface.tracer().scene();
+  for (const Material& m : scene.materials) {
+    rules_.push_back({{m.outside, m.inside}, m.is_boundary()});
+    any_ = any_ || m.bounds_medium();
+    any_boundary_ = any_boundary_ || m.is_boundary();
+  }
+  for (const TracedObject& o : surface.tracer().objects()) {
+    if (o.instance >= unbounded_.size()) unbounded_.resize(o.instance + 1, false);
+    unbounded_[o.instance] = o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty();
+  }
+  alone_ = surface.tracer().objects().size() < 2 && !surface.tracer().periodic();
+}
+
+void Bodies::cross(MediumStack& stack, const Hit& hit, uint32_t material, Dir direction) const {
+  if (material == kNone || !hit.hit()) return;
+  const Rule& rule = rules_[material];
+  const bool behind = dot(direction, hit.normal) < 0;
+  stack.leave(body(hit), !behind);
+  const uint32_t medium = rule.medium[behind];
+  stack.enter(body(hit), behind, medium, priority(medium));
+}
+
+Bodies::Onward Bodies::onward(const Hit& hit, Dir direction) {
+  const double slope = dot(direction, hit.normal), steep = std::fabs(slope), step = double{hit.step};
+  const double along = step / std::max(steep, kFlattest), aside = std::max(0.0, step - along * steep);
+  const Vec3 off = direction * along + hit.normal * (slope < 0 ? -aside : aside);
+  return {hit.position + off, dot(off, direction)};
+}
+
+void Bodies::settle(Hit& hit, const Ray& ray, double gap) const {
+  if (!hit.hit()) return;
+  Vec3 off = hit.position - (ray.origin + ray.direction * hit.distance);
+  if (const auto& cell = surface_.tracer().periodic()) {
+    off.x -= std::round(off.x / cell->size.x) * cell->size.x;
+    off.y -= std::round(off.y / cell->size.y) * cell->size.y;
+  }
+  const double slope = dot(ray.direction, hit.normal);
+  if (std::fabs(slope) >= kFlattest) {
+    const double further = dot(off, hit.normal) / slope;
+    hit.position -= off - ray.direction * further;
+    hit.distance += further;
+  }
+  hit.distance += gap;
+}
+
+// Fills beside_ and materials_ with what lies on the way from `back` m before the hit to `length` m behind that; the
+// hit itself is among it.
+void Bodies::find_beside(const Hit& hit, const Ray& from, double back, double length, TraceStatistics& statistics) {
+  surface_.tracer().all(from, length, beside_, statistics);
+  const auto same = [&](const Hit& h) { return h.object == hit.object && h.triangle == hit.triangle; };
+  if (std::none_of(beside_.begin(), beside_.end(), same)) {
+    const auto at = std::find_if(beside_.begin(), beside_.end(), [&](const Hit& h) { return h.distance > back; });
+    beside_.insert(at, hit)->distance = back;
+  }
+  materials_.clear();
+  for (const Hit& h : beside_) materials_.push_back(surface_.material(h));
+}
+
+// The first surface of beside_ that is no boundary.
+std::optional<size_t> Bodies::stop() const {
+  for (size_t i = 0; i < beside_.size(); ++i)
+    if (!is_boundary(materials_[i])) return i;
+  return std::nullopt;
+}
+
+// Whether the ray changes the side of a body at beside_[i]. Two triangles at an edge are one crossing, and so are the
+// surfaces of copies that meet at the side of a periodic cell; into a body and out of it again changes nothing.
+bool Bodies::crosses(size_t i, Dir direction) const {
+  if (!bounds(materials_[i])) return false;
+  const uint32_t own = body(beside_[i]);
+  const bool behind = dot(direction, beside_[i].normal) < 0;
+  for (size_t k = 0; k < beside_.size(); ++k) {
+    if (k == i || body(beside_[k]) != own) continue;
+    if ((dot(direction, beside_[k].normal) < 0) != behind || k < i) return false;
+  }
+  return true;
+}
+
+void Bodies::transmit(MediumStack& stack, const Hit& hit, uint32_t material, Dir direction,
+                      TraceStatistics& statistics) {
+  cross(stack, hit, material, direction);
+  if (alone_ || !any_boundary_ || !hit.hit()) return;
+  const Dir n = dot(direction, hit.normal) < 0 ? -hit.normal : hit.normal;
+  const double step = double{hit.step}, back = 0.5 * step;
+  find_beside(hit, {hit.position - n * back, n, hit.time}, back, back + step, statistics);
+  for (size_t i = 0; i < beside_.size(); ++i)
+    if (body(beside_[i]) != body(hit) && is_boundary(materials_[i]) && crosses(i, n))
+      cross(stack, beside_[i], materials_[i], n);
+}
+
+std::optional<Bodies::Onward> Bodies::pass(MediumStack& stack, Hit& hit, const Ray& ray, double run,
+                                           TraceStatistics& statistics) {
+  const Onward on = onward(hit, ray.direction);
+  if (alone_) {
+    cross(stack, hit, surface_.material(hit), ray.direction);
+    return on;
+  }
+  const double back = std::min(0.5 * on.gap, run);
+  find_beside(hit, {hit.position - ray.direction * back, ray.direction, ray.time, ray.draw}, back, back + on.gap,
+              statistics);
+  const std::optional<size_t> end = stop();
+  // Rays that leave the surface that stops this one start beyond what lies closer to it than this.
+  double until = std::numeric_limits<double>::infinity();
+  if (end) {
+    const Hit& s = beside_[*end];
+    until = s.distance - double{s.step} / std::max(std::fabs(dot(s.normal, ray.direction)), kFlattest);
+  }
+  for (size_t i = 0; i < beside_.size(); ++i)
+    if (beside_[i].distance < until && crosses(i, ray.direction))
+      cross(stack, beside_[i], materials_[i], ray.direction);
+  if (!end) return on;
+  const double distance = hit.distance - back + beside_[*end].distance;
+  hit = beside_[*end];
+  hit.distance = distance;
+  return std::nullopt;
+}
+
+const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& statistics) {
+  if (asked_ && place.x == place_.x && place.y == place_.y && place.z == place_.z && time == time_) return around_;
+  asked_ = true;
+  place_ = place, time_ = time;
+  around_.clear(), entered_.clear(), left_.clear();
+  // What the ray leaves without having entered it, it started in; the nearest such surface is the innermost body.
+  Ray ray{place, normalized(Vec3{0.0123, 0.0345, 1}), time};
+  for (int n = 0; n < kMostCrossings; ++n) {
+    Hit hit;
+    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    if (!hit.hit()) break;
+    const Onward on = onward(hit, ray.direction);
+    const double back = std::min(0.5 * on.gap, hit.distance);
+    find_beside(hit, {hit.position - ray.direction * back, ray.direction, time}, back, back + on.gap, statistics);
+    for (size_t i = 0; i < beside_.size(); ++i) {
+      if (!crosses(i, ray.direction)) continue;
+      const Hit& h = beside_[i];
+      const bool side = dot(ray.direction, h.normal) > 0;  // the side that the ray comes from: behind the surface
+      if (rules_[materials_[i]].medium[side] != kNone && !entered_.holds(body(h), side))
+        left_.emplace_back(h, materials_[i]);
+      cross(entered_, h, materials_[i], ray.direction);
+    }
+    ray.origin = on.start;
+  }
+  for (size_t i = left_.size(); i-- > 0;) {
+    const bool side = dot(ray.direction, left_[i].first.normal) > 0;
+    const uint32_t medium = rules_[left_[i].second].medium[side];
+    if (!around_.holds(body(left_[i].first), side)) around_.enter(body(left_[i].first), side, medium, priority(medium));
+  }
+  return around_;
+}
+
+void Bodies::leave_scene(MediumStack& stack) const {
+  if (!stack.empty()) stack.filter([&](uint32_t of) { return unbounded_[of]; });
+}
+
+}  // namespace suite

@@ -1,0 +1,183 @@
+#include "transport/media/space_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "optics/phase_function.h"
+#include "transport/dimensions.h"
+
+namespace suite {
+
+namespace {
+constexpr uint32_t kMostFlights = 1u << 24;  // boundaries passed included
+}  // namespace
+
+FieldSpace::FieldSpace(const SpaceContext& c)
+    : surface_(c.surface),
+      optics_(c.optics),
+      air_(c.environment.atmosphere.get()),
+      ambient_(c.surface.tracer().scene().ambient),
+      field_(c.surface.tracer().scene(), c.optics.state(), c.surface.tracer().periodic()),
+      bodies_(c.surface),
+      flights_(field_, c.optics, c.knot_probability, air_),
+      sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
+      stacks_(c.width),
+      ways_(c.width),
+      events_(c.width),
+      phase_(c.optics.state().size()) {
+  for (const BakedMedium& m : c.optics.media())
+    index_.push_back(std::sqrt(double{m.index_squared[c.optics.state().knots[0]]}));
+}
+
+void FieldSpace::start(uint32_t p, const LivePath& live) {
+  ways_[p] = {};
+  stacks_[p].clear();
+  if (bodies_.any()) stacks_[p] = bodies_.around(live.origin, live.time, statistics_);
+}
+
+Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+                       std::span<float> through, std::span<float> emitted) {
+  Way& way = ways_[p];
+  if (way.gap > 0) bodies_.settle(hit, ray, way.gap);
+  if (!hit.hit()) bodies_.leave_scene(stacks_[p]);
+  if (hit.hit()) length = hit.distance;
+  const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
+  const uint32_t medium = stacks_[p].medium(ambient_);
+  const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1], u[3]}, through, emitted);
+  Flight flight{Arrival::met, {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
+                flown.dense || flown.scale != 1, flown.emits ? emitted.data() : nullptr};
+  const double gap = std::exchange(way.gap, 0);
+  const auto advance = [&](double distance) {
+    live.length += distance;
+    live.arrival += index_of(medium) * distance;
+  };
+  if (flown.scattered) {
+    advance(flown.distance);
+    if (live.surfaces == (record.received ? 1u : 0u)) record.scattered_first = true;
+    remember(p, live.origin + live.direction * flown.distance);
+    flight.arrival = Arrival::scattered;
+    return flight;
+  }
+  if (!hit.hit() || !bodies_.is_boundary(surface_.material(hit))) return flight;
+  if (++live.flights >= kMostFlights) {
+    record.end = PathEnd::max_nodes;
+    record.truncated = live.throughput[0];
+    flight.arrival = Arrival::ended;
+    return flight;
+  }
+  const auto onward = bodies_.pass(stacks_[p], hit, {live.origin, live.direction, live.time, live.draw},
+                                   hit.distance - gap, statistics_);
+  if (!onward) return flight;
+  advance(hit.distance);
+  live.origin = hit.position;
+  way = {onward->start, onward->gap};
+  flight.arrival = Arrival::onward;
+  return flight;
+}
+
+void FieldSpace::remember(uint32_t p, Vec3 place) {
+  Event& e = events_[p];
+  e.place = place;
+  e.contents = flights_.contents();
+  const std::vector<size_t>& bins = optics_.state().knots;
+  for (size_t k = 0; k < bins.size(); ++k) {
+    e.rate[k] = 0;
+    for (const Constituent& c : e.contents)
+      e.rate[k] += c.density * double{optics_.media()[c.medium].scattering[bins[k]]};
+  }
+}
+
+void FieldSpace::densities(uint32_t p, double cosine, std::span<float> density) const {
+  const Event& e = events_[p];
+  const std::vector<size_t>& bins = optics_.state().knots;
+  double q[kMaxKnots] = {};
+  for (const Constituent& c : e.contents) {
+    const BakedMedium& m = optics_.media()[c.medium];
+    if (!m.scatters()) continue;
+    float at_knots[kMaxKnots];
+    m.phase->pdf(cosine, {at_knots, density.size()});
+    for (size_t k = 0; k < density.size(); ++k) q[k] += c.density * double{m.scattering[bins[k]]} * at_knots[k];
+  }
+  for (size_t k = 0; k < density.size(); ++k) density[k] = e.rate[k] > 0 ? static_cast<float>(q[k] / e.rate[k]) : 0;
+}
+
+Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
+  const Event& e = events_[p];
+  const auto scatterers = std::count_if(e.contents.begin(), e.contents.end(),
+                                        [&](const Constituent& c) { return optics_.media()[c.medium].scatters(); });
+  if (scatterers != 1) std::fill(v.begin(), v.end(), 0.0f);
+  for (const Constituent& c : e.contents) {
+    const BakedMedium& m = optics_.media()[c.medium];
+    if (!m.scatters()) continue;
+    const float density = static_cast<float>(c.density);
+    if (m.phase->spectrally_uniform()) {
+      float value = 0;
+      m.phase->eval(cosine, {&value, 1});
+      if (scatterers == 1) return {density * value, m.scattering.data()};
+      for (size_t i = 0; i < v.size(); ++i) v[i] += density * m.scattering[i] * value;
+    } else {
+      m.phase->eval(cosine, phase_);
+      for (size_t i = 0; i < v.size(); ++i) {
+        const float value = density * m.scattering[i] * phase_[i];
+        v[i] = scatterers == 1 ? value : v[i] + value;
+      }
+    }
+  }
+  return {1, v.data()};
+}
+
+bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
+                        Continuation& on) {
+  const Event& e = events_[p];
+  const size_t own = optics_.state().knots[static_cast<size_t>(live.knot)];
+  // Draw who scatters, then how.
+  double choice = who * e.rate[live.knot];
+  const BakedMedium* scatterer = nullptr;
+  for (const Constituent& c : e.contents) {
+    const BakedMedium& m = optics_.media()[c.medium];
+    const double rate = c.density * double{m.scattering[own]};
+    if (!(rate > 0)) continue;
+    scatterer = &m;
+    if ((choice -= rate) < 0) break;
+  }
+  if (!scatterer) return false;
+  const double cosine = scatterer->phase->sample(u.x, live.knot);
+  densities(p, cosine, {on.density, optics_.state().knots.size()});
+  on.in = scattered_direction(-live.direction, cosine, u.y);
+  on.dirac = false;
+  on.weight = evaluate(p, cosine, dense);
+  return true;
+}
+
+void FieldSpace::see_from_surface(uint32_t p, const Hit& hit, uint32_t material, Dir out, Dir in) {
+  MediumStack& stack = sight_.add(stacks_[p]);
+  if (dot(in, hit.normal) * dot(out, hit.normal) < 0) bodies_.transmit(stack, hit, material, in, statistics_);
+}
+
+bool FieldSpace::dims(const Ray& ray, double distance, size_t i, std::span<float> transmission,
+                      std::span<double> reach) {
+  const std::span<const double> depth = sight_.depths(i);
+  const bool dim = flights_.transmittance(depth, transmission);
+  if (dim)
+    for (size_t k = 0; k < reach.size(); ++k) {
+      double tau = 0;
+      for (size_t m = 0; m < depth.size(); ++m)
+        tau += depth[m] * double{optics_.media()[m].scattering[optics_.state().knots[k]]};
+      reach[k] = std::exp(-tau);
+    }
+  if (!air_) return dim;
+  if (!dim) std::fill(transmission.begin(), transmission.end(), 1.0f);
+  air_->transmittance(ray.origin, ray.direction, distance, phase_);
+  for (size_t k = 0; k < phase_.size(); ++k) transmission[k] *= phase_[k];
+  return true;
+}
+
+TraceStatistics FieldSpace::take_statistics() {
+  TraceStatistics all = sight_.take_statistics();
+  all.rays += statistics_.rays, all.cycles += statistics_.cycles;
+  statistics_ = {};
+  return all;
+}
+
+}  // namespace suite

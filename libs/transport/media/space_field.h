@@ -1,0 +1,83 @@
+// Space that media fill: flights, scattering events between surfaces, index-matched boundaries on the way, and the air
+// along it. One of the answers to "what fills space" that the path kernel is made for.
+//
+// With v the sum over the contents of density x scattering x phase function and q_k = v_k / (scattering coefficient) the
+// density of directions at knot k, a scattering event is to the kernel what a surface is: v for w, q for its density.
+// Flights, and what reaches a light of the continuations that are drawn towards it, are in media/flight.h.
+#pragma once
+#include <vector>
+
+#include "transport/media/media_sight.h"
+#include "transport/space_nothing.h"
+#include "transport/surfaces_any.h"
+
+namespace suite {
+
+class FieldSpace {
+ public:
+  static constexpr bool kScatters = true, kFills = true;
+  static constexpr uint32_t kDense = 2;
+  static constexpr uint16_t kEmitter = kFromMatter;
+  using Sight = MediaSight;
+  explicit FieldSpace(const SpaceContext& context);
+
+  // Puts a new path into the bodies around its origin.
+  void start(uint32_t p, const LivePath& live);
+  Vec3 ray_from(uint32_t p, const LivePath& live) const { return ways_[p].gap > 0 ? ways_[p].from : live.origin; }
+  // One flight of path p towards `hit`, which `ray` found, over `length` m at most. through, emitted: memory for spectra.
+  Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+             std::span<float> through, std::span<float> emitted);
+  double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
+  // The path goes through a surface to the other side.
+  void cross(uint32_t p, const Hit& hit, uint32_t material, Dir in) {
+    bodies_.transmit(stacks_[p], hit, material, in, statistics_);
+  }
+
+  // The event that ended the last flight of path p.
+  Vec3 place(uint32_t p) const { return events_[p].place; }
+  void densities(uint32_t p, double cosine, std::span<float> density) const;
+  // v; dense: memory for a spectrum.
+  Factor evaluate(uint32_t p, double cosine, std::span<float> dense);
+  // Draws a direction. who: number that chooses the scatterer. Nothing when nothing scatters.
+  bool sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense, Continuation& on);
+
+  void clear_sight() { sight_.clear(); }
+  // Names a ray from path p, at the event that ended its flight or else at a surface.
+  void see_from_event(uint32_t p) { sight_.add(stacks_[p]); }
+  void see_from_surface(uint32_t p, const Hit& hit, uint32_t material, Dir out, Dir in);
+  Sight& sight() { return sight_; }
+  bool dims(const Ray& ray, double distance, size_t i, std::span<float> transmission, std::span<double> reach);
+  // Along ray i, with the index where it starts: boundaries that do not bend it part media of one index.
+  double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
+  TraceStatistics take_statistics();
+
+ private:
+  struct Way {   // of the next ray of a path
+    Vec3 from;   // where it begins
+    double gap = 0;  // m from the path's origin to there; 0 = at it
+  };
+  struct Event {
+    Vec3 place;
+    std::vector<Constituent> contents;
+    double rate[kMaxKnots];  // scattering coefficient
+  };
+  void remember(uint32_t p, Vec3 place);
+  double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
+
+  const Surface& surface_;
+  const Optics& optics_;
+  const Atmosphere* air_;
+  uint32_t ambient_;
+  VolumeField field_;
+  Bodies bodies_;
+  Flights flights_;
+  MediaSight sight_;
+  std::vector<double> index_;  // of refraction at the reference, per medium
+  std::vector<MediumStack> stacks_;
+  std::vector<Way> ways_;
+  std::vector<Event> events_;
+  std::vector<float> phase_;
+  TraceStatistics statistics_;  // of short rays at boundaries
+};
+
+}  // namespace suite

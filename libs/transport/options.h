@@ -1,0 +1,40 @@
+// What a user chooses of how light is estimated.
+#pragma once
+#include <cstdint>
+
+#include "light/light.h"
+
+namespace suite {
+
+// When a problem stops taking samples.
+enum class StopRule : uint8_t {
+  plan,    // at the count that was planned for it beforehand: unbiased
+  change,  // the paper's: when one more sample changes the running mean at the reference band by less than a threshold.
+           // It looks at the samples that it keeps and is biased low where rare events carry the light.
+};
+
+// How light is estimated.
+enum class Method : uint8_t {
+  standard,  // estimators/standard.h
+  paper,     // estimators/paper.h: Goodenough & Brown as written, for comparison
+};
+
+struct PipelineOptions {
+  uint64_t seed = 1;
+  // Most nodes of a path: consecutive scattering events at surfaces; 0 = no limit, paths end by chance (shares.h).
+  int max_nodes = 0;
+  uint32_t max_scatterings = 0;   // the same inside media, beside the nodes
+  int roulette_after = 3;         // events before paths may end by chance
+  bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
+  Method method = Method::standard;
+  int lamp_draws = LightNature::kMostDraws;  // 1..kMostDraws: samples of a light at the first node of a path
+  StopRule stop = StopRule::plan;
+  uint32_t change_after = 20;  // StopRule::change: samples before the first test
+  double change = 1e-3;        // StopRule::change: relative change that counts as convergence
+  bool specialise = true;      // use kernels made for what a state really contains (off only for comparisons)
+};
+
+// Error when a value is out of its range.
+void check(const PipelineOptions& options);
+
+}  // namespace suite

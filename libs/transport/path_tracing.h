@@ -1,0 +1,54 @@
+// What runs paths, whatever the kernel that was made for a state (kernel.h): rays in, contributions out, rays to be
+// traced asked for on the way.
+#pragma once
+#include <memory>
+
+#include "light/environment.h"
+#include "sensor/sensor.h"
+#include "transport/contribution.h"
+#include "transport/lane.h"
+#include "transport/options.h"
+#include "transport/throughput.h"
+#include "transport/trace_request.h"
+
+namespace suite {
+
+class PathTracing {
+ public:
+  virtual ~PathTracing() = default;
+  // Starts path p (< width) with a sensor ray. sample: index within the stream of its problem and scramble.
+  virtual void start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) = 0;
+  // Takes all started paths on to the next rays to be traced; the request is to be served before the next call. False
+  // when all of them have ended.
+  virtual bool next(TraceRequest& request) = 0;
+  virtual const PathRecord& record(uint32_t p) const = 0;
+  virtual const FirstMeeting& first(uint32_t p) const = 0;  // where keep_first was asked for
+  // Nodes since the last call, and short rays that were traced to find out about touching bodies.
+  virtual uint64_t take_nodes() = 0;
+  virtual TraceStatistics take_statistics() = 0;
+};
+
+// What a kernel is made from. Everything referred to must outlive it.
+struct KernelContext {
+  const Surface& surface;
+  const Optics& optics;
+  const Environment& environment;
+  const PipelineOptions& options;
+  bool keep_first = false;  // truth wants to know the first surfaces
+  bool receivers = false;   // rays may start at receivers
+};
+
+// Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.
+bool may_lose(const KernelContext& context);
+
+// The kernel that serves a state best: "matte" or "general", and what fills space: "", "air", "media".
+struct KernelChoice {
+  bool matte = false;
+  enum class Space : uint8_t { nothing, air, field } space = Space::nothing;
+  const char* name() const;
+};
+KernelChoice choose_kernel(const KernelContext& context);
+std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const KernelContext& context, size_t width,
+                                         SpectralThroughputs& throughputs, Sink<SpectralThroughputs>& sink);
+
+}  // namespace suite

@@ -1,0 +1,115 @@
+#include "transport/pipeline.h"
+
+#include <immintrin.h>
+
+#include "transport/block_run.h"
+#include "transport/workspace.h"
+
+namespace suite {
+
+namespace {
+
+// Sums of one wave: paths of many suns run fewer together.
+constexpr size_t kMostFloats = size_t{1} << 22;
+
+}  // namespace
+
+void check(const PipelineOptions& options) {
+  if (options.lamp_draws < 1 || options.lamp_draws > LightNature::kMostDraws)
+    throw Error(strf("%d lamps a node are not between 1 and %d", options.lamp_draws, LightNature::kMostDraws));
+  if (options.max_nodes < 0) throw Error(strf("max nodes %d is not 0 (no limit) or more", options.max_nodes));
+  if (options.method == Method::paper && options.max_nodes == 0)
+    throw Error("the paper's estimator ends paths at a maximum of nodes only", "give max_nodes");
+}
+
+Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment,
+                   const SpectralState& state, const BandProjection& projection, size_t reference_band,
+                   const TruthPlan& truth, const PipelineOptions& options)
+    : surface_(surface),
+      optics_(optics),
+      environment_(environment),
+      state_(state),
+      projection_(projection),
+      reference_band_(reference_band),
+      truth_(truth),
+      options_(options) {
+  if (options_.method == Method::paper && !optics.media().empty())
+    throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
+  check(options_);
+  choice_ = choose_kernel({surface_, optics_, environment_, options_, truth_.wanted()});
+}
+
+Pipeline::~Pipeline() = default;
+
+// What shines on a capture: the environment, or its own suns.
+KernelContext Pipeline::context(const Capture& capture) const {
+  if (capture.bin_by != Capture::BinBy::sun)
+    return {surface_, optics_, environment_, options_, truth_.wanted()};
+  if (!suns_) {
+    suns_ = std::make_unique<Environment>();
+    SunSpec spec;
+    spec.half_angle = 0;
+    spec.irradiance = Curve::constant(1);
+    for (const Dir& towards : capture.suns) {
+      spec.direction = towards;
+      suns_->lights.push_back(std::make_shared<Sun>(spec, state_));
+    }
+  }
+  return {surface_, optics_, *suns_, options_, truth_.wanted()};
+}
+
+bool Pipeline::may_miss(const Capture& capture) const {
+  const std::lock_guard lock(mutex_);
+  return may_lose(context(capture));
+}
+
+Pipeline::Workspace::Workspace(const KernelChoice& c, const KernelContext& x, size_t w, size_t g, bool s, bool lost)
+    : context(x),
+      choice(c),
+      width(w),
+      groups(g),
+      single(s),
+      sink(w, g, s, lost),
+      throughputs(w, x.optics.state().size(), sink.targets()),
+      kernel(make_kernel(choice, context, width, throughputs, sink)),
+      kernels(width),
+      weights(width * x.optics.state().size()) {}
+
+PathTracing& Pipeline::Workspace::kernel_of(const SensorRay& ray) {
+  if (ray.receiver == SensorRay::Receiver::none) return *kernel;
+  if (!receiving) {
+    context.receivers = true;
+    receiving = make_kernel(choose_kernel(context), context, width, throughputs, sink);
+  }
+  return *receiving;
+}
+
+std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(const Sensor& sensor, const Capture& capture) const {
+  const size_t groups = capture.bin_by == Capture::BinBy::sun ? capture.suns.size() : 1;
+  const bool single = sensor.channels().size() > 1;
+  const std::lock_guard lock(mutex_);
+  if (!idle_.empty()) {
+    std::unique_ptr<Workspace> found = std::move(idle_.back());
+    idle_.pop_back();
+    if (found->groups == groups && found->single == single) return found;
+    idle_.clear();
+  }
+  const KernelContext from = context(capture);
+  const bool lost = may_lose(from);
+  const size_t targets = RadianceSink(1, groups, single, lost).targets();
+  const size_t width = std::clamp<size_t>(kMostFloats / (targets * state_.size()), 1, kWaveWidth);
+  return std::make_unique<Workspace>(choose_kernel(from), from, width, groups, single, lost);
+}
+
+void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
+                   std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const {
+  const FlushDenormals flush;
+  const uint64_t start = __rdtsc();
+  std::unique_ptr<Workspace> workspace = borrow(sensor, capture);
+  BlockRun(*this, sensor, capture, capture_id, block, to, sums, slots, statistics, *workspace).run();
+  statistics.cycles += __rdtsc() - start;
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(workspace));
+}
+
+}  // namespace suite

@@ -1,0 +1,56 @@
+// The radiometry pipeline (paper, section IV-A): each pass takes a few rays of each of a few neighbouring problems, runs
+// their paths (kernel.h), and adds the light that they have gathered to the problems' accumulators.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "estimate/accumulators.h"
+#include "estimate/block.h"
+#include "estimate/statistics.h"
+#include "sensor/sensor.h"
+#include "transport/path_tracing.h"
+#include "transport/truth/truth.h"
+
+namespace suite {
+
+class Pipeline {
+ public:
+  // Keeps references; all must outlive it. Error: options out of range, or the paper's estimator with media.
+  Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
+           const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
+           const PipelineOptions& options);
+  ~Pipeline();
+
+  // Continues each problem of a block, in the scrambles that the block has, from what its accumulators hold up to the
+  // first to[problem] samples. Thread-safe for distinct blocks.
+  void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
+           std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
+  // Whether paths of a capture may know of light that they miss (lost_light.h).
+  bool may_miss(const Capture& capture) const;
+  // The kernel that paths of this state run in: KernelChoice::name().
+  const char* kernel() const { return choice_.name(); }
+
+ private:
+  friend class BlockRun;
+  struct Workspace;
+  KernelContext context(const Capture& capture) const;
+  std::unique_ptr<Workspace> borrow(const Sensor& sensor, const Capture& capture) const;
+
+  const Surface& surface_;
+  const Optics& optics_;
+  const Environment& environment_;
+  const SpectralState& state_;
+  const BandProjection& projection_;
+  size_t reference_band_;
+  const TruthPlan& truth_;
+  PipelineOptions options_;
+  KernelChoice choice_;
+  // Working memory goes from block to block; as many as threads have been at work at once. All that are idle were made
+  // for one layout of sums.
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Workspace>> idle_;
+  mutable std::unique_ptr<Environment> suns_;  // of a capture under many suns
+};
+
+}  // namespace suite

@@ -1,0 +1,43 @@
+// What a path's contributions are divided by, and when paths end by chance. Each of these decisions is made here only.
+//
+// Directions are drawn from the shapes at one of the state's knots, chosen per path; every other knot could have drawn
+// the same path, and the one-sample balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014) divides by the mean of
+// all their densities. With P_k the probability of knot k, r_k the density of the path so far under knot k relative to
+// the knot that drew it, A = sum P_k r_k, a contribution carries the factor 1 / A. After every event r and the
+// throughput are divided by A, so that A = 1 where the next one begins. Explicit samples of a source with density p_s
+// and continuations that meet it by chance share the same heuristic:
+//   explicit:   1 / (p_s + sum P_k r_k p_k)        by chance:   1 / (A' + p_s / p_h),  A' after the last event.
+// Samples of the Sun's and the Moon's disk hardly vary by themselves, while a lobe a few times as wide as the disk
+// meets it rarely: what the rare continuation may bring is made small by the power heuristic (exponent 2; Veach &
+// Guibas 1995). With b = p_s, a = sum P_k r_k p_k; B = p_s / p_h:
+//   explicit:   b / (a^2 + b^2)                      by chance:   A' / (A'^2 + B^2).
+// Skies and lamps stay with the balance heuristic, which is the better one for densities that are alike.
+//
+// Several samples of one light at one node are strata of one choice: each stands for 1 / draws of it, so the density
+// p_s above is draws times that of one draw.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+namespace suite {
+
+// What a contribution is divided by that a path got in one of two ways, an explicit sample of a source or a
+// continuation that met it: own is the density of the way it went, other that of the other one. disk: LightNature::disk.
+inline double shared_density(double own, double other, bool disk) {
+  return disk ? own + other * (other / own) : own + other;
+}
+
+// Russian roulette: the probability with which a path survives an event.
+// events: scattering events so far, this one included; brightness: throughput, the largest over the knots; dirac: the
+// event drew a Dirac lobe. Chains of Dirac events that still carry much play no roulette: there is nothing else that
+// could vary. Paths that lose nothing (closed boxes of perfect mirrors) must end, too: from kEndless events on a
+// thousandth of them does at each, which leaves means unchanged.
+inline double survival(double brightness, uint64_t events, int roulette_after, bool dirac) {
+  constexpr double kLeast = 0.05, kChainsCarry = 0.25, kEndlessMost = 0.999;
+  constexpr uint64_t kEndless = 10000;
+  if (events > kEndless) return std::clamp(brightness, kLeast, kEndlessMost);
+  if (events <= static_cast<uint64_t>(roulette_after) || (dirac && brightness > kChainsCarry)) return 1;
+  return std::clamp(brightness, kLeast, 1.0);
+}
+
+}  // namespace suite

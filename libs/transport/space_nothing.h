@@ -1,0 +1,94 @@
+// What fills space: nothing, or air alone in closed form. Two of the answers that the path kernel is made for; the third
+// is media/space_field.h.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "light/environment.h"
+#include "transport/lane.h"
+#include "transport/options.h"
+#include "transport/sight.h"
+
+namespace suite {
+
+// Where a flight of a path along its ray has ended.
+enum class Arrival : uint8_t {
+  met,        // where the ray ends: at a surface or outside the scene
+  scattered,  // in a medium on the way
+  onward,     // at a boundary that it goes straight through: it flies again
+  ended       // it goes no further
+};
+struct Flight {
+  Arrival arrival = Arrival::met;
+  // What the way has done to the light of all that lies behind it; and whether it has done anything.
+  Factor through;
+  bool weakened = false;
+  const float* emitted = nullptr;  // light from the way itself, per bin, as seen from its start; null = none
+};
+
+// What a space needs to know to be made.
+struct SpaceContext {
+  const Surface& surface;
+  const Optics& optics;
+  const Environment& environment;
+  const PipelineOptions& options;
+  size_t width;
+  std::span<const double> knot_probability;  // P_k
+  LostLight* lost;                           // null where no light can be lost
+};
+
+class NothingSpace {
+ public:
+  static constexpr bool kScatters = false;   // paths are scattered between surfaces
+  static constexpr bool kFills = false;      // flights do anything at all
+  static constexpr uint32_t kDense = 0;      // spectra that fly() needs
+  using Sight = PlainSight;
+  explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
+
+  template <class L>
+  void start(uint32_t, const L&) {}
+  // Where the ray that looks for what a path meets next begins.
+  template <class L>
+  Vec3 ray_from(uint32_t, const L& lane) const {
+    return lane.origin;
+  }
+  double index(uint32_t) const { return 1; }
+  template <class L>
+  void cross(uint32_t, const Hit&, uint32_t, Dir) {}
+  void clear_sight() {}
+  Sight& sight() { return sight_; }
+  // What lies on the way of ray i of the last sight(), of SightRays, leaves of its light: false = all of it. reach: the
+  // same of scattering alone at the knots, the share of continuations that would get as far.
+  bool dims(const Ray&, double, size_t, std::span<float>, std::span<double>) { return false; }
+  // m, index of refraction times way, along ray i.
+  double optical_way(uint32_t, size_t, double distance) const { return distance; }
+  TraceStatistics take_statistics() { return {}; }
+
+ private:
+  Sight sight_;
+};
+
+// Air without media: transmittance and path radiance of each segment are known at once.
+class AirSpace : public NothingSpace {
+ public:
+  static constexpr bool kFills = true;
+  static constexpr uint32_t kDense = 2;
+  explicit AirSpace(const SpaceContext& c) : NothingSpace(c), air_(*c.environment.atmosphere) {}
+
+  template <class L>
+  Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, std::span<float> through,
+             std::span<float> emitted) const {
+    air_.path(lane.origin, lane.direction, length, through, emitted);
+    return {Arrival::met, {1, through.data()}, true, emitted.data()};
+  }
+  static constexpr uint16_t kEmitter = kFromAir;
+  bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
+    air_.transmittance(ray.origin, ray.direction, distance, transmission);
+    return true;
+  }
+
+ private:
+  const Atmosphere& air_;
+};
+
+}  // namespace suite

@@ -1,0 +1,119 @@
+#include "transport/surfaces_any.h"
+
+#include <algorithm>
+
+#include "transport/receiver.h"
+
+namespace suite {
+
+AnySurfaces::AnySurfaces(const Surface& surface, const Optics& optics, size_t width, bool keep_first)
+    : surface_(surface),
+      optics_(optics),
+      knots_(optics.state().knots.size()),
+      keep_first_(keep_first),
+      current_(width),
+      first_(keep_first ? width : 0),
+      at_(width) {}
+
+bool AnySurfaces::meet(uint32_t p, const Hit& hit, Dir out, double time, bool first) {
+  at_[p] = first && keep_first_ ? &first_[p] : &current_[p];
+  surface_.interact(hit, out, *at_[p], time);
+  return at_[p]->baked && at_[p]->baked->model;
+}
+
+namespace {
+
+// A surface that is not of the scene: without shading normals or maps.
+void put(Interaction& at, const Hit& hit, uint32_t material, const BakedMaterial* baked) {
+  at.position = hit.position;
+  at.geometric_normal = hit.normal;
+  at.frame = Frame::around(hit.normal);
+  at.material = material;
+  at.baked = baked;
+}
+
+}  // namespace
+
+bool AnySurfaces::meet_earth(uint32_t p, const Hit& hit, uint32_t material, bool first) {
+  at_[p] = first && keep_first_ ? &first_[p] : &current_[p];
+  put(*at_[p], hit, material, &optics_.material(material));
+  return at_[p]->baked->model;
+}
+
+void AnySurfaces::receive(uint32_t p, const Hit& hit, SensorRay::Receiver kind) {
+  BakedMaterial& receiver = receivers_[kind == SensorRay::Receiver::sphere];
+  if (!receiver.model) receiver = bake_receiver(kind, optics_.state());
+  at_[p] = &current_[p];
+  put(*at_[p], hit, kNone, &receiver);
+}
+
+LightReceiver AnySurfaces::receiver(uint32_t p, const Hit& hit, Dir out) const {
+  const Interaction& at = *at_[p];
+  const bool opaque = at.baked->model->opaque();
+  const Dir n = at.frame.z;
+  return {hit.position, opaque && dot(out, at.geometric_normal) < 0 ? -n : n, !opaque};
+}
+
+bool AnySurfaces::takes(uint32_t p, const Hit&, Dir out, Dir in) const {
+  const Interaction& at = *at_[p];
+  const double in_side = dot(in, at.geometric_normal);
+  if (at.baked->model->opaque() && in_side * dot(out, at.geometric_normal) <= 0) return false;
+  // Light may come in only from the side of the surface that the shading frame says it comes from.
+  return in_side * dot(in, at.frame.z) > 0;
+}
+
+Factor AnySurfaces::evaluate(uint32_t p, Dir out, Dir in, std::span<float> dense) const {
+  const Interaction& at = *at_[p];
+  const ScatterModel& model = *at.baked->model;
+  const Dir to = at.frame.to_local(out), from = at.frame.to_local(in);
+  // Spectra of a material that maps have made here do not outlive the next surface.
+  if (!local(p))
+    if (const auto factored = model.factored(to, from)) return {factored->scale, factored->spectrum};
+  model.eval(to, from, dense);
+  return {1, dense.data()};
+}
+
+void AnySurfaces::densities(uint32_t p, Dir out, Dir in, std::span<float> density) const {
+  const Interaction& at = *at_[p];
+  at.baked->model->pdf(at.frame.to_local(out), at.frame.to_local(in), density);
+}
+
+bool AnySurfaces::sample(size_t, uint32_t p, const Hit&, Dir out, Vec2 u, double lobe_u, int knot, std::span<float> dense,
+                         Continuation& on) const {
+  const Interaction& at = *at_[p];
+  const ScatterModel& model = *at.baked->model;
+  const Dir to = at.frame.to_local(out);
+  const auto drawn = model.sample(to, u, lobe_u, knot);
+  if (!drawn) return false;
+  on.in = at.frame.to_world(drawn->in);
+  if (dot(on.in, at.geometric_normal) * drawn->in.z <= 0) return false;  // would leak through the real surface
+  on.dirac = drawn->delta;
+  const std::span<float> density{on.density, knots_};
+  if (drawn->delta) {
+    model.delta_weight(to, drawn->lobe, knot, dense);
+    model.delta_probability(to, drawn->lobe, knot, density);
+    on.weight = {1, dense.data()};
+    return true;
+  }
+  on.weight = {1, nullptr};
+  if (!local(p))
+    if (const auto factored = model.factored(to, drawn->in)) on.weight = {factored->scale, factored->spectrum};
+  if (!on.weight.spectrum) {
+    model.eval(to, drawn->in, dense);
+    on.weight = {1, dense.data()};
+  }
+  model.pdf(to, drawn->in, density);
+  return true;
+}
+
+// Thermal emission: (1 - W) B(T), Kirchhoff's law for this side and direction.
+AnySurfaces::Emission AnySurfaces::emission(uint32_t p, Dir out, std::span<float> dense) const {
+  const Interaction& at = *at_[p];
+  at.baked->model->total(at.frame.to_local(out), dense);
+  for (float& e : dense) e = std::max(0.0f, 1 - e);
+  if (!local(p)) return Emission{{1, dense.data()}, at.baked->blackbody.data()};
+  for (size_t k = 0; k < dense.size(); ++k) dense[k] *= at.baked->blackbody[k];
+  return Emission{{1, dense.data()}, nullptr};
+}
+
+}  // namespace suite

@@ -1,0 +1,90 @@
+#include "transport/surfaces_matte.h"
+
+#include <cmath>
+
+#include "math/warps.h"
+
+namespace suite {
+
+namespace {
+
+bool plain(const BakedMaterial& m) {
+  return m.model->diffuse() && m.blackbody.empty() && !(m.maps && (m.maps->varies() || m.maps->bends()));
+}
+
+}  // namespace
+
+bool MatteSurfaces::serve(const Surface& surface, const Optics& optics) {
+  if (optics.state().knots.size() != 1) return false;
+  for (uint32_t i = 0; i < surface.tracer().scene().materials.size(); ++i)
+    if (const BakedMaterial& m = optics.material(i); m.model && !plain(m)) return false;
+  return true;
+}
+
+MatteSurfaces::MatteSurfaces(const Surface& surface, const Optics& optics, size_t width, bool keep_first)
+    : surface_(surface),
+      optics_(optics),
+      keep_first_(keep_first),
+      objects_(surface.tracer().objects()),
+      meshes_(surface.tracer().scene().meshes),
+      places_(width),
+      first_(keep_first ? width : 0),
+      x_((width + 3) / 4 * 4),
+      y_(x_.size()),
+      z_(x_.size()) {
+  for (uint32_t i = 0; i < surface.tracer().scene().materials.size(); ++i) {
+    const ScatterModel* model = optics.material(i).model;
+    rho_.push_back(model ? model->diffuse() : nullptr);
+  }
+}
+
+bool MatteSurfaces::meet(uint32_t p, const Hit& hit, Dir out, double time, bool first) {
+  Place& place = places_[p];
+  const TracedObject& object = objects_[hit.object];
+  if (object.mesh != kNone && meshes_[object.mesh].normals.empty()) {
+    place.material = surface_.material(object, hit);
+    place.shading = hit.normal;
+  } else {
+    surface_.interact(hit, out, interaction_, time);
+    place.material = interaction_.material;
+    place.shading = interaction_.frame.z;
+  }
+  if (first && keep_first_) keep(p, hit);
+  place.rho = place.material == kNone ? nullptr : rho_[place.material];
+  return place.rho;
+}
+
+bool MatteSurfaces::meet_earth(uint32_t p, const Hit& hit, uint32_t material, bool first) {
+  places_[p] = {hit.normal, rho_[material], material};
+  if (first && keep_first_) keep(p, hit);
+  return rho_[material];
+}
+
+// What truth looks at.
+void MatteSurfaces::keep(uint32_t p, const Hit& hit) {
+  Interaction& at = first_[p];
+  const uint32_t material = places_[p].material;
+  at.position = hit.position;
+  at.geometric_normal = hit.normal;
+  at.frame = Frame::around(places_[p].shading);
+  at.material = material;
+  at.baked = material == kNone ? nullptr : &optics_.material(material);
+}
+
+void MatteSurfaces::prepare_all(size_t n) { cosine_hemispheres(n, x_.data(), y_.data(), z_.data()); }
+
+bool MatteSurfaces::sample(size_t i, uint32_t p, const Hit& hit, Dir out, Vec2, double, int, std::span<float>,
+                           Continuation& on) const {
+  const Place& place = places_[p];
+  const double side = dot(out, place.shading);
+  Dir in{x_[i], y_[i], z_[i]};
+  if (side == 0 || !(in.z > 0)) return false;
+  on.density[0] = static_cast<float>(in.z / kPi);
+  on.weight = {on.density[0], place.rho};
+  on.dirac = false;
+  if (side < 0) in.z = -in.z;
+  on.in = Frame::around(place.shading).to_world(in);
+  return dot(on.in, hit.normal) * in.z > 0;  // else it would leak through the real surface
+}
+
+}  // namespace suite

@@ -1,0 +1,122 @@
+// The throughputs of paths and the light that they have gathered, as spectra: the algebra that the path kernel computes
+// in. A path scatters, is attenuated and turns (its frame of reference; nothing to do for spectra), and shines when light
+// arrives.
+//
+// Nothing is multiplied when it happens. A path keeps a short chain of steps, numbers times spectra that stand
+// elsewhere, and folds it when the chain is full or the path ends: one pass over the wavelengths for many events, no
+// memory that grows with the length of a path. With T the throughput and L the light gathered so far,
+//   turn of the chain:  T <- scale a T          light:  L <- L + scale a b T.
+#pragma once
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "math/vec.h"
+#include "transport/contribution.h"
+
+namespace suite {
+
+class SpectralThroughputs {
+ public:
+  // width: paths that run together; targets: sums of light a path keeps apart (1..65535).
+  SpectralThroughputs(size_t width, size_t bins, size_t targets);
+
+  size_t bins() const { return bins_; }
+  size_t targets() const { return targets_; }
+  // A path starts with a weight and, if not null, a spectrum of weights that outlives it.
+  void begin(uint32_t p, float weight, const float* weights) {
+    Chain& c = chains_[p];
+    c.steps = c.dense = 0;
+    c.folded = false;
+    add_turn(c, p, {weight, weights});
+  }
+  // T <- w T: scattered, w over its density.
+  void scatter(uint32_t p, const Factor& w) { multiply(p, w); }
+  // T <- t T: weakened on the way.
+  void attenuate(uint32_t p, const Factor& t) { multiply(p, t); }
+  // The plane of an event, from `out` to `in`, before its scattering: polarisation would be told in it; spectra have none.
+  void turn(uint32_t, Dir, Dir) {}
+  // T <- s T.
+  void scale(uint32_t p, double s) { multiply(p, {static_cast<float>(s), nullptr}); }
+
+  // Memory for spectra that stand nowhere else: kDense a path. take() hands them out one after the other; they stay
+  // until make_room(), which folds the chain, and all that points to them must stand in the chain by then.
+  static constexpr uint32_t kDense = 8;
+  bool has_room(uint32_t p, uint32_t count) const { return chains_[p].dense + count <= kDense; }
+  void make_room(uint32_t p) {
+    fold(p);
+    chains_[p].dense = 0;
+  }
+  std::span<float> take(uint32_t p) {
+    return {&dense_[(size_t{p} * kDense + chains_[p].dense++) * stride_], bins_};
+  }
+  // The last one taken was not needed.
+  void give_back(uint32_t p) { --chains_[p].dense; }
+
+  // L[target] += scale factor radiance T; second: another target that gets the same, kNone = none.
+  static constexpr uint16_t kNone = 0xffff;
+  void shine(uint32_t p, const Factor& factor, float scale, const float* radiance, uint16_t target,
+             uint16_t second = kNone) {
+    Chain& c = chains_[p];
+    if (c.steps == kSteps) fold(p);
+    step(p, c.steps++) = {factor.spectrum, radiance, factor.scale * scale, target, second};
+  }
+
+  // L of a path.
+  std::span<const float> light(uint32_t p, size_t target = 0) {
+    if (!chains_[p].folded || chains_[p].steps > 0) fold(p);
+    return {&light_[(size_t{p} * targets_ + target) * stride_], bins_};
+  }
+  // T of a path as it stands.
+  std::span<const float> throughput(uint32_t p) {
+    if (!chains_[p].folded || chains_[p].steps > 0) fold(p);
+    return {&throughput_[size_t{p} * stride_], bins_};
+  }
+
+ private:
+  static constexpr uint32_t kSteps = 16;
+  static constexpr uint16_t kTurn = 0xfffe;  // target of steps that change T
+  struct Step {
+    const float *a, *b;  // null = ones
+    float scale;
+    uint16_t target, second;
+  };
+  struct Chain {
+    uint32_t steps = 0, dense = 0;
+    bool folded = false;  // T and L stand in memory; else they are 1 and 0
+  };
+  struct Free {
+    void operator()(float* p) const { std::free(p); }
+  };
+  using Spectra = std::unique_ptr<float[], Free>;
+  static Spectra spectra(size_t floats);
+
+  Step& step(uint32_t p, uint32_t i) { return steps_[size_t{p} * kSteps + i]; }
+  void add_turn(Chain& c, uint32_t p, const Factor& f) {
+    step(p, c.steps++) = {f.spectrum, nullptr, f.scale, kTurn, kNone};
+  }
+  void multiply(uint32_t p, const Factor& f) {
+    Chain& c = chains_[p];
+    if (c.steps > 0) {  // numbers join the turn before
+      Step& last = step(p, c.steps - 1);
+      if (last.target == kTurn && (!f.spectrum || !last.a)) {
+        last.scale *= f.scale;
+        if (f.spectrum) last.a = f.spectrum;
+        return;
+      }
+    }
+    if (c.steps == kSteps) fold(p);
+    add_turn(c, p, f);
+  }
+  void fold(uint32_t p);
+  void fold_number(uint32_t p);
+
+  size_t bins_, stride_, targets_;
+  std::vector<Chain> chains_;
+  std::vector<Step> steps_;
+  Spectra dense_, throughput_, light_;
+};
+
+}  // namespace suite

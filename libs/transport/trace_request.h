@@ -1,0 +1,19 @@
+// What a path kernel asks of the tracer: rays out, hits in. The kernel never calls the tracer itself, so that queues,
+// packets and the order of rays are the business of whoever serves the requests (serve.h).
+#pragma once
+#include <span>
+
+#include "trace/tracer.h"
+
+namespace suite {
+
+struct TraceRequest {
+  enum class Kind : uint8_t { nearest, occluded } kind = Kind::nearest;
+  std::span<const Ray> rays;
+  bool coherent = false;             // neighbours in the list run alongside each other
+  std::span<Hit> hits;               // nearest: filled
+  std::span<const double> distance;  // occluded: how far to look, m
+  std::span<uint8_t> blocked;        // occluded: filled
+};
+
+}  // namespace suite

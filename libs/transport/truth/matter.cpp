@@ -1,0 +1,164 @@
+// What the first things met are made of and belong to.
+#include <algorithm>
+#include <array>
+
+#include "transport/truth/truth.h"
+
+namespace suite {
+
+namespace {
+
+// The most frequent of a few identifiers, seen in turn, in little memory: any id seen in more than a fifth of the
+// samples survives, which includes every majority. Based on: Misra & Gries, "Finding repeated elements", 1982.
+constexpr size_t kVotes = 4;
+struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
+  static void add(double* slots, uint32_t id) {
+    for (size_t i = 0; i < kVotes; ++i)
+      if (slots[2 * i + 1] > 0 && slots[2 * i] == id + 1.0) {
+        ++slots[2 * i + 1];
+        return;
+      }
+    for (size_t i = 0; i < kVotes; ++i)
+      if (!(slots[2 * i + 1] > 0)) {
+        slots[2 * i] = id + 1.0;
+        slots[2 * i + 1] = 1;
+        return;
+      }
+    for (size_t i = 0; i < kVotes; ++i) --slots[2 * i + 1];
+  }
+  static size_t most(const double* slots) {
+    size_t best = 0;
+    for (size_t i = 1; i < kVotes; ++i)
+      if (slots[2 * i + 1] > slots[2 * best + 1]) best = i;
+    return best;
+  }
+};
+
+enum class What { material, instance, tag };
+uint32_t id_of(What what, const TruthContext& c, const Node& node) {
+  if (!node.hit.hit() && what != What::material) return kNone;  // the Earth is no instance and has no tag
+  switch (what) {
+    case What::material:
+      return node.at.material;
+    case What::instance:
+      if (!node.hit.hit()) return kNone;  // the Earth under the scene
+      return c.tracer.objects()[node.hit.object].instance;
+    case What::tag:
+      break;
+  }
+  return node.hit.hit() ? c.tracer.objects()[node.hit.object].tag : kNone;
+}
+
+struct Majority final : TruthCollector {
+  Majority(const TruthContext& c, What w, std::string name, bool f)
+      : context(c), what(w), column(std::move(name)), fraction(f) {}
+  size_t slots() const override { return 2 * kVotes; }
+  std::vector<std::string> columns() const override { return {column}; }
+  void add(const TruthSample& s, double* slots) const override {
+    if (s.first) Votes::add(slots, id_of(what, context, *s.first));
+  }
+  void finish(const double* slots, const TruthCounts& n, double* v) const override {
+    const size_t best = Votes::most(slots);
+    const double id = slots[2 * best] - 1, count = slots[2 * best + 1];
+    if (!(count > 0) || id == static_cast<double>(kNone)) return;
+    v[0] = fraction ? count / n.paths : id;
+  }
+  TruthContext context;
+  What what;
+  std::string column;
+  bool fraction;
+};
+
+// The share of all samples that met each material or tag first.
+struct Abundance final : TruthCollector {
+  Abundance(const TruthContext& c, What w) : context(c), what(w) {
+    const Scene& scene = c.tracer.scene();
+    if (what == What::tag)
+      for (const std::string& t : scene.tags) names.push_back("share of tag " + t);
+    else
+      for (const Material& m : scene.materials) names.push_back("share of material " + m.id);
+    if (names.empty()) throw Error("the truth 'abundance' needs a scene with tags", "tag placements in the scene text");
+  }
+  size_t slots() const override { return names.size(); }
+  std::vector<std::string> columns() const override { return names; }
+  void add(const TruthSample& s, double* slots) const override {
+    if (!s.first) return;
+    if (const uint32_t id = id_of(what, context, *s.first); id < names.size()) ++slots[id];
+  }
+  void finish(const double* slots, const TruthCounts& n, double* v) const override {
+    for (size_t i = 0; i < names.size(); ++i) v[i] = slots[i] / n.paths;
+  }
+  TruthContext context;
+  What what;
+  std::vector<std::string> names;
+};
+
+// Directional-hemispherical reflectance (and transmittance) towards the sensor, averaged over each band's response.
+struct Reflectance final : TruthCollector {
+  explicit Reflectance(const TruthContext& c) : context(c) {}
+  size_t slots() const override { return context.projection.bands() + 1; }
+  std::vector<std::string> columns() const override {
+    std::vector<std::string> names;
+    for (size_t b = 0; b < context.projection.bands(); ++b) names.push_back("reflectance " + context.bands[b].name);
+    return names;
+  }
+  void add(const TruthSample& s, double* slots) const override {
+    if (!s.first || !s.first->at.baked || !s.first->at.baked->model) return;
+    const std::span<float> w = s.wave.scratch();
+    s.first->at.baked->model->total(s.first->at.frame.to_local(s.first->out), w);
+    ++slots[0];
+    context.projection.add(w, {slots + 1, context.projection.bands()});
+  }
+  void finish(const double* slots, const TruthCounts&, double* v) const override {
+    for (size_t b = 0; b < context.projection.bands(); ++b)
+      if (slots[0] > 0) v[b] = slots[b + 1] / slots[0];
+  }
+  TruthContext context;
+};
+
+template <What what, bool fraction>
+std::unique_ptr<const TruthCollector> majority(const TruthContext& c) {
+  static const std::array<std::string, 3> names{"material", "instance", "tag"};
+  const std::string& name = names[static_cast<size_t>(what)];
+  return std::make_unique<Majority>(c, what, fraction ? name + " fraction" : name, fraction);
+}
+
+}  // namespace
+
+void add_matter_rows(std::vector<TruthRow>& table) {
+  table.push_back({"material", "", "number of the most frequent material", majority<What::material, false>});
+  table.push_back({"material_fraction", "", "its share of all samples (exact up to 4 different ones)",
+                   majority<What::material, true>});
+  table.push_back({"instance", "", "number of the most frequent instance", majority<What::instance, false>});
+  table.push_back({"instance_fraction", "", "its share of all samples (exact up to 4 different ones)",
+                   majority<What::instance, true>});
+  table.push_back({"tag", "", "number of the most frequent tag", majority<What::tag, false>});
+  table.push_back(
+      {"tag_fraction", "", "its share of all samples (exact up to 4 different ones)", majority<What::tag, true>});
+  table.push_back({"abundance", "", "share of all samples that met each tag, one column a tag",
+                   [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
+                     return std::make_unique<Abundance>(c, What::tag);
+                   }});
+  table.push_back({"material_abundance", "", "the same for each material of the scene",
+                   [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
+                     return std::make_unique<Abundance>(c, What::material);
+                   }});
+  table.push_back({"reflectance", "", "directional-hemispherical reflectance of the first surfaces, one column a band",
+                   [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
+                     return std::make_unique<Reflectance>(c);
+                   }});
+  table.push_back({"temperature", "K", "mean temperature that was rendered, of the first hits that have one",
+                   [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
+                     return std::make_unique<SimpleCollector>(
+                         c, 2, std::vector<std::string>{"temperature [K]"},
+                         [](const TruthContext&, const TruthSample& s, double* sum) {
+                           if (!s.first || !s.first->at.baked || !(s.first->at.baked->kelvin > 0)) return;
+                           sum[0] += s.first->at.baked->kelvin, ++sum[1];
+                         },
+                         [](const TruthContext&, const double* sum, const TruthCounts&, double* v) {
+                           if (sum[1] > 0) v[0] = sum[0] / sum[1];
+                         });
+                   }});
+}
+
+}  // namespace suite

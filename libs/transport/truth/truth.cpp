@@ -1,0 +1,62 @@
+#include "transport/truth/truth.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace suite {
+
+std::span<const TruthRow> truth_rows() {
+  static const std::vector<TruthRow> table = [] {
+    std::vector<TruthRow> rows;
+    add_place_rows(rows);
+    add_matter_rows(rows);
+    add_account_rows(rows);
+    return rows;
+  }();
+  return table;
+}
+
+const TruthRow& find_truth(const std::string& name, const Where& where) {
+  std::vector<std::string> known;
+  for (const TruthRow& row : truth_rows()) {
+    if (row.name == name) return row;
+    known.push_back(row.name);
+  }
+  throw Error(where, "unknown truth '" + name + "'", name_hint(name, known));
+}
+
+TruthPlan::TruthPlan(std::span<const std::string> names, const TruthContext& context) {
+  for (const std::string& name : names) {
+    collectors_.push_back(find_truth(name).make(context));
+    const std::vector<std::string> columns = collectors_.back()->columns();
+    widths_.push_back(columns.size());
+    columns_.insert(columns_.end(), columns.begin(), columns.end());
+    slots_ += collectors_.back()->slots();
+  }
+}
+
+void TruthPlan::add(Wave& wave, size_t path, double* slots) const {
+  const Path& p = wave.path(path);
+  const TruthSample sample{wave, p,
+                           p.size > p.first_met() && !p.scattered_first ? &wave.node(path, p.first_met()) : nullptr};
+  if (sample.first) ++slots[0];
+  ++slots;
+  for (const auto& collector : collectors_) {
+    collector->add(sample, slots);
+    slots += collector->slots();
+  }
+}
+
+void TruthPlan::finish(const double* slots, uint32_t paths, double* values) const {
+  std::fill_n(values, columns_.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!paths) return;
+  const TruthCounts counts{static_cast<double>(paths), slots[0]};
+  ++slots;
+  for (size_t i = 0; i < collectors_.size(); ++i) {
+    collectors_[i]->finish(slots, counts, values);
+    slots += collectors_[i]->slots();
+    values += widths_[i];
+  }
+}
+
+}  // namespace suite

@@ -1,0 +1,108 @@
+// Truth: what is known of the things that a problem's rays met, beside the radiance that came from them. One table, one
+// row a collector; a sensor names the rows it wants (Sensor::truth).
+//
+// Based on: Goodenough & Brown, section III-C (number of paths, average location of the first node, material
+// statistics).
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "motion/scene_frame.h"
+#include "light/environment.h"
+#include "radiometry/wave.h"
+#include "spectral/state.h"
+
+namespace suite {
+
+// What collectors may look at for a whole capture. Everything referred to must outlive the plan.
+struct TruthContext {
+  const Tracer& tracer;
+  const SpectralState& state;
+  size_t state_index = 0;
+  std::span<const Band> bands;
+  const BandProjection& projection;
+  const Environment& environment;
+};
+
+// One complete path and what it met first (null = nothing). Collectors may look at path.ray, path.size and the first
+// node's hit, out, optical_length, sunlit and place (`at`), which is what every kernel records.
+struct TruthSample {
+  Wave& wave;  // its scratch() may be overwritten
+  const Path& path;
+  const Node* first = nullptr;
+};
+
+// How many samples a problem took and how many of them met something.
+struct TruthCounts {
+  double paths = 0, hits = 0;
+};
+
+// Collects one kind of truth. Memory of a problem is a row of doubles that start as 0.
+class TruthCollector {
+ public:
+  virtual ~TruthCollector() = default;
+  virtual size_t slots() const = 0;                      // doubles a problem
+  virtual std::vector<std::string> columns() const = 0;  // names with units, one per value that finish() gives
+  virtual void add(const TruthSample& sample, double* slots) const = 0;
+  // values: one per column, NaN where nothing is known. Not called for a problem without paths.
+  virtual void finish(const double* slots, const TruthCounts& counts, double* values) const = 0;
+};
+
+struct TruthRow {
+  std::string name;     // "range"
+  std::string unit;     // "m", "" = none
+  std::string summary;  // one line, says how samples are combined
+  std::unique_ptr<const TruthCollector> (*make)(
+      const TruthContext& context);  // Error when the scene lacks what it needs
+};
+std::span<const TruthRow> truth_rows();
+// Error with the nearest name for a name that is not in the table.
+const TruthRow& find_truth(const std::string& name, const Where& where = {});
+
+// The collectors of a capture, side by side.
+class TruthPlan {
+ public:
+  // Error: an unknown name, or a scene without what a collector needs (an origin on the Earth).
+  TruthPlan(std::span<const std::string> names, const TruthContext& context);
+  size_t slots() const { return slots_; }
+  bool wanted() const { return !collectors_.empty(); }
+  const std::vector<std::string>& columns() const { return columns_; }
+  void add(Wave& wave, size_t path, double* slots) const;
+  // values: columns().size() numbers.
+  void finish(const double* slots, uint32_t paths, double* values) const;
+
+ private:
+  std::vector<std::unique_ptr<const TruthCollector>> collectors_;
+  std::vector<size_t> widths_;  // columns of each
+  std::vector<std::string> columns_;
+  size_t slots_ = 1;  // the first counts the hits
+};
+
+// The rows of the table, by what they are about.
+void add_place_rows(std::vector<TruthRow>& table);   // place.cpp: location, range, angles, time
+void add_matter_rows(std::vector<TruthRow>& table);  // matter.cpp: materials, instances, tags, temperature, reflectance
+void add_account_rows(std::vector<TruthRow>& table);  // account.cpp: counts of paths and nodes, visibility, state
+
+// Collectors made of functions, which is what most rows are.
+struct SimpleCollector final : TruthCollector {
+  using Add = void (*)(const TruthContext&, const TruthSample&, double*);
+  using Finish = void (*)(const TruthContext&, const double*, const TruthCounts&, double*);
+  SimpleCollector(const TruthContext& c, size_t n, std::vector<std::string> names, Add a, Finish f)
+      : context(c), memory(n), names_of_columns(std::move(names)), add_sample(a), finish_problem(f) {}
+  size_t slots() const override { return memory; }
+  std::vector<std::string> columns() const override { return names_of_columns; }
+  void add(const TruthSample& sample, double* at) const override { add_sample(context, sample, at); }
+  void finish(const double* at, const TruthCounts& counts, double* values) const override {
+    finish_problem(context, at, counts, values);
+  }
+  TruthContext context;
+  size_t memory;
+  std::vector<std::string> names_of_columns;
+  Add add_sample;
+  Finish finish_problem;
+};
+
+}  // namespace suite

@@ -1,0 +1,35 @@
+// The working memory of one thread in a pipeline: the kernel and what its paths gather.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "transport/pipeline.h"
+#include "transport/sinks/radiance.h"
+
+namespace suite {
+
+// A path of a wave: which problem of the block it belongs to, and which of its samples it is.
+struct WaveLane {
+  uint32_t place, sample;
+};
+
+struct Pipeline::Workspace {
+  // width: paths that run together.
+  Workspace(const KernelChoice& choice, const KernelContext& context, size_t width, size_t groups, bool single,
+            bool lost);
+  // The kernel that serves a ray: what was chosen for the state, or, for rays that start at receivers, a general one.
+  PathTracing& kernel_of(const SensorRay& ray);
+
+  KernelContext context;
+  KernelChoice choice;
+  size_t width, groups;
+  bool single;
+  RadianceSink sink;
+  SpectralThroughputs throughputs;
+  std::unique_ptr<PathTracing> kernel, receiving;
+  std::vector<WaveLane> lanes;        // of the wave that is being filled or run
+  std::vector<PathTracing*> kernels;  // [path]
+  std::vector<float> weights;         // [path][bin], of rays that weigh wavelengths
+};
+
+}  // namespace suite
