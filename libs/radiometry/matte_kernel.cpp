@@ -26,7 +26,7 @@ bool MatteKernel::serves(const Surface& surface, const Optics& optics, const Env
                          const PipelineOptions& options) {
   const Environment& e = environment;
   if (options.method != Method::standard || options.stop != StopRule::plan || !options.explicit_sources) return false;
-  if (!optics.media().empty() || e.moon || e.lamps || e.atmosphere || e.earth) return false;
+  if (!optics.media().empty() || e.moon_disk || e.lamps || e.atmosphere || e.earth) return false;
   if (e.sky && (e.sky->tabulated() || !e.sky->spectrum())) return false;
   if (optics.state().knots.size() != 1) return false;
   for (uint32_t i = 0; i < surface.tracer().scene().materials.size(); ++i)
@@ -41,7 +41,7 @@ MatteKernel::MatteKernel(const Surface& surface, const Optics& optics, const Env
       environment_(environment),
       options_(options),
       record_(record),
-      disk_(environment.sun && !environment.sun->collimated()),
+      disk_(environment.sun_disk && !environment.sun_disk->collimated()),
       bins_(optics.state().size()),
       reference_bin_(optics.state().knots[0]),
       objects_(surface.tracer().objects()),
@@ -61,7 +61,7 @@ MatteKernel::MatteKernel(const Surface& surface, const Optics& optics, const Env
     const ScatterModel* model = optics.material(i).model;
     materials_.push_back(model ? padded(model->diffuse()) : Spectrum{});
   }
-  sun_ = padded(environment.sun ? environment.sun->spectrum() : nullptr);
+  sun_ = padded(environment.sun_disk ? environment.sun_disk->spectrum() : nullptr);
   sky_ = padded(environment.sky ? environment.sky->spectrum() : nullptr);
   active_.reserve(width), asked_.reserve(width);
 }
@@ -95,7 +95,7 @@ void MatteKernel::complete(Wave& wave, RunStatistics& statistics) {
   for (int depth = 0; !active_.empty(); ++depth) {
     meet(wave, depth, statistics.trace);
     statistics.nodes += active_.size();
-    if (environment_.sun) light(wave, depth, statistics.trace);
+    if (environment_.sun_disk) light(wave, depth, statistics.trace);
     go_on(depth);
   }
 }
@@ -124,7 +124,7 @@ void MatteKernel::meet(Wave& wave, int depth, TraceStatistics& statistics) {
 // What a path meets outside the scene (the formulas of path_generator.h with one knot).
 void MatteKernel::escape(Lane& lane) const {
   if (environment_.sky) lane.sky = static_cast<float>(environment_.sky->relative(lane.direction));
-  const Sun* sun = environment_.sun.get();
+  const Sun* sun = environment_.sun_disk;
   if (sun && sun->contains(lane.direction))
     lane.disk = static_cast<float>(lane.density > 0 ? 1 / shared_density(1, sun->density() / lane.density, true) : 1);
 }
@@ -170,15 +170,15 @@ void MatteKernel::record(Wave& wave, uint32_t p, const Hit& hit, Dir normal, uin
 }
 
 void MatteKernel::light(Wave& wave, int depth, TraceStatistics& statistics) {
-  const Sun& sun = *environment_.sun;
-  DirectionSample drawn = sun.sample({});
+  const Sun& sun = *environment_.sun_disk;
+  DirectionSample drawn = sun.draw({});
   asked_.clear();
   for (uint32_t i = 0; i < active_.size(); ++i) {
     Lane& lane = lanes_[active_[i]];
     const Dir shading = places_[i].shading, geometric = hits_[i].normal;
     if (disk_) {
       numbers_[i] = lane.stream.draw(lane.sample, 1 + static_cast<uint32_t>(depth));
-      drawn = sun.sample({numbers_[i][2], numbers_[i][3]});
+      drawn = sun.draw({numbers_[i][2], numbers_[i][3]});
     }
     // Light reaches the side that is looked at, by the geometric and by the shading normal.
     const double in = dot(drawn.direction, shading), in_side = dot(drawn.direction, geometric);

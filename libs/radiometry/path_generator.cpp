@@ -35,7 +35,7 @@ PathGenerator::PathGenerator(const Surface& surface, const Optics& optics, const
   if (environment.lamps && !paper_)
     lamp_draws_ =
         static_cast<int>(std::clamp<size_t>(environment.lamps->size(), 1, static_cast<size_t>(options.lamp_draws)));
-  if ((environment.sun || environment.moon || environment.lamps) &&
+  if ((environment.sun_disk || environment.moon_disk || environment.lamps) &&
       LostLight::possible(surface.tracer().scene(), optics, options))
     lost_ = std::make_unique<LostLight>(surface, optics);
   if (!optics.media().empty()) {

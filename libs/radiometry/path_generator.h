@@ -65,7 +65,7 @@ class PathGenerator {
   void ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLight& light, double distance, const Vec3* end);
   void ask_lamps(Wave& wave, uint32_t p);
   void ask_one(Wave& wave, uint32_t p);
-  void ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LampSample>& lamp);
+  void ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LightSample>& lamp);
   // Lamps that node n asks.
   int lamp_draws(int n) const { return n == 0 ? lamp_draws_ : 1; }
   void meet_glow(Wave& wave, uint32_t p);

@@ -18,8 +18,8 @@ void from_outside(const Path& path, const Environment& environment, std::span<fl
     const float* spectrum = disk.spectrum();
     for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += spectrum[i] * scale;
   };
-  if (path.sun_factor > 0) add_disk(*environment.sun, path.sun_factor);
-  if (path.moon_factor > 0) add_disk(*environment.moon, path.moon_factor);
+  if (path.sun_factor > 0) add_disk(*environment.sun_disk, path.sun_factor);
+  if (path.moon_factor > 0) add_disk(*environment.moon_disk, path.moon_factor);
 }
 
 // The air of a segment: L = T L + c S, from the segment's near end along -out.

@@ -35,10 +35,10 @@ void PathGenerator::escape(Path& path, const Live& live) const {
   if (environment_.sky)
     path.sky_factor =
         factor(environment_.sky->tabulated() && !paper_ ? environment_.sky->density(live.direction) : 0, false);
-  if (environment_.sun && environment_.sun->contains(live.direction))
-    path.sun_factor = factor(environment_.sun->density(), true);
-  if (environment_.moon && environment_.moon->contains(live.direction))
-    path.moon_factor = factor(environment_.moon->density(), true);
+  if (environment_.sun_disk && environment_.sun_disk->contains(live.direction))
+    path.sun_factor = factor(environment_.sun_disk->density(), true);
+  if (environment_.moon_disk && environment_.moon_disk->contains(live.direction))
+    path.moon_factor = factor(environment_.moon_disk->density(), true);
 }
 
 // Proposes a sample of a source: a visibility ray of the given length, or to `end` when that is given.
@@ -68,14 +68,14 @@ void PathGenerator::ask(Wave& wave, uint32_t p, uint8_t slot, const ExplicitLigh
 void PathGenerator::ask_disks(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
   auto ask_disk = [&](uint8_t slot, const Sun& disk, Vec2 u) {
-    const DirectionSample drawn = disk.sample(u);
+    const DirectionSample drawn = disk.draw(u);
     ask(wave, p, slot, {drawn.direction, drawn.density, 1, disk.spectrum(), nullptr, 0}, kFar, nullptr);
   };
-  if (environment_.sun) ask_disk(light_sun, *environment_.sun, {live.u[2], live.u[3]});
-  if (!environment_.moon) return;
+  if (environment_.sun_disk) ask_disk(light_sun, *environment_.sun_disk, {live.u[2], live.u[3]});
+  if (!environment_.moon_disk) return;
   const std::array<double, 4> v =
       live.stream.draw(live.sample, kMoonBlock + static_cast<uint32_t>(wave.path(p).size - 1));
-  ask_disk(light_moon, *environment_.moon, {v[0], v[1]});
+  ask_disk(light_moon, *environment_.moon_disk, {v[0], v[1]});
 }
 
 // Sky and lamps.
@@ -84,7 +84,7 @@ void PathGenerator::ask_around(Wave& wave, uint32_t p) {
   if (environment_.sky && environment_.sky->tabulated()) {
     const std::array<double, 4> v =
         live.stream.draw(live.sample, kLobeBlock + static_cast<uint32_t>(wave.path(p).size - 1));
-    const DirectionSample drawn = environment_.sky->sample({v[2], v[3]});
+    const DirectionSample drawn = environment_.sky->draw({v[2], v[3]});
     const float* spectrum = environment_.sky->spectrum();
     const double relative = spectrum ? environment_.sky->relative(drawn.direction) : 1;
     if (relative > 0)
@@ -103,7 +103,8 @@ void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
   // Strata of the choice; the place on each lamp is the first one's, turned round.
   const auto turned = [](double u, int k) { return u + k * (1.0 / kLampDraws) - (u + k * (1.0 / kLampDraws) >= 1); };
   for (int k = 0; k < draws; ++k) {
-    auto lamp = environment_.lamps->sample(at, (k + v[0]) / draws, {turned(v[1], k), turned(v[2], k)}, turned(v[3], k));
+    auto lamp = environment_.lamps->sample(at, {(k + v[0]) / draws, turned(v[1], k), turned(v[2], k), turned(v[3], k)},
+                                           wave.path(p).ray.time);
     if (!lamp) continue;
     if (lamp->density > 0)
       lamp->density *= draws;
@@ -113,7 +114,7 @@ void PathGenerator::ask_lamps(Wave& wave, uint32_t p) {
   }
 }
 
-void PathGenerator::ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LampSample>& lamp) {
+void PathGenerator::ask_lamp(Wave& wave, uint32_t p, int draw, const std::optional<LightSample>& lamp) {
   if (!lamp) return;
   ask(wave, p, static_cast<uint8_t>(light_lamp + draw),
       {lamp->direction, lamp->density, static_cast<float>(lamp->scale), lamp->spectrum, nullptr, 0, lamp->distance},
@@ -124,7 +125,7 @@ void PathGenerator::ask_lamp(Wave& wave, uint32_t p, int draw, const std::option
 void PathGenerator::ask_one(Wave& wave, uint32_t p) {
   const Live& live = live_[p];
   const int n = wave.path(p).size - 1;
-  const Sun* disks[2] = {environment_.sun.get(), environment_.moon.get()};
+  const Sun* disks[2] = {environment_.sun_disk, environment_.moon_disk};
   const size_t lamps = environment_.lamps ? environment_.lamps->size() : 0;
   const size_t sources = (disks[0] != nullptr) + (disks[1] != nullptr) + lamps;
   if (sources == 0) return;
@@ -132,12 +133,12 @@ void PathGenerator::ask_one(Wave& wave, uint32_t p) {
   size_t chosen = std::min(sources - 1, static_cast<size_t>(v[0] * static_cast<double>(sources)));
   if (chosen < lamps)
     return ask_lamp(wave, p, 0,
-                    environment_.lamps->sample_one(static_cast<uint32_t>(chosen), 1.0 / static_cast<double>(sources),
-                                                   wave.node(p, n).at.position, {v[1], v[2]}, v[3]));
+                    environment_.lamps->sample_member(chosen, 1.0 / static_cast<double>(sources),
+                                                      receiver_of(wave.node(p, n)), v, wave.path(p).ray.time));
   chosen -= lamps;
   const uint8_t slot = chosen == 0 && disks[0] ? light_sun : light_moon;
   const Sun& disk = slot == light_sun ? *disks[0] : *disks[1];
-  const DirectionSample drawn = disk.sample({v[1], v[2]});
+  const DirectionSample drawn = disk.draw({v[1], v[2]});
   ask(wave, p, slot, {drawn.direction, drawn.density, static_cast<float>(sources), disk.spectrum(), nullptr, 0}, kFar,
       nullptr);
 }

@@ -59,7 +59,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
 
 bool Pipeline::may_miss(const Capture& capture) const {
   const Environment& e = environment_;
-  return loses_light_ && (e.sun || e.moon || e.lamps || capture.bin_by == Capture::BinBy::sun);
+  return loses_light_ && (e.sun_disk || e.moon_disk || e.lamps || capture.bin_by == Capture::BinBy::sun);
 }
 
 namespace {

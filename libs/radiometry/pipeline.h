@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "light/environment.h"
 #include "radiometry/path.h"
-#include "radiometry/sources/environment.h"
 #include "radiometry/truth/truth.h"
 #include "sensor/sensor.h"
 #include "surface/surface.h"

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
+#include "light/atmosphere.h"
 #include "radiometry/live_path.h"
-#include "radiometry/sources/atmosphere.h"
 #include "radiometry/volume_field.h"
 #include "surface/optics.h"
 

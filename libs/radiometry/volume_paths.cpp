@@ -228,26 +228,26 @@ void VolumePaths::ask_sources(Wave& wave, size_t e, const LivePath& live) {
     light_.add(live.bodies);
   };
   const double far = std::numeric_limits<double>::infinity();
-  if (environment_.sun) {
+  if (environment_.sun_disk) {
     const std::array<double, 4> u = numbers(live, kScatterNumbers);
-    const DirectionSample drawn = environment_.sun->sample({u[2], u[3]});
-    ask(drawn.direction, drawn.density, 1, environment_.sun->spectrum(), far, true);
+    const DirectionSample drawn = environment_.sun_disk->draw({u[2], u[3]});
+    ask(drawn.direction, drawn.density, 1, environment_.sun_disk->spectrum(), far, true);
   }
-  if (environment_.moon) {
+  if (environment_.moon_disk) {
     const std::array<double, 4> u = numbers(live, kMoonNumbers);
-    const DirectionSample drawn = environment_.moon->sample({u[0], u[1]});
-    ask(drawn.direction, drawn.density, 1, environment_.moon->spectrum(), far, true);
+    const DirectionSample drawn = environment_.moon_disk->draw({u[0], u[1]});
+    ask(drawn.direction, drawn.density, 1, environment_.moon_disk->spectrum(), far, true);
   }
   if (environment_.sky && environment_.sky->tabulated()) {
     const std::array<double, 4> u = numbers(live, kSkyNumbers);
-    const DirectionSample drawn = environment_.sky->sample({u[0], u[1]});
+    const DirectionSample drawn = environment_.sky->draw({u[0], u[1]});
     const float* spectrum = environment_.sky->spectrum();
     ask(drawn.direction, drawn.density, spectrum ? environment_.sky->relative(drawn.direction) : 1, spectrum, far,
         false, true);
   }
   if (environment_.lamps) {
     const std::array<double, 4> u = numbers(live, kLampNumbers);
-    const auto lamp = environment_.lamps->sample({events_[e].place, {}, true}, u[0], {u[1], u[2]}, u[3]);
+    const auto lamp = environment_.lamps->sample({events_[e].place, {}, true}, u, own.time);
     if (lamp) {
       // The ray ends just in front of the lamp, not on it.
       const Vec3 way = lamp->end - events_[e].place;

@@ -127,11 +127,11 @@ void add_place_rows(std::vector<TruthRow>& table) {
                      return simple(
                          c, 1, {"incidence angle [deg]"},
                          [](const TruthContext& x, const TruthSample& s, double* sum) {
-                           if (s.first && x.environment.sun)
-                             sum[0] += angle_deg(*s.first, x.environment.sun->direction());
+                           if (const auto to_sun = x.environment.towards_sun(); s.first && to_sun)
+                             sum[0] += angle_deg(*s.first, *to_sun);
                          },
                          [](const TruthContext& x, const double* sum, const TruthCounts& n, double* v) {
-                           if (n.hits > 0 && x.environment.sun) v[0] = sum[0] / n.hits;
+                           if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
 }

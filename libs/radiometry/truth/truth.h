@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "light/environment.h"
 #include "motion/scene_frame.h"
-#include "radiometry/sources/environment.h"
 #include "radiometry/wave.h"
 #include "spectral/state.h"
 

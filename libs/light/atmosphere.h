@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "light/light.h"
 #include "math/vec.h"
 #include "optics/model_spec.h"
 #include "spectral/state.h"
@@ -45,12 +46,6 @@ struct AtmosphereSpec {
   std::vector<Gas> gases;
 };
 
-// A beam from outside that the air scatters.
-struct Beam {
-  Dir direction;                      // towards its source
-  const float* irradiance = nullptr;  // per bin, above the atmosphere
-};
-
 class Atmosphere {
  public:
   virtual ~Atmosphere() = default;
@@ -60,7 +55,8 @@ class Atmosphere {
   virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
 };
 
-// Error: heights not ascending, more than 200 layers, lists of the wrong length, negative depths, albedo above 1.
+// The beams' spectra must live as long. Error: heights not ascending, more than 200 layers, lists of the wrong length,
+// negative depths, albedo above 1.
 std::unique_ptr<const Atmosphere> make_layered_atmosphere(const AtmosphereSpec& spec, const SpectralState& state,
                                                           std::vector<Beam> beams);
 

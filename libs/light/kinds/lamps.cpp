@@ -1,12 +1,12 @@
-#include "radiometry/sources/lamps.h"
+#include "light/kinds/lamps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 
-#include "radiometry/sources/lamp_images.h"
-#include "radiometry/sources/lamp_shapes.h"
+#include "light/kinds/lamp_images.h"
+#include "light/kinds/lamp_shapes.h"
 
 namespace suite {
 
@@ -274,6 +274,17 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   }
   if (!core.bounds.empty()) core.tree = std::make_unique<LightTree>(core.bounds, std::move(core.profiles));
   core.bounds = {};
+  nature_.delta = !surfaces;
+  nature_.drawn = core.tree != nullptr;
+  nature_.numbers = 4;
+  nature_.draws = static_cast<int>(std::clamp<size_t>(size(), 1, LightNature::kMostDraws));
+}
+
+std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
+                                           double distance, double cosine, double) const {
+  const float* const spectrum = glow(material, cosine > 0);
+  if (!spectrum) return std::nullopt;
+  return LightMet{1, spectrum, density(from, hit, direction, distance, cosine)};
 }
 
 const float* Lamps::glow(uint32_t material, bool front) const {
@@ -281,30 +292,32 @@ const float* Lamps::glow(uint32_t material, bool front) const {
   return front ? core_->front[material] : core_->back[material];
 }
 
-std::optional<LampSample> Lamps::sample(const LightReceiver& at, double choice, Vec2 u, double image) const {
+std::optional<LightSample> Lamps::sample(const LightReceiver& at, const std::array<double, 4>& u, double) const {
   if (!core_->tree) return std::nullopt;
   LightReceiver from = at;
   LampImages::Image drawn{{}, 1};
-  if (core_->images) drawn = core_->images->draw(at.position, image), from.position = at.position - drawn.shift;
-  const auto chosen = core_->tree->sample(from, choice);
+  if (core_->images) drawn = core_->images->draw(at.position, u[3]), from.position = at.position - drawn.shift;
+  const auto chosen = core_->tree->sample(from, u[0]);
   if (!chosen) return std::nullopt;
-  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, u);
+  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, {u[1], u[2]});
   if (lamp) lamp->end += drawn.shift;
   return lamp;
 }
 
-std::optional<LampSample> Lamps::sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u, double image) const {
+std::optional<LightSample> Lamps::sample_member(size_t member, double probability, const LightReceiver& at,
+                                                const std::array<double, 4>& u, double) const {
   LampImages::Image drawn{{}, 1};
-  if (core_->images) drawn = core_->images->draw(from, image);
-  auto sample = sample_here(lamp, probability * drawn.probability, from - drawn.shift, u);
+  if (core_->images) drawn = core_->images->draw(at.position, u[3]);
+  auto sample = sample_here(static_cast<uint32_t>(member), probability * drawn.probability, at.position - drawn.shift,
+                            {u[1], u[2]});
   if (sample) sample->end += drawn.shift;
   return sample;
 }
 
 // As seen from a place beside the lamp itself, not an image of it.
-std::optional<LampSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
+std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
   const LampShape& s = core_->shapes[lamp];
-  LampSample r;
+  LightSample r;
   r.spectrum = core_->spectra[s.spec].data();
   if (s.kind == Kind::point) {
     const Vec3 to = s.origin - from;

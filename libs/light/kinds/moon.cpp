@@ -1,4 +1,4 @@
-#include "radiometry/sources/moon.h"
+#include "light/kinds/moon.h"
 
 #include <cmath>
 

@@ -6,20 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "radiometry/sources/atmosphere.h"
-#include "radiometry/sources/clear_sky.h"
-#include "radiometry/sources/earth.h"
-#include "radiometry/sources/lamps.h"
-#include "radiometry/sources/moon.h"
-#include "radiometry/sources/source.h"
+#include "light/atmosphere.h"
+#include "light/earth.h"
+#include "light/kinds/clear_sky.h"
+#include "light/kinds/lamps.h"
+#include "light/kinds/moon.h"
+#include "light/kinds/sky.h"
+#include "light/kinds/sun.h"
+#include "light/light.h"
 
 namespace suite {
-
-struct MoonSpec {
-  SunSpec disk;           // irradiance: taken as given unless by_phase
-  bool by_phase = true;   // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
-  MoonGeometry geometry;  // filled from the date when disk.time is given
-};
 
 // Sources before they are baked for a state. Plain ones may be baked at once; dates and clear skies are turned into
 // directions, spectra and tables by resolve_sources. Dates are those of second 0; bodies that have one go on with time.
@@ -38,13 +34,28 @@ struct SourceSpecs {
   bool dated() const { return (sun && sun->time) || (moon && moon->disk.time); }
 };
 
-// Null = none. The sky is black where there is none.
+inline constexpr size_t kNoLight = static_cast<size_t>(-1);
+
+// Lights that nothing else changes may be shared by environments of several moments.
 struct Environment {
-  std::unique_ptr<const Sun> sun, moon;
-  std::unique_ptr<const Sky> sky;
-  std::unique_ptr<const Lamps> lamps;
-  std::unique_ptr<const Atmosphere> atmosphere;
-  std::unique_ptr<const Earth> earth;
+  std::vector<std::shared_ptr<const Light>> lights;  // as asked for; the index is a light's identity
+  size_t sun = kNoLight;                             // index of the light that truth calls the sun, if any
+  // Null = none.
+  std::shared_ptr<const Atmosphere> atmosphere;
+  std::shared_ptr<const Earth> earth;
+
+  // Of the sun.
+  std::optional<Dir> towards_sun() const {
+    if (sun == kNoLight) return std::nullopt;
+    return lights[sun]->beam()->direction;
+  }
+  // Whether a light stands in the scene, so that it belongs to a tracer.
+  bool lamps_in_scene() const;
+
+  // The same lights by kind, for kernels that know them. Null = none.
+  const Sun *sun_disk = nullptr, *moon_disk = nullptr;
+  const Sky* sky = nullptr;
+  const Lamps* lamps = nullptr;
 };
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear

@@ -8,7 +8,7 @@
 // 3-8); the air mass of F. Kasten & A. Young, Appl. Opt. 28, 1989; the angular distribution of R. Perez, R. Seals & J.
 // Michalsky, "All-weather model for sky luminance distribution", Solar Energy 50, 1993.
 #pragma once
-#include "radiometry/sources/source.h"
+#include "light/kinds/sky.h"
 
 namespace suite {
 

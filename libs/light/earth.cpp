@@ -1,4 +1,4 @@
-#include "radiometry/sources/earth.h"
+#include "light/earth.h"
 
 #include <cmath>
 

@@ -1,7 +1,6 @@
-#include <algorithm>
+#include "light/kinds/sun.h"
 
 #include "math/warps.h"
-#include "radiometry/sources/source.h"
 
 namespace suite {
 
@@ -18,9 +17,32 @@ Sun::Sun(const SunSpec& spec, const SpectralState& state)
   const double s = std::sin(spec.half_angle);
   if (drop_ > 0)
     for (float& v : spectrum_) v = static_cast<float>(v / (kPi * s * s));
+  nature_.far = true;
+  nature_.delta = collimated();
+  nature_.disk = !collimated();
 }
 
-DirectionSample Sun::sample(Vec2 u) const {
+std::optional<LightSample> Sun::sample(const LightReceiver& at, const std::array<double, 4>& u, double time) const {
+  return sample_member(0, 1, at, {0, u[0], u[1], 0}, time);
+}
+
+std::optional<LightSample> Sun::sample_member(size_t, double probability, const LightReceiver&,
+                                              const std::array<double, 4>& u, double) const {
+  const DirectionSample drawn = draw({u[1], u[2]});
+  LightSample s;
+  s.direction = drawn.direction;
+  s.density = drawn.density * probability;
+  s.scale = collimated() ? 1 / probability : 1;
+  s.spectrum = spectrum();
+  return s;
+}
+
+std::optional<LightMet> Sun::met_outside(Dir direction, double) const {
+  if (!contains(direction)) return std::nullopt;
+  return LightMet{1, spectrum(), density_};
+}
+
+DirectionSample Sun::draw(Vec2 u) const {
   if (drop_ == 0) return {frame_.z, 0};
   return {frame_.to_world(uniform_cone(u, drop_)), density_};
 }

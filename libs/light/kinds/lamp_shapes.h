@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "radiometry/sources/light_tree.h"
+#include "light/light_tree.h"
 #include "scene/scene.h"
 
 namespace suite {

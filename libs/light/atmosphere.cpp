@@ -1,4 +1,4 @@
-#include "radiometry/sources/atmosphere.h"
+#include "light/atmosphere.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "radiometry/sources/lamp_images.h"
+#include "light/kinds/lamp_images.h"
 
 #include <algorithm>
 #include <cmath>

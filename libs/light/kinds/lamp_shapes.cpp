@@ -1,6 +1,6 @@
 // Based on: cones towards spheres, Pharr, Jakob & Humphreys, "Physically based rendering", 4th ed. 2023, section 6.2.4;
 // the square-root warp of triangles, G. Turk, "Generating random points in triangles", Graphics Gems, 1990.
-#include "radiometry/sources/lamp_shapes.h"
+#include "light/kinds/lamp_shapes.h"
 
 #include <algorithm>
 #include <cmath>

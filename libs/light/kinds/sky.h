@@ -1,33 +1,15 @@
-// Sources of radiance outside the scene that are far away: disks (Sun, Moon) and the sky. They are asked for a
-// direction towards them (with its density) and for the radiance they send from a direction; both ways are combined by
-// multiple importance sampling in the path generator. Lamps stand in lamps.h.
+// The sky: uniform, tabulated (one table or one per wavelength, e.g. an environment image), or thermal.
+//
+// Based on: importance sampling of environment maps by cells (Pharr, Jakob & Humphreys, "Physically based rendering",
+// 2016, section 14.2.4), extended to many wavelengths by averaging the densities each bin would use. Thermal sky:
+// Schwarzschild's equation for isothermal absorbing layers over a plane Earth (e.g. Liou 2002, eq. 4.2.9).
 #pragma once
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
-#include "math/vec.h"
+#include "light/light.h"
 #include "spectral/state.h"
 
 namespace suite {
-
-// A date from which direction, distance and size of a body follow (resolve.h).
-struct SourceTime {
-  std::string utc;  // ISO 8601, as parse_iso8601 accepts it
-  Where where;
-};
-
-// The Sun, or any far disk of uniform radiance.
-struct SunSpec {
-  Dir direction{0, 0, 1};               // towards the Sun, ENU
-  double half_angle = 0.00465;          // rad; 0 = collimated
-  Curve irradiance;                     // W/(m2 um) on a plane facing it
-  std::optional<SourceTime> time = {};  // direction still to be computed
-  bool disk_by_time = false;            // half angle too, from the distance of the date
-  bool at_1_au = false;                 // the irradiance holds at 1 AU and is to be scaled to the distance of the date
-};
 
 // A layer of air as a thermal sky sees it, from the ground up.
 struct ThermalLayer {
@@ -54,48 +36,28 @@ struct SkySpec {
   std::vector<ThermalLayer> layers = {};
 };
 
-struct DirectionSample {
-  Dir direction;
-  double density = 0;  // 1/sr; 0 = the only direction of a collimated source
-};
-
-// A far disk baked for a state.
-class Sun {
- public:
-  Sun(const SunSpec& spec, const SpectralState& state);  // Error: half angle not in [0, pi/2], negative irradiance
-  DirectionSample sample(Vec2 u) const;
-  bool collimated() const { return drop_ == 0; }
-  bool contains(Dir d) const;                  // false when collimated: nothing meets it by chance
-  double density() const { return density_; }  // inside the disk
-  // Radiance of the disk, or the irradiance when collimated.
-  const float* spectrum() const { return spectrum_.data(); }
-  // Irradiance on a plane facing the disk.
-  const float* irradiance() const { return irradiance_.data(); }
-  Dir direction() const { return frame_.z; }
-
- private:
-  Frame frame_;
-  double drop_;     // 1 - cos(half angle)
-  double density_;  // 1 / solid angle
-  std::vector<float> spectrum_, irradiance_;
-};
-
 // A sky baked for a state. A uniform sky is met by chance only; others are also drawn, from one density for all
 // wavelengths: the mean over the bins of what each of them would draw from. No bin's weight therefore exceeds the
 // number of bins, and the estimate is unbiased in all of them.
-class Sky {
+class Sky final : public Light {
  public:
   // Error: table of the wrong size, negative or not finite; layers without temperature or with negative depth.
   Sky(const SkySpec& spec, const SpectralState& state);
+  std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                    double time) const override;
+  std::optional<LightMet> met_outside(Dir direction, double time) const override;
+  void add(Dir d, float scale, std::span<float> radiance) const override;  // any kind of sky
+  size_t members() const override { return 0; }
+  std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
+                                           const std::array<double, 4>& u, double time) const override;
+
   bool tabulated() const { return !cdf_.empty(); }
   // When the shape is one for all wavelengths: relative radiance in a direction times a spectrum. spectrum() is null
   // for other skies. Both 0 below the horizon.
   double relative(Dir d) const;
   const float* spectrum() const { return channels_ == 1 ? spectrum_.data() : nullptr; }
-  // Adds scale times the radiance from a direction, any kind of sky.
-  void add(Dir d, float scale, std::span<float> radiance) const;
   // Only when tabulated.
-  DirectionSample sample(Vec2 u) const;
+  DirectionSample draw(Vec2 u) const;
   double density(Dir d) const;
 
  private:
@@ -105,6 +67,7 @@ class Sky {
     double weight[4];
     int count = 0;
   };
+  void bake_table(const SkySpec& spec, const SpectralState& state);
   void bake_layers(const SkySpec& spec, const SpectralState& state);
   void bake_density();
   bool outside(Dir d) const { return d.z < 0 && !full_sphere_; }

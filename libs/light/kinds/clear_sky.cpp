@@ -1,4 +1,4 @@
-#include "radiometry/sources/clear_sky.h"
+#include "light/kinds/clear_sky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ struct Row {
   double wavelength_um, water, ozone, mixed;
 };
 constexpr Row kRows[] = {
-#include "radiometry/sources/clear_sky_table.inc"
+#include "light/kinds/clear_sky_table.inc"
 };
 constexpr size_t kCount = sizeof(kRows) / sizeof(kRows[0]);
 static_assert(kCount == 122);

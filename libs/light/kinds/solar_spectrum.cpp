@@ -1,4 +1,4 @@
-#include "radiometry/sources/solar_spectrum.h"
+#include "light/kinds/solar_spectrum.h"
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace suite {
 namespace {
 
 constexpr double kTable[] = {
-#include "radiometry/sources/solar_table.inc"
+#include "light/kinds/solar_table.inc"
 };
 constexpr size_t kFine = 399, kCount = sizeof(kTable) / sizeof(kTable[0]);
 static_assert(kCount == 744);

@@ -1,4 +1,4 @@
-#include "radiometry/sources/light_tree.h"
+#include "light/light_tree.h"
 
 #include <immintrin.h>
 

@@ -6,7 +6,7 @@
 // is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer & T. C. Stone, "The spectral
 // irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
 #pragma once
-#include "spectral/curve.h"
+#include "light/kinds/sun.h"
 
 namespace suite {
 
@@ -17,6 +17,12 @@ struct MoonGeometry {
   double observer_longitude = 0;       // rad
   double sun_distance_au = 1;          // Sun to Moon
   double observer_distance = 384.4e6;  // m, Moon to observer
+};
+
+struct MoonSpec {
+  SunSpec disk;           // irradiance: taken as given unless by_phase
+  bool by_phase = true;   // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
+  MoonGeometry geometry;  // filled from the date when disk.time is given
 };
 
 // Disk reflectance over wavelength. Error: angles that are not finite, phase outside 0..pi.

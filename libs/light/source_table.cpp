@@ -1,4 +1,4 @@
-#include "radiometry/sources/source_table.h"
+#include "light/source_table.h"
 
 #include <vector>
 

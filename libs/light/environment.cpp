@@ -1,10 +1,11 @@
-#include "radiometry/sources/environment.h"
+#include "light/environment.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "light/kinds/solar_spectrum.h"
 #include "motion/ephemeris.h"
 #include "motion/time.h"
-#include "radiometry/sources/solar_spectrum.h"
 
 namespace suite {
 
@@ -105,29 +106,49 @@ uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
 
 namespace {
 
+// Takes the place of the light with this number, or stands behind the last one.
+template <class Kind>
+const Kind* put(Environment& e, size_t index, std::shared_ptr<const Kind> light) {
+  if (index == e.lights.size()) e.lights.emplace_back();
+  const Kind* const kind = light.get();
+  e.lights[index] = std::move(light);
+  return kind;
+}
+
+// Sun and Moon are the first of the list.
 void bake_bodies(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
-  if (specs.sun) e.sun = std::make_unique<Sun>(*specs.sun, state);
-  if (specs.moon) e.moon = std::make_unique<Sun>(specs.moon->disk, state);
+  size_t index = 0;
+  if (specs.sun) e.sun = index, e.sun_disk = put(e, index++, std::make_shared<const Sun>(*specs.sun, state));
+  if (specs.moon) e.moon_disk = put(e, index++, std::make_shared<const Sun>(specs.moon->disk, state));
+}
+
+// The sky follows them.
+void bake_sky(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
+  const size_t index = size_t{specs.sun.has_value()} + size_t{specs.moon.has_value()};
+  e.sky = put(e, index, std::make_shared<const Sky>(*specs.sky, state));
 }
 
 // The air scatters the beams of the bodies.
 void bake_air(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
   if (!specs.atmosphere) return;
   std::vector<Beam> beams;
-  for (const Sun* body : {e.sun.get(), e.moon.get()})
-    if (body) beams.push_back({body->direction(), body->irradiance()});
-  AtmosphereSpec spec = *specs.atmosphere;
-  e.atmosphere = make_layered_atmosphere(spec, state, std::move(beams));
+  for (const auto& light : e.lights)
+    if (const auto beam = light->beam()) beams.push_back(*beam);
+  e.atmosphere = make_layered_atmosphere(*specs.atmosphere, state, std::move(beams));
 }
 
 }  // namespace
+
+bool Environment::lamps_in_scene() const {
+  return std::any_of(lights.begin(), lights.end(), [](const auto& light) { return !light->nature().far; });
+}
 
 void rebake_dated(Environment& environment, const SourceSpecs& written, const SourceSpecs& now,
                   const SpectralState& state) {
   if (!written.dated()) return;
   SUITE_CHECK(!now.clear);
   bake_bodies(environment, now, state);
-  if (written.clear) environment.sky = std::make_unique<Sky>(*now.sky, state);
+  if (written.clear) bake_sky(environment, now, state);
   bake_air(environment, now, state);
 }
 
@@ -137,14 +158,16 @@ Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, boo
   const Scene& scene = tracer.scene();
   Environment e;
   bake_bodies(e, specs, state);
-  if (specs.sky) e.sky = std::make_unique<Sky>(*specs.sky, state);
-  if (!specs.lamps.empty()) e.lamps = std::make_unique<Lamps>(specs.lamps, tracer, state);
+  if (specs.sky) bake_sky(e, specs, state);
+  if (!specs.lamps.empty())
+    e.lamps = put(e, e.lights.size(), std::make_shared<const Lamps>(specs.lamps, tracer, state));
   bake_air(e, specs, state);
   if (specs.earth) {
     if (periodic) throw Error(specs.earth->where, "a scene that repeats itself has no Earth under it");
     const SceneFrame frame = frame_of(scene, specs.earth->where, "the Earth");
     const double lowest = tracer.bounds().empty() ? 0 : std::min(0.0, tracer.bounds().low.z);
-    e.earth = std::make_unique<Earth>(frame, specs.earth->height.value_or(scene.origin.ellipsoid_height_m + lowest - 1),
+    e.earth =
+        std::make_shared<const Earth>(frame, specs.earth->height.value_or(scene.origin.ellipsoid_height_m + lowest - 1),
                                       earth_material(*specs.earth, scene));
   }
   return e;

@@ -1,12 +1,8 @@
-// The sky: uniform, tabulated (one table or one per wavelength, e.g. an environment image), or thermal.
-//
-// Based on: importance sampling of environment maps by cells (Pharr, Jakob & Humphreys, "Physically based rendering",
-// 2016, section 14.2.4), extended to many wavelengths by averaging the densities each bin would use. Thermal sky:
-// Schwarzschild's equation for isothermal absorbing layers over a plane Earth (e.g. Liou 2002, eq. 4.2.9).
+#include "light/kinds/sky.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "radiometry/sources/source.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -17,10 +13,15 @@ constexpr size_t kMaxTable = size_t{1} << 28;
 
 Sky::Sky(const SkySpec& spec, const SpectralState& state)
     : theta_max_(spec.full_sphere ? kPi : kPi / 2), full_sphere_(spec.full_sphere), cells_(spec.cells) {
-  if (!spec.layers.empty()) {
+  if (!spec.layers.empty())
     bake_layers(spec, state);
-    return;
-  }
+  else
+    bake_table(spec, state);
+  nature_.far = nature_.wide = true;
+  nature_.drawn = tabulated();
+}
+
+void Sky::bake_table(const SkySpec& spec, const SpectralState& state) {
   spectrum_ = state.sample(spec.radiance);
   if (spec.radiance.min() < 0) throw Error("the sky's radiance is negative");
   if (spec.table.empty()) return;
@@ -201,7 +202,29 @@ double Sky::density(Dir d) const {
   return (cdf_[cell] - (cell ? cdf_[cell - 1] : 0.0)) / cell_solid_angle(row);
 }
 
-DirectionSample Sky::sample(Vec2 u) const {
+std::optional<LightSample> Sky::sample(const LightReceiver&, const std::array<double, 4>& u, double) const {
+  if (!tabulated()) return std::nullopt;
+  const DirectionSample drawn = draw({u[0], u[1]});
+  LightSample s;
+  s.direction = drawn.direction;
+  s.density = drawn.density;
+  s.spectrum = spectrum();
+  s.scale = s.spectrum ? relative(drawn.direction) : 1;
+  if (!(s.scale > 0)) return std::nullopt;
+  return s;
+}
+
+std::optional<LightSample> Sky::sample_member(size_t, double, const LightReceiver&, const std::array<double, 4>&,
+                                              double) const {
+  throw Bug("a sky has no members");
+}
+
+std::optional<LightMet> Sky::met_outside(Dir d, double) const {
+  if (outside(d)) return std::nullopt;
+  return LightMet{spectrum() ? relative(d) : 1, spectrum(), tabulated() ? density(d) : 0};
+}
+
+DirectionSample Sky::draw(Vec2 u) const {
   const size_t cell =
       std::min(cdf_.size() - 1, static_cast<size_t>(std::upper_bound(cdf_.begin(), cdf_.end(), u.x) - cdf_.begin()));
   const double before = cell ? cdf_[cell - 1] : 0, probability = cdf_[cell] - before;

@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "radiometry/sources/light_tree.h"
+#include "light/light.h"
+#include "light/light_tree.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
 #include "sqt/bundle.h"
@@ -46,31 +47,23 @@ struct LampSpec {
   bool both_sides = false;  // else the front only
 };
 
-// One lamp as a node of a path may draw it.
-struct LampSample {
-  Dir direction;
-  double distance = 0;  // m to the end of the visibility ray, from the place that asked
-  Vec3 end;             // just in front of the lamp's surface
-  double density = 0;   // 1/sr, choice of the lamp included; 0 = a point
-  double scale = 0;     // times spectrum = radiance, or of a point: irradiance / probability of its choice
-  const float* spectrum = nullptr;
-};
-
-// The lamps of a scene baked for a state.
-class Lamps {
+// The lamps of a scene baked for a state: one light, of which every lamp in the tree is a member.
+class Lamps final : public Light {
  public:
   // Error: unknown or mapped material, negative spectra, cones that are not 0 <= inner <= outer <= pi, empty or
   // negative tables.
   Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state);
   ~Lamps();
-  Lamps(const Lamps&) = delete;
-  Lamps& operator=(const Lamps&) = delete;
+  // u: the choice of the lamp, two for the place on it, and one for the choice among its images, unused where the scene
+  // does not repeat itself.
+  std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                    double time) const override;
+  std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
+                                      double distance, double cosine, double time) const override;
+  size_t members() const override { return size(); }
+  std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
+                                           const std::array<double, 4>& u, double time) const override;
 
-  // u: two numbers for the place on the lamp. image: one for the choice among the images of a lamp, unused where the
-  // scene does not repeat itself.
-  std::optional<LampSample> sample(const LightReceiver& at, double choice, Vec2 u, double image) const;
-  // A point on one lamp (0..size() - 1) that was chosen with a probability.
-  std::optional<LampSample> sample_one(uint32_t lamp, double probability, Vec3 from, Vec2 u, double image) const;
   // Whether sample() may draw the surface that a ray met.
   bool draws(const Hit& hit) const;
   // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
@@ -81,7 +74,7 @@ class Lamps {
   size_t size() const;  // lamps in the tree, of one cell
 
  private:
-  std::optional<LampSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
+  std::optional<LightSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
   struct Core;
   std::unique_ptr<Core> core_;
 };

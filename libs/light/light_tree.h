@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "light/light_receiver.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -33,14 +34,6 @@ struct LightBounds {
   double power = 0;         // > 0, any unit common to all
   bool both_sides = false;  // sends along -axis as along axis
   int profile = -1;         // index into the tree's profiles; -1 = falls off with the cosine
-};
-
-// A place that asks for light. normal: on the side from which it looks; null vector = takes light from everywhere.
-// two_sided: takes light from behind as well.
-struct LightReceiver {
-  Vec3 position;
-  Vec3 normal;
-  bool two_sided = false;
 };
 
 class LightTree {
