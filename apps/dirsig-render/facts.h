@@ -5,7 +5,7 @@
 #include <string>
 
 #include "formats/sim_text/sim_text.h"
-#include "radiometry/sources/environment.h"
+#include "light/environment.h"
 #include "scene/scene.h"
 
 namespace suite {

@@ -6,9 +6,9 @@
 #include "formats/curve/curve.h"
 #include "formats/raster/raster.h"
 #include "formats/sqt/sqt.h"
+#include "light/kinds/solar_spectrum.h"
 #include "motion/time.h"
 #include "optics/phase_function.h"
-#include "radiometry/sources/solar_spectrum.h"
 
 namespace suite {
 

@@ -1,7 +1,7 @@
 // The sources of a simulation text: sun, moon, sky, lamps, atmosphere, earth.
 #pragma once
 #include "base/params.h"
-#include "radiometry/sources/environment.h"
+#include "light/environment.h"
 #include "sensor/sensor.h"
 
 namespace suite {

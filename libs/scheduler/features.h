@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "radiometry/sources/environment.h"
+#include "light/environment.h"
 #include "scene/scene.h"
 #include "sensor/sensor.h"
 

@@ -43,7 +43,7 @@ Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const 
 // Brings the lights of a state to a moment and to the geometry of a tracer, where glowing surfaces have their places.
 void Kits::light(Held& held, const std::shared_ptr<const Tracer>& tracer, double moment) {
   const SourceSpecs& now = sources_.at(moment);
-  if (!held.lamps_of || (held.environment.lamps && held.lamps_of != tracer)) {
+  if (!held.lamps_of || (held.environment.lamps_in_scene() && held.lamps_of != tracer)) {
     held.environment = bake_environment(now, *tracer, periodic_, held.optics->state());
     ++light_bakes_;
   } else if (held.moment != moment) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "radiometry/sources/environment.h"
+#include "light/environment.h"
 #include "sensor/sensor.h"
 
 namespace suite {

@@ -74,7 +74,7 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
   if (!options.explicit_sources) return {};
   std::vector<std::string> lights, refracting, mirrors;
   for (const std::string& disk :
-       {small_disk("the sun", environment.sun.get(), paths), small_disk("the moon", environment.moon.get(), paths)})
+       {small_disk("the sun", environment.sun_disk, paths), small_disk("the moon", environment.moon_disk, paths)})
     if (!disk.empty()) lights.push_back(disk);
   for (const LampSpec& lamp : sources.lamps)
     if (lamp.kind != LampSpec::Kind::surface) lights.push_back("lamp '" + lamp.name + "' (a point)");

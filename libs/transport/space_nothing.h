@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "light/environment.h"
+#include "transport/contribution.h"
 #include "transport/lane.h"
 #include "transport/options.h"
 #include "transport/sight.h"
@@ -53,7 +54,6 @@ class NothingSpace {
     return lane.origin;
   }
   double index(uint32_t) const { return 1; }
-  template <class L>
   void cross(uint32_t, const Hit&, uint32_t, Dir) {}
   void clear_sight() {}
   Sight& sight() { return sight_; }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "light/light.h"
+#include "sensor/sensor.h"
 #include "transport/contribution.h"
 #include "transport/lane.h"
 

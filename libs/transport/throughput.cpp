@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kVector = 8;
 
 // y *= scale a.
-void multiply(float* __restrict y, float scale, const float* __restrict a, size_t n) {
+void turn_by(float* __restrict y, float scale, const float* __restrict a, size_t n) {
   if (a)
     for (size_t k = 0; k < n; ++k) y[k] *= scale * a[k];
   else if (scale != 1)
@@ -59,7 +59,7 @@ void SpectralThroughputs::fold(uint32_t p) {
   for (uint32_t i = 0; i < c.steps; ++i) {
     const Step& s = step(p, i);
     if (s.target == kTurn) {
-      multiply(T, s.scale, s.a, bins_);
+      turn_by(T, s.scale, s.a, bins_);
       continue;
     }
     add(L + s.target * stride_, s.scale, s.a, s.b, T, bins_);

@@ -18,9 +18,9 @@
 #include <ctime>
 
 #include "base/parallel.h"
+#include "light/kinds/solar_spectrum.h"
 #include "math/sampling.h"
 #include "math/stats.h"
-#include "radiometry/sources/solar_spectrum.h"
 #include "tests/bench/terrain.h"
 #include "tests/support/radiometry_kit.h"
 

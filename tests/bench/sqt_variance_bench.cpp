@@ -28,11 +28,12 @@
 #include "base/parallel.h"
 #include "formats/measured/measured.h"
 #include "formats/sqt/sqt.h"
+#include "light/kinds/sky.h"
+#include "light/kinds/sun.h"
 #include "math/sampling.h"
 #include "math/warps.h"
 #include "radiometry/live_path.h"
 #include "radiometry/path_generator.h"
-#include "radiometry/sources/source.h"
 #include "sqt/fit.h"
 #include "sqt/scattered.h"
 
@@ -57,11 +58,11 @@ SpectralState one_bin() {
 // The viewer stands 72 deg from the zenith. A sun of 1500 W/(m2 um) stands 50 deg from it at an azimuth from the
 // viewer's, and around it, lower, the sky glows: its brightest part is 60 times as bright as its darkest.
 const Dir kViewer = dir_from_angles(72 * kDegree, 0);
-struct Light {
+struct Lighting {
   Sun sun;
   Sky sky;
 };
-Light make_light(const SpectralState& state, double sun_azimuth) {
+Lighting make_light(const SpectralState& state, double sun_azimuth) {
   SunSpec sun;
   sun.direction = dir_from_angles(65 * kDegree, sun_azimuth);
   sun.irradiance = Curve::constant(1500);
@@ -93,7 +94,7 @@ Numbers scrambled(const SampleStream& stream, uint32_t n) {
 
 class Shader {
  public:
-  Shader(const sqt::Bundle& bundle, size_t channel, const Light& light)
+  Shader(const sqt::Bundle& bundle, size_t channel, const Lighting& light)
       : bundle_(bundle), channel_(channel), light_(light) {}
 
   // One sample of the radiance that leaves a point of the sphere towards the viewer.
@@ -101,11 +102,11 @@ class Shader {
     const bool asks_sun = next_event != NextEvent::off, asks_sky = next_event == NextEvent::sun_and_sky;
     double L = 0;
     if (asks_sun) {
-      const DirectionSample to_sun = light_.sun.sample(u.sun);
+      const DirectionSample to_sun = light_.sun.draw(u.sun);
       L += explicit_light(frame, out, to_sun, light_.sun.spectrum()[0], drawn, true);
     }
     if (asks_sky) {
-      const DirectionSample to_sky = light_.sky.sample(u.sky);
+      const DirectionSample to_sky = light_.sky.draw(u.sky);
       L += explicit_light(frame, out, to_sky, sky(to_sky.direction), drawn, false);
     }
     const auto in = draw(out, drawn, u);
@@ -127,9 +128,9 @@ class Shader {
     const double which = 3 * random.uniform();
     std::optional<Dir> in;
     if (which < 1)
-      in = frame.to_local(light_.sun.sample({random.uniform(), random.uniform()}).direction);
+      in = frame.to_local(light_.sun.draw({random.uniform(), random.uniform()}).direction);
     else if (which < 2)
-      in = frame.to_local(light_.sky.sample({random.uniform(), random.uniform()}).direction);
+      in = frame.to_local(light_.sky.draw({random.uniform(), random.uniform()}).direction);
     else
       in = draw(out, Drawn::sqt, independent(random));
     if (!in || !(in->z > 0)) return {};
@@ -160,7 +161,7 @@ class Shader {
   }
   const sqt::Bundle& bundle_;
   size_t channel_;
-  const Light& light_;
+  const Lighting& light_;
 };
 
 // A point of the picture of a unit sphere, and by how much it counts: half of the points anywhere, the others around
@@ -169,7 +170,7 @@ struct Point {
   Frame frame;
   double weight = 0;
 };
-Point picture_point(const Light& light, Pcg32& random) {
+Point picture_point(const Lighting& light, Pcg32& random) {
   const Frame picture = Frame::around(kViewer);
   const Dir glint = picture.to_local(normalized(kViewer + light.sun.direction()));
   constexpr double radius[3] = {0.999, 0.1, 0.03}, chance[3] = {0.5, 0.25, 0.25};
@@ -236,7 +237,7 @@ Errors rendered(const Shader& shader, const Point& point, size_t problem, NextEv
   return e;
 }
 
-Errors picture(const Shader& shader, const Light& light, NextEvent next_event) {
+Errors picture(const Shader& shader, const Lighting& light, NextEvent next_event) {
   const size_t count = next_event == NextEvent::off ? kPoints : kRendered;
   std::vector<Errors> points(count);
   std::vector<double> weight(count);
@@ -309,7 +310,7 @@ void run(const std::vector<std::string>& paths) {
   std::vector<Material> materials;
   for (const std::string& path : paths) materials.push_back(material(path));
   for (const double azimuth : {0.0, 90.0, 180.0}) {
-    const Light light = make_light(one_bin(), azimuth * kDegree);
+    const Lighting light = make_light(one_bin(), azimuth * kDegree);
     std::printf("sun %.0f deg from the viewer; next-event estimation:\n",
                 angle_between(kViewer, light.sun.direction()) / kDegree);
     for (const NextEvent next_event : {NextEvent::off, NextEvent::sun, NextEvent::sun_and_sky}) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "light/kinds/solar_spectrum.h"
 #include "math/warps.h"
 #include "optics/phase_function.h"
-#include "radiometry/sources/solar_spectrum.h"
 #include "spectral/planck.h"
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"

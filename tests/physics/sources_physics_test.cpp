@@ -7,11 +7,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "light/kinds/clear_sky.h"
+#include "light/kinds/moon.h"
+#include "light/kinds/solar_spectrum.h"
 #include "motion/ephemeris.h"
 #include "motion/time.h"
-#include "radiometry/sources/clear_sky.h"
-#include "radiometry/sources/moon.h"
-#include "radiometry/sources/solar_spectrum.h"
 #include "spectral/planck.h"
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"

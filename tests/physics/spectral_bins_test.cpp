@@ -5,8 +5,8 @@
 
 #include "base/files.h"
 #include "formats/curve/curve.h"
+#include "light/kinds/solar_spectrum.h"
 #include "math/sampling.h"
-#include "radiometry/sources/solar_spectrum.h"
 #include "support/bins_kit.h"
 
 namespace suite {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "light/kinds/lamp_images.h"
 #include "math/sampling.h"
 #include "math/stats.h"
-#include "radiometry/sources/lamp_images.h"
 
 namespace suite {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "light/light_tree.h"
 #include "math/sampling.h"
 #include "math/stats.h"
 #include "math/warps.h"
-#include "radiometry/sources/light_tree.h"
 
 namespace suite {
 namespace {

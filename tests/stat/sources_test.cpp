@@ -7,10 +7,10 @@
 
 #include "formats/picture/picture.h"
 #include "formats/sim_text/sources.h"
+#include "light/source_table.h"
 #include "math/sampling.h"
 #include "math/stats.h"
 #include "math/warps.h"
-#include "radiometry/sources/source_table.h"
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"
 #include "tests/support/temp_folder.h"
@@ -55,41 +55,56 @@ struct Draw {
   std::vector<float> radiance;
 };
 
-// Uniform view of whatever a row makes: draws with a density, densities and radiances of directions.
-struct Asked {
-  const Environment& e;
-  std::string key;
-  LightReceiver at{{0, 0, 0}, {}, true};
-  const Tracer& tracer;
-  size_t bins;
+// The light of a row, asked from the origin.
+class Asked {
+ public:
+  Asked(const Environment& e, const std::string& key, const Tracer& tracer, size_t bins)
+      // The sky may stand beside the sun that it needs.
+      : light_(key == "sun" ? *e.lights.front() : *e.lights.back()), tracer_(tracer), bins_(bins) {}
 
-  const Sun* disk() const { return key == "sun" ? e.sun.get() : key == "moon" ? e.moon.get() : nullptr; }
-  std::optional<Draw> draw(double choice, Vec2 u) const {
-    Draw d{{}, 0, std::vector<float>(bins, 0.0f)};
-    if (disk()) {
-      const DirectionSample s = disk()->sample(u);
-      d = {s.direction, s.density, {disk()->spectrum(), disk()->spectrum() + bins}};
-    } else if (key == "sky") {
-      const DirectionSample s = e.sky->sample(u);
-      d.direction = s.direction, d.density = s.density;
-      e.sky->add(s.direction, 1, d.radiance);
-    } else {
-      const auto s = e.lamps->sample(at, choice, u, 0);
-      if (!s) return std::nullopt;
-      d.direction = s->direction, d.density = s->density;
-      for (size_t i = 0; i < bins; ++i) d.radiance[i] = static_cast<float>(s->scale) * s->spectrum[i];
-    }
-    return d;
+  const Light& light() const { return light_; }
+  std::optional<Draw> draw(const std::array<double, 4>& u) const {
+    const auto s = light_.sample(at_, u, 0);
+    if (!s) return std::nullopt;
+    return Draw{s->direction, s->density, radiance(s->direction, s->scale, s->spectrum)};
   }
-  double density(Dir d) const {
-    if (disk()) return disk()->contains(d) ? disk()->density() : 0;
-    if (key == "sky") return e.sky->density(d);
+  std::optional<Draw> draw(Pcg32& random) const {
+    std::array<double, 4> u{};
+    for (int i = 0; i < light_.nature().numbers; ++i) u[static_cast<size_t>(i)] = random.uniform();
+    return draw(u);
+  }
+  std::optional<LightMet> met(Dir d) const {
+    if (light_.nature().far) return light_.met_outside(d, 0);
     Hit hit;
     TraceStatistics statistics;
-    const Ray ray{at.position, d, 0};
-    tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
-    return hit.hit() ? e.lamps->density(at, hit, d, hit.distance, -dot(hit.normal, d)) : 0;
+    const Ray ray{at_.position, d, 0};
+    tracer_.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    if (!hit.hit()) return std::nullopt;
+    return light_.met_surface(at_, hit, 0, d, hit.distance, -dot(hit.normal, d), 0);
   }
+  double density(Dir d) const {
+    const auto m = met(d);
+    return m ? m->density : 0;
+  }
+  std::vector<float> radiance(Dir d) const {
+    const auto m = met(d);
+    return m ? radiance(d, m->scale, m->spectrum) : std::vector<float>(bins_, 0.0f);
+  }
+
+ private:
+  std::vector<float> radiance(Dir d, double scale, const float* spectrum) const {
+    std::vector<float> all(bins_, 0.0f);
+    if (spectrum)
+      for (size_t i = 0; i < bins_; ++i) all[i] = static_cast<float>(scale) * spectrum[i];
+    else
+      light_.add(d, static_cast<float>(scale), all);
+    return all;
+  }
+
+  const Light& light_;
+  LightReceiver at_{{0, 0, 0}, {}, true};
+  const Tracer& tracer_;
+  size_t bins_;
 };
 
 TEST_P(SourceKinds, SamplesFollowTheDensity) {
@@ -100,21 +115,21 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
   for (const double c : {0.45, 0.55, 0.65}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
   const SpectralState state = make_state(bands, 0.01);
   const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source{e, row().key, {{0, 0, 0}, {}, true}, tracer, state.size()};
-  const auto first = source.draw(0.5, {0.5, 0.5});
+  const Asked source(e, row().key, tracer, state.size());
+  const auto first = source.draw({0.5, 0.5, 0.5, 0.5});
   ASSERT_TRUE(first);
   if (first->density == 0) {  // a point or a collimated beam: one direction, nothing to distribute
-    EXPECT_EQ(source.draw(0.9, {0.1, 0.7})->direction, first->direction);
+    EXPECT_TRUE(source.light().nature().delta);
+    EXPECT_EQ(source.draw({0.9, 0.1, 0.7, 0.3})->direction, first->direction);
     return;
   }
+  EXPECT_FALSE(source.light().nature().delta);
   // Cells of equal solid angle around the mean direction of a pilot, out to its farthest draw.
   Pcg32 random(11);
   Vec3 sum;
   double farthest = 0;
   std::vector<Dir> pilot;
-  for (int i = 0; i < 2000; ++i)
-    pilot.push_back(source.draw(random.uniform(), {random.uniform(), random.uniform()})->direction),
-        sum += pilot.back();
+  for (int i = 0; i < 2000; ++i) pilot.push_back(source.draw(random)->direction), sum += pilot.back();
   const Frame frame = Frame::around(normalized(sum));
   for (const Dir& d : pilot) farthest = std::max(farthest, angle_between(d, frame.z));
   const double drop = one_minus_cos(std::min(kPi, 1.1 * farthest));
@@ -131,7 +146,7 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
   const uint64_t n = 150000;
   std::vector<double> observed(rings * sectors, 0.0), expected(rings * sectors, 0.0);
   for (uint64_t i = 0; i < n; ++i) {
-    const auto d = source.draw(random.uniform(), {random.uniform(), random.uniform()});
+    const auto d = source.draw(random);
     if (d) observed[cell_of(d->direction)] += 1;
   }
   const int fine = row().key == "lamps" ? 150 : 100;
@@ -162,30 +177,31 @@ TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
   const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.01), Band::rectangular("b", 0.65, 0.01)};
   const SpectralState state = make_state(bands, 0.01);
   const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source{e, row().key, {{0, 0, 0}, {}, true}, tracer, state.size()};
+  const Asked source(e, row().key, tracer, state.size());
   std::vector<double> by_samples(state.size(), 0.0), by_quadrature(state.size(), 0.0), square(state.size(), 0.0);
   Pcg32 random(4);
   const int n = 200000;
   for (int i = 0; i < n; ++i) {
-    const auto d = source.draw(random.uniform(), {random.uniform(), random.uniform()});
+    const auto d = source.draw(random);
+    if (i < 100) {
+      EXPECT_EQ(source.radiance(d->direction), d->radiance);
+    }
     for (size_t b = 0; b < state.size(); ++b) {
       const double x = d->radiance[b] * std::max(0.0, d->direction.z) / d->density;
       by_samples[b] += x / n;
       square[b] += x * x / n;
     }
   }
-  if (source.disk()) {
-    // A disk wholly above the horizon: radiance x pi sin^2 x cosine of its centre.
-    for (size_t b = 0; b < state.size(); ++b)
-      by_quadrature[b] = source.disk()->irradiance()[b] * source.disk()->direction().z;
+  if (source.light().nature().disk) {
+    // A disk wholly above the horizon: irradiance of the beam x cosine of its centre.
+    const Beam beam = *source.light().beam();
+    for (size_t b = 0; b < state.size(); ++b) by_quadrature[b] = beam.irradiance[b] * beam.direction.z;
   } else {
-    std::vector<float> L(state.size());
     const int rows = 900, columns = 1440;
     for (int r = 0; r < rows; ++r)
       for (int c = 0; c < columns; ++c) {
         const double theta = (r + 0.5) / rows * kPi / 2;
-        std::fill(L.begin(), L.end(), 0.0f);
-        e.sky->add(dir_from_angles(theta, (c + 0.5) / columns * 2 * kPi), 1, L);
+        const std::vector<float> L = source.radiance(dir_from_angles(theta, (c + 0.5) / columns * 2 * kPi));
         for (size_t b = 0; b < state.size(); ++b)
           by_quadrature[b] += L[b] * std::cos(theta) * std::sin(theta) * (kPi / 2 / rows) * (2 * kPi / columns);
       }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <span>
 
+#include "transport/dimensions.h"
 #include "transport/options.h"
 
 namespace suite {

@@ -2,6 +2,7 @@
 // sampling, shares.h), directions drawn at several wavelengths, Russian roulette.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "transport/options.h"

@@ -3,6 +3,7 @@
 // Index-matched boundaries let light pass; all other surfaces stop it, refracting ones too: light through them is met
 // by chance, after the refraction has been drawn, or lost (lost_light.h).
 #pragma once
+#include <utility>
 #include <vector>
 
 #include "transport/media/bodies.h"

@@ -36,7 +36,7 @@ void add_account_rows(std::vector<TruthRow>& table) {
                            if (s.first && s.first->sunlit) ++sum[0];
                          },
                          [](const TruthContext& x, const double* sum, const TruthCounts& n, double* v) {
-                           if (n.hits > 0 && x.environment.sun) v[0] = sum[0] / n.hits;
+                           if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
   table.push_back({"state", "", "number of the spectral state", [](const TruthContext& c) {

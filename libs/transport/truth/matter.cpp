@@ -35,11 +35,11 @@ struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
 };
 
 enum class What { material, instance, tag };
-uint32_t id_of(What what, const TruthContext& c, const Node& node) {
+uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
   if (!node.hit.hit() && what != What::material) return kNone;  // the Earth is no instance and has no tag
   switch (what) {
     case What::material:
-      return node.at.material;
+      return node.at->material;
     case What::instance:
       if (!node.hit.hit()) return kNone;  // the Earth under the scene
       return c.tracer.objects()[node.hit.object].instance;
@@ -103,9 +103,10 @@ struct Reflectance final : TruthCollector {
     return names;
   }
   void add(const TruthSample& s, double* slots) const override {
-    if (!s.first || !s.first->at.baked || !s.first->at.baked->model) return;
-    const std::span<float> w = s.wave.scratch();
-    s.first->at.baked->model->total(s.first->at.frame.to_local(s.first->out), w);
+    if (!s.first || !s.first->at->baked || !s.first->at->baked->model) return;
+    thread_local std::vector<float> w;
+    w.resize(context.state.size());
+    s.first->at->baked->model->total(s.first->at->frame.to_local(s.first->out), w);
     ++slots[0];
     context.projection.add(w, {slots + 1, context.projection.bands()});
   }
@@ -152,8 +153,8 @@ void add_matter_rows(std::vector<TruthRow>& table) {
                      return std::make_unique<SimpleCollector>(
                          c, 2, std::vector<std::string>{"temperature [K]"},
                          [](const TruthContext&, const TruthSample& s, double* sum) {
-                           if (!s.first || !s.first->at.baked || !(s.first->at.baked->kelvin > 0)) return;
-                           sum[0] += s.first->at.baked->kelvin, ++sum[1];
+                           if (!s.first || !s.first->at->baked || !(s.first->at->baked->kelvin > 0)) return;
+                           sum[0] += s.first->at->baked->kelvin, ++sum[1];
                          },
                          [](const TruthContext&, const double* sum, const TruthCounts&, double* v) {
                            if (sum[1] > 0) v[0] = sum[0] / sum[1];

@@ -60,8 +60,8 @@ void mean_of_one(const TruthContext&, const double* sum, const TruthCounts& n, d
 }
 
 // Angle between a direction and the surface's normal on the side that is looked at, degrees.
-double angle_deg(const Node& node, Dir d) {
-  const Dir n = dot(node.out, node.at.geometric_normal) >= 0 ? node.at.geometric_normal : -node.at.geometric_normal;
+double angle_deg(const FirstMeeting& node, Dir d) {
+  const Dir n = dot(node.out, node.at->geometric_normal) >= 0 ? node.at->geometric_normal : -node.at->geometric_normal;
   return angle_between(d, n) / kDegree;
 }
 
@@ -94,7 +94,7 @@ void add_place_rows(std::vector<TruthRow>& table) {
                      return simple(
                          c, 1, {"range [m]"},
                          [](const TruthContext&, const TruthSample& s, double* sum) {
-                           if (s.first) sum[0] += s.first->optical_length;
+                           if (s.first) sum[0] += s.first->distance;
                          },
                          mean_of_one);
                    }});
@@ -104,7 +104,7 @@ void add_place_rows(std::vector<TruthRow>& table) {
                          c, 3, {"normal east", "normal north", "normal up"},
                          [](const TruthContext&, const TruthSample& s, double* sum) {
                            if (!s.first) return;
-                           const Dir n = s.first->at.geometric_normal;
+                           const Dir n = s.first->at->geometric_normal;
                            const double side = dot(s.first->out, n) >= 0 ? 1 : -1;
                            sum[0] += side * n.x, sum[1] += side * n.y, sum[2] += side * n.z;
                          },
@@ -127,11 +127,11 @@ void add_place_rows(std::vector<TruthRow>& table) {
                      return simple(
                          c, 1, {"incidence angle [deg]"},
                          [](const TruthContext& x, const TruthSample& s, double* sum) {
-                           if (s.first && x.environment.sun)
-                             sum[0] += angle_deg(*s.first, x.environment.sun->direction());
+                           if (const auto to_sun = x.environment.towards_sun(); s.first && to_sun)
+                             sum[0] += angle_deg(*s.first, *to_sun);
                          },
                          [](const TruthContext& x, const double* sum, const TruthCounts& n, double* v) {
-                           if (n.hits > 0 && x.environment.sun) v[0] = sum[0] / n.hits;
+                           if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
 }

@@ -35,10 +35,7 @@ TruthPlan::TruthPlan(std::span<const std::string> names, const TruthContext& con
   }
 }
 
-void TruthPlan::add(Wave& wave, size_t path, double* slots) const {
-  const Path& p = wave.path(path);
-  const TruthSample sample{wave, p,
-                           p.size > p.first_met() && !p.scattered_first ? &wave.node(path, p.first_met()) : nullptr};
+void TruthPlan::add(const TruthSample& sample, double* slots) const {
   if (sample.first) ++slots[0];
   ++slots;
   for (const auto& collector : collectors_) {

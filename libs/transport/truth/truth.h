@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "motion/scene_frame.h"
 #include "light/environment.h"
-#include "radiometry/wave.h"
+#include "motion/scene_frame.h"
 #include "spectral/state.h"
+#include "transport/lane.h"
 
 namespace suite {
 
@@ -27,12 +27,10 @@ struct TruthContext {
   const Environment& environment;
 };
 
-// One complete path and what it met first (null = nothing). Collectors may look at path.ray, path.size and the first
-// node's hit, out, optical_length, sunlit and place (`at`), which is what every kernel records.
+// One complete path and the first surface that it met (null = nothing).
 struct TruthSample {
-  Wave& wave;  // its scratch() may be overwritten
-  const Path& path;
-  const Node* first = nullptr;
+  const PathRecord& path;
+  const FirstMeeting* first = nullptr;
 };
 
 // How many samples a problem took and how many of them met something.
@@ -70,7 +68,7 @@ class TruthPlan {
   size_t slots() const { return slots_; }
   bool wanted() const { return !collectors_.empty(); }
   const std::vector<std::string>& columns() const { return columns_; }
-  void add(Wave& wave, size_t path, double* slots) const;
+  void add(const TruthSample& sample, double* slots) const;
   // values: columns().size() numbers.
   void finish(const double* slots, uint32_t paths, double* values) const;
 

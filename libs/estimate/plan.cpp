@@ -1,0 +1,103 @@
+#include "estimate/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace suite {
+
+namespace {
+
+// Variance of one path and mean of a problem's pilot at one band.
+struct Moments {
+  double variance = 0, mean = 0;
+};
+Moments moments_of(const Accumulators& pilot, size_t problem, size_t band) {
+  Moments m;
+  double error = 0;
+  pilot.estimate(problem, band, m.mean, error);
+  m.variance = error * error * pilot.paths(problem);
+  return m;
+}
+
+double need(double variance, double mean, double floor) {
+  const double scale = std::max(mean, floor);
+  if (!(variance > 0)) return 0;
+  return scale > 0 ? variance / (scale * scale) : INFINITY;
+}
+
+// Pools one band over each problem's neighbours and keeps the larger need.
+void pool_band(const Capture& capture, const std::vector<Moments>& of, double weight, const Goals& goals,
+               std::vector<double>& needs) {
+  constexpr long reach = 2;
+  const long columns = capture.columns, rows = capture.rows;
+  for (long r = 0; r < rows; ++r)
+    for (long k = 0; k < columns; ++k) {
+      double variance = 0, mean = 0;
+      int n = 0;
+      for (long y = std::max(0L, r - reach); y <= std::min(rows - 1, r + reach); ++y)
+        for (long x = std::max(0L, k - reach); x <= std::min(columns - 1, k + reach); ++x) {
+          if (y == r && x == k) continue;
+          variance += of[static_cast<size_t>(y * columns + x)].variance;
+          mean += of[static_cast<size_t>(y * columns + x)].mean;
+          ++n;
+        }
+      const size_t problem = static_cast<size_t>(r * columns + k);
+      needs[problem] =
+          std::max(needs[problem], weight * need(variance / n, mean / n, goals.of(problem).absolute_floor));
+    }
+}
+
+}  // namespace
+
+bool has_neighbours(const Capture& capture) { return capture.neighbours && capture.problems() >= 2; }
+
+std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const JudgedBand> judged,
+                             const Goals& goals) {
+  std::vector<double> needs(capture.problems(), 0.0);
+  std::vector<Moments> of(capture.problems());
+  for (const JudgedBand& judge : judged) {
+    for (size_t i = 0; i < of.size(); ++i) of[i] = moments_of(pilot, i, judge.band);
+    pool_band(capture, of, judge.weight, goals, needs);
+  }
+  return needs;
+}
+
+std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const JudgedBand> judged, const Goals& goals) {
+  std::vector<double> needs(pilot.problems(), 0.0);
+  for (const JudgedBand& judge : judged)
+    for (size_t i = 0; i < needs.size(); ++i) {
+      const Moments m = moments_of(pilot, i, judge.band);
+      needs[i] = std::max(needs[i], judge.weight * need(m.variance, m.mean, goals.of(i).absolute_floor));
+    }
+  return needs;
+}
+
+std::vector<uint32_t> paths_for(std::span<const double> needs, const Goals& goals) {
+  std::vector<uint32_t> plan(needs.size());
+  for (size_t i = 0; i < plan.size(); ++i) {
+    const Convergence goal = goals.of(i);
+    plan[i] = goal.max_paths;
+    if (!(goal.relative_error > 0)) continue;
+    const double wanted = std::ceil(std::min(needs[i] / (goal.relative_error * goal.relative_error), 1e12) / 4) * 4;
+    plan[i] = static_cast<uint32_t>(
+        std::clamp(wanted, static_cast<double>(goal.min_paths), static_cast<double>(goal.max_paths)));
+  }
+  return plan;
+}
+
+uint32_t cap_for_total(std::span<const double> needs, const Goals& goals, double total) {
+  uint32_t low = goals.all.min_paths, high = goals.all.max_paths;
+  Goals tried = goals;
+  while (low < high) {
+    tried.all.max_paths = low + (high - low + 1) / 2;
+    double sum = 0;
+    for (const uint32_t n : paths_for(needs, tried)) sum += n;
+    if (sum <= total)
+      low = tried.all.max_paths;
+    else
+      high = tried.all.max_paths - 1;
+  }
+  return low;
+}
+
+}  // namespace suite

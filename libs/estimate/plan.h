@@ -1,0 +1,38 @@
+// How many paths each problem gets, decided without bias.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "estimate/accumulators.h"
+#include "estimate/budget.h"
+
+namespace suite {
+
+// A band whose error decides. weight: (least target / its target)^2, so that one number tells what a problem needs.
+struct JudgedBand {
+  size_t band = 0;
+  double weight = 1;
+};
+
+// Stage 1 of two: the pilot has been run for all problems. What a problem needs follows from the variance of its
+// neighbours' pilots, never from its own, so keeping all its samples does not bias its mean: the number of paths that
+// would bring the relative standard error to 1, variance / max(mean, floor)^2, pooled over the 24 problems around it;
+// the largest over the bands in `judged`, each times its weight. The count for another target is this divided by the
+// target squared, so that a run which is continued plans from the same pilot. 0 where no variance was seen; infinite
+// where the mean is 0. A problem's floor is its own goal's.
+std::vector<double> needs_of(const Capture& capture, const Accumulators& pilot, std::span<const JudgedBand> judged,
+                             const Goals& goals);
+
+// The same from each problem's own pilot, for captures without neighbours (a single problem): unbiased only when the
+// pilot is thrown away.
+std::vector<double> own_needs_of(const Accumulators& pilot, std::span<const JudgedBand> judged, const Goals& goals);
+bool has_neighbours(const Capture& capture);
+
+// Paths of every problem for its target: whole multiples of four (the scrambles) within its limits; its maximum without
+// a target.
+std::vector<uint32_t> paths_for(std::span<const double> needs, const Goals& goals);
+
+// The largest maximum of paths, at least goals.all.min_paths, under which paths_for sums to at most `total`.
+uint32_t cap_for_total(std::span<const double> needs, const Goals& goals, double total);
+
+}  // namespace suite

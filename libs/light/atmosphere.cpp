@@ -1,0 +1,226 @@
+#include "light/atmosphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "optics/phase_function.h"
+#include "spectral/planck.h"
+
+namespace suite {
+
+double rayleigh_depth(double w, double pressure) {
+  const double x = std::min(w, 1.0), w2 = x * x;
+  const double depth =
+      0.0021520 * (1.0455996 - 341.29061 / w2 - 0.90230850 * w2) / (1 + 0.0027059889 / w2 - 85.968563 * w2);
+  return depth * std::pow(x / w, 4) * pressure / 101325;
+}
+
+Air standard_air(double height) {
+  // Geopotential height, lapse rates and base temperatures (table 4 of the standard).
+  constexpr double base[] = {0, 11000, 20000, 32000, 47000, 51000, 71000},
+                   lapse[] = {-0.0065, 0, 0.001, 0.0028, 0, -0.0028, -0.002};
+  constexpr double constant = 0.0341631947;  // g0 M / R, K/m
+  const double h = std::max(0.0, height) * 6356766 / (6356766 + std::max(0.0, height));
+  Air air;
+  for (int i = 0; i < 7; ++i) {
+    const double top = i < 6 ? std::min(h, base[i + 1]) : h, dh = top - base[i];
+    if (dh <= 0) break;
+    const double t = std::max(air.temperature + lapse[i] * dh, 150.0);
+    air.pressure *= lapse[i] == 0 ? std::exp(-constant * dh / air.temperature)
+                                  : std::pow(t / air.temperature, -constant / lapse[i]);
+    air.temperature = t;
+  }
+  return air;
+}
+
+namespace {
+
+// Share of an exponential profile that lies between two heights.
+double exponential_share(double low, double high, double bottom, double top, double scale) {
+  const auto mass = [&](double z) { return -std::expm1(-(z - bottom) / scale); };
+  return (mass(high) - mass(low)) / mass(top);
+}
+
+class Layered final : public Atmosphere {
+ public:
+  Layered(const AtmosphereSpec& s, const SpectralState& state, std::vector<Beam> beams)
+      : heights_(s.heights), offset_(s.scene_height), bins_(state.size()), beams_(std::move(beams)) {
+    check(s);
+    layers_ = heights_.size() - 1;
+    const size_t n = layers_ * bins_;
+    extinction_.assign(n, 0), rayleigh_.assign(n, 0), aerosol_.assign(n, 0), source_.assign(n, 0),
+        above_.assign((layers_ + 1) * bins_, 0);
+    if (s.aerosol) phase_ = bake_phase(s.aerosol->phase, state);
+    for (size_t l = 0; l < layers_; ++l) bake_layer(s, state, l);
+    for (size_t l = layers_; l-- > 0;)
+      for (size_t i = 0; i < bins_; ++i)
+        above_[l * bins_ + i] = above_[(l + 1) * bins_ + i] +
+                                extinction_[l * bins_ + i] * static_cast<float>(heights_[l + 1] - heights_[l]);
+    // Light that comes along the horizon or from below reaches no layer.
+    std::erase_if(beams_, [](const Beam& b) { return !(b.direction.z > 1e-6); });
+  }
+
+  void transmittance(Vec3 from, Dir d, double distance, std::span<float> T) const override {
+    std::fill(T.begin(), T.end(), 0.0f);
+    walk(from, d, distance, [&](size_t layer, double, double l) {
+      const float* k = &extinction_[layer * bins_];
+      const auto length = static_cast<float>(l);
+      for (size_t i = 0; i < bins_; ++i) T[i] += k[i] * length;
+    });
+    for (float& t : T) t = std::exp(-t);
+  }
+
+  void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
+    std::fill(T.begin(), T.end(), 1.0f);
+    std::fill(S.begin(), S.end(), 0.0f);
+    thread_local std::vector<float> phase;
+    phase.assign(bins_, 0.0f);
+    walk(from, d, distance, [&](size_t layer, double z, double l) {
+      for (const Beam& beam : beams_) {
+        const double cosine = dot(beam.direction, d);
+        if (phase_) phase_->eval(std::clamp(cosine, -1.0, 1.0), phase);
+        scatter(layer, z, l, d.z, beam, cosine, phase, T, S);
+      }
+      const float* k = &extinction_[layer * bins_];
+      const float* source = &source_[layer * bins_];
+      const auto length = static_cast<float>(l);
+      for (size_t i = 0; i < bins_; ++i) {
+        S[i] -= T[i] * source[i] * std::expm1(-k[i] * length);
+        T[i] *= std::exp(-k[i] * length);
+      }
+    });
+  }
+
+ private:
+  static void check(const AtmosphereSpec& s) {
+    const size_t layers = s.heights.size() < 2 ? 0 : s.heights.size() - 1;
+    if (layers < 1 || layers > 200)
+      throw Error(strf("an atmosphere of %zu heights", s.heights.size()),
+                  "give 2 to 201 heights, which bound its layers");
+    for (size_t i = 0; i < s.heights.size(); ++i)
+      if (!std::isfinite(s.heights[i]) || (i && !(s.heights[i] > s.heights[i - 1])))
+        throw Error("the heights of the atmosphere are not ascending");
+    if (!s.temperature_k.empty() && s.temperature_k.size() != layers)
+      throw Error(strf("the atmosphere has %zu layers and %zu temperatures", layers, s.temperature_k.size()));
+    for (const double t : s.temperature_k)
+      if (!(t > 0) || !std::isfinite(t)) throw Error(strf("a layer of the atmosphere at %g K", t));
+    if (!(s.pressure >= 0 && s.pressure <= 2e5))
+      throw Error(strf("a pressure of %g Pa at sea level is not between 0 and 2e5", s.pressure));
+    if (const auto& a = s.aerosol) {
+      if (!(a->depth_550 >= 0) || !std::isfinite(a->depth_550)) throw Error("the aerosol's optical depth is negative");
+      if (!(a->scale_height > 0)) throw Error("the aerosol's scale height must be positive");
+      if (a->albedo.min() < 0 || a->albedo.max() > 1) throw Error("the aerosol's albedo is not between 0 and 1");
+    }
+    for (const AtmosphereSpec::Gas& g : s.gases) {
+      if (!g.layers.empty() && g.layers.size() != layers)
+        throw Error(strf("gas '%s' has %zu layers, the atmosphere %zu", g.name.c_str(), g.layers.size(), layers));
+      if (g.layers.empty() && !(g.scale_height > 0))
+        throw Error("gas '" + g.name + "': the scale height must be positive");
+      for (const Curve& c : g.layers)
+        if (c.min() < 0) throw Error("gas '" + g.name + "' has a negative optical depth");
+      if (g.layers.empty() && g.column.min() < 0) throw Error("gas '" + g.name + "' has a negative optical depth");
+    }
+  }
+
+  void bake_layer(const AtmosphereSpec& s, const SpectralState& state, size_t l) {
+    const double low = s.heights[l], high = s.heights[l + 1], bottom = s.heights.front(), top = s.heights.back(),
+                 thickness = high - low;
+    // The weight of the air in a layer is the difference of the pressures at its bounds; the top layer carries the
+    // rest.
+    const double weight = standard_air(low).pressure - (l + 1 == layers_ ? 0 : standard_air(high).pressure);
+    const double temperature =
+        s.temperature_k.empty() ? standard_air(0.5 * (low + high)).temperature : s.temperature_k[l];
+    for (size_t i = 0; i < bins_; ++i) {
+      const Bin& b = state.bins[i];
+      const double w = b.center_um();
+      const double rayleigh = s.rayleigh ? rayleigh_depth(w, weight * s.pressure / 101325) : 0;
+      double aerosol = 0, absorbed = 0;
+      if (const auto& a = s.aerosol) {
+        const double depth = a->depth_550 * std::pow(w / 0.55, -a->angstrom) *
+                             exponential_share(low, high, bottom, top, a->scale_height);
+        aerosol = depth * a->albedo.mean(b.low_um, b.high_um);
+        absorbed = depth - aerosol;
+      }
+      for (const AtmosphereSpec::Gas& g : s.gases)
+        absorbed += g.layers.empty()
+                        ? g.column.mean(b.low_um, b.high_um) * exponential_share(low, high, bottom, top, g.scale_height)
+                        : g.layers[l].mean(b.low_um, b.high_um);
+      const double extinction = rayleigh + aerosol + absorbed;
+      const size_t k = l * bins_ + i;
+      extinction_[k] = static_cast<float>(extinction / thickness);
+      rayleigh_[k] = static_cast<float>(rayleigh / thickness);
+      aerosol_[k] = static_cast<float>(aerosol / thickness);
+      if (absorbed > 0)
+        source_[k] = static_cast<float>(absorbed / extinction * planck_band_radiance(b.low_um, b.high_um, temperature) /
+                                        (b.high_um - b.low_um));
+    }
+  }
+
+  // Calls visit(layer, height at the near end, length) for the pieces of a segment, from `from` on.
+  template <class Visit>
+  void walk(Vec3 from, Dir d, double distance, Visit visit) const {
+    constexpr double longest = 1e9;  // a horizontal ray leaves a flat layer nowhere
+    double z = from.z + offset_, s = 0;
+    const double end = std::min(distance, longest);
+    if (z >= heights_.back()) {
+      if (!(d.z < 0)) return;
+      s = (z - heights_.back()) / -d.z;
+      z = heights_.back();
+    }
+    auto layer = static_cast<long>(std::upper_bound(heights_.begin(), heights_.end(), z) - heights_.begin()) - 1;
+    if (d.z < 0 && layer >= 0 && z == heights_[static_cast<size_t>(layer)]) --layer;
+    layer = std::clamp(layer, 0L, static_cast<long>(layers_) - 1);
+    while (s < end) {
+      const auto i = static_cast<size_t>(layer);
+      double out = end;
+      if (d.z > 0)
+        out = std::min(end, s + (heights_[i + 1] - z) / d.z);
+      else if (d.z < 0 && i > 0)
+        out = std::min(end, s + (heights_[i] - z) / d.z);
+      visit(i, z, out - s);
+      if (out >= end) return;
+      s = out;
+      layer += d.z > 0 ? 1 : -1;
+      if (layer == static_cast<long>(layers_)) return;
+      z = heights_[d.z > 0 ? i + 1 : i];
+    }
+  }
+
+  // Adds what a piece of length l scatters once: with t the depth of the beam at the near end and x the growth of total
+  // depth along the piece, the integral of exp(-t - x s / l) over it is l (exp(-t) - exp(-t - x)) / x.
+  void scatter(size_t layer, double z, double l, double mu, const Beam& beam, double cosine,
+               std::span<const float> phase, std::span<const float> T, std::span<float> S) const {
+    constexpr double depolarisation = 0.0279, gamma = depolarisation / (2 - depolarisation);
+    const auto air =
+        static_cast<float>(3 / (16 * kPi * (1 + 2 * gamma)) * (1 + 3 * gamma + (1 - gamma) * cosine * cosine));
+    const auto rise = static_cast<float>(heights_[layer + 1] - z), slant = static_cast<float>(1 / beam.direction.z),
+               length = static_cast<float>(l);
+    const auto growth = static_cast<float>(l * (1 - mu / beam.direction.z));
+    const float *k = &extinction_[layer * bins_], *r = &rayleigh_[layer * bins_], *a = &aerosol_[layer * bins_],
+                *above = &above_[(layer + 1) * bins_];
+    for (size_t i = 0; i < bins_; ++i) {
+      const float t = (above[i] + k[i] * rise) * slant, x = k[i] * growth, near = std::exp(-t);
+      const float mean =
+          std::fabs(x) < 2e-2f ? near * (1 - x * (0.5f - x * (1 / 6.0f))) : (near - std::exp(-t - x)) / x;
+      S[i] += T[i] * beam.irradiance[i] * (r[i] * air + a[i] * phase[i]) * length * mean;
+    }
+  }
+
+  std::vector<double> heights_;
+  double offset_;
+  size_t bins_, layers_ = 0;
+  std::vector<Beam> beams_;
+  std::unique_ptr<const PhaseFunction> phase_;
+  // Per layer and bin: 1/m; emission is the blackbody times the absorbed share. above_: vertical depth above a height.
+  std::vector<float> extinction_, rayleigh_, aerosol_, source_, above_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Atmosphere> make_layered_atmosphere(const AtmosphereSpec& spec, const SpectralState& state,
+                                                          std::vector<Beam> beams) {
+  return std::make_unique<Layered>(spec, state, std::move(beams));
+}
+
+}  // namespace suite

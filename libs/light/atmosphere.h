@@ -1,0 +1,72 @@
+// What the air does to light between two points: transmittance and path radiance. One interface, so that atmospheres
+// computed by other programs can stand in for the layered one here.
+//
+// The layered atmosphere assumes: plane-parallel homogeneous layers; sunlight and moonlight scattered once on the way
+// (no multiple scattering, nothing scattered from the ground); the beam to the scattering points is not shadowed by the
+// scene; no refraction. Within these, transmittance and path radiance are closed forms, exact for the layers.
+// Based on: Rayleigh scattering, B. Bodhaine et al., "On Rayleigh optical depth calculations", J. Atmos. Oceanic
+// Technol. 16, 1999, equation 30 (lambda^-4 from 1 um on, where the fit ends) with the depolarisation of Bates 1984;
+// the profile of the U.S. Standard Atmosphere 1976; single scattering and emission of a layer, e.g. K.-N. Liou, "An
+// introduction to atmospheric radiation", 2002, equations 3.4.9 and 4.2.9.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "light/light.h"
+#include "math/vec.h"
+#include "optics/model_spec.h"
+#include "spectral/state.h"
+
+namespace suite {
+
+struct AtmosphereSpec {
+  // Ascending heights above sea level, m, that bound the layers; the lowest layer goes on below the first.
+  std::vector<double> heights = {0,    1e3,  2e3,  3e3,  4e3,  5e3,  6e3,  8e3,  10e3,
+                                 12e3, 15e3, 18e3, 22e3, 26e3, 32e3, 40e3, 50e3, 80e3};
+  std::vector<double> temperature_k = {};  // of each layer; empty = U.S. Standard Atmosphere 1976
+  double scene_height = 0;                 // of the scene's z = 0 above sea level, m
+  bool rayleigh = true;
+  double pressure = 101325;  // at sea level, Pa
+  struct Aerosol {
+    double depth_550 = 0;  // vertical optical depth at 0.55 um, all layers
+    double angstrom = 1.3, scale_height = 2000;
+    Curve albedo = Curve::constant(0.95);  // of single scattering
+    ModelSpec phase;                       // a row of phases()
+  };
+  std::optional<Aerosol> aerosol;
+  // Absorption. Vertical optical depth of the whole column spread with a scale height, or of every layer by itself.
+  struct Gas {
+    std::string name;
+    Curve column;
+    double scale_height = 0;
+    std::vector<Curve> layers;  // when not empty: one per layer, and `column` is not used
+  };
+  std::vector<Gas> gases;
+};
+
+class Atmosphere {
+ public:
+  virtual ~Atmosphere() = default;
+  // From a point along a unit direction for `distance` (m, infinity allowed). Points are scene ENU. T: per bin, 0..1.
+  virtual void transmittance(Vec3 from, Dir direction, double distance, std::span<float> T) const = 0;
+  // The same, and the radiance S that the air of the segment sends back to `from`, W/(m2 sr um).
+  virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
+};
+
+// The beams' spectra must live as long. Error: heights not ascending, more than 200 layers, lists of the wrong length,
+// negative depths, albedo above 1.
+std::unique_ptr<const Atmosphere> make_layered_atmosphere(const AtmosphereSpec& spec, const SpectralState& state,
+                                                          std::vector<Beam> beams);
+
+// Rayleigh optical depth of the whole atmosphere over a place with this pressure (Pa).
+double rayleigh_depth(double wavelength_um, double pressure);
+// U.S. Standard Atmosphere 1976 at a geometric height, m (0 to 86 km; constant below, decaying above).
+struct Air {
+  double temperature = 288.15;  // K
+  double pressure = 101325;     // Pa
+};
+Air standard_air(double height);
+
+}  // namespace suite

@@ -1,0 +1,216 @@
+#include "light/kinds/clear_sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace suite {
+
+namespace {
+
+struct Row {
+  double wavelength_um, water, ozone, mixed;
+};
+constexpr Row kRows[] = {
+#include "light/kinds/clear_sky_table.inc"
+};
+constexpr size_t kCount = sizeof(kRows) / sizeof(kRows[0]);
+static_assert(kCount == 122);
+
+// Transmittances of the parts of the atmosphere at one wavelength (section 2).
+struct Parts {
+  double rayleigh, aerosol, water, ozone, mixed;
+  double aerosol_scatter, aerosol_absorb;  // equations 3-9 and 3-10
+};
+Parts parts_of(const ClearSkySpec& s, const Row& row, double mass, double ozone_mass) {
+  const double w = row.wavelength_um, pressure_mass = mass * s.pressure / 101300;
+  const double depth = s.aerosol_depth_500 * std::pow(w / 0.5, -s.angstrom);
+  const double albedo = s.albedo_400 * std::exp(-0.095 * std::pow(std::log(w / 0.4), 2));  // 3-16
+  const double wm = row.water * s.water_cm * mass, um = row.mixed * pressure_mass;
+  Parts p;
+  p.rayleigh = std::exp(-pressure_mass / (std::pow(w, 4) * (115.6406 - 1.3366 / (w * w))));  // 2-4
+  p.aerosol = std::exp(-depth * mass);                                                       // 2-6
+  p.water = std::exp(-0.2385 * wm / std::pow(1 + 20.07 * wm, 0.45));                         // 2-8
+  p.ozone = std::exp(-row.ozone * s.ozone_cm * ozone_mass);                                  // 2-9
+  p.mixed = std::exp(-1.41 * um / std::pow(1 + 118.3 * um, 0.45));                           // 2-11
+  p.aerosol_scatter = std::exp(-albedo * depth * mass);
+  p.aerosol_absorb = std::exp(-(1 - albedo) * depth * mass);
+  return p;
+}
+
+// Direct transmittance, and the diffuse irradiance on the horizontal per extraterrestrial irradiance (section 3).
+void spectral(const ClearSkySpec& s, double mu, const Row& row, double& direct, double& diffuse) {
+  const double h = 22.0 / 6370, mass = air_mass(std::acos(mu));
+  const auto ozone_mass = [h](double cosine) { return (1 + h) / std::sqrt(cosine * cosine + 2 * h); };  // 2-10
+  const Parts p = parts_of(s, row, mass, ozone_mass(mu)), q = parts_of(s, row, 1.8, ozone_mass(mu));
+  direct = p.rayleigh * p.aerosol * p.water * p.ozone * p.mixed;
+  const double alg = std::log(1 - s.asymmetry);                         // 3-14
+  const double a = alg * (1.459 + alg * (0.1595 + alg * 0.4129));       // 3-12
+  const double b = alg * (0.0783 + alg * (-0.3824 - alg * 0.5874));     // 3-13
+  const double forward = 1 - 0.5 * std::exp((a + b * mu) * mu);         // 3-11
+  const double forward_mean = 1 - 0.5 * std::exp((a + b / 1.8) / 1.8);  // 3-15
+  const double common = mu * p.ozone * p.mixed * p.water * p.aerosol_absorb;
+  const double by_rayleigh = common * (1 - std::pow(p.rayleigh, 0.95)) * 0.5;                        // 3-5
+  const double by_aerosol = common * std::pow(p.rayleigh, 1.5) * (1 - p.aerosol_scatter) * forward;  // 3-6
+  const double sky = q.mixed * q.water * q.aerosol_absorb *
+                     (0.5 * (1 - q.rayleigh) + (1 - forward_mean) * q.rayleigh * (1 - q.aerosol_scatter));  // 3-8
+  const double by_ground =
+      (direct * mu + by_rayleigh + by_aerosol) * sky * s.ground_albedo / (1 - sky * s.ground_albedo);  // 3-7
+  const double correction = row.wavelength_um <= 0.45 ? std::pow(row.wavelength_um + 0.55, 1.8) : 1;   // 3-17
+  diffuse = (by_rayleigh + by_aerosol + by_ground) * correction;
+}
+
+// Perez, Seals & Michalsky 1993, table 1: x1..x4 of a, b, c, d, e for eight bins of clearness.
+constexpr double kClearness[7] = {1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
+constexpr double kPerez[8][5][4] = {{{1.3525, -0.2576, -0.2690, -1.4366},
+                                     {-0.7670, 0.0007, 1.2734, -0.1233},
+                                     {2.8000, 0.6004, 1.2375, 1.0000},
+                                     {1.8734, 0.6297, 0.9738, 0.2809},
+                                     {0.0356, -0.1246, -0.5718, 0.9938}},
+                                    {{-1.2219, -0.7730, 1.4148, 1.1016},
+                                     {-0.2054, 0.0367, -3.9128, 0.9156},
+                                     {6.9750, 0.1774, 6.4477, -0.1239},
+                                     {-1.5798, -0.5081, -1.7812, 0.1080},
+                                     {0.2624, 0.0672, -0.2190, -0.4285}},
+                                    {{-1.1000, -0.2515, 0.8952, 0.0156},
+                                     {0.2782, -0.1812, -4.5000, 1.1766},
+                                     {24.7219, -13.0812, -37.7000, 34.8438},
+                                     {-5.0000, 1.5218, 3.9229, -2.6204},
+                                     {-0.0156, 0.1597, 0.4199, -0.5562}},
+                                    {{-0.5484, -0.6654, -0.2672, 0.7117},
+                                     {0.7234, -0.6219, -5.6812, 2.6297},
+                                     {33.3389, -18.3000, -62.2500, 52.0781},
+                                     {-3.5000, 0.0016, 1.1477, 0.1062},
+                                     {0.4659, -0.3296, -0.0876, -0.0329}},
+                                    {{-0.6000, -0.3566, -2.5000, 2.3250},
+                                     {0.2937, 0.0496, -5.6812, 1.8415},
+                                     {21.0000, -4.7656, -21.5906, 7.2492},
+                                     {-3.5000, -0.1554, 1.4062, 0.3988},
+                                     {0.0032, 0.0766, -0.0656, -0.1294}},
+                                    {{-1.0156, -0.3670, 1.0078, 1.4051},
+                                     {0.2875, -0.5328, -3.8500, 3.3750},
+                                     {14.0000, -0.9999, -7.1406, 7.5469},
+                                     {-3.4000, -0.1078, -1.0750, 1.5702},
+                                     {-0.0672, 0.4016, 0.3017, -0.4844}},
+                                    {{-1.0000, 0.0211, 0.5025, -0.5119},
+                                     {-0.3000, 0.1922, 0.7023, -1.6317},
+                                     {19.0000, -5.0000, 1.2438, -1.9094},
+                                     {-4.0000, 0.0250, 0.3844, 0.2656},
+                                     {1.0468, -0.3788, -2.4517, 1.4656}},
+                                    {{-1.0500, 0.0289, 0.4260, 0.3590},
+                                     {-0.3250, 0.1156, 0.7781, 0.0025},
+                                     {31.0625, -14.5000, -46.1148, 55.3750},
+                                     {-7.2312, 0.4050, 13.3500, 0.6234},
+                                     {1.5000, -0.6426, 1.8564, 0.5636}}};
+
+// Relative radiance (equation 1) for a sky of given clearness and brightness.
+class Perez {
+ public:
+  Perez(double zenith, double clearness, double brightness) {
+    const auto bin = static_cast<size_t>(std::upper_bound(std::begin(kClearness), std::end(kClearness), clearness) -
+                                         std::begin(kClearness));
+    // Outside of the fitted range the coefficients would turn the sky upside down.
+    brightness = std::clamp(brightness, clearness > 1.065 && clearness < 2.8 ? 0.2 : 0.01, 0.6);
+    for (int i = 0; i < 5; ++i) {
+      const double* x = kPerez[bin][i];
+      k_[i] = x[0] + x[1] * zenith + brightness * (x[2] + x[3] * zenith);
+    }
+    if (bin == 0) {  // the darkest skies have their own c and d
+      const double *c = kPerez[0][2], *d = kPerez[0][3];
+      k_[2] = std::exp(std::pow(brightness * (c[0] + c[1] * zenith), c[2])) - c[3];
+      k_[3] = -std::exp(brightness * (d[0] + d[1] * zenith)) + d[2] + brightness * d[3];
+    }
+  }
+  double at(double cos_zenith, double to_sun) const {
+    const double gradation = 1 + k_[0] * std::exp(k_[1] / std::max(cos_zenith, 0.01));
+    const double c = std::cos(to_sun), indicatrix = 1 + k_[2] * std::exp(k_[3] * to_sun) + k_[4] * c * c;
+    return std::max(0.0, gradation * indicatrix);
+  }
+
+ private:
+  double k_[5];
+};
+
+// Integral of (bilinear table) times cos over the hemisphere, by Gauss' rule of three points in every cell: the same
+// function that the renderer evaluates.
+double hemispheric_integral(const SkySpec& sky) {
+  constexpr double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  const size_t rows = sky.zeniths - 1;
+  const double step = kPi / 2 / static_cast<double>(rows);
+  double sum = 0;
+  for (size_t r = 0; r < rows; ++r)
+    for (int i = 0; i < 3; ++i) {
+      const double theta = (static_cast<double>(r) + node[i]) * step;
+      double ring = 0;
+      for (size_t c = 0; c < sky.azimuths; ++c)
+        ring += (1 - node[i]) * sky.table[r * sky.azimuths + c] + node[i] * sky.table[(r + 1) * sky.azimuths + c];
+      sum += weight[i] * step * std::sin(theta) * std::cos(theta) * ring * 2 * kPi / static_cast<double>(sky.azimuths);
+    }
+  return sum;
+}
+
+void check(const ClearSkySpec& s, Dir sun) {
+  const auto in = [](const char* name, double v, double low, double high) {
+    if (!(v >= low && v <= high))
+      throw Error(strf("clear sky: %s = %g is outside its range", name, v), strf("give %g to %g", low, high));
+  };
+  in("pressure", s.pressure, 1000, 120000);
+  in("water_cm", s.water_cm, 0, 10);
+  in("ozone_cm", s.ozone_cm, 0, 1);
+  in("aerosol_depth_500", s.aerosol_depth_500, 0, 2);
+  in("angstrom", s.angstrom, -1, 4);
+  in("albedo_400", s.albedo_400, 0, 1);
+  in("asymmetry", s.asymmetry, 0, 0.95);
+  in("ground_albedo", s.ground_albedo, 0, 1);
+  if (!(sun.z > std::cos(89.5 * kDegree)))
+    throw Error("a clear sky needs a sun at least half a degree above the horizon",
+                "give a table, an image or a constant for twilight and night");
+}
+
+}  // namespace
+
+double air_mass(double zenith) {
+  const double degrees = std::min(zenith / kDegree, 90.0);
+  return 1 / (std::cos(degrees * kDegree) + 0.50572 * std::pow(96.07995 - degrees, -1.6364));
+}
+
+ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
+  check(spec, sun);
+  const double mu = sun.z, zenith = polar_angle(sun);
+  std::vector<double> coarse, transmittance, scattered;
+  for (const Row& row : kRows) {
+    coarse.push_back(row.wavelength_um);
+    spectral(spec, mu, row, transmittance.emplace_back(), scattered.emplace_back());
+  }
+  // Transmittances vary slower than the Sun's spectrum: interpolate them and keep its lines.
+  const Curve direct(coarse, transmittance, Outside::error), diffuse(coarse, scattered, Outside::error);
+  std::vector<double> x = coarse;
+  for (const double w : top.wavelength_um())
+    if (w > coarse.front() && w < coarse.back()) x.push_back(w);
+  std::sort(x.begin(), x.end());
+  x.erase(std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < 1e-9; }), x.end());
+  std::vector<double> e(x.size()), s(x.size());
+  for (size_t i = 0; i < x.size(); ++i) e[i] = top.at(x[i]) * direct.at(x[i]), s[i] = top.at(x[i]) * diffuse.at(x[i]);
+  ClearSky result{Curve(x, e, Outside::error), Curve(x, s, Outside::error), {}};
+
+  // Clearness and brightness from the broadband irradiances (Perez 1993, equations 2 and 3).
+  const double normal = result.direct.integral(0.3, 4), horizontal = result.diffuse.integral(0.3, 4),
+               extraterrestrial = top.integral(0.3, 4);
+  if (!(horizontal > 0)) throw Error("the sun of a clear sky gives no light between 0.3 and 4 um");
+  const double cube = 1.041 * zenith * zenith * zenith;
+  const Perez perez(zenith, ((horizontal + normal) / horizontal + cube) / (1 + cube),
+                    air_mass(zenith) * horizontal / extraterrestrial);
+  SkySpec& sky = result.sky;
+  sky.zeniths = 91, sky.azimuths = 180;
+  for (size_t r = 0; r < sky.zeniths; ++r)
+    for (size_t c = 0; c < sky.azimuths; ++c) {
+      const Dir d = dir_from_angles(static_cast<double>(r) * kPi / 180,
+                                    static_cast<double>(c) * 2 * kPi / static_cast<double>(sky.azimuths));
+      sky.table.push_back(perez.at(d.z, angle_between(d, sun)));
+    }
+  const double integral = hemispheric_integral(sky);
+  for (double& v : sky.table) v /= integral;
+  sky.radiance = result.diffuse;
+  return result;
+}
+
+}  // namespace suite

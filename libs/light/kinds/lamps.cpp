@@ -1,0 +1,362 @@
+#include "light/kinds/lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "light/kinds/lamp_images.h"
+#include "light/kinds/lamp_shapes.h"
+
+namespace suite {
+
+struct Lamps::Core {
+  std::vector<LampSpec> specs;
+  std::vector<Frame> frames;                // of the specs
+  std::vector<std::vector<float>> spectra;  // of the specs
+  std::vector<LampShape> shapes;            // as numbered in the tree
+  std::unique_ptr<LightTree> tree;
+  // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
+  std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
+  std::vector<const float*> front, back;  // per material
+  // Of a scene that repeats itself. Copies of an object at the sides of the cell are images of the first one.
+  std::optional<Periodic> cell;
+  std::unique_ptr<LampImages> images;
+  std::unordered_map<uint32_t, std::pair<uint32_t, Vec3>> copy_of;  // per object: the first one, and the way to it
+
+  // While the lamps are gathered.
+  std::vector<LightBounds> bounds;
+  std::vector<LightProfile> profiles;
+  std::vector<uint32_t> spec_of_material;
+
+  void add_points(uint32_t spec);
+  void add_material(uint32_t spec, const Scene& scene);
+  void add_surfaces(const Tracer& tracer);
+  uint32_t add(const LampShape& shape, LightBounds b);
+  uint32_t shape_at(const Hit& hit) const;
+  uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, uint32_t object, const Tracer& tracer);
+};
+
+namespace {
+
+using Kind = LampShape::Kind;
+
+double mean_of(const std::vector<float>& v) {
+  double sum = 0;
+  for (const float x : v) sum += static_cast<double>(x);
+  return sum / static_cast<double>(v.size());
+}
+
+// Relative intensity of a point lamp into a direction of its frame.
+double relative_intensity(const LampSpec& s, Dir local) {
+  double value = 1;
+  if (s.kind == LampSpec::Kind::spot) {
+    const double cos_inner = std::cos(s.inner), cos_outer = std::cos(s.outer);
+    if (local.z <= cos_outer && s.outer < kPi) return 0;
+    if (local.z < cos_inner) {
+      const double t = (local.z - cos_outer) / (cos_inner - cos_outer);
+      value = t * t * (3 - 2 * t);
+    }
+  }
+  if (!s.table) return value;
+  const IntensityTable& t = *s.table;
+  if (t.sqt) {
+    double sum = 0;
+    for (size_t c = 0; c < t.sqt->channels(); ++c) sum += t.sqt->value({0, 0, 1}, local, c);
+    return value * sum / static_cast<double>(t.sqt->channels());
+  }
+  const double row = polar_angle(local) / kPi * static_cast<double>(t.polars - 1);
+  double phi = azimuth(local) / (2 * kPi);
+  phi -= std::floor(phi);
+  const double column = phi * static_cast<double>(t.azimuths);
+  const size_t r = std::min(t.polars - 2, static_cast<size_t>(row)),
+               c = std::min(t.azimuths - 1, static_cast<size_t>(column)), n = (c + 1) % t.azimuths;
+  const double fr = row - static_cast<double>(r), fc = column - static_cast<double>(c);
+  auto at = [&](size_t i, size_t j) { return t.value[i * t.azimuths + j]; };
+  return value *
+         ((1 - fr) * ((1 - fc) * at(r, c) + fc * at(r, n)) + fr * ((1 - fc) * at(r + 1, c) + fc * at(r + 1, n)));
+}
+
+// The profile of a point lamp: means over 32 azimuths and 9 places within each step, its edges included. A table may
+// have light between these, so none of its steps counts as dark.
+LightProfile profile_of(const LampSpec& s) {
+  LightProfile profile{};
+  for (int step = 0; step < 32; ++step) {
+    double sum = 0;
+    for (int k = 0; k <= 8; ++k) {
+      const double z = std::clamp(-1 + (step + k / 8.0) / 16, -1.0, 1.0), r = std::sqrt(std::max(0.0, 1 - z * z));
+      for (int a = 0; a < 32; ++a) {
+        const double phi = 2 * kPi * (a + 0.5) / 32;
+        sum += relative_intensity(s, {r * std::cos(phi), r * std::sin(phi), z});
+      }
+    }
+    profile[static_cast<size_t>(step)] = static_cast<float>(sum / (9 * 32));
+  }
+  // A spot's rim may lie between two places as well.
+  const float least = 1e-3f * *std::max_element(profile.begin(), profile.end());
+  for (float& p : profile) p = std::max(p, least);
+  return profile;
+}
+
+void check(const LampSpec& s) {
+  const auto fail = [&](const std::string& what) { throw Error(s.where, "lamp '" + s.name + "': " + what); };
+  if (s.kind == LampSpec::Kind::surface) {
+    if (s.radiance.min() < 0) fail("the radiance is negative");
+    return;
+  }
+  if (s.intensity.min() < 0) fail("the intensity is negative");
+  if (s.positions.empty()) fail("no position");
+  for (const Vec3& p : s.positions)
+    if (!finite(p)) fail("a position is not finite");
+  if (!(s.inner >= 0 && s.inner <= s.outer && s.outer <= kPi))
+    fail("the cone needs 0 <= inner <= outer <= 180 degrees");
+  if (!s.table || s.table->sqt) return;
+  if (s.table->polars < 2 || s.table->azimuths < 1 || s.table->value.size() != s.table->polars * s.table->azimuths)
+    fail("the table of the intensity has the wrong size");
+  for (const double v : s.table->value)
+    if (!(v >= 0) || !std::isfinite(v)) fail("the table of the intensity holds a negative or infinite value");
+}
+
+}  // namespace
+
+// The shape that a ray met; kNone = none that can be drawn.
+uint32_t Lamps::Core::shape_at(const Hit& hit) const {
+  const auto copy = copy_of.find(hit.object);
+  const auto shapes_of = shape_of_triangle.find(copy == copy_of.end() ? hit.object : copy->second.first);
+  return shapes_of == shape_of_triangle.end() ? kNone : shapes_of->second[hit.triangle];
+}
+
+Lamps::~Lamps() = default;
+size_t Lamps::size() const { return core_->shapes.size(); }
+
+uint32_t Lamps::Core::add(const LampShape& shape, LightBounds b) {
+  b.power *= mean_of(spectra[shape.spec]);
+  if (!(b.power > 0)) return kNone;
+  shapes.push_back(shape);
+  bounds.push_back(b);
+  return static_cast<uint32_t>(shapes.size() - 1);
+}
+
+void Lamps::Core::add_points(uint32_t spec) {
+  const LampSpec& s = specs[spec];
+  // All their light leaves within the cone, or wherever the table has any.
+  double widest = s.kind == LampSpec::Kind::spot ? s.outer : kPi;
+  if (s.table && !s.table->sqt) {
+    size_t last = 0;
+    for (size_t v = 0; v < s.table->value.size(); ++v)
+      if (s.table->value[v] > 0) last = std::max(last, v / s.table->azimuths + 1);
+    widest = std::min(widest, kPi * static_cast<double>(last) / static_cast<double>(s.table->polars - 1));
+  }
+  // Lamps of one kind share a profile, whatever their spectra.
+  const LightProfile profile = profile_of(s);
+  const auto index = static_cast<int>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
+  if (index == static_cast<int>(profiles.size())) profiles.push_back(profile);
+  LampShape shape;
+  shape.spec = spec;
+  for (Vec3 p : s.positions) {
+    if (cell) {
+      p.x -= std::floor((p.x - cell->low.x) / cell->size.x) * cell->size.x;
+      p.y -= std::floor((p.y - cell->low.y) / cell->size.y) * cell->size.y;
+    }
+    shape.origin = p;
+    add(shape, {{p, p}, frames[spec].z, widest, 0.01, kPi, false, index});
+  }
+}
+
+void Lamps::Core::add_material(uint32_t spec, const Scene& scene) {
+  const LampSpec& s = specs[spec];
+  std::vector<std::string> names;
+  uint32_t found = kNone;
+  for (uint32_t m = 0; m < scene.materials.size(); ++m) {
+    names.push_back(scene.materials[m].id);
+    if (scene.materials[m].id == s.material) found = m;
+  }
+  if (found == kNone)
+    throw Error(s.where, "lamp '" + s.name + "': the scene has no material '" + s.material + "'",
+                name_hint(s.material, names));
+  for (const MapBinding& b : scene.map_bindings)
+    if (b.material == found)
+      throw Error(s.where, "lamp '" + s.name + "': the material '" + s.material + "' is decided by a map",
+                  "name a material that geometry carries itself");
+  if (spec_of_material[found] != kNone) throw Error(s.where, "two lamps make the material '" + s.material + "' glow");
+  spec_of_material[found] = spec;
+  front[found] = spectra[spec].data();
+  if (s.both_sides) back[found] = spectra[spec].data();
+}
+
+// Puts a piece of an object into the tree; its number there, or kNone.
+uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec, uint32_t object,
+                                  const Tracer& tracer) {
+  if (!shape) return kNone;
+  shape->spec = spec;
+  shape->both_sides = specs[spec].both_sides;
+  // The tracer knows how far off the surface visibility rays must end: ask it for the surface's middle.
+  const Kind kind = shape->kind;
+  const Dir n = kind == Kind::sphere ? Dir{0, 0, 1} : shape->normal;
+  const Vec3 middle = kind == Kind::sphere     ? shape->origin + n * shape->a.x
+                      : kind == Kind::triangle ? shape->origin + (shape->a + shape->b) / 3
+                      : kind == Kind::disk     ? shape->origin
+                                               : shape->origin + (shape->a + shape->b) * 0.5;
+  const Ray ray{middle + n * (0.01 * std::sqrt(shape->area)), -n, 0};
+  Hit hit;
+  TraceStatistics statistics;
+  tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
+  const double reach = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z), 1e-3});
+  const auto instance = [&](uint32_t o) { return tracer.objects()[o].instance; };
+  shape->step = hit.hit() && instance(hit.object) == instance(object)
+                    ? hit.step
+                    : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
+  return add(*shape, bounds_of(*shape));
+}
+
+// Glowing geometry at rest; what moves is met by chance.
+void Lamps::Core::add_surfaces(const Tracer& tracer) {
+  const FlushDenormals flush;
+  const Scene& scene = tracer.scene();
+  auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
+  std::unordered_map<uint32_t, uint32_t> first;  // object of an instance
+  for (uint32_t o = 0; o < tracer.objects().size(); ++o) {
+    const TracedObject& object = tracer.objects()[o];
+    if (object.node != kNone) continue;
+    if (const auto [at, is_new] = first.emplace(object.instance, o); !is_new) {
+      copy_of[o] = {at->second, tracer.objects()[at->second].place->b - object.place->b};
+      continue;
+    }
+    const Affine3& place = *object.place;
+    auto carried = [&](uint32_t own) {
+      return spec_of(object.material_override != kNone ? object.material_override : own);
+    };
+    if (object.primitive != kNone) {
+      const Primitive& primitive = scene.primitives[object.primitive];
+      if (const uint32_t spec = carried(primitive.material); spec != kNone)
+        shape_of_triangle[o] = {add_surface(shape_of(primitive, place), spec, o, tracer)};
+      continue;
+    }
+    const Mesh& mesh = scene.meshes[object.mesh];
+    for (const Part& part : mesh.parts) {
+      const uint32_t spec = carried(part.material);
+      if (spec == kNone) continue;
+      std::vector<uint32_t>& map = shape_of_triangle[o];
+      mesh.require();
+      map.resize(mesh.triangle_count(), kNone);
+      for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
+        map[t] = add_surface(shape_of(mesh, t, place), spec, o, tracer);
+    }
+  }
+}
+
+Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state) : core_(new Core) {
+  Core& core = *core_;
+  const size_t materials = tracer.scene().materials.size();
+  core.specs.assign(specs.begin(), specs.end());
+  core.cell = tracer.periodic();
+  core.front.assign(materials, nullptr);
+  core.back.assign(materials, nullptr);
+  core.spec_of_material.assign(materials, kNone);
+  bool surfaces = false;
+  for (uint32_t i = 0; i < specs.size(); ++i) {
+    const LampSpec& s = specs[i];
+    const bool surface = s.kind == LampSpec::Kind::surface;
+    check(s);
+    core.spectra.push_back(state.sample(surface ? s.radiance : s.intensity));
+    core.frames.push_back(Frame::with_tangent(normalized(s.axis), {1, 0, 0}));
+    if (surface)
+      core.add_material(i, tracer.scene());
+    else
+      core.add_points(i);
+    surfaces = surfaces || surface;
+  }
+  if (surfaces) core.add_surfaces(tracer);
+  if (core.cell && !core.bounds.empty()) {
+    Box3 all;
+    for (const LightBounds& b : core.bounds) all.grow(b.box);
+    core.images = std::make_unique<LampImages>(*core.cell, all);
+  }
+  if (!core.bounds.empty()) core.tree = std::make_unique<LightTree>(core.bounds, std::move(core.profiles));
+  core.bounds = {};
+  nature_.delta = !surfaces;
+  nature_.drawn = core.tree != nullptr;
+  nature_.numbers = 4;
+  nature_.draws = static_cast<int>(std::clamp<size_t>(size(), 1, LightNature::kMostDraws));
+}
+
+std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
+                                           double distance, double cosine, double) const {
+  const float* const spectrum = glow(material, cosine > 0);
+  if (!spectrum) return std::nullopt;
+  return LightMet{1, spectrum, density(from, hit, direction, distance, cosine)};
+}
+
+const float* Lamps::glow(uint32_t material, bool front) const {
+  if (material == kNone) return nullptr;
+  return front ? core_->front[material] : core_->back[material];
+}
+
+std::optional<LightSample> Lamps::sample(const LightReceiver& at, const std::array<double, 4>& u, double) const {
+  if (!core_->tree) return std::nullopt;
+  LightReceiver from = at;
+  LampImages::Image drawn{{}, 1};
+  if (core_->images) drawn = core_->images->draw(at.position, u[3]), from.position = at.position - drawn.shift;
+  const auto chosen = core_->tree->sample(from, u[0]);
+  if (!chosen) return std::nullopt;
+  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, {u[1], u[2]});
+  if (lamp) lamp->end += drawn.shift;
+  return lamp;
+}
+
+std::optional<LightSample> Lamps::sample_member(size_t member, double probability, const LightReceiver& at,
+                                                const std::array<double, 4>& u, double) const {
+  LampImages::Image drawn{{}, 1};
+  if (core_->images) drawn = core_->images->draw(at.position, u[3]);
+  auto sample = sample_here(static_cast<uint32_t>(member), probability * drawn.probability, at.position - drawn.shift,
+                            {u[1], u[2]});
+  if (sample) sample->end += drawn.shift;
+  return sample;
+}
+
+// As seen from a place beside the lamp itself, not an image of it.
+std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
+  const LampShape& s = core_->shapes[lamp];
+  LightSample r;
+  r.spectrum = core_->spectra[s.spec].data();
+  if (s.kind == Kind::point) {
+    const Vec3 to = s.origin - from;
+    r.distance = length(to);
+    if (!(r.distance > 0)) return std::nullopt;
+    r.direction = to / r.distance;
+    r.end = s.origin;
+    r.scale = relative_intensity(core_->specs[s.spec], core_->frames[s.spec].to_local(-r.direction)) /
+              (r.distance * r.distance * probability);
+    if (!(r.scale > 0)) return std::nullopt;
+    return r;
+  }
+  const auto point = draw(s, from, u);
+  if (!point) return std::nullopt;
+  r.direction = point->direction;
+  r.distance = point->distance;
+  r.density = point->density * probability;
+  r.scale = 1;
+  r.end = point->position + point->normal * double{point->cosine > 0 ? s.step : -s.step};
+  return r;
+}
+
+bool Lamps::draws(const Hit& hit) const { return core_->shape_at(hit) != kNone; }
+
+double Lamps::density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const {
+  const uint32_t index = core_->shape_at(hit);
+  if (index == kNone) return 0;
+  LightReceiver from = at;
+  double image = 1;
+  if (core_->images) {
+    // From the place on the lamp itself to where the ray really met its image.
+    const auto copy = core_->copy_of.find(hit.object);
+    const Vec3 own = hit.position + (copy == core_->copy_of.end() ? Vec3{} : copy->second.second);
+    const Vec3 shift = core_->images->whole(at.position + direction * distance - own);
+    image = core_->images->probability(at.position, shift);
+    from.position = at.position - shift;
+  }
+  return image * core_->tree->probability(from, index) *
+         density_of(core_->shapes[index], from.position, distance, cosine);
+}
+
+}  // namespace suite

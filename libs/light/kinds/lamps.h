@@ -1,0 +1,82 @@
+// Lamps in the scene: points, spots and lamps with a tabulated distribution of intensity, and surfaces that glow. One
+// of them is drawn at every node of a path, by a light tree; surfaces may also be met by chance.
+//
+// Assumes: points are seen by nothing but the explicit sample; glowing surfaces glow equally in all directions of their
+// side. Glowing triangles, disks, boxes, bounded planes and spheres are drawn; other exact surfaces that glow are met
+// by chance only. In a scene that repeats itself every lamp stands in every cell: an image of the cell is drawn first
+// (lamp_images.h), then one of its lamps. Based on: Pharr, Jakob & Humphreys, "Physically based rendering", 4th ed.
+// 2023, chapter 12; cones towards spheres after section 6.2.4 there.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "light/light.h"
+#include "light/light_tree.h"
+#include "scene/scene.h"
+#include "spectral/state.h"
+#include "sqt/bundle.h"
+#include "trace/tracer.h"
+
+namespace suite {
+
+// Relative intensity over polar angle from the lamp's axis and azimuth around it: rows from 0 to 180 degrees inclusive,
+// columns in equal steps from the x axis of the frame, periodic; bilinear. Or an SQT of quantity `intensity`, averaged
+// over its channels, whose z axis is the lamp's axis.
+struct IntensityTable {
+  std::vector<double> value;
+  size_t polars = 0, azimuths = 0;
+  std::shared_ptr<const sqt::Bundle> sqt;
+};
+
+struct LampSpec {
+  enum class Kind { point, spot, surface } kind = Kind::point;
+  std::string name;
+  Where where;
+  // point, spot
+  std::vector<Vec3> positions;  // m, ENU: one lamp each
+  Dir axis{0, 0, -1};           // where the middle of the light goes
+  Curve intensity;              // W/(sr um), times the distribution
+  double inner = kPi,
+         outer = kPi;  // spot: full within `inner`, nothing beyond `outer` of the axis, rad; smooth between
+  std::shared_ptr<const IntensityTable> table;
+  // surface: everything with this material glows, on top of what it scatters and emits as a warm body
+  std::string material;
+  Curve radiance;           // W/(m2 sr um)
+  bool both_sides = false;  // else the front only
+};
+
+// The lamps of a scene baked for a state: one light, of which every lamp in the tree is a member.
+class Lamps final : public Light {
+ public:
+  // Error: unknown or mapped material, negative spectra, cones that are not 0 <= inner <= outer <= pi, empty or
+  // negative tables.
+  Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state);
+  ~Lamps();
+  // u: the choice of the lamp, two for the place on it, and one for the choice among its images, unused where the scene
+  // does not repeat itself.
+  std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                    double time) const override;
+  std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
+                                      double distance, double cosine, double time) const override;
+  size_t members() const override { return size(); }
+  std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
+                                           const std::array<double, 4>& u, double time) const override;
+
+  // Whether sample() may draw the surface that a ray met.
+  bool draws(const Hit& hit) const;
+  // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
+  const float* glow(uint32_t material, bool front) const;
+  // Density, 1/sr, with which sample() draws the direction from `at` towards the point `hit` of a glowing surface,
+  // met after `distance` (m) at an angle of the given cosine; 0 when that surface is met by chance only.
+  double density(const LightReceiver& at, const Hit& hit, Dir direction, double distance, double cosine) const;
+  size_t size() const;  // lamps in the tree, of one cell
+
+ private:
+  std::optional<LightSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
+  struct Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace suite

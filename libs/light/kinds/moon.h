@@ -1,0 +1,35 @@
+// The Moon as a far disk of uniform radiance: its irradiance from the Sun's, its phase and its distance.
+//
+// Assumes: the disk-integrated irradiance is that of the ROLO model 311g; the disk shows no terminator or maria (the
+// whole disk carries the mean radiance), which matters only to what resolves half a degree. Between the 32 bands the
+// reflectance is linear in wavelength, beyond them constant. The fit holds for phase angles of 1.55 to 97 degrees and
+// is extrapolated to 0..150 (beyond, the Moon gives no light). Based on: H. H. Kieffer & T. C. Stone, "The spectral
+// irradiance of the Moon", Astron. J. 129, 2005, equations 10 and 11, table 4.
+#pragma once
+#include "light/kinds/sun.h"
+
+namespace suite {
+
+struct MoonGeometry {
+  double phase = 0;          // rad, Sun-Moon-observer angle, 0 = full
+  double sun_longitude = 0;  // rad, selenographic longitude of the Sun, about the signed phase (positive before full)
+  double observer_latitude = 0;        // rad, selenographic (libration); 0 when unknown, which costs up to 4 %
+  double observer_longitude = 0;       // rad
+  double sun_distance_au = 1;          // Sun to Moon
+  double observer_distance = 384.4e6;  // m, Moon to observer
+};
+
+struct MoonSpec {
+  SunSpec disk;           // irradiance: taken as given unless by_phase
+  bool by_phase = true;   // irradiance from the phase, the distances and the Sun's spectrum at 1 AU
+  MoonGeometry geometry;  // filled from the date when disk.time is given
+};
+
+// Disk reflectance over wavelength. Error: angles that are not finite, phase outside 0..pi.
+Curve moon_reflectance(const MoonGeometry& geometry);
+
+// Irradiance on a plane facing the Moon, W/(m2 um): A Omega E_sun / pi (eq. 8) scaled by both distances.
+// sun: at 1 AU.
+Curve moon_irradiance(const MoonGeometry& geometry, const Curve& sun);
+
+}  // namespace suite

@@ -1,0 +1,242 @@
+#include "light/kinds/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spectral/planck.h"
+
+namespace suite {
+
+namespace {
+constexpr size_t kMaxTable = size_t{1} << 28;
+}
+
+Sky::Sky(const SkySpec& spec, const SpectralState& state)
+    : theta_max_(spec.full_sphere ? kPi : kPi / 2), full_sphere_(spec.full_sphere), cells_(spec.cells) {
+  if (!spec.layers.empty())
+    bake_layers(spec, state);
+  else
+    bake_table(spec, state);
+  nature_.far = nature_.wide = true;
+  nature_.drawn = tabulated();
+}
+
+void Sky::bake_table(const SkySpec& spec, const SpectralState& state) {
+  spectrum_ = state.sample(spec.radiance);
+  if (spec.radiance.min() < 0) throw Error("the sky's radiance is negative");
+  if (spec.table.empty()) return;
+  const size_t directions = spec.zeniths * spec.azimuths;
+  channels_ = std::max<size_t>(1, spec.wavelength_um.size());
+  if (spec.zeniths < (cells_ ? 1 : 2) || spec.azimuths < 1 || spec.table.size() != directions * channels_)
+    throw Error(strf("a sky table of %zu values is not %zu zeniths by %zu azimuths by %zu wavelengths",
+                     spec.table.size(), spec.zeniths, spec.azimuths, channels_));
+  if (!std::is_sorted(spec.wavelength_um.begin(), spec.wavelength_um.end()))
+    throw Error("the wavelengths of a sky table are not ascending");
+  table_.resize(spec.table.size());
+  for (size_t c = 0; c < channels_; ++c)
+    for (size_t i = 0; i < directions; ++i) {
+      const double v = spec.table[c * directions + i];
+      if (!(v >= 0) || !std::isfinite(v)) throw Error("a sky table holds a negative or infinite value");
+      table_[i * channels_ + c] = static_cast<float>(v);
+    }
+  rows_ = cells_ ? spec.zeniths : spec.zeniths - 1;
+  columns_ = spec.azimuths;
+  const std::vector<double>& x = spec.wavelength_um;
+  for (const Bin& bin : state.bins) {
+    const auto above = static_cast<size_t>(std::upper_bound(x.begin(), x.end(), bin.center_um()) - x.begin());
+    if (above == 0)
+      mix_.push_back({0, 0, 0});
+    else if (above == x.size())
+      mix_.push_back({static_cast<uint32_t>(channels_ - 1), static_cast<uint32_t>(channels_ - 1), 0});
+    else
+      mix_.push_back({static_cast<uint32_t>(above - 1), static_cast<uint32_t>(above),
+                      static_cast<float>((bin.center_um() - x[above - 1]) / (x[above] - x[above - 1]))});
+  }
+  bake_density();
+}
+
+void Sky::bake_layers(const SkySpec& spec, const SpectralState& state) {
+  const size_t rows = std::max<size_t>(2, spec.zeniths), bins = state.size();
+  if (rows * bins > kMaxTable)
+    throw Error(strf("a thermal sky of %zu zenith angles and %zu wavelengths is too large", rows, bins));
+  channels_ = bins;
+  rows_ = rows - 1;
+  columns_ = 1;
+  theta_max_ = kPi / 2;
+  full_sphere_ = cells_ = false;
+  spectrum_.assign(bins, 1.0f);
+  table_.assign(rows * bins, 0.0f);
+  for (uint32_t i = 0; i < bins; ++i) mix_.push_back({i, i, 0});
+  std::vector<double> transmitted(rows * bins, 1.0), sum(rows * bins, 0.0);
+  for (const ThermalLayer& layer : spec.layers) {
+    if (!(layer.temperature_k > 0) || !std::isfinite(layer.temperature_k))
+      throw Error(strf("a layer of the sky at %g K", layer.temperature_k));
+    if (layer.optical_depth.min() < 0) throw Error("a layer of the sky has a negative optical depth");
+    for (size_t i = 0; i < bins; ++i) {
+      const Bin& b = state.bins[i];
+      const double depth = layer.optical_depth.mean(b.low_um, b.high_um),
+                   blackbody = planck_band_radiance(b.low_um, b.high_um, layer.temperature_k) / (b.high_um - b.low_um);
+      for (size_t r = 0; r < rows; ++r) {
+        // At the horizon itself any absorbing layer is opaque.
+        const double cosine =
+            r + 1 == rows ? 0 : std::cos(theta_max_ * static_cast<double>(r) / static_cast<double>(rows_));
+        const double absorbed = depth == 0 ? 0 : cosine == 0 ? 1 : -std::expm1(-depth / cosine);
+        double& T = transmitted[r * bins + i];
+        sum[r * bins + i] += T * absorbed * blackbody;
+        T *= 1 - absorbed;
+      }
+    }
+  }
+  std::transform(sum.begin(), sum.end(), table_.begin(), [](double v) { return static_cast<float>(v); });
+  bake_density();
+}
+
+double Sky::cell_solid_angle(size_t row) const {
+  const double a = theta_max_ * static_cast<double>(row) / static_cast<double>(rows_),
+               b = theta_max_ * static_cast<double>(row + 1) / static_cast<double>(rows_);
+  return (std::cos(a) - std::cos(b)) * 2 * kPi / static_cast<double>(columns_);
+}
+
+double Sky::cell_mean(size_t r, size_t c, size_t channel) const {
+  auto at = [&](size_t row, size_t column) {
+    return static_cast<double>(table_[(row * columns_ + column) * channels_ + channel]);
+  };
+  if (cells_) return at(r, c);
+  const size_t n = (c + 1) % columns_;
+  return 0.25 * (at(r, c) + at(r, n) + at(r + 1, c) + at(r + 1, n));
+}
+
+void Sky::bake_density() {
+  // Flux of every channel, then of every bin; a channel counts with what its bins give it, each bin normalised to one.
+  std::vector<double> flux(channels_, 0.0), share(channels_, 0.0);
+  for (size_t r = 0; r < rows_; ++r)
+    for (size_t c = 0; c < columns_; ++c)
+      for (size_t k = 0; k < channels_; ++k) flux[k] += cell_mean(r, c, k) * cell_solid_angle(r);
+  for (size_t i = 0; i < mix_.size(); ++i) {
+    const Mix& m = mix_[i];
+    const double of_bin = (1 - m.t) * flux[m.a] + m.t * flux[m.b];
+    if (!(of_bin > 0) || !(spectrum_[i] > 0)) continue;
+    share[m.a] += (1 - m.t) / of_bin;
+    share[m.b] += m.t / of_bin;
+  }
+  double sum = 0;
+  for (size_t r = 0; r < rows_; ++r)
+    for (size_t c = 0; c < columns_; ++c) {
+      double mean = 0;
+      for (size_t k = 0; k < channels_; ++k)
+        if (share[k] > 0) mean += share[k] * cell_mean(r, c, k);
+      cdf_.push_back(sum += mean * cell_solid_angle(r));
+    }
+  if (!(sum > 0)) {  // black: nothing to draw
+    table_.clear();
+    cdf_.clear();
+    channels_ = 1;
+    std::fill(spectrum_.begin(), spectrum_.end(), 0.0f);
+    return;
+  }
+  for (double& v : cdf_) v /= sum;
+  cdf_.back() = 1;
+}
+
+Sky::Corners Sky::corners_of(Dir d) const {
+  Corners c;
+  const double row = std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_);
+  double phi = azimuth(d) / (2 * kPi);
+  phi -= std::floor(phi);
+  const double column = phi * static_cast<double>(columns_);
+  const size_t r = std::min(rows_ - 1, static_cast<size_t>(row)),
+               k = std::min(columns_ - 1, static_cast<size_t>(column));
+  if (cells_) {
+    c.at[0] = r * columns_ + k;
+    c.weight[0] = 1;
+    c.count = 1;
+    return c;
+  }
+  const double fr = row - static_cast<double>(r), fc = column - static_cast<double>(k);
+  const size_t n = (k + 1) % columns_,
+               at[4] = {r * columns_ + k, r * columns_ + n, (r + 1) * columns_ + k, (r + 1) * columns_ + n};
+  const double weight[4] = {(1 - fr) * (1 - fc), (1 - fr) * fc, fr * (1 - fc), fr * fc};
+  std::copy_n(at, 4, c.at);
+  std::copy_n(weight, 4, c.weight);
+  c.count = 4;
+  return c;
+}
+
+double Sky::relative(Dir d) const {
+  if (outside(d)) return 0;
+  if (table_.empty()) return 1;
+  const Corners c = corners_of(d);
+  double sum = 0;
+  for (int i = 0; i < c.count; ++i) sum += c.weight[i] * static_cast<double>(table_[c.at[i]]);
+  return sum;
+}
+
+void Sky::add(Dir d, float scale, std::span<float> radiance) const {
+  if (channels_ == 1) {
+    const float s = scale * static_cast<float>(relative(d));
+    for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += s * spectrum_[i];
+    return;
+  }
+  if (outside(d)) return;
+  const Corners c = corners_of(d);
+  for (int j = 0; j < c.count; ++j) {
+    const float* v = &table_[c.at[j] * channels_];
+    const float s = scale * static_cast<float>(c.weight[j]);
+    for (size_t i = 0; i < radiance.size(); ++i)
+      radiance[i] += s * spectrum_[i] * (v[mix_[i].a] + mix_[i].t * (v[mix_[i].b] - v[mix_[i].a]));
+  }
+}
+
+size_t Sky::cell_of(Dir d, size_t& row) const {
+  row = std::min(rows_ - 1,
+                 static_cast<size_t>(std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_)));
+  double phi = azimuth(d) / (2 * kPi);
+  phi -= std::floor(phi);
+  return row * columns_ + std::min(columns_ - 1, static_cast<size_t>(phi * static_cast<double>(columns_)));
+}
+
+double Sky::density(Dir d) const {
+  if (outside(d)) return 0;
+  size_t row = 0;
+  const size_t cell = cell_of(d, row);
+  return (cdf_[cell] - (cell ? cdf_[cell - 1] : 0.0)) / cell_solid_angle(row);
+}
+
+std::optional<LightSample> Sky::sample(const LightReceiver&, const std::array<double, 4>& u, double) const {
+  if (!tabulated()) return std::nullopt;
+  const DirectionSample drawn = draw({u[0], u[1]});
+  LightSample s;
+  s.direction = drawn.direction;
+  s.density = drawn.density;
+  s.spectrum = spectrum();
+  s.scale = s.spectrum ? relative(drawn.direction) : 1;
+  if (!(s.scale > 0)) return std::nullopt;
+  return s;
+}
+
+std::optional<LightSample> Sky::sample_member(size_t, double, const LightReceiver&, const std::array<double, 4>&,
+                                              double) const {
+  throw Bug("a sky has no members");
+}
+
+std::optional<LightMet> Sky::met_outside(Dir d, double) const {
+  if (outside(d)) return std::nullopt;
+  return LightMet{spectrum() ? relative(d) : 1, spectrum(), tabulated() ? density(d) : 0};
+}
+
+DirectionSample Sky::draw(Vec2 u) const {
+  const size_t cell =
+      std::min(cdf_.size() - 1, static_cast<size_t>(std::upper_bound(cdf_.begin(), cdf_.end(), u.x) - cdf_.begin()));
+  const double before = cell ? cdf_[cell - 1] : 0, probability = cdf_[cell] - before;
+  const size_t row = cell / columns_;
+  // Uniform in solid angle inside the cell; what is left of u.x after choosing the cell is uniform again.
+  const double x = std::clamp((u.x - before) / probability, 0.0, 1.0);
+  const double a = std::cos(theta_max_ * static_cast<double>(row) / static_cast<double>(rows_)),
+               b = std::cos(theta_max_ * static_cast<double>(row + 1) / static_cast<double>(rows_));
+  const double z = a + (b - a) * x,
+               phi = 2 * kPi * (static_cast<double>(cell % columns_) + u.y) / static_cast<double>(columns_);
+  const double s = std::sqrt(std::max(0.0, 1 - z * z));
+  return {{s * std::cos(phi), s * std::sin(phi), z}, probability / cell_solid_angle(row)};
+}
+
+}  // namespace suite

@@ -1,0 +1,104 @@
+// One interface for everything that shines. A light is asked for a direction towards it from a place (sample), and for
+// what it sends along a ray that met it by chance (met_outside, met_surface), with the density with which the first
+// would have drawn what the second met: whoever asks can combine both by multiple importance sampling. What a light is
+// (LightNature) says which of these are worth asking; nothing follows from its place in a list.
+//
+// Assumes: spectra belong to the bins of the state that a light was baked for; radiance is W/(m2 sr um), irradiance
+// W/(m2 um). A light can be asked by many threads at once.
+// Based on: Veach, "Robust Monte Carlo methods for light transport simulation", 1997, chapter 9; Pharr, Jakob &
+// Humphreys, "Physically based rendering", 4th ed. 2023, chapter 12.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "light/light_receiver.h"
+#include "math/vec.h"
+#include "trace/tracer.h"
+
+namespace suite {
+
+// What a light is. Heuristics and special cases follow from this alone, never from its place in a list.
+struct LightNature {
+  bool far = false;    // stands at infinity: rays that leave the scene meet it
+  bool delta = false;  // nothing meets it by chance: collimated, points
+  bool disk =
+      false;  // small and even: its samples hardly vary by themselves, so continuations count little beside them
+  bool wide = false;   // fills much of the sphere (skies): continuations find it by themselves
+  bool drawn = true;   // sample() is worth asking; false = met by chance only (uniform skies)
+  bool moves = false;  // what it sends depends on the time of the ray
+  int numbers = 2;     // random numbers that sample() uses, 2 or 4
+  int draws = 1;       // samples of it that the first node of a path may take (lamps: min(kMostDraws, lamps))
+  static constexpr int kMostDraws = 4;
+};
+
+struct LightSample {
+  Dir direction;                                              // unit, from the place that asks
+  double distance = std::numeric_limits<double>::infinity();  // m, of the visibility ray
+  Vec3 end;            // m, of the visibility ray where distance is finite: just in front of the lamp
+  double density = 0;  // 1/sr, every choice included; 0 = the only direction there is
+  // scale * spectrum[k] = radiance, or, with density 0, irradiance over the probability of the choice. Positive.
+  double scale = 0;
+  const float* spectrum =
+      nullptr;  // per bin; null = the shape differs with direction: scale times what Light::add adds
+};
+
+// What far lights draw.
+struct DirectionSample {
+  Dir direction;
+  double density = 0;  // 1/sr; 0 = the only direction of a collimated source
+};
+
+// Met by chance.
+struct LightMet {
+  double scale = 0;                 // radiance = scale * spectrum
+  const float* spectrum = nullptr;  // per bin; null: scale times what Light::add adds
+  double density = 0;               // 1/sr, with which sample() draws it from the place; 0 = never
+};
+
+// A beam from outside that the air scatters.
+struct Beam {
+  Dir direction;                      // towards its source
+  const float* irradiance = nullptr;  // per bin, above the atmosphere
+};
+
+class Light {
+ public:
+  virtual ~Light() = default;
+  // Constant during a light's life.
+  const LightNature& nature() const { return nature_; }
+
+  // A direction towards the light. u: numbers in [0, 1), nature().numbers of them used. time: s, of the ray. Nothing
+  // where no light comes from what was drawn.
+  virtual std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
+                                            double time) const = 0;
+  // Of a ray that leaves the scene in a direction (far lights). Nothing where the ray does not meet it.
+  virtual std::optional<LightMet> met_outside(Dir direction, double time) const;
+  // Of a ray that left `from` and hit a surface of a material (kNone = none): lights that are neither far nor delta.
+  // direction: of the ray. distance: m, along it from `from`, through whatever was passed on the way. cosine: of the
+  // direction back along the ray with the geometric normal; its sign tells the side. Nothing where it does not glow.
+  // The density is that of one sample, however many are drawn.
+  virtual std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material,
+                                              Dir direction, double distance, double cosine, double time) const;
+  // Adds scale times the radiance from a direction: far lights that give no spectrum above. Bug for others.
+  virtual void add(Dir direction, float scale, std::span<float> radiance) const;
+  // The beam that the air scatters (Sun, Moon). Its spectrum lives as long as the light.
+  virtual std::optional<Beam> beam() const { return std::nullopt; }
+
+  // For estimators that choose one light out of all: how many there are in here to choose from (0 = such estimators
+  // leave it to chance), and a sample of one of them (0 .. members() - 1) that was chosen with a probability, which the
+  // sample includes. u[0] is not used: it has chosen. Bug when there are none.
+  virtual size_t members() const { return 1; }
+  virtual std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
+                                                   const std::array<double, 4>& u, double time) const = 0;
+
+ protected:
+  Light() = default;
+  Light(const Light&) = default;
+  Light& operator=(const Light&) = default;
+  LightNature nature_;  // set by constructors
+};
+
+}  // namespace suite
