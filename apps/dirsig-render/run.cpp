@@ -22,7 +22,7 @@
 #include "optics/models.h"
 #include "output.h"
 #include "preview.h"
-#include "radiometry/truth/truth.h"
+#include "transport/truth/truth.h"
 #include "scene/combine.h"
 #include "scheduler/bins.h"
 #include "scheduler/features.h"

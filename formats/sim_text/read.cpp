@@ -4,7 +4,7 @@
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
-#include "radiometry/truth/truth.h"
+#include "transport/truth/truth.h"
 
 namespace suite {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "radiometry/pipeline.h"
+#include "transport/pipeline.h"
 #include "scheduler/moments.h"
 
 namespace suite {

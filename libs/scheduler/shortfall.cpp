@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "radiometry/lost_light.h"
+#include "transport/lost_light.h"
 
 namespace suite {
 

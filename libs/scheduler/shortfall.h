@@ -1,4 +1,4 @@
-// What results are known to lack: light that was not found (radiometry/lost_light.h), light that was cut at the maximum
+// What results are known to lack: light that was not found (transport/lost_light.h), light that was cut at the maximum
 // number of nodes (Accumulators::shortfall), samples that were rejected. Counted problem by problem, told per sensor.
 #pragma once
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "radiometry/pipeline.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

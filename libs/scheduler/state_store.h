@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "radiometry/pipeline.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

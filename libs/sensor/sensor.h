@@ -146,7 +146,7 @@ class Sensor {
   virtual int numbers() const { return 4; }
   // The channels of its results; the first is radiance.
   virtual std::span<const Channel> channels() const;
-  // The truth to collect for each problem: names of rows of the table in radiometry/truth.
+  // The truth to collect for each problem: names of rows of the table in transport/truth.
   virtual std::span<const std::string> truth() const;
   // What the user wants of the images of a capture.
   virtual ImageWishes wishes(const Capture&) const { return {}; }

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "math/stats.h"
-#include "radiometry/pipeline.h"
+#include "transport/pipeline.h"
 #include "sensor/quality.h"
 
 namespace suite {

@@ -1,5 +1,5 @@
 // The stack of media: priorities, order of entering, counting, any depth, copies that take no memory.
-#include "radiometry/medium_stack.h"
+#include "transport/media/medium_stack.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // and what canopy and ground absorb.
 //
 // by_reciprocity: paths start towards the patch along the sun's rays and every view is asked at each of their nodes,
-// which gives all views from the same paths (radiometry/many_suns.h) at a tenth of the cost or less. The patch is
+// which gives all views from the same paths (transport/sinks/radiance.h) at a tenth of the cost or less. The patch is
 // divided into strata x strata problems, whose mean is the result; fluxes are left to the other mode.
 //
 // Light that reaches the ground is collected by a level receiver just above it, whatever the ground reflects.

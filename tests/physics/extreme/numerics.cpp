@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "math/warps.h"
-#include "radiometry/pipeline.h"
+#include "transport/pipeline.h"
 #include "spectral/planck.h"
 
 namespace suite::extreme {
