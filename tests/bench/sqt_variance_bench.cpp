@@ -32,8 +32,7 @@
 #include "light/kinds/sun.h"
 #include "math/sampling.h"
 #include "math/warps.h"
-#include "radiometry/live_path.h"
-#include "radiometry/path_generator.h"
+#include "transport/shares.h"
 #include "sqt/fit.h"
 #include "sqt/scattered.h"
 
