@@ -1,7 +1,8 @@
 // The options that say how much a run may spend, as they stand on the command line.
 #pragma once
+#include "estimate/budget.h"
 #include "options.h"
-#include "scheduler/budget.h"
+#include "radiometry/pipeline.h"
 
 namespace suite {
 

@@ -12,6 +12,25 @@ namespace render_state {
 
 std::string group_of(size_t capture) { return strf("/captures/%06zu", capture); }
 
+namespace {
+size_t one(const CaptureShape&) { return 1; }
+size_t two(const CaptureShape&) { return 2; }
+size_t values(const CaptureShape& s) { return s.values; }
+size_t truth_slots(const CaptureShape& s) { return s.truth_slots; }
+}  // namespace
+
+const std::array<SumsColumn, Accumulators::kColumns> kSumsColumns{{
+    {"/sums", "W/(m2 sr um)", h5::native<double>, values},
+    {"/taken", "1", h5::native<uint32_t>, one},
+    {"/failures", "1", h5::native<uint32_t>, one},
+    {"/truncated", "1", h5::native<float>, one},
+    {"/largest", "W/(m2 sr um)", h5::native<float>, one},
+    {"/squares", "SI", h5::native<double>, one},
+    {"/missing", "W/(m2 sr um)", h5::native<double>, values},
+    {"/missing_of", "SI", h5::native<double>, two},
+    {"/truth", "1", h5::native<double>, truth_slots},
+}};
+
 void check_identity(h5::Reader& reader, const std::string& path, const StateIdentity& identity) {
   if (reader.text("format") != kFormat) reader.fail("is not the state of a run");
   if (const std::string version = reader.text("version"); version != kVersion)
@@ -50,8 +69,8 @@ Budget read_budget(h5::Reader& reader) {
 namespace {
 
 double bytes_of(const CaptureShape& s) {
-  return static_cast<double>(s.problems()) * (8.0 * static_cast<double>(s.values) * (s.scrambles + 1) +
-                                              4 * s.scrambles + 36 + 8.0 * static_cast<double>(s.truth_slots));
+  const Accumulators::Shape sums{s.problems(), s.values, s.scrambles, s.truth_slots, true};
+  return static_cast<double>(sums.bytes()) + 8.0 * static_cast<double>(s.problems());
 }
 
 void check_room(const std::string& path, const std::vector<CaptureShape>& shapes) {
@@ -91,15 +110,8 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
       w.put(g + "/valid", std::vector<uint8_t>(ranges_of(s), 0), "1");
       w.put(g + "/piloted", std::vector<uint8_t>{0}, "1");
       w.column(g + "/needs", h5::native<double>(), n, "1");
-      w.column(g + "/sums", h5::native<double>(), n * s.values * static_cast<size_t>(s.scrambles), "W/(m2 sr um)");
-      w.column(g + "/paths", h5::native<uint32_t>(), n, "1");
-      w.column(g + "/failures", h5::native<uint32_t>(), n * static_cast<size_t>(s.scrambles), "1");
-      w.column(g + "/truncated", h5::native<float>(), n, "1");
-      w.column(g + "/largest", h5::native<float>(), n, "W/(m2 sr um)");
-      w.column(g + "/squares", h5::native<double>(), n, "SI");
-      w.column(g + "/missing", h5::native<double>(), n * s.values, "W/(m2 sr um)");
-      w.column(g + "/missing_of", h5::native<double>(), 2 * n, "SI");
-      w.column(g + "/truth", h5::native<double>(), n * s.truth_slots, "1");
+      for (const SumsColumn& of : kSumsColumns)
+        w.column(g + of.name, of.type(), n * static_cast<size_t>(s.scrambles) * of.width(s), of.units);
     }
     w.close();
   }

@@ -19,9 +19,10 @@ using namespace render_state;
 // Where the columns of one capture stand in the file.
 struct Columns {
   CaptureShape shape;
-  uint64_t valid = 0, piloted = 0, needs = 0, sums = 0, paths = 0, failures = 0, truncated = 0, largest = 0,
-           squares = 0, missing = 0, missing_of = 0, truth = 0;
+  uint64_t valid = 0, piloted = 0, needs = 0;
+  std::array<uint64_t, Accumulators::kColumns> sums{};
 };
+constexpr size_t kTaken = 1;  // its place among them
 
 class StateFile final : public StateStore {
  public:
@@ -50,59 +51,39 @@ class StateFile final : public StateStore {
 
   void load(size_t capture, Accumulators& sums, std::vector<double>& needs) override {
     const Columns& c = columns_.at(capture);
-    const size_t n = c.shape.problems(), wide = c.shape.values * static_cast<size_t>(c.shape.scrambles);
     load_needs(c, needs);
-    std::vector<uint8_t> valid(ranges_of(c.shape));
-    get(c.valid, valid.data(), valid.size());
-    for (size_t r = 0; r < valid.size(); ++r) {
-      if (!valid[r]) continue;
-      const size_t first = r * kRangeRows * c.shape.columns,
-                   count = std::min(n - first, size_t{kRangeRows} * c.shape.columns);
-      std::vector<double> stored(wide * count);
-      get(c.sums + first * wide * 8, stored.data(), stored.size() * 8);
-      const size_t scrambles = static_cast<size_t>(c.shape.scrambles);
-      std::vector<uint32_t> paths(count), failures(count * scrambles);
-      std::vector<float> truncated(count), largest(count);
-      std::vector<double> squares(count);
-      get(c.paths + first * 4, paths.data(), count * 4);
-      if (std::any_of(paths.begin(), paths.end(), [](uint32_t x) { return x > (1u << 31); }))
-        fail("holds more paths than can be");
-      get(c.failures + first * scrambles * 4, failures.data(), failures.size() * 4);
-      get(c.truncated + first * 4, truncated.data(), count * 4);
-      get(c.largest + first * 4, largest.data(), count * 4);
-      get(c.squares + first * 8, squares.data(), count * 8);
-      for (size_t i = 0; i < count; ++i) {
-        sums.set_paths(first + i, paths[i]);
-        for (int s = 0; s < std::min(c.shape.scrambles, sums.scrambles()); ++s) {
-          std::copy_n(&stored[i * wide + static_cast<size_t>(s) * c.shape.values], c.shape.values,
-                      sums.sums(first + i, s));
-          const uint32_t rejected = failures[i * scrambles + static_cast<size_t>(s)];
-          if (rejected > dealt(paths[i], static_cast<uint32_t>(s))) fail("holds more rejected samples than samples");
-          sums.failures(first + i, s) = rejected;
+    const auto into = sums.columns();
+    const auto ours = static_cast<size_t>(sums.scrambles()), theirs = static_cast<size_t>(c.shape.scrambles);
+    std::vector<std::byte> stored;
+    for_each_valid(c, [&](size_t first, size_t count) {
+      for (size_t i = 0; i < into.size(); ++i) {
+        const size_t width = into[i].width;
+        if (!width) continue;
+        if (ours == theirs) {
+          get(c.sums[i] + first * ours * width, into[i].data + first * ours * width, count * ours * width);
+          continue;
         }
-        sums.truncated(first + i) = truncated[i];
-        sums.largest(first + i) = largest[i];
-        sums.squares(first + i) = squares[i];
+        stored.resize(count * theirs * width);
+        get(c.sums[i] + first * theirs * width, stored.data(), stored.size());
+        for (size_t p = 0; p < count; ++p)
+          std::copy_n(&stored[p * theirs * width], std::min(ours, theirs) * width,
+                      into[i].data + (first + p) * ours * width);
       }
-      if (sums.keeps_missing()) {
-        get(c.missing + first * c.shape.values * 8, sums.missing(first).light, count * c.shape.values * 8);
-        get(c.missing_of + first * 16, sums.missing(first).reference, count * 16);
-      }
-      get(c.truth + first * c.shape.truth_slots * 8, sums.truth(first), count * c.shape.truth_slots * 8);
-    }
+      for (size_t p = first; p < first + count; ++p) check_counts(sums, p);
+    });
   }
 
   void load_paths(size_t capture, std::vector<uint32_t>& paths, std::vector<double>& needs) override {
     const Columns& c = columns_.at(capture);
     load_needs(c, needs);
     paths.assign(c.shape.problems(), 0);
-    std::vector<uint8_t> valid(ranges_of(c.shape));
-    get(c.valid, valid.data(), valid.size());
-    for (size_t r = 0; r < valid.size(); ++r) {
-      if (!valid[r]) continue;
-      const size_t first = r * kRangeRows * c.shape.columns;
-      get(c.paths + first * 4, &paths[first], std::min(paths.size() - first, size_t{kRangeRows} * c.shape.columns) * 4);
-    }
+    const auto scrambles = static_cast<size_t>(c.shape.scrambles);
+    std::vector<uint32_t> taken;
+    for_each_valid(c, [&](size_t first, size_t count) {
+      taken.resize(count * scrambles);
+      get(c.sums[kTaken] + first * scrambles * sizeof(uint32_t), taken.data(), taken.size() * sizeof(uint32_t));
+      for (size_t i = 0; i < taken.size(); ++i) paths[first + i / scrambles] += taken[i];
+    });
   }
 
   void save_needs(size_t capture, std::span<const double> needs) override {
@@ -114,37 +95,23 @@ class StateFile final : public StateStore {
 
   void save(size_t capture, size_t first, size_t count, const Accumulators& sums) override {
     const Columns& c = columns_.at(capture);
-    const size_t range = first / (size_t{kRangeRows} * c.shape.columns),
-                 wide = c.shape.values * static_cast<size_t>(c.shape.scrambles);
+    const size_t range = first / (size_t{kRangeRows} * c.shape.columns);
     mark(c.valid + range, 0);
-    std::vector<uint32_t> paths, failures;
-    std::vector<float> truncated, largest;
-    std::vector<double> squares;
-    for (size_t i = first; i < first + count; ++i) {
-      paths.push_back(sums.paths(i));
-      for (int s = 0; s < c.shape.scrambles; ++s) failures.push_back(s < sums.scrambles() ? sums.failures(i, s) : 0);
-      truncated.push_back(sums.truncated(i)), largest.push_back(sums.largest(i));
-      squares.push_back(sums.squares(i));
+    const auto from = sums.columns();
+    const auto ours = static_cast<size_t>(sums.scrambles()), theirs = static_cast<size_t>(c.shape.scrambles);
+    std::vector<std::byte> padded;
+    for (size_t i = 0; i < from.size(); ++i) {
+      const size_t width = from[i].width;  // 0: a hole in the file, all zeros
+      if (!width) continue;
+      const std::byte* data = from[i].data + first * ours * width;
+      if (ours != theirs) {
+        padded.assign(count * theirs * width, std::byte{});
+        for (size_t p = 0; p < count; ++p)
+          std::copy_n(data + p * ours * width, std::min(ours, theirs) * width, &padded[p * theirs * width]);
+        data = padded.data();
+      }
+      put(c.sums[i] + first * theirs * width, data, count * theirs * width);
     }
-    if (sums.scrambles() == c.shape.scrambles) {
-      // Problems, scrambles and bands lie behind one another in the accumulators as they do in the file.
-      put(c.sums + first * wide * 8, sums.sums(first, 0), wide * count * 8);
-    } else {
-      const size_t used = c.shape.values * static_cast<size_t>(std::min(sums.scrambles(), c.shape.scrambles));
-      std::vector<double> padded(wide * count, 0.0);
-      for (size_t i = 0; i < count; ++i) std::copy_n(sums.sums(first + i, 0), used, &padded[i * wide]);
-      put(c.sums + first * wide * 8, padded.data(), padded.size() * 8);
-    }
-    put(c.paths + first * 4, paths.data(), count * 4);
-    put(c.failures + first * static_cast<size_t>(c.shape.scrambles) * 4, failures.data(), failures.size() * 4);
-    put(c.truncated + first * 4, truncated.data(), count * 4);
-    put(c.largest + first * 4, largest.data(), count * 4);
-    put(c.squares + first * 8, squares.data(), count * 8);
-    if (sums.keeps_missing()) {  // a hole in the file, all zeros, where nothing is missing
-      put(c.missing + first * c.shape.values * 8, sums.missing_light(first), count * c.shape.values * 8);
-      put(c.missing_of + first * 16, sums.missing_of(first), count * 16);
-    }
-    put(c.truth + first * c.shape.truth_slots * 8, sums.truth(first), count * c.shape.truth_slots * 8);
     sync();
     mark(c.valid + range, 1);
   }
@@ -171,6 +138,23 @@ class StateFile final : public StateStore {
     get(c.needs, needs.data(), needs.size() * sizeof(double));
     if (std::any_of(needs.begin(), needs.end(), [](double x) { return !(x >= 0); })) fail("holds needs that cannot be");
   }
+  // body(first, count) for each range of problems that is valid.
+  template <class Body>
+  void for_each_valid(const Columns& c, Body body) const {
+    std::vector<uint8_t> valid(ranges_of(c.shape));
+    get(c.valid, valid.data(), valid.size());
+    for (size_t r = 0; r < valid.size(); ++r) {
+      const size_t first = r * kRangeRows * c.shape.columns;
+      if (valid[r]) body(first, std::min(c.shape.problems() - first, size_t{kRangeRows} * c.shape.columns));
+    }
+  }
+  void check_counts(const Accumulators& sums, size_t problem) const {
+    constexpr uint32_t most = 1u << 28;
+    for (int s = 0; s < sums.scrambles(); ++s) {
+      if (sums.taken(problem, s) > most) fail("holds more paths than can be");
+      if (sums.failures(problem, s) > sums.taken(problem, s)) fail("holds more rejected samples than samples");
+    }
+  }
   static Columns columns_of(h5::Reader& r, size_t capture, const CaptureShape& wanted) {
     const std::string g = group_of(capture);
     Columns c;
@@ -186,16 +170,11 @@ class StateFile final : public StateStore {
     c.valid = at("/valid", h5::native<uint8_t>(), "1", static_cast<long long>(ranges_of(c.shape)));
     c.piloted = at("/piloted", h5::native<uint8_t>(), "1", 1);
     c.needs = at("/needs", h5::native<double>(), "1", n);
-    c.sums = at("/sums", h5::native<double>(), "W/(m2 sr um)",
-                n * static_cast<long long>(c.shape.values) * c.shape.scrambles);
-    c.paths = at("/paths", h5::native<uint32_t>(), "1", n);
-    c.failures = at("/failures", h5::native<uint32_t>(), "1", n * c.shape.scrambles);
-    c.truncated = at("/truncated", h5::native<float>(), "1", n);
-    c.largest = at("/largest", h5::native<float>(), "W/(m2 sr um)", n);
-    c.squares = at("/squares", h5::native<double>(), "SI", n);
-    c.missing = at("/missing", h5::native<double>(), "W/(m2 sr um)", n * static_cast<long long>(c.shape.values));
-    c.missing_of = at("/missing_of", h5::native<double>(), "SI", 2 * n);
-    c.truth = at("/truth", h5::native<double>(), "1", n * static_cast<long long>(c.shape.truth_slots));
+    for (size_t i = 0; i < kSumsColumns.size(); ++i) {
+      const SumsColumn& column = kSumsColumns[i];
+      c.sums[i] = at(column.name, column.type(), column.units,
+                     n * c.shape.scrambles * static_cast<long long>(column.width(c.shape)));
+    }
     return c;
   }
 
@@ -243,7 +222,7 @@ bool roomy(const std::string& path, const std::vector<CaptureShape>& shapes) {
 void copy_state(StateFile& from, StateFile& to, const std::vector<CaptureShape>& shapes) {
   for (size_t c = 0; c < shapes.size(); ++c) {
     const CaptureShape& s = shapes[c];
-    Accumulators sums(s.problems(), s.values, s.scrambles, s.truth_slots, true);
+    Accumulators sums({s.problems(), s.values, s.scrambles, s.truth_slots, true});
     std::vector<double> needs;
     from.load(c, sums, needs);
     if (!needs.empty()) to.save_needs(c, needs);

@@ -15,27 +15,6 @@
 
 namespace suite {
 
-void RunStatistics::merge(const RunStatistics& o) {
-  paths += o.paths;
-  nodes += o.nodes;
-  failures += o.failures;
-  truncated += o.truncated;
-  trace.rays += o.trace.rays;
-  trace.cycles += o.trace.cycles;
-  cycles += o.cycles;
-  sensor_cycles += o.sensor_cycles;
-  path_cycles += o.path_cycles;
-  shade_cycles += o.shade_cycles;
-}
-
-std::vector<Block> blocks_of(const Capture& capture) {
-  std::vector<Block> blocks;
-  for (uint32_t r = 0; r < capture.rows; r += kBlockEdge)
-    for (uint32_t c = 0; c < capture.columns; c += kBlockEdge)
-      blocks.push_back({c, r, std::min(kBlockEdge, capture.columns - c), std::min(kBlockEdge, capture.rows - r)});
-  return blocks;
-}
-
 Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment,
                    const SpectralState& state, const BandProjection& projection, size_t reference_band,
                    const TruthPlan& truth, const PipelineOptions& options)
@@ -134,7 +113,7 @@ class Pipeline::BlockRun {
         matte_(pipeline.matte_ && !single_ && capture.bin_by == Capture::BinBy::none) {
     const size_t width = size_t{block.columns} * block.rows;
     for (uint32_t i = 0; i < width; ++i) {
-      next_.push_back(sums.paths(slot_of(i)));
+      next_.push_back(sums.next(slot_of(i), block.scrambles));
       end_.push_back(to[problem_of(i)]);
       keys_.push_back(SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i)));
     }
@@ -152,6 +131,7 @@ class Pipeline::BlockRun {
       for (uint32_t group = first; group < last; group += together)
         for (uint32_t i = begin; i < std::min(begin + beside, width); ++i)
           for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
+            if (!wants(i, sample)) continue;
             workspace_.lanes.push_back({i, sample});
             if (workspace_.lanes.size() == kWaveWidth) run_wave();
           }
@@ -159,8 +139,11 @@ class Pipeline::BlockRun {
   }
 
  private:
-  size_t problem_of(size_t i) const {
-    return (size_t{block_.row} + i / block_.columns) * capture_.columns + block_.column + i % block_.columns;
+  size_t problem_of(size_t i) const { return problem_at(capture_, block_, i); }
+  // Of the block's scrambles, and not taken yet.
+  bool wants(size_t i, uint32_t sample) const {
+    const Deal d = deal(sample);
+    return (block_.scrambles >> d.scramble & 1) && d.index >= sums_.taken(slot_of(i), static_cast<int>(d.scramble));
   }
   size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
   double reference_sum(size_t slot) const {
@@ -244,33 +227,38 @@ class Pipeline::BlockRun {
 
   void accumulate_suns(size_t p, size_t place, uint32_t sample) {
     const size_t slot = slot_of(place);
+    const int scramble = static_cast<int>(deal(sample).scramble);
     const Path& path = workspace_.wave.path(p);
-    double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
+    double* const target = sums_.sums(slot, scramble);
     std::span<double> missing;
-    if (sums_.keeps_missing()) missing = {sums_.missing(slot).light, sums_.bands()};
+    if (sums_.keeps_missing()) missing = {sums_.missing(slot, scramble).light, sums_.bands()};
     const bool good = workspace_.suns.add(workspace_.wave, p, capture_.suns, pipeline_.projection_, single_,
                                           {target, sums_.bands()}, missing, statistics_.trace);
     ++statistics_.paths;
     statistics_.truncated += path.truncated;
-    sums_.set_paths(slot, sample + 1);
-    if (!good) return reject(slot, sample);
+    sums_.take(slot, scramble);
+    if (!good) return reject(slot, scramble);
     if (path.missed() && !missing.empty())
-      *sums_.missing(slot).square = INFINITY;  // nothing but asking finds a collimated sun
-    sums_.truncated(slot) += static_cast<float>(path.truncated);
-    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+      *sums_.missing(slot, scramble).square = INFINITY;  // nothing but asking finds a collimated sun
+    note(p, slot, scramble, path.truncated);
   }
 
   // A sample that is not averaged in.
-  void reject(size_t slot, uint32_t sample) {
+  void reject(size_t slot, int scramble) {
     ++statistics_.failures;
-    ++sums_.failures(slot, static_cast<int>(deal(sample).scramble));
+    ++sums_.failures(slot, scramble);
+  }
+  // What is known of a sample beside its radiance.
+  void note(size_t p, size_t slot, int scramble, double truncated) {
+    sums_.truncated(slot, scramble) += static_cast<float>(truncated);
+    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot, scramble));
   }
 
   // Adds what path p is known to have missed.
-  void add_missing(size_t p, size_t slot, size_t bin) {
+  void add_missing(size_t p, size_t slot, int scramble, size_t bin) {
     const Path& path = workspace_.wave.path(p);
     const size_t bands = pipeline_.projection_.bands();
-    const Accumulators::Missing missing = sums_.missing(slot);
+    const Accumulators::Missing missing = sums_.missing(slot, scramble);
     const std::span<float> light = workspace_.wave.scratch2();
     for (const bool single : {false, true}) {
       if (single && !single_) break;
@@ -289,13 +277,14 @@ class Pipeline::BlockRun {
 
   void accumulate(size_t p, size_t place, uint32_t sample) {
     const size_t slot = slot_of(place), bands = pipeline_.projection_.bands(), reference = pipeline_.reference_band_;
+    const int scramble = static_cast<int>(deal(sample).scramble);
     const Path& path = workspace_.wave.path(p);
     const std::span<float> radiance = radiance_of(p);
     ++statistics_.paths;
     statistics_.truncated += path.truncated;
-    sums_.set_paths(slot, sample + 1);
-    if (!acceptable(radiance)) return reject(slot, sample);
-    double* const target = sums_.sums(slot, static_cast<int>(deal(sample).scramble));
+    sums_.take(slot, scramble);
+    if (!acceptable(radiance)) return reject(slot, scramble);
+    double* const target = sums_.sums(slot, scramble);
     const bool watched = pipeline_.options_.stop == StopRule::change;
     const double before = target[reference], sum_before = watched ? reference_sum(slot) : 0;
     const size_t bin = bin_of(capture_, path);
@@ -307,10 +296,9 @@ class Pipeline::BlockRun {
       const double accepted = sums_.accepted(slot), mean = reference_sum(slot) / accepted;
       if (std::fabs(mean - sum_before / (accepted - 1)) <= pipeline_.options_.change * mean) end_[place] = 0;
     }
-    sums_.note_sample(slot, target[reference] - before);
-    sums_.truncated(slot) += static_cast<float>(path.truncated);
-    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
-    if (path.missed() && sums_.keeps_missing() && bin < capture_.bins) add_missing(p, slot, bin);
+    sums_.note_sample(slot, scramble, target[reference] - before);
+    note(p, slot, scramble, path.truncated);
+    if (path.missed() && sums_.keeps_missing() && bin < capture_.bins) add_missing(p, slot, scramble, bin);
   }
 
   // The samples of one problem that the matte kernel ran, from lane p on. Those of one scramble are added together.
@@ -321,34 +309,36 @@ class Pipeline::BlockRun {
     while (end < workspace_.lanes.size() && workspace_.lanes[end].place == place && workspace_.is_matte[end]) ++end;
     const size_t slot = slot_of(place);
     for (size_t i = p; i < end; ++i) workspace_.is_matte[i] = take_matte(i, slot);
-    for (uint32_t scramble = 0; scramble < static_cast<uint32_t>(sums_.scrambles()); ++scramble) {
+    for (int scramble = 0; scramble < sums_.scrambles(); ++scramble) {
       workspace_.together.clear();
       for (size_t i = p; i < end; ++i)
-        if (workspace_.is_matte[i] && deal(workspace_.lanes[i].sample).scramble == scramble)
+        if (workspace_.is_matte[i] && scramble_of(i) == scramble)
           workspace_.together.push_back(static_cast<uint32_t>(i));
-      if (!workspace_.together.empty()) add_matte(sums_.sums(slot, static_cast<int>(scramble)));
+      if (!workspace_.together.empty()) add_matte(sums_.sums(slot, scramble));
     }
     // In the order of the samples, so that the sums do not depend on how these were cut into waves.
     for (size_t i = p; i < end; ++i)
-      if (workspace_.is_matte[i]) sums_.note_sample(slot, static_cast<double>(workspace_.seen[i]));
-    sums_.set_paths(slot, workspace_.lanes[end - 1].sample + 1);
+      if (workspace_.is_matte[i]) sums_.note_sample(slot, scramble_of(i), static_cast<double>(workspace_.seen[i]));
     return end;
   }
+
+  int scramble_of(size_t lane) const { return static_cast<int>(deal(workspace_.lanes[lane].sample).scramble); }
 
   // Counts a sample of the matte kernel. False when it must not be averaged in.
   bool take_matte(size_t p, size_t slot) {
     const double truncated = workspace_.matte->truncated(p);
+    const int scramble = scramble_of(p);
     ++statistics_.paths;
+    sums_.take(slot, scramble);
     statistics_.truncated += truncated;
     const bool direct = pipeline_.projection_.identity();  // bands are bins
     const float radiance = workspace_.matte->radiance(p, direct ? pipeline_.reference_band_ : 0);
     if (std::isnan(radiance)) {
-      reject(slot, workspace_.lanes[p].sample);
+      reject(slot, scramble);
       return false;
     }
     workspace_.seen[p] = radiance;
-    sums_.truncated(slot) += static_cast<float>(truncated);
-    if (pipeline_.truth_.wanted()) pipeline_.truth_.add(workspace_.wave, p, sums_.truth(slot));
+    note(p, slot, scramble, truncated);
     return true;
   }
 

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
-#include "scheduler/plan.h"
+#include "estimate/plan.h"
 
 namespace suite {
 
@@ -92,6 +92,10 @@ double run_stage(const CaptureWork& work, uint64_t stream, std::span<const uint3
   return paths;
 }
 
+Accumulators::Shape shape_of(const CaptureWork& work, size_t problems, size_t values, size_t truth_slots) {
+  return {problems, values, scrambles_for(work.goals.all.max_paths), truth_slots, work.pipeline.may_miss(work.capture)};
+}
+
 std::vector<uint32_t> pilot_of(const CaptureWork& work) {
   std::vector<uint32_t> paths(work.capture.problems());
   for (size_t i = 0; i < paths.size(); ++i) paths[i] = work.goals.of(i).min_paths;
@@ -111,18 +115,14 @@ void run_streamed(const CaptureWork& work, size_t values, size_t truth_slots, Re
       const std::lock_guard lock(mutex);
       if (!idle.empty()) sums = std::move(idle.back()), idle.pop_back();
     }
-    if (!sums)
-      sums = std::make_unique<Accumulators>(kBlockEdge * kBlockEdge, values,
-                                            Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots,
-                                            work.pipeline.may_miss(work.capture));
+    if (!sums) sums = std::make_unique<Accumulators>(shape_of(work, kBlockEdge * kBlockEdge, values, truth_slots));
     for (size_t b = begin; b < end && !stops(work); ++b) {
       const Block& block = blocks[b];
       RunStatistics mine;
       sums->clear();
       work.pipeline.run(work.sensor, work.capture, work.id, block, to, *sums, Slots::by_place, mine);
       for (uint32_t i = 0; i < block.columns * block.rows; ++i)
-        result.take((size_t{block.row} + i / block.columns) * work.capture.columns + block.column + i % block.columns,
-                    *sums, i);
+        result.take(problem_at(work.capture, block, i), *sums, i);
       const std::lock_guard lock(mutex);
       statistics.merge(mine);
       if (work.progress) work.progress->add(static_cast<double>(mine.paths));
@@ -149,8 +149,7 @@ void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBui
   if (!piloted && !work.store) return run_streamed(work, values, truth_slots, result, statistics);
 
   const size_t problems = work.capture.problems();
-  const bool missing = work.pipeline.may_miss(work.capture);
-  Accumulators sums(problems, values, Accumulators::scrambles_for(work.goals.all.max_paths), truth_slots, missing);
+  Accumulators sums(shape_of(work, problems, values, truth_slots));
   std::vector<double> needs;
   if (work.store) work.store->load(work.id, sums, needs);
   if (piloted && needs.empty()) {
@@ -158,7 +157,7 @@ void run_capture(CaptureWork& work, size_t values, size_t truth_slots, ResultBui
     const std::vector<uint32_t> pilot = pilot_of(work);
     double paths = 0;
     if (alone) {
-      Accumulators thrown(problems, values, sums.scrambles(), truth_slots, missing);
+      Accumulators thrown(sums.shape());
       paths = run_stage(work, work.id + kPilotStream, pilot, thrown, statistics, false);
       needs = own_needs_of(thrown, work.judged, work.goals);
     } else {

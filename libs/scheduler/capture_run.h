@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "estimate/budget.h"
+#include "estimate/plan.h"
 #include "radiometry/pipeline.h"
-#include "scheduler/budget.h"
-#include "scheduler/plan.h"
 #include "scheduler/result.h"
 #include "scheduler/state_store.h"
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/memory.h"
-#include "scheduler/plan.h"
-#include "scheduler/pooled_errors.h"
+#include "estimate/plan.h"
+#include "estimate/pooled_errors.h"
 #include "sensor/quality.h"
 
 namespace suite {
@@ -14,7 +14,7 @@ namespace suite {
 namespace {
 
 double degrees(uint32_t most_paths, bool neighbours) {
-  const double own = Accumulators::scrambles_for(most_paths) - 1;
+  const double own = scrambles_for(most_paths) - 1;
   return neighbours ? pooled_degrees(own) : own;
 }
 
@@ -82,7 +82,7 @@ Lack ResultBuilder::lack_of(size_t problem, const Accumulators& sums, size_t slo
   // Of the bin that lacks most.
   const double* means = &result_.radiance[problem * result_.values_per_problem()];
   for (size_t at = reference_band_; at < result_.bins * result_.bands; at += result_.bands) {
-    const double missing = of.missing * sums.missing_light(slot)[at] / accepted;
+    const double missing = of.missing * sums.missing_light(slot, at) / accepted;
     if (missing > 0) lack.missing = std::max(lack.missing, missing / (means[at] + missing));
   }
   return lack;
@@ -158,25 +158,6 @@ CaptureResult ResultBuilder::finish() {
       correlation[a * bands + b] = correlation[b * bands + a] = a == b ? 1 : scale > 0 ? sum[a * bands + b] / scale : 0;
     }
   return std::move(result_);
-}
-
-void ErrorHistogram::add(double relative_error) {
-  const double octave = std::log2(std::max(relative_error, 1e-9) / 1e-9);
-  ++counts_[std::min(kBins - 1, static_cast<size_t>(octave * 64))];
-  ++total_;
-}
-
-void ErrorHistogram::merge(const ErrorHistogram& o) {
-  for (size_t i = 0; i < kBins; ++i) counts_[i] += o.counts_[i];
-  total_ += o.total_;
-}
-
-double ErrorHistogram::median() const {
-  uint64_t seen = 0;
-  for (size_t i = 0; i < kBins; ++i)
-    if ((seen += counts_[i]) * 2 >= total_ && total_)
-      return i == 0 ? 0 : 1e-9 * std::exp2((static_cast<double>(i) + 0.5) / 64);
-  return 0;
 }
 
 }  // namespace suite

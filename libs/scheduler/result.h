@@ -3,11 +3,11 @@
 #include <array>
 #include <string>
 
+#include "estimate/budget.h"
+#include "estimate/tails.h"
 #include "radiometry/truth/truth.h"
-#include "scheduler/budget.h"
 #include "scheduler/scheduler.h"
 #include "scheduler/shortfall.h"
-#include "scheduler/tails.h"
 
 namespace suite {
 
@@ -46,19 +46,6 @@ class ResultBuilder {
   // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands
   // ride on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
   std::vector<std::vector<double>> products_;
-};
-
-// Medians of relative errors without keeping them: a histogram over 1e-9 .. 1e3, 64 bins an octave, so within 1.1 %.
-class ErrorHistogram {
- public:
-  void add(double relative_error);
-  void merge(const ErrorHistogram& o);
-  double median() const;  // 0 when empty
-
- private:
-  static constexpr size_t kBins = 64 * 40;
-  std::array<uint64_t, kBins> counts_{};
-  uint64_t total_ = 0;
 };
 
 }  // namespace suite

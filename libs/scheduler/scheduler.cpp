@@ -8,10 +8,11 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "estimate/error_histogram.h"
+#include "estimate/plan.h"
 #include "scheduler/capture_run.h"
 #include "scheduler/items.h"
 #include "scheduler/kits.h"
-#include "scheduler/plan.h"
 #include "scheduler/result.h"
 #include "surface/cut_out.h"
 
@@ -121,7 +122,7 @@ class Job {
       }
       all[item.id] = {capture.columns, capture.rows,
                       sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
-                      Accumulators::scrambles_for(goals_of(sensor, capture, budget()).all.max_paths), known->second};
+                      scrambles_for(goals_of(sensor, capture, budget()).all.max_paths), known->second};
     }
     return all;
   }
@@ -366,9 +367,11 @@ double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const Jo
   for (const auto& s : sensors)
     for (const Task& t : s->tasks())
       for (const Capture& c : t.captures) {
-        const double scrambles = Accumulators::scrambles_for(goals_of(*s, c, options.budget).all.max_paths),
-                     bands = static_cast<double>(s->bands(c.state).size());
-        most = std::max(most, static_cast<double>(c.problems()) * ((scrambles + 3) * bands * 8 + 300));
+        const size_t bands = s->bands(c.state).size();
+        const Accumulators::Shape sums{c.problems(), bands,
+                                       scrambles_for(goals_of(*s, c, options.budget).all.max_paths)};
+        const double result = static_cast<double>(c.problems()) * (24.0 * static_cast<double>(bands) + 200);
+        most = std::max(most, static_cast<double>(sums.bytes()) + result);
       }
   return most;
 }

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "estimate/budget.h"
 #include "radiometry/pipeline.h"
-#include "scheduler/budget.h"
 #include "scheduler/doubts.h"
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"

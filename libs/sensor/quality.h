@@ -16,7 +16,7 @@ namespace suite {
 // standard error by more than kTailShare of its radiance. Without it that is rarer than Student's distribution says
 // for the scrambles of one problem (1.5 % with four, 0.2 % with eight), and only where the standard error itself is
 // some per cent of the radiance. Where the capture has a target for its relative error, the target stands for
-// kTailShare, and its floor for the radiance of darker problems. How the flag is found: libs/scheduler/tails.h.
+// kTailShare, and its floor for the radiance of darker problems. How the flag is found: libs/estimate/tails.h.
 inline constexpr double kTailFactor = 5, kTailShare = 0.01;
 
 struct QualityBit {

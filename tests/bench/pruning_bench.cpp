@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
     std::vector<double> image(capture.problems());
     parallel_for(0, blocks.size(), 64, [&](size_t begin, size_t end) {
       RunStatistics statistics;
-      Accumulators sums(kBlockEdge * kBlockEdge, 1, Accumulators::scrambles_for(paths), truth.slots());
+      Accumulators sums({kBlockEdge * kBlockEdge, 1, scrambles_for(paths), truth.slots()});
       for (size_t b = begin; b < end; ++b) {
         const Block& block = blocks[b];
         sums.clear();

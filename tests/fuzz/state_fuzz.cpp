@@ -14,7 +14,7 @@ TEST(FuzzState, File) {
   {
     const auto store = make_state(path, StateUse::start, identity, {});
     store->begin(shapes);
-    Accumulators sums(200, 3, 4, 2);
+    Accumulators sums({200, 3, 4, 2});
     for (size_t i = 0; i < 200; ++i) sums.set_paths(i, 8);
     store->save(0, 0, 80, sums);
     store->save(0, 160, 40, sums);
@@ -27,7 +27,7 @@ TEST(FuzzState, File) {
     const auto store = make_state(path, StateUse::resume, identity, {});
     store->begin(shapes);
     for (size_t c = 0; c < shapes.size(); ++c) {
-      Accumulators sums(shapes[c].problems(), 3, shapes[c].scrambles, 2);
+      Accumulators sums({shapes[c].problems(), 3, shapes[c].scrambles, 2});
       std::vector<double> needs;
       store->load(c, sums, needs);
       store->save(c, 0, std::min<size_t>(shapes[c].problems(), size_t{8} * shapes[c].columns), sums);

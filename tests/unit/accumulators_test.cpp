@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "estimate/budget.h"
+#include "estimate/plan.h"
 #include "math/sampling.h"
-#include "scheduler/budget.h"
-#include "scheduler/plan.h"
 
 namespace suite {
 namespace {
@@ -18,8 +18,8 @@ TEST(Deal, counts_what_it_deals_and_never_repeats_a_point) {
     ASSERT_EQ(d.index, count[d.scramble]) << "indices of a scramble run without gaps";
     ++count[d.scramble];
   }
-  EXPECT_EQ(Accumulators::scrambles_for(256), 4);
-  EXPECT_EQ(Accumulators::scrambles_for(257), 8);
+  EXPECT_EQ(scrambles_for(256), 4);
+  EXPECT_EQ(scrambles_for(257), 8);
   for (uint32_t s = 0; s < 8; ++s) EXPECT_EQ(dealt(512, s), 64u);
 }
 
@@ -30,7 +30,7 @@ TEST(Accumulators, squared_standard_error_is_the_variance_of_the_mean) {
     constexpr int trials = 4000;
     double sum = 0, square = 0, claimed = 0;
     for (int t = 0; t < trials; ++t) {
-      Accumulators a(1, 1, Accumulators::scrambles_for(n));
+      Accumulators a({1, 1, scrambles_for(n)});
       for (uint32_t s = 0; s < n; ++s) a.sums(0, static_cast<int>(deal(s).scramble))[0] += random.uniform();
       a.set_paths(0, n);
       double mean = 0, error = 0;
@@ -53,7 +53,7 @@ TEST(Accumulators, rejected_samples_do_not_count) {
   Pcg32 random(9);
   int covered = 0, covered_by_all = 0;
   for (int trial = 0; trial < trials; ++trial) {
-    Accumulators a(1, 1, 4);
+    Accumulators a({1, 1, 4});
     for (uint32_t i = 0; i < n; ++i) {
       const int scramble = static_cast<int>(deal(i).scramble);
       if (random.uniform() < 0.01)
@@ -78,36 +78,36 @@ TEST(Accumulators, rejected_samples_do_not_count) {
 }
 
 TEST(Accumulators, shortfall_of_what_was_cut_and_missed) {
-  Accumulators a(1, 2, 4, 0, true);
+  Accumulators a({1, 2, 4, 0, true});
   a.set_paths(0, 100);
   const std::vector<double> means{3, 6};
   EXPECT_TRUE(a.lacking(0, means).empty());
-  a.truncated(0) = 25;  // T / (1 - T) = 1 / 3
+  a.truncated(0, 0) = 25;  // T / (1 - T) = 1 / 3
   std::vector<double> light = a.lacking(0, means);
   ASSERT_EQ(light.size(), 2u);
   EXPECT_NEAR(light[0], 1, 1e-12);
   EXPECT_NEAR(light[1], 2, 1e-12);
-  a.truncated(0) = 100;
+  a.truncated(0, 0) = 100;
   EXPECT_NEAR(a.shortfall(0).cut, 999, 1e-6) << "paths that lose nothing";
-  a.truncated(0) = 0;
+  a.truncated(0, 0) = 0;
   // Met with a chance of 0.05 a path: five meetings are expected, of a mean of 2 and 4.
   for (int i = 0; i < 100; ++i) {
-    a.missing(0).light[0] += 2, a.missing(0).light[1] += 4;
-    *a.missing(0).reference += 2, *a.missing(0).square += 2 * 2 / 0.05;
+    a.missing(0, 0).light[0] += 2, a.missing(0, 0).light[1] += 4;
+    *a.missing(0, 0).reference += 2, *a.missing(0, 0).square += 2 * 2 / 0.05;
   }
   light = a.lacking(0, means);
   ASSERT_EQ(light.size(), 2u);
   EXPECT_NEAR(light[0], 2 / std::sqrt(5), 1e-12);
   EXPECT_NEAR(light[1], 4 / std::sqrt(5), 1e-12);
   a.set_paths(0, 100);
-  *a.missing(0).square /= 4.01;  // 20 meetings
+  *a.missing(0, 0).square /= 4.01;  // 20 meetings
   EXPECT_EQ(a.shortfall(0).missing, 0);
-  *a.missing(0).square = INFINITY;  // something that is never met
+  *a.missing(0, 0).square = INFINITY;  // something that is never met
   EXPECT_EQ(a.shortfall(0).missing, 1);
 }
 
 TEST(Accumulators, one_sample_tells_nothing_about_its_error) {
-  Accumulators a(1, 1, 4);
+  Accumulators a({1, 1, 4});
   a.sums(0, 0)[0] = 3;
   a.set_paths(0, 1);
   double mean = 0, error = 0;
@@ -124,7 +124,7 @@ Capture capture_of(uint32_t columns, uint32_t rows) {
 
 // A pilot in which every problem's scrambles have the means m (1 -+ d).
 Accumulators pilot_of(size_t problems, double mean, double d, uint32_t paths) {
-  Accumulators a(problems, 1, 4);
+  Accumulators a({problems, 1, 4});
   for (size_t i = 0; i < problems; ++i) {
     for (int s = 0; s < 4; ++s) a.sums(i, s)[0] = mean * (1 + (s % 2 ? d : -d)) * paths / 4;
     a.set_paths(i, paths);

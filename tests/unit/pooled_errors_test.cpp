@@ -1,6 +1,6 @@
 // Standard errors with the help of the problems beside: variances keep their mean, scatter less, and know of what the
 // problem's own samples did not meet.
-#include "scheduler/pooled_errors.h"
+#include "estimate/pooled_errors.h"
 
 #include <gtest/gtest.h>
 

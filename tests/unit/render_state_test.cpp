@@ -199,7 +199,7 @@ TEST(RenderState, refuses_an_older_version) {
     old.close();
   }
   EXPECT_THAT(message_of([&] { read_state_budget(path, kIdentity); }),
-              testing::HasSubstr("has version '1', this program reads 3"));
+              testing::HasSubstr("has version '1', this program reads 4"));
 }
 
 TEST(RenderState, refuses_what_is_no_state) {

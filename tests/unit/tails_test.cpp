@@ -1,5 +1,5 @@
 // The rule behind quality_heavy_tail on made-up problems: what it must find, what it must leave alone.
-#include "scheduler/tails.h"
+#include "estimate/tails.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scheduler/around.h"
+#include "estimate/around.h"
 
 #include <algorithm>
 #include <array>

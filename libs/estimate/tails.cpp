@@ -1,11 +1,11 @@
-#include "scheduler/tails.h"
+#include "estimate/tails.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/parallel.h"
-#include "scheduler/around.h"
+#include "estimate/around.h"
 #include "sensor/quality.h"
 
 namespace suite {

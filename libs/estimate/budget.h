@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "radiometry/pipeline.h"
+#include "sensor/sensor.h"
 
 namespace suite {
 

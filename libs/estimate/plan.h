@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "radiometry/pipeline.h"
-#include "scheduler/budget.h"
+#include "estimate/accumulators.h"
+#include "estimate/budget.h"
 
 namespace suite {
 

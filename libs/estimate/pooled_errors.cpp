@@ -1,4 +1,4 @@
-#include "scheduler/pooled_errors.h"
+#include "estimate/pooled_errors.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "scheduler/budget.h"
+#include "estimate/budget.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "scheduler/plan.h"
+#include "estimate/plan.h"
 
 #include <algorithm>
 #include <cmath>
