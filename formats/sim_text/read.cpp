@@ -97,8 +97,8 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   sim.settings = std::move(settings);
   read_scenes(root, sim);
   sim.pipeline.seed = static_cast<uint64_t>(root.integer("seed", 0, 1LL << 53, 1));
-  sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 1, kMaxNodes, 16));
-  sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 1, 10000000, 10000));
+  sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 0, 1'000'000, 0));
+  sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 0, 10'000'000, 0));
   std::vector<AskedCurve> asked;
   sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {

@@ -96,7 +96,7 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt& node, Dir in,
                                                                    std::span<const double> reach) const {
   const Path& path = paths_[node.path];
-  float density[kMaxKnots];
+  float density[kMaxKnots] = {};
   if constexpr (Space::kScatters)
     if (node.event) space_.densities(node.path, scattering_cosine(-path.direction, in), {density, knots_});
   if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots_});

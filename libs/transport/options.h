@@ -19,6 +19,9 @@ enum class Method : uint8_t {
   paper,     // estimators/paper.h: Goodenough & Brown as written, for comparison
 };
 
+// Where the paper's estimator, which knows no other end of paths, cuts them when max_nodes is 0.
+inline constexpr int kPaperNodes = 16;
+
 struct PipelineOptions {
   uint64_t seed = 1;
   // Most nodes of a path: consecutive scattering events at surfaces; 0 = no limit, paths end by chance (shares.h).

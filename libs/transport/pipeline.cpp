@@ -18,8 +18,6 @@ void check(const PipelineOptions& options) {
   if (options.lamp_draws < 1 || options.lamp_draws > LightNature::kMostDraws)
     throw Error(strf("%d lamps a node are not between 1 and %d", options.lamp_draws, LightNature::kMostDraws));
   if (options.max_nodes < 0) throw Error(strf("max nodes %d is not 0 (no limit) or more", options.max_nodes));
-  if (options.method == Method::paper && options.max_nodes == 0)
-    throw Error("the paper's estimator ends paths at a maximum of nodes only", "give max_nodes");
 }
 
 Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment,
@@ -36,6 +34,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
   check(options_);
+  if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
   choice_ = choose_kernel({surface_, optics_, environment_, options_, truth_.wanted()});
 }
 

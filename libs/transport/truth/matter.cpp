@@ -1,6 +1,7 @@
 // What the first things met are made of and belong to.
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "transport/truth/truth.h"
 
@@ -9,7 +10,8 @@ namespace suite {
 namespace {
 
 // The most frequent of a few identifiers, seen in turn, in little memory: any id seen in more than a fifth of the
-// samples survives, which includes every majority. Based on: Misra & Gries, "Finding repeated elements", 1982.
+// samples survives, which includes every majority. Based on: Misra & Gries, "Finding repeated elements", 1982; joined
+// as in Agarwal et al., "Mergeable summaries", PODS 2012, section 2, which keeps that promise.
 constexpr size_t kVotes = 4;
 struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
   static void add(double* slots, uint32_t id) {
@@ -25,6 +27,30 @@ struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
         return;
       }
     for (size_t i = 0; i < kVotes; ++i) --slots[2 * i + 1];
+  }
+  static void join(const double* others, double* slots) {
+    std::array<std::array<double, 2>, 2 * kVotes> all{};  // ours, then those that only others have
+    for (size_t i = 0; i < kVotes; ++i) all[i] = {slots[2 * i], slots[2 * i + 1]};
+    size_t end = kVotes;
+    for (size_t i = 0; i < kVotes; ++i) {
+      const double id = others[2 * i], count = others[2 * i + 1];
+      if (!(count > 0)) continue;
+      size_t at = 0;
+      while (at < end && !(all[at][1] > 0 && all[at][0] == id)) ++at;
+      if (at == end) end += 1, all[at] = {id, 0};
+      all[at][1] += count;
+    }
+    std::array<double, 2 * kVotes> counts{};
+    for (size_t i = 0; i < end; ++i) counts[i] = all[i][1];
+    std::nth_element(counts.begin(), counts.begin() + kVotes, counts.end(), std::greater<>());
+    std::fill_n(slots, 2 * kVotes, 0.0);
+    size_t kept = 0;
+    for (size_t i = 0; i < end; ++i) {
+      const double count = all[i][1] - counts[kVotes];  // what the fifth has, all give up
+      if (!(count > 0)) continue;
+      slots[2 * kept] = all[i][0], slots[2 * kept + 1] = count;
+      ++kept;
+    }
   }
   static size_t most(const double* slots) {
     size_t best = 0;
@@ -57,6 +83,7 @@ struct Majority final : TruthCollector {
   void add(const TruthSample& s, double* slots) const override {
     if (s.first) Votes::add(slots, id_of(what, context, *s.first));
   }
+  void join(const double* others, double* slots) const override { Votes::join(others, slots); }
   void finish(const double* slots, const TruthCounts& n, double* v) const override {
     const size_t best = Votes::most(slots);
     const double id = slots[2 * best] - 1, count = slots[2 * best + 1];

@@ -25,7 +25,12 @@ const TruthRow& find_truth(const std::string& name, const Where& where) {
   throw Error(where, "unknown truth '" + name + "'", name_hint(name, known));
 }
 
+void TruthCollector::join(const double* others, double* own) const {
+  for (size_t i = 0; i < slots(); ++i) own[i] += others[i];
+}
+
 TruthPlan::TruthPlan(std::span<const std::string> names, const TruthContext& context) {
+  if (!names.empty()) slots_ = 1;
   for (const std::string& name : names) {
     collectors_.push_back(find_truth(name).make(context));
     const std::vector<std::string> columns = collectors_.back()->columns();
@@ -44,14 +49,23 @@ void TruthPlan::add(const TruthSample& sample, double* slots) const {
   }
 }
 
-void TruthPlan::finish(const double* slots, uint32_t paths, double* values) const {
+void TruthPlan::finish(std::span<const double> scrambles, uint32_t paths, double* values) const {
   std::fill_n(values, columns_.size(), std::numeric_limits<double>::quiet_NaN());
-  if (!paths) return;
-  const TruthCounts counts{static_cast<double>(paths), slots[0]};
-  ++slots;
+  if (!paths || !wanted()) return;
+  std::vector<double> joined(scrambles.begin(), scrambles.begin() + static_cast<std::ptrdiff_t>(slots_));
+  for (size_t from = slots_; from < scrambles.size(); from += slots_) {
+    joined[0] += scrambles[from];
+    size_t at = 1;
+    for (const auto& collector : collectors_) {
+      collector->join(scrambles.data() + from + at, joined.data() + at);
+      at += collector->slots();
+    }
+  }
+  const TruthCounts counts{static_cast<double>(paths), joined[0]};
+  size_t at = 1;
   for (size_t i = 0; i < collectors_.size(); ++i) {
-    collectors_[i]->finish(slots, counts, values);
-    slots += collectors_[i]->slots();
+    collectors_[i]->finish(joined.data() + at, counts, values);
+    at += collectors_[i]->slots();
     values += widths_[i];
   }
 }

@@ -45,6 +45,8 @@ class TruthCollector {
   virtual size_t slots() const = 0;                      // doubles a problem
   virtual std::vector<std::string> columns() const = 0;  // names with units, one per value that finish() gives
   virtual void add(const TruthSample& sample, double* slots) const = 0;
+  // Adds what other samples gave to what some have. Unless it says otherwise, all slots are sums.
+  virtual void join(const double* others, double* slots) const;
   // values: one per column, NaN where nothing is known. Not called for a problem without paths.
   virtual void finish(const double* slots, const TruthCounts& counts, double* values) const = 0;
 };
@@ -65,18 +67,19 @@ class TruthPlan {
  public:
   // Error: an unknown name, or a scene without what a collector needs (an origin on the Earth).
   TruthPlan(std::span<const std::string> names, const TruthContext& context);
+  // Doubles that a problem keeps of each scramble; 0 when nothing is wanted.
   size_t slots() const { return slots_; }
   bool wanted() const { return !collectors_.empty(); }
   const std::vector<std::string>& columns() const { return columns_; }
   void add(const TruthSample& sample, double* slots) const;
-  // values: columns().size() numbers.
-  void finish(const double* slots, uint32_t paths, double* values) const;
+  // scrambles: slots() doubles of each scramble of a problem, joined in their order. values: columns().size() numbers.
+  void finish(std::span<const double> scrambles, uint32_t paths, double* values) const;
 
  private:
   std::vector<std::unique_ptr<const TruthCollector>> collectors_;
   std::vector<size_t> widths_;  // columns of each
   std::vector<std::string> columns_;
-  size_t slots_ = 1;  // the first counts the hits
+  size_t slots_ = 0;  // the first counts the hits
 };
 
 // The rows of the table, by what they are about.
