@@ -23,6 +23,7 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
       statistics_(statistics),
       workspace_(workspace),
       watched_(pipeline.options_.stop == StopRule::change),
+      plain_(workspace.sink.targets() == 1 && capture.bin_by == Capture::BinBy::none),
       scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
   for (uint32_t i = 0; i < block.problems(); ++i) {
     next_.push_back(sums.next(slot_of(i), block.scrambles));
@@ -106,13 +107,13 @@ void BlockRun::take(uint32_t p) {
   if (sample >= end_[place]) return;  // a rule has ended the problem meanwhile
   const size_t slot = slot_of(place);
   const int scramble = static_cast<int>(deal(sample).scramble);
-  const PathTracing& kernel = *workspace_.kernels[p];
+  PathTracing& kernel = *workspace_.kernels[p];
   const PathRecord& record = kernel.record(p);
   ++statistics_.paths;
   statistics_.truncated += record.truncated;
   sums_.take(slot, scramble);
   const double sum_before = watched_ ? reference_sum(slot) : 0;
-  if (!add(p, slot, scramble, sample)) {
+  if (!add(p, slot, scramble)) {
     ++statistics_.failures;
     ++sums_.failures(slot, scramble);
     return;
@@ -127,11 +128,19 @@ void BlockRun::take(uint32_t p) {
 }
 
 // Adds the light of a path to its problem; false, with nothing added, when that is no light.
-bool BlockRun::add(uint32_t p, size_t slot, int scramble, uint32_t) {
-  if (!acceptable(p, false)) return false;
+bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   double* const sums = sums_.sums(slot, scramble);
+  if (plain_) {
+    const std::span<const float> light = workspace_.throughputs.light(p);
+    if (!good(light)) return false;
+    const double before = sums[pipeline_.reference_band_];
+    pipeline_.projection_.add(light, {sums, pipeline_.projection_.bands()});
+    sums_.note_sample(slot, scramble, sums[pipeline_.reference_band_] - before);
+    return true;
+  }
+  if (!acceptable(p, false)) return false;
   const double before = sums[pipeline_.reference_band_];
-  const bool suns = workspace_.groups > 1 || capture_.bin_by == Capture::BinBy::sun;
+  const bool suns = capture_.bin_by == Capture::BinBy::sun;
   const size_t bin = suns ? 0 : bin_of(capture_, workspace_.kernels[p]->record(p));
   if (bin < capture_.bins) {
     add_light(p, bin, false, false, sums);
@@ -144,15 +153,18 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble, uint32_t) {
 }
 
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
+bool BlockRun::good(std::span<const float> light) {
+  unsigned all = 1;
+  for (const float L : light) all &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
+  return all;
+}
 bool BlockRun::acceptable(uint32_t p, bool lost) {
-  unsigned good = 1;
+  bool all = true;
   for (size_t group = 0; group < workspace_.groups; ++group)
-    for (const bool once : {false, true}) {
-      if (once && !workspace_.single) break;
-      for (const float L : workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)))
-        good &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
-    }
-  return good;
+    for (const bool once : {false, true})
+      if (!once || workspace_.single)
+        all = all && good(workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)));
+  return all;
 }
 
 // Adds one channel's light to its sums, [channel][bin][band].

@@ -27,7 +27,8 @@ class BlockRun {
   void run_wave();
   void start(uint32_t p);
   void take(uint32_t p);
-  bool add(uint32_t p, size_t slot, int scramble, uint32_t sample);
+  bool add(uint32_t p, size_t slot, int scramble);
+  static bool good(std::span<const float> light);
   bool acceptable(uint32_t p, bool lost);
   void add_light(uint32_t p, size_t bin, bool once, bool lost, double* sums);
   void add_missing(uint32_t p, size_t slot, int scramble, size_t bin);
@@ -41,6 +42,7 @@ class BlockRun {
   RunStatistics& statistics_;
   Pipeline::Workspace& workspace_;
   const bool watched_;                // a rule looks at every sample
+  const bool plain_;                  // one sum a band
   const float scale_;                 // that all samples of the capture have: the number of bins of time
   std::vector<uint32_t> next_, end_;  // samples of each problem
   std::vector<uint64_t> keys_;        // of its sample streams

@@ -10,12 +10,21 @@
 #include <limits>
 #include <span>
 
+#include "math/vec.h"
+
 namespace suite {
 
 // A number times a spectrum; null = ones. One value per bin.
 struct Factor {
   float scale = 1;
   const float* spectrum = nullptr;
+};
+
+// An event of a path, for algebras that must know more of it than a number for each wavelength.
+struct Event {
+  Dir out, in;        // ENU, away from the place: towards the sensor, towards the light
+  uint32_t material;  // index into Scene::materials; kNone = the receiver, or scattered in a medium
+  bool medium, dirac;
 };
 
 // Light that comes from no entry of Environment::lights.

@@ -20,6 +20,9 @@
 #include "transport/space_nothing.h"
 #include "transport/surfaces_any.h"
 
+// Functions of the inner loop that are called from one place: compilers inline those of templates only when told to.
+#define SUITE_INLINE [[gnu::always_inline]] inline
+
 namespace suite {
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -30,7 +33,10 @@ class PathKernel final : public PathTracing {
 
   void start(uint32_t p, const SensorRay& ray, const SampleStream& stream, uint32_t sample) override;
   bool next(TraceRequest& request) override;
-  const PathRecord& record(uint32_t p) const override { return records_[p]; }
+  const PathRecord& record(uint32_t p) override {
+    records_[p].size = paths_[p].surfaces;
+    return records_[p];
+  }
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }
   TraceStatistics take_statistics() override { return space_.take_statistics(); }
@@ -58,6 +64,11 @@ class PathKernel final : public PathTracing {
   // Puts a question: is this sample visible? draws: samples of the light that share its density.
   void propose(const NodeAt& node, const Asked& light, const LightSample& sample, int draws);
   void set_parallel() { sight_rays_.parallel = sight_rays_.size(); }
+  // At most n more questions follow.
+  void expect(size_t n) {
+    sight_rays_.expect(n);
+    if (questions_.size() < sight_rays_.size() + n) questions_.resize(2 * (sight_rays_.size() + n));
+  }
 
  private:
   enum class Stage : uint8_t { leave, arrive, look } stage_ = Stage::leave;
@@ -77,43 +88,49 @@ class PathKernel final : public PathTracing {
   void fly();
   void fly_one(size_t slot);
   void arrive();
-  bool meet(uint32_t p, uint32_t slot);
+  SUITE_INLINE bool meet(uint32_t p, uint32_t slot);
   bool meet_earth(uint32_t p, uint32_t slot);
   void receive(uint32_t p);
-  bool is_first_surface(uint32_t p) const { return records_[p].size == (records_[p].received ? 1u : 0u); }
-  void enter_node(uint32_t p, const Hit& hit, bool first);
-  void escape(uint32_t p);
+  SUITE_INLINE void enter_node(uint32_t p, const Hit& hit, bool first);
+  SUITE_INLINE void escape(uint32_t p);
   void meet_glow(uint32_t p, const Hit& hit);
   void emit(uint32_t p);
   // kernel_light.h: questions and their answers.
   void ask();
   void answer();
-  void shine(const Question& q, size_t ray, double passes);
-  double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
-  Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
-  void contribute(const Contribution& c) { contributions_.push_back(c); }
+  SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
+  SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
+  SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
+  // The next contribution, of path p as it stands; it counts from contribute() on.
+  SUITE_INLINE Contribution& contribution(uint32_t p, uint16_t light);
+  void contribute() { ++pending_; }
   void hand_over();
   std::span<float> dense(uint32_t p, uint32_t count = 1);
-  Contribution contribution(uint32_t p, uint16_t light) const;
   // kernel_go_on.h: continuations.
   void go_on();
-  bool go_on(size_t i);
-  bool draw(size_t i, Continuation& on);
-  double survives(uint32_t p, double brightest, bool dirac);
-  bool cut(uint32_t p, bool event);
-  void leave(size_t i, const Continuation& on);
+  SUITE_INLINE bool go_on(size_t i);
+  SUITE_INLINE bool draw(size_t i, Continuation& on);
+  SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
+  SUITE_INLINE double survives(uint32_t p, double brightest, bool dirac);
+  SUITE_INLINE bool cut(uint32_t p, bool event);
+  SUITE_INLINE void leave(size_t i, const Continuation& on);
 
   const Surface& surface_;
   const Environment& environment_;
   const PipelineOptions& options_;
+  size_t knots() const {
+    if constexpr (Surfaces::kKnots == 1) return 1;
+    return knots_;
+  }
   size_t knots_;
   std::vector<size_t> knot_bins_;
   size_t bins_;
   double probability_[kMaxKnots];
   const bool keep_first_;
-  bool glows_ = false;  // some surface shines
+  const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;
   std::vector<Asked> asked_;
+  std::vector<Asked> outside_, glowing_;  // lights that rays meet by chance: leaving the scene, at surfaces
   Surfaces surfaces_;
   Space space_;
   Throughputs& throughputs_;
@@ -134,6 +151,7 @@ class PathKernel final : public PathTracing {
   SightRays sight_rays_;
   std::vector<Question> questions_;
   std::vector<Contribution> contributions_;
+  size_t pending_ = 0;  // of them
   std::vector<float> transmission_;
   uint64_t nodes_met_ = 0;
 };

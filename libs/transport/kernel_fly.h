@@ -18,6 +18,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       knot_bins_(c.optics.state().knots),
       bins_(c.optics.state().size()),
       keep_first_(c.keep_first),
+      draws_(c.surface.tracer().has_holes() || may_lose(c)),
       lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
       surfaces_(c.surface, c.optics, width, c.keep_first),
       space_((Estimator::knot_probabilities(std::span(probability_, knots_)),
@@ -32,6 +33,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       rays_(width),
       hits_(width),
       flights_(Space::kFills ? width : 0),
+      contributions_(std::max<size_t>(256, 4 * width)),
       transmission_(bins_) {
   list_lights();
   for (auto* list : {&active_, &received_, &onward_}) list->reserve(width);
@@ -44,9 +46,9 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
   for (size_t i = 0; i < environment_.lights.size(); ++i) {
     const Light& light = *environment_.lights[i];
-    glows_ = glows_ || !(light.nature().far || light.nature().delta);
-    if (!options_.explicit_sources || !light.nature().drawn) continue;
     Asked asked{&light, static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0, std::nullopt};
+    if (!asked.nature.delta) (asked.nature.far ? outside_ : glowing_).push_back(asked);
+    if (!options_.explicit_sources || !light.nature().drawn) continue;
     if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
     asked_.push_back(asked);
   }
@@ -70,7 +72,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   Path& path = paths_[p];
   path.stream = stream;
   path.sample = sample;
-  path.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
+  if (draws_) path.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
   path.origin = ray.ray.origin;
   path.direction = ray.ray.direction;
   path.time = ray.ray.time;
@@ -79,18 +81,18 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
   path.knot = 0;
-  std::fill_n(path.relative, knots_, 1.0);
-  std::fill_n(path.throughput, knots_, 1.0);
-  if (knots_ > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
+  std::fill_n(path.relative, knots(), 1.0);
+  std::fill_n(path.throughput, knots(), 1.0);
+  if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
   PathRecord& record = records_[p];
   record.ray = ray.ray;
   record.end = PathEnd::absorbed;
   record.truncated = 0;
-  record.size = 0;
-  record.received = record.scattered_first = record.met = false;
+  record.scattered_first = record.met = false;
+  record.received = ray.receiver != SensorRay::Receiver::none;
+  path.received = record.received;
   space_.start(p, path);
-  if (ray.receiver == SensorRay::Receiver::none) return active_.push_back(p);
-  record.received = true;
+  if (!record.received) return active_.push_back(p);
   receivers_[p] = ray.receiver;
   received_.push_back(p);
 }
@@ -155,12 +157,12 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
     if (met) length = met->distance;
   }
   if (!throughputs_.has_room(p, Space::kDense)) throughputs_.make_room(p);
-  Contribution c = contribution(p, Space::kEmitter);
   const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
+  Contribution& c = contribution(p, Space::kEmitter);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, through, emitted);
   const Flight& flight = flights_[slot];
   c.radiance = flight.emitted;
-  if (c.radiance) return contribute(c);
+  if (c.radiance) return contribute();
   throughputs_.give_back(p);
   if (!flight.through.spectrum) throughputs_.give_back(p);
 }
@@ -192,12 +194,12 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint32_t slot) {
   Path& path = paths_[p];
   const Hit& hit = hits_[slot];
-  const bool first = is_first_surface(p);
+  const bool first = path.surfaces == path.received;
   path.length += hit.distance;
   path.arrival += space_.index(p) * hit.distance;
   const bool scatters = surfaces_.meet(p, hit, -path.direction, path.time, first);
   enter_node(p, hit, first);
-  if (glows_) meet_glow(p, hit);
+  if (!glowing_.empty()) meet_glow(p, hit);
   emit(p);
   return scatters;
 }
@@ -206,11 +208,8 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p, const Hit& hit, bool first) {
   Path& path = paths_[p];
   ++path.surfaces;
-  PathRecord& record = records_[p];
-  ++record.size;
-  record.end = PathEnd::absorbed;
   if (!first || !keep_first_) return;
-  record.met = !record.scattered_first;
+  records_[p].met = !records_[p].scattered_first;
   firsts_[p] = {hit, -path.direction, path.length, false, &surfaces_.interaction(p)};
 }
 
@@ -233,7 +232,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
   hit.normal = met->normal;
   hit.step = Earth::step;
   hit.time = path.time;
-  const bool first = is_first_surface(p);
+  const bool first = path.surfaces == path.received;
   path.length += hit.distance;
   path.arrival += hit.distance;
   const bool scatters = surfaces_.meet_earth(p, hit, environment_.earth->material(), first);
@@ -256,7 +255,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
     hit.time = path.time;
     surfaces_.receive(p, hit, receivers_[p]);
     ++path.surfaces;
-    ++records_[p].size;
     path.direction = -path.direction;  // out, as the receiver sees it, is along its normal
     nodes_.push_back({p, slot, false});
   }
@@ -268,25 +266,23 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
-  for (size_t i = 0; i < environment_.lights.size(); ++i) {
-    const Light& light = *environment_.lights[i];
-    if (!light.nature().far || light.nature().delta) continue;
-    const auto met = light.met_outside(path.direction, path.time);
+  for (const Asked& light : outside_) {
+    const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
-    Contribution c = contribution(p, static_cast<uint16_t>(i));
+    std::span<float> memory;
+    if (!met->spectrum) {  // its shape changes with direction
+      memory = dense(p);
+      std::fill(memory.begin(), memory.end(), 0.0f);
+      light.light->add(path.direction, 1, memory);
+    }
+    Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);
     if (options_.explicit_sources && path.last_density > 0 && met->density > 0)
       c.scale *= static_cast<float>(
-          Estimator::by_chance(light.nature(), path.before * met->density / path.last_density));
-    if (c.scale == 0) continue;
+          Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
     c.radiance = met->spectrum;
-    if (!c.radiance) {
-      const std::span<float> radiance = dense(p);
-      std::fill(radiance.begin(), radiance.end(), 0.0f);
-      light.add(path.direction, 1, radiance);
-      c.radiance = radiance.data();
-    }
-    contribute(c);
+    if (!c.radiance) c.radiance = memory.data();
+    if (c.scale != 0) contribute();
   }
 }
 
@@ -300,19 +296,17 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, 
     distance = surface_.tracer().periodic() ? path.length - path.last_length
                                             : length(hit.position - path.last.position);
   const double cosine = -dot(path.direction, hit.normal);
-  for (size_t i = 0; i < environment_.lights.size(); ++i) {
-    const Light& light = *environment_.lights[i];
-    if (light.nature().far || light.nature().delta) continue;
-    const auto met = light.met_surface(path.last, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
+  for (const Asked& light : glowing_) {
+    const auto met = light.light->met_surface(path.last, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
     if (!met) continue;
-    Contribution c = contribution(p, static_cast<uint16_t>(i));
+    Contribution& c = contribution(p, light.index);
     c.order -= 1;  // not scattered by what shines
     c.scale = static_cast<float>(met->scale);
     if (shared && met->density > 0)
       c.scale *= static_cast<float>(Estimator::by_chance(
-          light.nature(), path.before * path.last_draws * met->density / path.last_density));
+          light.nature, path.before * path.last_draws * met->density / path.last_density));
     c.radiance = met->spectrum;
-    if (c.scale != 0) contribute(c);
+    if (c.scale != 0) contribute();
   }
 }
 
@@ -322,11 +316,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
   if constexpr (Surfaces::kDense > 0) {
     if (!surfaces_.warm(p)) return;
     const auto emission = surfaces_.emission(p, -paths_[p].direction, dense(p));
-    Contribution c = contribution(p, kFromMatter);
+    Contribution& c = contribution(p, kFromMatter);
     c.order -= 1;  // not scattered by what emits
     c.factor = emission.emissivity;
     c.radiance = emission.radiance;
-    contribute(c);
+    contribute();
   }
 }
 

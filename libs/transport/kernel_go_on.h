@@ -27,27 +27,42 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   if (!draw(i, on)) return false;
   const double own = on.density[path.knot];
   if (!(own > 0)) return false;
-  double shares = 0, brightest = 0;
-  for (size_t k = 0; k < knots_; ++k) {
-    path.relative[k] *= on.density[k] / own;
-    shares += probability_[k] * path.relative[k];
-    const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
-    path.throughput[k] *= double{on.weight.scale} * w / own;
-  }
-  for (size_t k = 0; k < knots_; ++k) {
-    path.relative[k] /= shares, path.throughput[k] /= shares;
-    brightest = std::max(brightest, path.throughput[k]);
-  }
+  double brightest = 0;
+  const double shares = weigh(p, on, own, brightest);
   if (!(brightest > 0) && bins_ == 1) return false;  // nothing more can arrive
   const double alive = survives(p, brightest, on.dirac);
   if (alive == 0 || cut(p, nodes_[i].event)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
-  throughputs_.turn(p, -path.direction, on.in);
-  throughputs_.scatter(
-      p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum});
+  const bool medium = nodes_[i].event;
+  const Event event{-path.direction, on.in, medium ? kNone : surfaces_.material(p), medium, on.dirac};
+  throughputs_.turn(p, event);
+  throughputs_.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum}, event);
   leave(i, on);
   return true;
+}
+
+// Brings r_k and the throughputs at the knots behind the event, divided by A; returns A.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, const Continuation& on, double own,
+                                                                  double& brightest) {
+  Path& path = paths_[p];
+  double shares = 0;
+  for (size_t k = 0; k < knots(); ++k) {
+    const float w = on.weight.spectrum ? on.weight.spectrum[knot_bins_[k]] : 1;
+    path.throughput[k] *= double{on.weight.scale} * w / own;
+    if constexpr (Surfaces::kKnots == 1) {
+      brightest = path.throughput[0];
+      return 1;
+    }
+    path.relative[k] *= on.density[k] / own;
+    shares += probability_[k] * path.relative[k];
+  }
+  for (size_t k = 0; k < knots(); ++k) {
+    path.relative[k] /= shares, path.throughput[k] /= shares;
+    brightest = std::max(brightest, path.throughput[k]);
+  }
+  return shares;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -81,7 +96,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p,
     records_[p].end = PathEnd::roulette;
     return 0;
   }
-  for (size_t k = 0; k < knots_; ++k) path.throughput[k] /= alive;
+  for (size_t k = 0; k < knots(); ++k) path.throughput[k] /= alive;
   return alive;
 }
 

@@ -23,18 +23,17 @@ LightReceiver PathKernel<Surfaces, Space, Throughputs, Estimator>::receiver(cons
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
-  questions_.clear(), sight_rays_.clear(), space_.clear_sight();
+  sight_rays_.clear(), space_.clear_sight();
   sight_rays_.first = first_stage_;
   for (const NodeAt& node : nodes_) {
     Path& path = paths_[node.path];
     path.u = numbers(node, dimensions::kOfScatter);
-    if (!glows_) continue;
+    if (glowing_.empty()) continue;
     path.last = receiver(node);
     path.last_length = path.length;
     path.last_draws = 1;
   }
   Estimator::ask(*this, options_);
-  sight_rays_.blocked.resize(sight_rays_.size());
   space_.sight().begin(sight_rays_);
 }
 
@@ -66,27 +65,26 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
     else
       space_.see_from_surface(p, hit, surfaces_.material(p), -path.direction, direction);
   }
-  sight_rays_.rays.emplace_back().set(origin, direction, path.time, path.draw);
-  sight_rays_.distance.push_back(distance);
-  sight_rays_.losable.push_back(!light.nature.wide);
   // Several samples are strata of one choice.
   const bool delta = !(sample.density > 0);
-  questions_.push_back({static_cast<uint32_t>(&node - nodes_.data()), light.index, light.nature.disk,
-                        light.nature.wide, sample.direction, delta ? 0 : sample.density * draws,
-                        static_cast<float>(delta ? sample.scale / draws : sample.scale), sample.spectrum});
+  questions_[sight_rays_.size()] = {static_cast<uint32_t>(&node - nodes_.data()), light.index, light.nature.disk,
+                                    light.nature.wide, sample.direction, delta ? 0 : sample.density * draws,
+                                    static_cast<float>(delta ? sample.scale / draws : sample.scale), sample.spectrum};
+  sight_rays_.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
-  for (size_t i = 0; i < questions_.size(); ++i) {
+  const std::span<const uint8_t> blocked = sight_rays_.blocked();
+  for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
     double passes = 1;
-    if (sight_rays_.blocked[i]) {
+    if (blocked[i]) {
       passes = lost_ && !q.wide ? space_.sight().passes(i) : 0;
       if (!(passes > 0)) continue;
     }
-    const Ray& ray = sight_rays_.rays[i];
-    if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance[i])) continue;
+    const Ray& ray = sight_rays_.rays()[i];
+    if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance()[i])) continue;
     shine(q, i, passes);
   }
 }
@@ -98,10 +96,11 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   const Path& path = paths_[node.path];
   float density[kMaxKnots] = {};
   if constexpr (Space::kScatters)
-    if (node.event) space_.densities(node.path, scattering_cosine(-path.direction, in), {density, knots_});
-  if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots_});
+    if (node.event) space_.densities(node.path, scattering_cosine(-path.direction, in), {density, knots()});
+  if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots()});
   double sum = 0;
-  for (size_t k = 0; k < knots_; ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
+  if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
+  for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
   return sum;
 }
 
@@ -119,62 +118,70 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& q, size_t i, double passes) {
   const NodeAt& node = nodes_[q.node];
   const uint32_t p = node.path;
-  const bool arrives = !sight_rays_.blocked[i];
+  const bool arrives = !sight_rays_.blocked()[i];
+  const double distance = sight_rays_.distance()[i];
   double reach[kMaxKnots];
-  std::fill_n(reach, knots_, 1.0);
+  std::fill_n(reach, knots(), 1.0);
   const bool dim =
-      space_.dims(sight_rays_.rays[i], sight_rays_.distance[i], i, transmission_, std::span(reach, knots_));
-  Contribution c = contribution(p, q.light);
-  c.events |= node.event ? by_medium : by_surface;
-  c.asked = true;
-  double denominator = 1;
-  const double by_chance = q.density > 0 || !arrives ? chance(node, q.direction, {reach, knots_}) : 0;
+      space_.dims(sight_rays_.rays()[i], distance, i, transmission_, std::span(reach, knots()));
+  double denominator = 1, missed = std::numeric_limits<double>::infinity();
+  const double by_chance = q.density > 0 || !arrives ? chance(node, q.direction, {reach, knots()}) : 0;
   if (q.density > 0) denominator = arrives ? Estimator::asked(q.density, by_chance, q.disk) : q.density;
   if (!arrives) {
-    c.missed = q.density > 0 ? by_chance / q.density : 0;
-    if (!(by_chance > 0) || c.missed > LostLight::kOftenMet) return;
+    missed = q.density > 0 ? by_chance / q.density : 0;
+    if (!(by_chance > 0) || missed > LostLight::kOftenMet) return;
   }
-  c.scale = static_cast<float>(passes * q.scale / denominator);
   constexpr bool kNeeds = Surfaces::kDense > 0 || Space::kFills;
   const std::span<float> memory = kNeeds ? dense(p, 2) : std::span<float>{};
-  c.factor = evaluate(node, q.direction, memory);
+  Factor factor = evaluate(node, q.direction, memory);
   if (dim) {
-    for (size_t k = 0; k < bins_; ++k)
-      memory[k] = (c.factor.spectrum ? c.factor.spectrum[k] : 1.0f) * transmission_[k];
-    c.factor.spectrum = memory.data();
+    for (size_t k = 0; k < bins_; ++k) memory[k] = (factor.spectrum ? factor.spectrum[k] : 1.0f) * transmission_[k];
+    factor.spectrum = memory.data();
   }
-  if (kNeeds && c.factor.spectrum != memory.data()) throughputs_.give_back(p);
-  c.radiance = q.spectrum;
-  if (!c.radiance) {  // its shape changes with direction
-    const std::span<float> radiance = dense(p);
-    std::fill(radiance.begin(), radiance.end(), 0.0f);
-    environment_.lights[q.light]->add(q.direction, 1, radiance);
-    c.radiance = radiance.data();
+  if (kNeeds && factor.spectrum != memory.data()) throughputs_.give_back(p);
+  const float* radiance = q.spectrum;
+  if (!radiance) {  // its shape changes with direction
+    const std::span<float> own = dense(p);
+    std::fill(own.begin(), own.end(), 0.0f);
+    environment_.lights[q.light]->add(q.direction, 1, own);
+    radiance = own.data();
   }
   if (arrives && keep_first_ && q.light == environment_.sun && !node.event && is_first(node)) firsts_[p].sunlit = true;
-  if (sight_rays_.distance[i] < std::numeric_limits<double>::infinity())
-    c.arrival += space_.optical_way(p, i, sight_rays_.distance[i]);
-  contribute(c);
+  Contribution& c = contribution(p, q.light);
+  c.events |= node.event ? by_medium : by_surface;
+  c.asked = true;
+  c.scale = static_cast<float>(passes * q.scale / denominator);
+  c.factor = factor;
+  c.radiance = radiance;
+  c.missed = missed;
+  if (distance < std::numeric_limits<double>::infinity()) c.arrival += space_.optical_way(p, i, distance);
+  contribute();
 }
 
-// A contribution of path p as it stands. Far lights shine evenly in time: their arrival is that of the last event.
+// Far lights shine evenly in time: their arrival is that of the last event.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-Contribution PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(uint32_t p, uint16_t light) const {
+Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(uint32_t p, uint16_t light) {
+  if (pending_ == contributions_.size()) hand_over();
   const Path& path = paths_[p];
-  Contribution c;
+  Contribution& c = contributions_[pending_];
   c.path = p;
   c.light = light;
   c.events = path.events;
+  c.asked = false;
   c.order = path.order();
+  c.scale = 1;
+  c.factor = {};
+  c.radiance = nullptr;
   c.arrival = path.arrival;
+  c.missed = std::numeric_limits<double>::infinity();
   return c;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::hand_over() {
-  if (contributions_.empty()) return;
-  sink_.add(contributions_, throughputs_);
-  contributions_.clear();
+  if (pending_ == 0) return;
+  sink_.add({contributions_.data(), pending_}, throughputs_);
+  pending_ = 0;
 }
 
 // Memory for one spectrum of path p, `count` of which will be asked for before anything else is handed over.

@@ -35,6 +35,7 @@ struct Lane {
   uint32_t scatterings = 0;     // in media so far
   uint32_t flights = 0;         // through media so far
   uint8_t events = 0;           // EventKind so far
+  uint8_t received = 0;         // 1: starts at a receiver
   uint32_t order() const { return surfaces + scatterings; }
 };
 

@@ -21,7 +21,7 @@ class PathTracing {
   // Takes all started paths on to the next rays to be traced; the request is to be served before the next call. False
   // when all of them have ended.
   virtual bool next(TraceRequest& request) = 0;
-  virtual const PathRecord& record(uint32_t p) const = 0;
+  virtual const PathRecord& record(uint32_t p) = 0;
   virtual const FirstMeeting& first(uint32_t p) const = 0;  // where keep_first was asked for
   // Nodes since the last call, and short rays that were traced to find out about touching bodies.
   virtual uint64_t take_nodes() = 0;

@@ -4,14 +4,9 @@ namespace suite {
 
 bool PlainSight::look(size_t begin, size_t end, bool coherent, TraceRequest& request) const {
   if (begin == end) return false;
-  const std::span<const Ray> rays(rays_->rays);
-  const std::span<const double> distance(rays_->distance);
-  request = {TraceRequest::Kind::occluded,
-             rays.subspan(begin, end - begin),
-             coherent,
-             {},
-             distance.subspan(begin, end - begin),
-             std::span(rays_->blocked).subspan(begin, end - begin)};
+  const size_t n = end - begin;
+  request = {TraceRequest::Kind::occluded,          rays_->rays().subspan(begin, n),    coherent, {},
+             rays_->distance().subspan(begin, n), rays_->blocked().subspan(begin, n)};
   return true;
 }
 
@@ -21,8 +16,8 @@ bool PlainSight::next(TraceRequest& request) {
   if (!lost_) return false;
   if (part_ == 2 && ++part_) {
     wanted_.resize(rays_->size());
-    for (size_t i = 0; i < wanted_.size(); ++i) wanted_[i] = rays_->blocked[i] && rays_->losable[i];
-    lost_->begin(rays_->rays, rays_->distance, wanted_);
+    for (size_t i = 0; i < wanted_.size(); ++i) wanted_[i] = rays_->blocked()[i] && rays_->losable()[i];
+    lost_->begin(rays_->rays(), rays_->distance(), wanted_);
   }
   return lost_->next(request);
 }

@@ -8,15 +8,35 @@
 namespace suite {
 
 // Rays towards lights, as a stage of the kernel has asked for them.
-struct SightRays {
-  std::vector<Ray> rays;
-  std::vector<double> distance;  // m
-  std::vector<uint8_t> blocked;  // the answer
-  std::vector<uint8_t> losable;  // of a light that smooth surfaces may have bent (lost_light.h)
-  size_t parallel = 0;           // the first ones run alongside each other
-  bool first = false;            // paths have just started
-  void clear() { rays.clear(), distance.clear(), losable.clear(), parallel = 0; }
-  size_t size() const { return rays.size(); }
+class SightRays {
+ public:
+  void clear() { size_ = parallel = 0; }
+  // Room for n more; then add() may be called as often.
+  void expect(size_t n) {
+    if (size_ + n <= rays_.size()) return;
+    rays_.resize(2 * (size_ + n)), distance_.resize(rays_.size());
+    blocked_.resize(rays_.size()), losable_.resize(rays_.size());
+  }
+  // distance: m. losable: of a light that smooth surfaces may have bent (lost_light.h).
+  Ray& add(double distance, bool losable) {
+    distance_[size_] = distance;
+    losable_[size_] = losable;
+    return rays_[size_++];
+  }
+  size_t size() const { return size_; }
+  std::span<const Ray> rays() const { return {rays_.data(), size_}; }
+  std::span<const double> distance() const { return {distance_.data(), size_}; }
+  std::span<uint8_t> blocked() { return {blocked_.data(), size_}; }  // the answer
+  std::span<const uint8_t> losable() const { return {losable_.data(), size_}; }
+
+  size_t parallel = 0;  // the first ones run alongside each other
+  bool first = false;   // paths have just started
+
+ private:
+  size_t size_ = 0;
+  std::vector<Ray> rays_;
+  std::vector<double> distance_;
+  std::vector<uint8_t> blocked_, losable_;
 };
 
 class PlainSight {

@@ -38,7 +38,7 @@ SpectralThroughputs::Spectra SpectralThroughputs::spectra(size_t floats) {
 
 SpectralThroughputs::SpectralThroughputs(size_t width, size_t bins, size_t targets)
     : bins_(bins),
-      stride_((bins + kVector - 1) / kVector * kVector),
+      stride_(bins == 1 ? 1 : (bins + kVector - 1) / kVector * kVector),
       targets_(targets),
       chains_(width),
       steps_(width * kSteps),
@@ -47,7 +47,6 @@ SpectralThroughputs::SpectralThroughputs(size_t width, size_t bins, size_t targe
       light_(spectra(width * targets * stride_)) {}
 
 void SpectralThroughputs::fold(uint32_t p) {
-  if (bins_ == 1) return fold_number(p);
   Chain& c = chains_[p];
   float* const T = &throughput_[size_t{p} * stride_];
   float* const L = &light_[size_t{p} * targets_ * stride_];
@@ -65,28 +64,6 @@ void SpectralThroughputs::fold(uint32_t p) {
     add(L + s.target * stride_, s.scale, s.a, s.b, T, bins_);
     if (s.second != kNone) add(L + s.second * stride_, s.scale, s.a, s.b, T, bins_);
   }
-  c.steps = 0;
-}
-
-// The same for states of one bin.
-void SpectralThroughputs::fold_number(uint32_t p) {
-  Chain& c = chains_[p];
-  float* const L = &light_[size_t{p} * targets_ * stride_];
-  float T = c.folded ? throughput_[size_t{p} * stride_] : 1;
-  if (!c.folded)
-    for (size_t t = 0; t < targets_; ++t) L[t * stride_] = 0;
-  c.folded = true;
-  for (uint32_t i = 0; i < c.steps; ++i) {
-    const Step& s = step(p, i);
-    const float x = s.scale * (s.a ? *s.a : 1) * (s.b ? *s.b : 1) * T;
-    if (s.target == kTurn) {
-      T = x;
-      continue;
-    }
-    L[s.target * stride_] += x;
-    if (s.second != kNone) L[s.second * stride_] += x;
-  }
-  throughput_[size_t{p} * stride_] = T;
   c.steps = 0;
 }
 

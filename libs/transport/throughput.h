@@ -2,10 +2,11 @@
 // in. A path scatters, is attenuated and turns (its frame of reference; nothing to do for spectra), and shines when light
 // arrives.
 //
-// Nothing is multiplied when it happens. A path keeps a short chain of steps, numbers times spectra that stand
+// Spectra are not multiplied when it happens. A path keeps a short chain of steps, numbers times spectra that stand
 // elsewhere, and folds it when the chain is full or the path ends: one pass over the wavelengths for many events, no
 // memory that grows with the length of a path. With T the throughput and L the light gathered so far,
 //   turn of the chain:  T <- scale a T          light:  L <- L + scale a b T.
+// States of one bin compute with numbers, at once.
 #pragma once
 #include <cstdint>
 #include <cstdlib>
@@ -29,24 +30,27 @@ class SpectralThroughputs {
   void begin(uint32_t p, float weight, const float* weights) {
     Chain& c = chains_[p];
     c.steps = c.dense = 0;
+    if (bins_ == 1) {
+      throughput_[size_t{p} * stride_] = weights ? weight * *weights : weight;
+      for (size_t t = 0; t < targets_; ++t) light_[(size_t{p} * targets_ + t) * stride_] = 0;
+      return;
+    }
     c.folded = false;
     add_turn(c, p, {weight, weights});
   }
-  // T <- w T: scattered, w over its density.
-  void scatter(uint32_t p, const Factor& w) { multiply(p, w); }
-  // T <- t T: weakened on the way.
+  // T <- T w: scattered, w over its density.
+  void scatter(uint32_t p, const Factor& w, const Event&) { multiply(p, w); }
+  // T <- T t: weakened on the way.
   void attenuate(uint32_t p, const Factor& t) { multiply(p, t); }
-  // The plane of an event, from `out` to `in`, before its scattering: polarisation would be told in it; spectra have none.
-  void turn(uint32_t, Dir, Dir) {}
-  // T <- s T.
-  void scale(uint32_t p, double s) { multiply(p, {static_cast<float>(s), nullptr}); }
+  // Before the scattering: into the plane of the event, in which polarisation is told; spectra have none.
+  void turn(uint32_t, const Event&) {}
 
   // Memory for spectra that stand nowhere else: kDense a path. take() hands them out one after the other; they stay
   // until make_room(), which folds the chain, and all that points to them must stand in the chain by then.
   static constexpr uint32_t kDense = 8;
   bool has_room(uint32_t p, uint32_t count) const { return chains_[p].dense + count <= kDense; }
   void make_room(uint32_t p) {
-    fold(p);
+    settle(p);
     chains_[p].dense = 0;
   }
   std::span<float> take(uint32_t p) {
@@ -59,6 +63,7 @@ class SpectralThroughputs {
   static constexpr uint16_t kNone = 0xffff;
   void shine(uint32_t p, const Factor& factor, float scale, const float* radiance, uint16_t target,
              uint16_t second = kNone) {
+    if (bins_ == 1) return shine_number(p, factor, scale, radiance, target, second);
     Chain& c = chains_[p];
     if (c.steps == kSteps) fold(p);
     step(p, c.steps++) = {factor.spectrum, radiance, factor.scale * scale, target, second};
@@ -66,12 +71,12 @@ class SpectralThroughputs {
 
   // L of a path.
   std::span<const float> light(uint32_t p, size_t target = 0) {
-    if (!chains_[p].folded || chains_[p].steps > 0) fold(p);
+    settle(p);
     return {&light_[(size_t{p} * targets_ + target) * stride_], bins_};
   }
   // T of a path as it stands.
   std::span<const float> throughput(uint32_t p) {
-    if (!chains_[p].folded || chains_[p].steps > 0) fold(p);
+    settle(p);
     return {&throughput_[size_t{p} * stride_], bins_};
   }
 
@@ -98,6 +103,11 @@ class SpectralThroughputs {
     step(p, c.steps++) = {f.spectrum, nullptr, f.scale, kTurn, kNone};
   }
   void multiply(uint32_t p, const Factor& f) {
+    if (bins_ == 1) {
+      float& T = throughput_[size_t{p} * stride_];
+      T *= f.spectrum ? f.scale * *f.spectrum : f.scale;
+      return;
+    }
     Chain& c = chains_[p];
     if (c.steps > 0) {  // numbers join the turn before
       Step& last = step(p, c.steps - 1);
@@ -110,8 +120,16 @@ class SpectralThroughputs {
     if (c.steps == kSteps) fold(p);
     add_turn(c, p, f);
   }
+  void shine_number(uint32_t p, const Factor& f, float scale, const float* radiance, uint16_t target, uint16_t second) {
+    const float x = f.scale * scale * (f.spectrum ? *f.spectrum : 1) * (radiance ? *radiance : 1) *
+                    throughput_[size_t{p} * stride_];
+    light_[(size_t{p} * targets_ + target) * stride_] += x;
+    if (second != kNone) light_[(size_t{p} * targets_ + second) * stride_] += x;
+  }
+  void settle(uint32_t p) {
+    if (bins_ > 1 && (!chains_[p].folded || chains_[p].steps > 0)) fold(p);
+  }
   void fold(uint32_t p);
-  void fold_number(uint32_t p);
 
   size_t bins_, stride_, targets_;
   std::vector<Chain> chains_;

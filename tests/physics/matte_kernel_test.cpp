@@ -101,8 +101,9 @@ void expect_same(const std::shared_ptr<Scene>& scene, const SourceSpecs& from, c
                  uint32_t paths = 40, int max_nodes = 6) {
   const test::Rendered fast = run(scene, from, bands, true, paths, max_nodes),
                        slow = run(scene, from, bands, false, paths, max_nodes);
-  ASSERT_EQ(fast.report.log[0].kernel, "matte");
-  ASSERT_EQ(slow.report.log[0].kernel, "general");
+  const std::string air = from.atmosphere ? " in air" : "";
+  ASSERT_EQ(fast.report.log[0].kernel, "matte" + air);
+  ASSERT_EQ(slow.report.log[0].kernel, "general" + air);
   EXPECT_LT(difference(slow.result.radiance, fast.result.radiance), 1e-6);
   // Standard errors inherit the rounding of the radiance, and may be much smaller than it.
   EXPECT_LT(difference(slow.result.standard_error, fast.result.standard_error, slow.result.radiance), 1e-6);
@@ -144,6 +145,22 @@ TEST(MatteKernel, WithEitherSourceAloneAndFewNodesOrSamples) {
   expect_same(court(), sources(0.02, true), side_by_side(3), 600, 2);
 }
 
+TEST(MatteKernel, UnderAnyLightsAndInAir) {
+  SourceSpecs lamp = sources(0.02, false), moon = lamp, table = lamp, air = lamp;
+  lamp.lamps.push_back({});
+  lamp.lamps[0].intensity = Curve::constant(1);
+  lamp.lamps[0].positions = {{0, 0, 3}, {0.5, 0.2, 2}};
+  expect_same(court(), lamp, side_by_side(3));
+  table.sky->table = {1, 2, 1, 2}, table.sky->zeniths = 2, table.sky->azimuths = 2;
+  expect_same(court(), table, side_by_side(3));
+  moon.moon.emplace();
+  moon.moon->disk = *moon.sun, moon.moon->by_phase = false;
+  moon.moon->disk.direction = {0.6, 0, 0.8};
+  expect_same(court(), moon, side_by_side(3));
+  air.atmosphere.emplace();
+  expect_same(court(), air, side_by_side(3));
+}
+
 // Negative control: a scene with one reflectance changed by a hundred-thousandth must fail the comparison.
 TEST(MatteKernel, TheComparisonSeesAHundredThousandth) {
   const auto changed =
@@ -167,15 +184,20 @@ TEST(MatteKernel, IsNotTakenWhereItDoesNotServe) {
   lamp.lamps.push_back({});
   lamp.lamps[0].intensity = Curve::constant(1);
   lamp.lamps[0].positions = {{0, 0, 3}};
-  EXPECT_EQ(kernel(court(), lamp), "general");
+  // Any lights do, and air.
+  EXPECT_EQ(kernel(court(), lamp), "matte");
   table.sky->table = {1, 2, 1, 2}, table.sky->zeniths = 2, table.sky->azimuths = 2;
-  EXPECT_EQ(kernel(court(), table), "general");
+  EXPECT_EQ(kernel(court(), table), "matte");
   moon.moon.emplace();
   moon.moon->disk = *plain.sun, moon.moon->by_phase = false;
-  EXPECT_EQ(kernel(court(), moon), "general");
+  EXPECT_EQ(kernel(court(), moon), "matte");
+  SourceSpecs air = plain;
+  air.atmosphere.emplace();
+  EXPECT_EQ(kernel(court(), air), "matte in air");
   PipelineOptions paper, change, chance;
   paper.method = Method::paper, change.stop = StopRule::change, chance.explicit_sources = false;
-  for (const PipelineOptions& o : {paper, change, chance}) EXPECT_EQ(kernel(court(), plain, o), "general");
+  EXPECT_EQ(kernel(court(), plain, paper), "general");
+  for (const PipelineOptions& o : {change, chance}) EXPECT_EQ(kernel(court(), plain, o), "matte");
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(PaperMethod, AsksOneSourceANode) {
     return static_cast<double>(s.trace.rays) / static_cast<double>(s.paths);
   };
   EXPECT_EQ(rays_per_path(Method::paper), 2);                  // the sensor's and one
-  EXPECT_EQ(rays_per_path(Method::standard), 2 + kLampDraws);  // the sensor's, the sun's, and lamps
+  EXPECT_EQ(rays_per_path(Method::standard), 2 + LightNature::kMostDraws);  // the sensor's, the sun's, and lamps
 }
 
 // A lobe much narrower than the sun's disk: whoever may not count the disk when a continuation meets it draws points on
@@ -145,7 +145,7 @@ TEST(PaperMethod, DrawsIndependentNumbers) {
 
 TEST(PaperMethod, RefusesMoreLampsThanANodeHolds) {
   PipelineOptions options;
-  options.lamp_draws = kLampDraws + 1;
+  options.lamp_draws = LightNature::kMostDraws + 1;
   EXPECT_THROW(render(room(), everything(), looking_down(4, 4), options), Error);
 }
 

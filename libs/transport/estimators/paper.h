@@ -32,6 +32,7 @@ struct PaperEstimator {
     for (const auto& light : kernel.lights())
       if (!light.nature.wide) members += light.light->members();
     if (members == 0) return;
+    kernel.expect(kernel.nodes().size());
     const double probability = 1.0 / static_cast<double>(members);
     for (const auto& node : kernel.nodes()) {
       std::array<double, 4> u = kernel.numbers(node, dimensions::own_light(0));

@@ -35,6 +35,7 @@ struct StandardEstimator {
     bool parallel = true;
     for (const auto& light : kernel.lights()) {
       if (parallel && !StandardEstimator::parallel(light.nature)) kernel.set_parallel(), parallel = false;
+      kernel.expect(kernel.nodes().size() * static_cast<size_t>(light.nature.draws));
       for (const auto& node : kernel.nodes())
         if (light.only)
           kernel.propose(node, light, *light.only, 1);

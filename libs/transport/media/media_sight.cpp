@@ -25,12 +25,12 @@ void MediaSight::begin(SightRays& rays) {
   passes_.assign(rays.size(), 1);
   rays_.clear();
   if (!body_rules_.any_boundary() && !lost_) return;
-  rays_.assign(rays.rays.begin(), rays.rays.end());
+  rays_.assign(rays.rays().begin(), rays.rays().end());
   travelled_.assign(rays.size(), 0);
   gap_.assign(rays.size(), 0);
   owner_.resize(rays.size());
   std::iota(owner_.begin(), owner_.end(), 0u);
-  std::fill(rays.blocked.begin(), rays.blocked.end(), uint8_t{0});
+  std::fill(rays.blocked().begin(), rays.blocked().end(), uint8_t{0});
 }
 
 bool MediaSight::next(TraceRequest& request) {
@@ -38,7 +38,7 @@ bool MediaSight::next(TraceRequest& request) {
   const bool straight = !body_rules_.any_boundary() && !lost_;
   if (straight) {
     if (round_++ > 0) return add_depths(), false;
-    request = {TraceRequest::Kind::occluded, asked_->rays, false, {}, asked_->distance, asked_->blocked};
+    request = {TraceRequest::Kind::occluded, asked_->rays(), false, {}, asked_->distance(), asked_->blocked()};
     return true;
   }
   if (round_++ > 0) take();
@@ -55,9 +55,9 @@ void MediaSight::count(size_t ray, const Ray& from, double way) {
 // Where nothing but surfaces stops light.
 void MediaSight::add_depths() {
   for (size_t i = 0; i < asked_->size(); ++i) {
-    if (asked_->blocked[i]) continue;
-    if (asked_->distance[i] == std::numeric_limits<double>::infinity()) body_rules_.leave_scene(bodies_at_[i]);
-    count(i, asked_->rays[i], asked_->distance[i]);
+    if (asked_->blocked()[i]) continue;
+    if (asked_->distance()[i] == std::numeric_limits<double>::infinity()) body_rules_.leave_scene(bodies_at_[i]);
+    count(i, asked_->rays()[i], asked_->distance()[i]);
   }
 }
 
@@ -77,9 +77,9 @@ void MediaSight::take() {
 bool MediaSight::pass(size_t i) {
   const uint32_t r = owner_[i];
   Hit& hit = hits_[i];
-  uint8_t& blocked = asked_->blocked[r];
+  uint8_t& blocked = asked_->blocked()[r];
   if (gap_[r] > 0) body_rules_.settle(hit, rays_[i], gap_[r]);
-  const double left = asked_->distance[r] - travelled_[r];
+  const double left = asked_->distance()[r] - travelled_[r];
   const bool met = hit.hit() && hit.distance < left;
   const uint32_t material = met ? surface_.material(hit) : kNone;
   if (met && !body_rules_.is_boundary(material)) {

@@ -77,7 +77,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
 }
 
 void FieldSpace::remember(uint32_t p, Vec3 place) {
-  Event& e = events_[p];
+  ScatterPlace& e = events_[p];
   e.place = place;
   e.contents = flights_.contents();
   const std::vector<size_t>& bins = optics_.state().knots;
@@ -89,7 +89,7 @@ void FieldSpace::remember(uint32_t p, Vec3 place) {
 }
 
 void FieldSpace::densities(uint32_t p, double cosine, std::span<float> density) const {
-  const Event& e = events_[p];
+  const ScatterPlace& e = events_[p];
   const std::vector<size_t>& bins = optics_.state().knots;
   double q[kMaxKnots] = {};
   for (const Constituent& c : e.contents) {
@@ -103,7 +103,7 @@ void FieldSpace::densities(uint32_t p, double cosine, std::span<float> density) 
 }
 
 Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
-  const Event& e = events_[p];
+  const ScatterPlace& e = events_[p];
   const auto scatterers = std::count_if(e.contents.begin(), e.contents.end(),
                                         [&](const Constituent& c) { return optics_.media()[c.medium].scatters(); });
   if (scatterers != 1) std::fill(v.begin(), v.end(), 0.0f);
@@ -129,7 +129,7 @@ Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
 
 bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
                         Continuation& on) {
-  const Event& e = events_[p];
+  const ScatterPlace& e = events_[p];
   const size_t own = optics_.state().knots[static_cast<size_t>(live.knot)];
   // Draw who scatters, then how.
   double choice = who * e.rate[live.knot];

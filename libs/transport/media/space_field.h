@@ -56,7 +56,7 @@ class FieldSpace {
     Vec3 from;   // where it begins
     double gap = 0;  // m from the path's origin to there; 0 = at it
   };
-  struct Event {
+  struct ScatterPlace {
     Vec3 place;
     std::vector<Constituent> contents;
     double rate[kMaxKnots];  // scattering coefficient
@@ -75,7 +75,7 @@ class FieldSpace {
   std::vector<double> index_;  // of refraction at the reference, per medium
   std::vector<MediumStack> stacks_;
   std::vector<Way> ways_;
-  std::vector<Event> events_;
+  std::vector<ScatterPlace> events_;
   std::vector<float> phase_;
   TraceStatistics statistics_;  // of short rays at boundaries
 };

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# one_of_each_test.sh SOURCES
+# The decisions of transport stand once: where paths end by chance, what contributions share, where lights are asked,
+# which numbers are drawn, and where the tracer is called. Prints the list.
+set -u
+cd "$1" || exit 2
+failed=0
+# name, number of places, pattern, files
+places() {
+  local name=$1 wanted=$2 pattern=$3; shift 3
+  local found
+  found=$(grep -rnE "$pattern" "$@" --include=*.h --include=*.cpp | grep -vE '^[^:]*:[0-9]+: *//')
+  local n=0
+  [ -n "$found" ] && n=$(wc -l <<<"$found")
+  printf '%-32s %d of %d\n' "$name" "$n" "$wanted"
+  sed 's/^/    /' <<<"$found"
+  if [ "$n" -ne "$wanted" ]; then failed=1; echo "    ^ expected $wanted"; fi
+}
+places "roulette"            1 'std::clamp\(brightness, kLeast, 1\.0\)' libs
+places "roulette's number"   1 'dimensions::roulette\(' libs
+places "shared density"      1 'other \* \(other / own\)' libs
+places "questions to lights" 1 '(light|light->)(\.light)?->sample\(' libs/transport
+places "lights met outside"  1 '\.met_outside\(' libs/transport
+places "surfaces that shine" 1 '\.met_surface\(' libs/transport
+places "explicit light"      1 'Estimator::asked\(' libs/transport
+places "continuations"       1 'throughputs_\.scatter\(' libs/transport
+places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
+places "calls of the tracer" 4 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
+# The list would notice a second one: this test's own text has one of each pattern more.
+extra=$(grep -cE 'std::clamp\(brightness, kLeast, 1\.0\)' <<<'  return std::clamp(brightness, kLeast, 1.0);')
+[ "$extra" -eq 1 ] || { echo "the patterns find nothing"; failed=1; }
+exit $failed
