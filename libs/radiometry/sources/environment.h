@@ -40,11 +40,11 @@ struct SourceSpecs {
 
 // Null = none. The sky is black where there is none.
 struct Environment {
-  std::unique_ptr<const Sun> sun, moon;
-  std::unique_ptr<const Sky> sky;
-  std::unique_ptr<const Lamps> lamps;
-  std::unique_ptr<const Atmosphere> atmosphere;
-  std::unique_ptr<const Earth> earth;
+  std::shared_ptr<const Sun> sun, moon;
+  std::shared_ptr<const Sky> sky;
+  std::shared_ptr<const Lamps> lamps;
+  std::shared_ptr<const Atmosphere> atmosphere;
+  std::shared_ptr<const Earth> earth;
 };
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear
