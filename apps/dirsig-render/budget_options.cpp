@@ -75,6 +75,17 @@ Budget budget_of(const RenderOptions& o) {
   return b;
 }
 
+size_t kit_bytes_of(const RenderOptions& o) {
+  if (o.kit_memory.empty()) return kDefaultKitBytes;
+  std::string unit;
+  const double value = leading_number(o.kit_memory, "--kit-memory", unit);
+  const double scale = unit == "KiB" ? 0x1p10 : unit == "MiB" ? 0x1p20 : unit == "GiB" ? 0x1p30 : 0;
+  if (scale == 0)
+    throw UsageError("--kit-memory wants a unit, KiB, MiB or GiB, as in 512MiB; found '" + o.kit_memory + "'");
+  if (!(value >= 0 && value * scale < 0x1p62)) throw UsageError("--kit-memory: '" + o.kit_memory + "' cannot be");
+  return static_cast<size_t>(value * scale);
+}
+
 StopRule stop_rule_of(const RenderOptions& o) {
   // The paper's estimator comes with the paper's rule, unless another is asked for.
   if (o.stop.empty()) return method_of(o) == Method::paper ? StopRule::change : StopRule::plan;

@@ -2,12 +2,13 @@
 #pragma once
 #include "estimate/budget.h"
 #include "options.h"
-#include "transport/pipeline.h"
+#include "scheduler/kits.h"
 
 namespace suite {
 
 // UsageError for anything that cannot be meant. "64" and "32,1024" paths; "1%" or "0.01"; "90s", "10min", "2h".
 Budget budget_of(const RenderOptions& options);
+size_t kit_bytes_of(const RenderOptions& options);  // "512MiB"
 StopRule stop_rule_of(const RenderOptions& options);
 Method method_of(const RenderOptions& options);
 

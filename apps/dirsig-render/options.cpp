@@ -56,6 +56,10 @@ void declare_render(Cli& cli, RenderOptions& o) {
              "'standard', or 'paper': the estimator of the DIRSIG5 paper as written, with its rule of stopping, for "
              "comparison",
              "standard|paper");
+  cli.option("--kit-memory", o.kit_memory,
+             "room for materials and lights that are kept for later captures (KiB, MiB, GiB; 1GiB unless given); with "
+             "less they are made anew, results stay the same",
+             "512MiB");
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
   cli.option("--more", o.more,

@@ -10,7 +10,7 @@ namespace suite {
 struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins, settings;
-  std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard";
+  std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory;
   std::string study, study_budgets = "4,8,16,32,64", reference;
   long long study_seeds = 4;
   double target_floor = -1;

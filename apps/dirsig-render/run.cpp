@@ -244,6 +244,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.pipeline = sim.pipeline;
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
+  options.kit_bytes = kit_bytes_of(o);
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,6 +25,11 @@ double available_memory() {
     bytes = std::min(bytes, std::max(0.0, static_cast<double>(limit.rlim_cur) - used));
   }
   return bytes;
+}
+
+double heap_in_use() {
+  const struct mallinfo2 m = mallinfo2();
+  return static_cast<double>(m.uordblks) + static_cast<double>(m.hblkhd);
 }
 
 void expect_large(void* data, size_t bytes) {

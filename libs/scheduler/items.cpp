@@ -7,28 +7,13 @@
 
 namespace suite {
 
-namespace {
-
-bool same_state(const SpectralState& a, const SpectralState& b) {
-  auto same_bin = [](const Bin& x, const Bin& y) { return x.low_um == y.low_um && x.high_um == y.high_um; };
-  return a.reference_um == b.reference_um && a.knots == b.knots && a.bins.size() == b.bins.size() &&
-         std::equal(a.bins.begin(), a.bins.end(), b.bins.begin(), b.bins.end(), same_bin);
-}
-
-}  // namespace
-
 std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves) {
   std::vector<Item> items;
   std::map<std::pair<double, double>, size_t> windows;
-  std::vector<const SpectralState*> distinct;
+  StateNumbers numbers;
   for (size_t s = 0; s < sensors.size(); ++s) {
     std::vector<size_t> number;  // of each of the sensor's states
-    for (const SpectralState& state : sensors[s]->states()) {
-      const auto known =
-          std::find_if(distinct.begin(), distinct.end(), [&](const SpectralState* d) { return same_state(*d, state); });
-      number.push_back(static_cast<size_t>(known - distinct.begin()));
-      if (known == distinct.end()) distinct.push_back(&state);
-    }
+    for (const SpectralState& state : sensors[s]->states()) number.push_back(numbers.of(state));
     for (size_t t = 0; t < sensors[s]->tasks().size(); ++t)
       for (size_t c = 0; c < sensors[s]->tasks()[t].captures.size(); ++c) {
         const Capture& capture = sensors[s]->tasks()[t].captures[c];

@@ -1,5 +1,6 @@
 // The captures of a job as what they need, and the order in which they run.
 #pragma once
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -8,6 +9,15 @@
 #include "sensor/sensor.h"
 
 namespace suite {
+
+// Numbers of spectral states, equal for states that bake alike (SpectralState::key).
+class StateNumbers {
+ public:
+  size_t of(const SpectralState& state) { return known_.try_emplace(state.key(), known_.size()).first->second; }
+
+ private:
+  std::map<std::vector<double>, size_t> known_;
+};
 
 // A capture of the job and what it needs.
 struct Item {

@@ -21,48 +21,56 @@ size_t nearest_band(std::span<const Band> bands, double reference_um) {
   return best;
 }
 
+// Whether lights depend on the geometry of a tracer: glowing surfaces, and an Earth that lies under all there is.
+bool by_geometry(const SourceSpecs& sources) {
+  return !sources.lamps.empty() || (sources.earth && !sources.earth->height);
+}
+
 }  // namespace
 
 Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const std::shared_ptr<const Tracer>& tracer) {
-  Held& held = states_[state];
+  using Kind = KitCache::Kind;
   const SpectralState& spectral = sensor.states()[capture.state];
-  if (!held.optics) {
-    held.optics = std::make_unique<const Optics>(scene_, spectral, shown_materials(scene_, *tracer, sources_.written()),
-                                                 LoadsAt{}, window_);
+  Kit kit;
+  kit.optics = cache_.get<Optics>({Kind::optics, state}, [&] {
     ++optics_bakes_;
-  }
-  light(held, tracer, sources_.dated() ? moment_of(capture) : 0);
-  const std::span<const Band> bands = sensor.bands(capture.state);
-  const auto own = held.bands
-                       .try_emplace({&sensor, capture.state},
-                                    Bands{BandProjection(spectral, bands), nearest_band(bands, spectral.reference_um)})
-                       .first;
-  return {*held.optics, held.environment, own->second.projection, own->second.reference};
+    return std::make_shared<const Optics>(scene_, spectral, shown_materials(scene_, *tracer, sources_.written()),
+                                          LoadsAt{}, window_);
+  });
+  const auto lit = lights(state, *kit.optics, tracer, sources_.on_grid(moment_of(capture)));
+  kit.environment = {lit, &lit->environment};
+  kit.bands = cache_.get<Kit::Bands>({Kind::bands, state, &sensor, static_cast<double>(capture.state)}, [&] {
+    const std::span<const Band> bands = sensor.bands(capture.state);
+    return std::make_shared<const Kit::Bands>(
+        Kit::Bands{BandProjection(spectral, bands), nearest_band(bands, spectral.reference_um)});
+  });
+  return kit;
 }
 
-// Brings the lights of a state to a moment and to the geometry of a tracer, where glowing surfaces have their places.
-void Kits::light(Held& held, const std::shared_ptr<const Tracer>& tracer, double moment) {
-  const SourceSpecs& now = sources_.at(moment);
-  if (!held.lamps_of || (held.environment.lamps_in_scene() && held.lamps_of != tracer)) {
-    held.environment = bake_environment(now, *tracer, periodic_, held.optics->state());
+// Lights at other moments share what dates do not move with the first ones that were baked.
+std::shared_ptr<const Kits::Lit> Kits::lights(size_t state, const Optics& optics,
+                                              const std::shared_ptr<const Tracer>& tracer, double moment) {
+  const bool by_tracer = by_geometry(sources_.written());
+  const Tracer* const of = by_tracer ? tracer.get() : nullptr;
+  const auto first = cache_.get<Lit>({KitCache::Kind::lights, state, of}, [&] {
     ++light_bakes_;
-  } else if (held.moment != moment) {
-    rebake_dated(held.environment, sources_.written(), now, held.optics->state());
+    return std::make_shared<const Lit>(Lit{bake_environment(sources_.at(moment), *tracer, periodic_, optics.state()),
+                                           by_tracer ? tracer : nullptr, moment});
+  });
+  if (first->moment == moment) return first;
+  return cache_.get<Lit>({KitCache::Kind::lights_at, state, of, moment}, [&] {
     ++light_bakes_;
-  }
-  held.lamps_of = tracer;
-  held.moment = moment;
+    Lit lit = *first;
+    rebake_dated(lit.environment, sources_.written(), sources_.at(moment), optics.state());
+    lit.moment = moment;
+    return std::make_shared<const Lit>(std::move(lit));
+  });
 }
 
 void Kits::done(size_t state) {
-  Held& held = states_[state];
-  SUITE_CHECK(held.users > 0);
-  if (--held.users == 0) held = {};
-}
-
-size_t Kits::held() const {
-  return static_cast<size_t>(
-      std::count_if(states_.begin(), states_.end(), [](auto& s) { return s.second.optics != nullptr; }));
+  size_t& left = users_[state];
+  SUITE_CHECK(left > 0);
+  if (--left == 0) cache_.drop(state);
 }
 
 }  // namespace suite

@@ -1,57 +1,62 @@
 // What captures are primed with: the optics and lights of a spectral state at a moment, and the bands of a sensor. Each
-// is made when a capture first asks for it, shared by all captures of an equal state, and given up when none is left.
+// is made when a capture first asks for it, shared by all captures for which its values are equal (of whatever sensor),
+// kept within a budget of bytes (kit_cache.h), and given up when no capture of its state is left.
 #pragma once
 #include <map>
 #include <memory>
 
 #include "transport/pipeline.h"
+#include "scheduler/kit_cache.h"
 #include "scheduler/moments.h"
 
 namespace suite {
 
-// One capture's view; valid until the next get() or done().
+inline constexpr size_t kDefaultKitBytes = size_t{1} << 30;
+
+// One capture's view; what it points to stays for as long as it does.
 struct Kit {
-  const Optics& optics;
-  const Environment& environment;
-  const BandProjection& projection;
-  size_t reference_band = 0;  // the band nearest to the reference wavelength
+  struct Bands {
+    BandProjection projection;
+    size_t reference = 0;  // the band nearest to the reference wavelength
+  };
+  std::shared_ptr<const Optics> optics;
+  std::shared_ptr<const Environment> environment;
+  std::shared_ptr<const Bands> bands;
 };
 
 class Kits {
  public:
-  // Keeps references. window: of all captures, for temperatures that are solved once.
-  Kits(const Scene& scene, const SourceSpecs& sources, bool periodic, TimeSpan window)
-      : scene_(scene), sources_(sources, scene), periodic_(periodic), window_(window) {}
+  // Keeps references. window: of all captures, for temperatures that are solved once. budget: bytes.
+  Kits(const Scene& scene, const SourceSpecs& sources, bool periodic, TimeSpan window, size_t budget = kDefaultKitBytes)
+      : scene_(scene), sources_(sources, scene), periodic_(periodic), window_(window), cache_(budget) {}
   // One more capture will ask for the state of this number.
-  void expect(size_t state) { ++states_[state].users; }
-  // The kit of a capture of a sensor; state: the number of its spectral state, equal for equal states.
+  void expect(size_t state) { ++users_[state]; }
+  // The kit of a capture of a sensor; state: the number of its spectral state, equal for states of equal value. Lights
+  // are those of the capture's moment on the grid of moments.h.
   Kit get(size_t state, const Sensor& sensor, const Capture& capture, const std::shared_ptr<const Tracer>& tracer);
-  // The capture that asked for the state is done. With the last one goes all that belongs to the state.
+  // A capture that asked for the state is done. With the last one goes all that belongs to the state.
   void done(size_t state);
   size_t optics_bakes() const { return optics_bakes_; }
   size_t light_bakes() const { return light_bakes_; }
-  size_t held() const;  // states whose optics are in memory
+  size_t held() const { return cache_.held(KitCache::Kind::optics); }  // states whose optics are in memory
+  double bytes() const { return cache_.bytes(); }
 
  private:
-  struct Bands {
-    BandProjection projection;
-    size_t reference = 0;
-  };
-  struct Held {
-    size_t users = 0;
-    std::unique_ptr<const Optics> optics;
+  // Lights, and the tracer whose geometry they were made for, if they were.
+  struct Lit {
     Environment environment;
-    double moment = 0;                       // that the environment was baked for
-    std::shared_ptr<const Tracer> lamps_of;  // whose geometry it was made for
-    std::map<std::pair<const Sensor*, size_t>, Bands> bands;
+    std::shared_ptr<const Tracer> tracer;
+    double moment;
   };
-  void light(Held& held, const std::shared_ptr<const Tracer>& tracer, double moment);
+  std::shared_ptr<const Lit> lights(size_t state, const Optics& optics, const std::shared_ptr<const Tracer>& tracer,
+                                    double moment);
 
   const Scene& scene_;
   SourcesInTime sources_;
   bool periodic_;
   TimeSpan window_;
-  std::map<size_t, Held> states_;
+  KitCache cache_;
+  std::map<size_t, size_t> users_;  // captures that are still to come, by state
   size_t optics_bakes_ = 0, light_bakes_ = 0;
 };
 

@@ -5,9 +5,22 @@
 #include <cmath>
 #include <map>
 
+#include "motion/time.h"
+
 namespace suite {
 
 double moment_of(const Capture& capture) { return 0.5 * (capture.window.begin + capture.window.end); }
+
+double SourcesInTime::on_grid(double moment) const {
+  if (!dated()) return 0;
+  const SourceTime& dated = written_.sun && written_.sun->time ? *written_.sun->time : *written_.moon->disk.time;
+  const Instant zero = instant_from_utc(parse_iso8601(dated.utc)), then = zero + moment;
+  const auto steps = [](double seconds) { return std::floor(seconds / kMomentQuantum); };
+  // Whole steps first: one moment of the grid is one number.
+  const double whole = static_cast<double>(then.day - zero.day) * (86400 / kMomentQuantum) +
+                       steps(then.seconds + 0.5 * kMomentQuantum) - steps(zero.seconds);
+  return whole * kMomentQuantum - (zero.seconds - steps(zero.seconds) * kMomentQuantum);
+}
 
 const SourceSpecs& SourcesInTime::at(double moment) {
   if (!dated() && !written_.clear && !(written_.moon && written_.moon->by_phase)) return written_;
@@ -44,7 +57,7 @@ void check_clear(const SourceSpecs& written, const Scene& scene, const std::map<
   bodies.sun = written.sun, bodies.dut1 = written.dut1;
   SourcesInTime suns(bodies, scene);
   for (const auto& [moment, who] : moments) {
-    const double height = suns.at(moment).sun->direction.z;
+    const double height = suns.at(suns.on_grid(moment)).sun->direction.z;
     if (height > 0) continue;
     throw Error(
         written.sun->time->where,

@@ -1,6 +1,12 @@
 // Time goes on: Sun, Moon and clear skies that follow from dates, for each capture where they are in the middle of its
 // window.
 //
+// Moments stand on a grid of kMomentQuantum of absolute time, so that captures close to each other share what is baked,
+// and so that a moment's lights do not depend on when a run begins or which part of it is run. A capture's lights are
+// those of a moment at most 0.5 s away: the Sun and the Moon then stand at most 7.5 arc seconds off (0.8 % of the
+// radius of their disks), and what the Sun sends to level ground is off by 3.6e-5 tan(zenith angle), less than
+// kExposureLimit to 88 degrees from the zenith. Times that are whole seconds of UTC are on the grid.
+//
 // Assumes: a whole capture sees them there; long_exposure says when that is too coarse.
 #pragma once
 #include <memory>
@@ -17,14 +23,18 @@ namespace suite {
 // The moment at which a capture's sources are resolved: the middle of its window, s.
 double moment_of(const Capture& capture);
 
+inline constexpr double kMomentQuantum = 1;  // s
+
 // Sources resolved for one moment after the other. Keeps references to what it is made from.
 class SourcesInTime {
  public:
   SourcesInTime(const SourceSpecs& written, const Scene& scene) : written_(written), scene_(scene) {}
   const SourceSpecs& written() const { return written_; }
   bool dated() const { return written_.dated(); }
-  // Sources at a moment (s); they hold until the next call. Without dates they are the same at all moments. Error: as
-  // resolve_sources.
+  // The moment of the grid that is nearest to one; 0 where no source has a date.
+  double on_grid(double moment) const;
+  // Sources at a moment (s), exactly; they hold until the next call. Without dates they are the same at all moments.
+  // Error: as resolve_sources.
   const SourceSpecs& at(double moment);
 
  private:

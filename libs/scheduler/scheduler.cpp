@@ -42,7 +42,7 @@ class Job {
                                       : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
     }
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
-    kits_ = std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window_);
+    kits_ = std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window_, options_.kit_bytes);
     for (const Item& item : items) kits_->expect(item.state.spectral);
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
@@ -149,7 +149,7 @@ class Job {
   void warn_of_lost_light(const Sensor& sensor, const Capture& capture, const Kit& kit) {
     if (!options_.warn) return;
     const uint32_t paths = goals_of(sensor, capture, budget()).all.max_paths;
-    for (const std::string& s : lost_light(*scene_, sources_, kit.optics, kit.environment, options_.pipeline, paths))
+    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, *kit.environment, options_.pipeline, paths))
       if (told_.insert(s).second) options_.warn(s);
   }
 
@@ -162,14 +162,17 @@ class Job {
     const size_t bakes = kits_->optics_bakes();
     const Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
     log.new_optics = kits_->optics_bakes() > bakes;
-    if (capture.bin_by == Capture::BinBy::sun && (!kit.optics.media().empty() || kit.environment.atmosphere))
+    if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
     warn_of_lost_light(sensor, capture, kit);
-    const Surface surface(*tracer_, kit.optics);
-    const TruthPlan truth(sensor.truth(), {*tracer_, kit.optics.state(), capture.state, sensor.bands(capture.state),
-                                           kit.projection, kit.environment});
-    const Pipeline pipeline(surface, kit.optics, kit.environment, kit.optics.state(), kit.projection,
-                            kit.reference_band, truth, options_.pipeline);
+    const SpectralState& state = kit.optics->state();
+    const BandProjection& projection = kit.bands->projection;
+    const size_t reference_band = kit.bands->reference;
+    const Surface surface(*tracer_, *kit.optics);
+    const TruthPlan truth(sensor.truth(),
+                          {*tracer_, state, capture.state, sensor.bands(capture.state), projection, *kit.environment});
+    const Pipeline pipeline(surface, *kit.optics, *kit.environment, state, projection, reference_band, truth,
+                            options_.pipeline);
     if (options_.store && !cap_) cap_ = options_.store->cap();
     CaptureWork work{pipeline,
                      sensor,
@@ -186,8 +189,8 @@ class Job {
         fix_cap(w, needs, paths, seconds);
       };
     if (work.after_pilot) shorten_pilots(work.goals);
-    const size_t bands = kit.projection.bands(), channels = sensor.channels().size();
-    ResultBuilder builder(capture, bands, channels, kit.reference_band, truth, work.goals);
+    const size_t bands = projection.bands(), channels = sensor.channels().size();
+    ResultBuilder builder(capture, bands, channels, reference_band, truth, work.goals);
     sensors_[item.sensor]->begin(capture);
     try {
       run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
@@ -206,7 +209,7 @@ class Job {
     log.sensor = sensor.name();
     log.task = sensor.tasks()[item.task].name;
     log.capture = capture.name;
-    log.state = kit.optics.state().text();
+    log.state = state.text();
     log.kernel = pipeline.kernel();
     log.id = item.id;
     log.window = capture.window;
@@ -225,9 +228,9 @@ class Job {
   // The bands that decide, and how much stricter than theirs the strictest target is.
   std::vector<JudgedBand> judged_bands(const Capture& capture, const Kit& kit) const {
     const std::vector<double>& targets = capture.band_targets;
-    if (targets.empty() && !options_.budget.all_bands) return {{kit.reference_band}};
+    if (targets.empty() && !options_.budget.all_bands) return {{kit.bands->reference}};
     std::vector<JudgedBand> judged;
-    for (size_t b = 0; b < kit.projection.bands(); ++b) {
+    for (size_t b = 0; b < kit.bands->projection.bands(); ++b) {
       const double target = b < targets.size() ? targets[b] : 0;
       if (options_.budget.all_bands)
         judged.push_back({b});
@@ -266,8 +269,8 @@ class Job {
     report_.quality[item.sensor].counts.add(r.quality);
     ErrorHistogram errors;
     for (size_t i = 0; i < work.capture.problems(); ++i) {
-      if (const double mean = r.radiance[i * values + kit.reference_band]; mean > 0)
-        errors.add(r.standard_error[i * values + kit.reference_band] / mean);
+      if (const double mean = r.radiance[i * values + kit.bands->reference]; mean > 0)
+        errors.add(r.standard_error[i * values + kit.bands->reference] / mean);
       double worst = 0;
       const Convergence goal = work.goals.of(i);
       for (const auto [b, weight] : work.judged) {

@@ -11,6 +11,7 @@
 #include "estimate/budget.h"
 #include "transport/pipeline.h"
 #include "scheduler/doubts.h"
+#include "scheduler/kits.h"
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
 #include "sensor/quality.h"
@@ -27,7 +28,8 @@ struct JobOptions {
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;
-  StateStore* store = nullptr;  // keeps what is needed to continue; null = nothing is kept
+  size_t kit_bytes = kDefaultKitBytes;  // of optics and lights that are kept for captures to come (kits.h)
+  StateStore* store = nullptr;          // keeps what is needed to continue; null = nothing is kept
   bool progress = true;
   // Asked between blocks of problems: true ends the job in good order, with all that is finished in the store. Empty =
   // never.

@@ -97,12 +97,15 @@ const suite_run& PluginRun::begin(const RunFacts& facts, std::span<const Spectra
   for (size_t s = 0; s < states.size(); ++s) {
     const BandProjection projection(states[s], bands[s]);
     Bins& v = values_[s];
-    for (const Bin& b : states[s].bins) v.low.push_back(b.low_um), v.high.push_back(b.high_um);
+    for (const Bin& b : states[s].bins) {
+      v.low.push_back(b.low_um), v.high.push_back(b.high_um);
+      v.g_point.push_back(b.g), v.g_weight.push_back(b.weight);
+    }
     for (size_t b = 0; b < bands[s].size(); ++b)
       for (size_t k = 0; k < states[s].size(); ++k) v.weights.push_back(projection.weight(b, k));
     bins_.push_back({sizeof(suite_bins), static_cast<uint32_t>(states[s].size()),
                      static_cast<uint32_t>(bands[s].size()), 0, v.low.data(), v.high.data(), v.weights.data(),
-                     states[s].reference_um});
+                     states[s].reference_um, v.g_point.data(), v.g_weight.data()});
   }
   run_ = {sizeof(suite_run),
           static_cast<uint32_t>(states.size()),

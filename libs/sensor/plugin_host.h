@@ -35,7 +35,8 @@ class PluginRun {
 
  private:
   struct Bins {
-    std::vector<double> low, high, weights;
+    std::vector<double> low, high, weights, g_weight;
+    std::vector<uint32_t> g_point;
   };
   static int write_file(void* context, const char* name, const void* bytes, uint64_t count) noexcept;
   std::string name_, folder_;

@@ -97,6 +97,13 @@ std::vector<float> SpectralState::sample(const Curve& curve) const {
   return v;
 }
 
+std::vector<double> SpectralState::key() const {
+  std::vector<double> key{low_um, high_um, reference_um};
+  for (const Bin& b : bins) key.insert(key.end(), {b.low_um, b.high_um, static_cast<double>(b.g), b.weight});
+  for (const size_t k : knots) key.push_back(static_cast<double>(k));
+  return key;
+}
+
 std::string SpectralState::text() const {
   return strf("%.4g-%.4g um, %zu bins, reference %.4g um", low_um, high_um, bins.size(), reference_um);
 }
@@ -210,7 +217,7 @@ std::vector<double> BandProjection::shares_of(const SpectralState& state, const 
     const bool inside = bin.high_um > band.low_um() + sliver && bin.low_um < band.high_um() - sliver;
     if (!inside && weights.empty()) continue;
     if (weights.empty()) first = k;
-    weights.push_back(inside ? band.response.integral(bin.low_um, bin.high_um) / total : 0);
+    weights.push_back(inside ? bin.weight * band.response.integral(bin.low_um, bin.high_um) / total : 0);
   }
   return weights;
 }

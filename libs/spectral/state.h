@@ -29,9 +29,14 @@ struct Band {
   static Band tabulated(std::string name, const Curve& response, const Where& where = {});
 };
 
+// Where radiance is carried: an interval of wavelengths, or one of its g-points, which stands for a share of it (of a
+// k-distribution, in which wavelengths that a gas absorbs alike are put together).
 struct Bin {
   double low_um, high_um;
+  uint32_t g = 0;     // number of the g-point among those of the interval
+  double weight = 1;  // the share of the interval that it stands for; those of an interval add up to 1
   double center_um() const { return 0.5 * (low_um + high_um); }
+  bool operator==(const Bin&) const = default;
 };
 
 // What the bins of a state are to be chosen for when it is known what is looked at (scheduler/bins.h).
@@ -45,10 +50,12 @@ struct BinChoice {
 struct SpectralState {
   double low_um = 0, high_um = 0;  // the window
   double reference_um = 0;         // drives directions and convergence
-  std::vector<Bin> bins;           // ascending, not overlapping, inside the window; gaps where no band looks
+  // Intervals ascend, do not overlap and lie inside the window, with gaps where no band looks; the g-points of one
+  // stand side by side, in their order.
+  std::vector<Bin> bins;
   std::vector<size_t> knots;  // <= 8 indices into bins: where the shape of scattering is drawn; knots[0] = reference
   // What each bin counts in each band, [band][bin], adding up to 1 for a band. Empty: by the part of the response that
-  // lies in the bin.
+  // lies in the bin, times the bin's weight.
   std::vector<double> shares = {};
   BinChoice choice = {};
 
@@ -58,6 +65,9 @@ struct SpectralState {
   std::vector<int> knot_of_bin() const;
   // Bin averages of a curve. Error when the curve does not cover them.
   std::vector<float> sample(const Curve& curve) const;
+  // All that optics and lights are baked from, as numbers: equal ones bake alike. What bands make of the bins (shares)
+  // is left out.
+  std::vector<double> key() const;
   // A short text that identifies the state in messages and logs: "0.440-0.880 um, 45 bins".
   std::string text() const;
 };

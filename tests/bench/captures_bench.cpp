@@ -3,13 +3,12 @@
 // to 200 straight lines are fitted to the heap in use and to the CPU seconds of a capture. Usage: captures_bench
 // [captures]. Exit code 1 when the memory grows by more than 0.02 % of its mean a capture, or the seconds do, by more
 // than their own noise lets doubt (three standard errors of the slope).
-#include <malloc.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 
+#include "base/memory.h"
 #include "motion/track.h"
 #include "tests/bench/terrain.h"
 
@@ -20,10 +19,6 @@ double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-double heap_in_use() {
-  const struct mallinfo2 m = mallinfo2();
-  return static_cast<double>(m.uordblks + m.hblkhd);
 }
 
 // Frames of 48 x 48 pixels, one every second.

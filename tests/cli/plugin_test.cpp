@@ -90,7 +90,7 @@ TEST_F(Plugin, MayCollectOverAHemisphere) {
 
 // Structures that grew since leave plug-ins of smaller ones alone.
 TEST_F(Plugin, OfOlderHeadersGoOnWorking) {
-  for (const std::string version : {"1.0", "1.2"}) {
+  for (const std::string version : {"1.0", "1.2", "1.3"}) {
     const CommandResult r =
         render("{kind: old_camera, name: old, paths: 8}", "old_camera_" + version, "old_" + version);
     ASSERT_EQ(r.code, 0) << version << r.err;
@@ -140,6 +140,17 @@ TEST_F(Plugin, KnowsTheBinsThatBandsAreMadeOf) {
     EXPECT_NEAR(image.at(b) / 0.5, weighed, 1e-6) << "what the program made of the plug-in's weights";
     EXPECT_GT(std::fabs(weighed - square_of(middle)), 1e-4) << "a plug-in that knew the centres only would be off";
   }
+}
+
+// One g-point of weight 1 in each interval; a plug-in that was built before they had a name gets the same bins.
+TEST_F(Plugin, BinsAreIntervalGPointAndWeight) {
+  ASSERT_EQ(render("{kind: field_notes, name: notes}", "field_notes", "points").code, 0);
+  const Table bins(*folder_ / "points/notes/bins.csv"), points(*folder_ / "points/notes/g_points.csv");
+  ASSERT_EQ(points.rows.size(), bins.rows.size());
+  for (const auto& p : points.rows) EXPECT_THAT(p, testing::ElementsAre(0, 1));
+  ASSERT_EQ(render("{kind: field_notes, name: notes}", "field_notes_1.3", "older").code, 0);
+  EXPECT_EQ(read_text(*folder_ / "older/notes/bins.csv"), read_text(*folder_ / "points/notes/bins.csv"));
+  EXPECT_FALSE(file_exists(*folder_ / "older/notes/g_points.csv"));
 }
 
 TEST_F(Plugin, ChosenBinsCountInTheirBandsToo) {

@@ -137,6 +137,29 @@ TEST(Day, OnlyTheLightIsBakedAnewAndKitsAreShared) {
   EXPECT_EQ(run(still, days(true)).report.light_bakes, 1u);
 }
 
+// Moments stand on a grid of absolute seconds: captures within half a second share their lights, wherever second 0 is.
+TEST(Day, MomentsOfOneSecondShareTheirLights) {
+  const auto at = scene();
+  const SourceSpecs s = sources(kMorning, true), late = sources("2026-06-21T07:00:00.3Z", true);
+  SourcesInTime in_time(s, *at), in_late(late, *at);
+  for (const double t : {-0.49, 0.0, 0.3, 0.49}) EXPECT_EQ(in_time.on_grid(t), 0);
+  EXPECT_EQ(in_time.on_grid(0.51), 1);
+  EXPECT_EQ(in_time.on_grid(-0.51), -1);
+  EXPECT_NEAR(in_late.on_grid(0), -0.3, 1e-11);
+  EXPECT_EQ(in_late.on_grid(0), in_late.on_grid(0.1));
+  EXPECT_EQ(in_late.on_grid(80000.9), in_late.on_grid(81000.8 - 1000));
+  EXPECT_NEAR(in_late.on_grid(7200.1), 7199.7, 1e-11);
+  SourceSpecs still = s;
+  resolve_sources(still, *at);
+  EXPECT_EQ(SourcesInTime(still, *at).on_grid(1234.56), 0);
+  // What the grid costs, as moments.h says.
+  const Dir exact = in_time.at(0.4999).sun->direction;
+  const double apart = angle_between(exact, Dir(in_time.at(in_time.on_grid(0.4999)).sun->direction));
+  EXPECT_LT(apart, 7.6 / 3600 * kDegree);
+  EXPECT_GT(apart, 4 / 3600.0 * kDegree) << "nothing was tested";
+  EXPECT_LT(apart, 0.0081 * in_time.at(0).sun->half_angle);
+}
+
 TEST(Day, KitsGoWithTheirLastCapture) {
   const auto at = scene();
   const SourceSpecs s = sources(kMorning, true);

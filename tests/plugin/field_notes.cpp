@@ -31,6 +31,11 @@ class FieldNotes final : public suite_sdk::Sensor {
     for (uint32_t k = 0; k < b.bins; ++k)
       table += row({b.low_um[k], b.high_um[k], b.weights[k], b.weights[b.bins + k]});
     write_file(file_, table);
+#ifdef SUITE_SENSOR_MINOR  // headers before 1.4 know intervals only
+    std::string points = "g_point,g_weight\n";
+    for (uint32_t k = 0; k < b.bins; ++k) points += row({static_cast<double>(b.g_point[k]), b.g_weight[k]});
+    write_file("g_points.csv", points);
+#endif
     write_file("where.txt", where_ + "seed: " + std::to_string(run().seed) +
                                 "\nreference_um: " + row({b.reference_um}) + "name: " + run().name + "\nfolder: " +
                                 (run().folder ? run().folder : "none") + "\nmade by: " + run().made_by + "\n");

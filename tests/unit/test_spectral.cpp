@@ -222,6 +222,29 @@ TEST(Projection, KeepsConstantsAndStraightLines) {
   }
 }
 
+// The g-points of an interval share what the interval counts by their weights.
+TEST(Projection, GPointsShareTheirInterval) {
+  const std::vector<Band> bands{Band::gaussian("a", 0.55, 0.02)};
+  const SpectralState whole = make_state(bands, 0.005);
+  SpectralState state = whole;
+  const size_t k = whole.size() / 2;
+  Bin low = whole.bins[k], high = low;
+  low.weight = 0.3, high.weight = 0.7, high.g = 1;
+  state.bins[k] = low;
+  state.bins.insert(state.bins.begin() + static_cast<long>(k) + 1, high);
+  place_knots(state, 4);
+  const BandProjection all(whole, bands), split(state, bands);
+  EXPECT_NEAR(split.weight(0, k), 0.3 * all.weight(0, k), 1e-15);
+  EXPECT_NEAR(split.weight(0, k + 1), 0.7 * all.weight(0, k), 1e-15);
+  double sum = 0;
+  for (size_t b = 0; b < state.size(); ++b) sum += split.weight(0, b);
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_NE(state.key(), whole.key());
+  SpectralState other = state;
+  other.bins[k].weight = 0.4;
+  EXPECT_NE(other.key(), state.key());
+}
+
 TEST(Projection, TakesTheSharesOfAState) {
   const std::vector<Band> bands{Band::rectangular("a", 0.5, 0.1), Band::rectangular("b", 0.55, 0.1)};
   SpectralState s = make_state(bands, 0.05);

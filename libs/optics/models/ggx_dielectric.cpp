@@ -40,10 +40,12 @@ class GgxDielectric final : public ScatterModel {
     const double low = *std::min_element(index.begin(), index.end()),
                  high = *std::max_element(index.begin(), index.end());
     uniform_ = low == high;
-    // One index has its own table; several stand between shared ones.
+    // One index at all wavelengths has its own table; several stand between shared ones, also where a state sees one of
+    // them only: the tables of many states are few.
     const int first = RoughInterface::node_below(low), last = RoughInterface::node_below(high) + 1;
-    if (uniform_) tables_.push_back(RoughInterface::of({facets_.ax, low}));
-    for (int n = first; n <= last && !uniform_; ++n)
+    const bool one = spec.curves.at("index").is_constant();
+    if (one) tables_.push_back(RoughInterface::of({facets_.ax, low}));
+    for (int n = first; n <= last && !one; ++n)
       tables_.push_back(RoughInterface::of({facets_.ax, RoughInterface::node(n)}));
     for (const float i : index) places_.push_back(place(i, first));
     const RoughInterface& middle = *tables_[tables_.size() / 2];
@@ -143,7 +145,7 @@ class GgxDielectric final : public ScatterModel {
   };
   Place place(double index, int first) const {
     Place p{index, 0, 0, 0, 0, {}};
-    if (!uniform_) {
+    if (tables_.size() > 1) {
       const int n = RoughInterface::node_below(index);
       p.below = static_cast<size_t>(n - first);
       p.t = (index - RoughInterface::node(n)) / (RoughInterface::node(n + 1) - RoughInterface::node(n));
@@ -166,7 +168,7 @@ class GgxDielectric final : public ScatterModel {
     Again at(const Place& p) {
       if (!found_ || below_ != p.below) {
         low_ = model_.tables_[p.below]->again(side_, mu_);
-        high_ = model_.uniform_ ? low_ : model_.above(p).again(side_, mu_);
+        high_ = model_.tables_.size() == 1 ? low_ : model_.above(p).again(side_, mu_);
         below_ = p.below;
         found_ = true;
       }

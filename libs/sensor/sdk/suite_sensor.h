@@ -20,6 +20,8 @@ extern "C" {
 /* Raised when a plug-in built with an older header cannot work any more. Fields that came later say since when; a
  * plug-in that was built without them goes on working. */
 #define SUITE_SENSOR_ABI 1u
+/* Counts what "since 1.x" says below; since 1.4. */
+#define SUITE_SENSOR_MINOR 4u
 
 enum suite_band_shape {
   SUITE_BAND_GAUSSIAN = 0,
@@ -119,15 +121,22 @@ typedef struct suite_result {
 } suite_result;
 
 /* The bins of one state and how bands are made of them: the radiance of a band is the sum over the bins of weight times
- * the bin's radiance, which is its mean over the bin's interval. The weights of a band add up to 1. Unless the user
+ * the bin's radiance, which is its mean over the bin's interval. The weights of a band add up to 1. Several bins may
+ * share an interval: each then is one of its g-points, which stands for the part of the interval's wavelengths that a
+ * gas absorbs alike, and its radiance is the mean over these (since 1.4; before, each bin had an interval of its own).
+ * Unless the user
  * asks for even bins (`spectral_error: 0`) bins are chosen for the spectra of the scene; a function of another kind
  * that the plug-in weighs them with is followed as finely as suite_state.step_um says. Since 1.3. */
 typedef struct suite_bins {
   uint32_t size;
   uint32_t bins, bands, reserved;
-  const double *low_um, *high_um; /* [bin], ascending */
+  const double *low_um, *high_um; /* [bin], ascending; equal for the g-points of one interval */
   const double* weights;          /* [band][bin] */
   double reference_um;
+  /* Since 1.4. [bin]: number of the g-point in its interval, from 0; the share of the interval that it stands for. 0
+   * and 1 where an interval has one bin. */
+  const uint32_t* g_point;
+  const double* g_weight;
 } suite_bins;
 
 /* Where the scene is on the Earth (WGS84). Since 1.3. */
