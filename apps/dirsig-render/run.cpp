@@ -35,11 +35,6 @@ namespace suite {
 
 namespace {
 
-int list_sensors() {
-  for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
-  return 0;
-}
-
 int list_sources() {
   for (const SourceRow& row : source_kinds())
     std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
@@ -53,13 +48,9 @@ int list_truth() {
   return 0;
 }
 
-int list_models() {
-  for (const ModelRow& row : models()) {
-    std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
-    for (const ModelParameter& p : row.parameters)
-      std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(),
-                  p.required ? "" : ", optional");
-  }
+// A table of kinds.
+int print(const std::string& list) {
+  std::fputs(list.c_str(), stdout);
   return 0;
 }
 
@@ -215,10 +206,10 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
 
 int run_render(const Cli& cli, const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
-  if (o.list_sensors) return list_sensors();
+  if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return list_sources();
   if (o.list_truth) return list_truth();
-  if (o.list_models) return list_models();
+  if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return std::fputs(explain(o.explain).c_str(), stdout), 0;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))

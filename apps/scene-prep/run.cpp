@@ -19,12 +19,13 @@
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/scene_text/scene_text.h"
 #include "mesh/check.h"
-#include "optics/models.h"
+#include "optics/phase_function.h"
 #include "page/page.h"
 #include "scene/bake.h"
 #include "scene/issues.h"
 #include "scene/summary.h"
 #include "surface/quick_look.h"
+#include "thermal/models.h"
 
 namespace suite {
 
@@ -37,13 +38,10 @@ void list_issues() {
     std::printf("%s  %-7s  %s\n", k.code.c_str(), to_text(k.severity), k.summary.c_str());
 }
 
-void list_models() {
-  for (const ModelRow& row : models()) {
-    std::printf("%s: %s\n", row.name.c_str(), row.summary.c_str());
-    for (const ModelParameter& p : row.parameters)
-      std::printf("    %s [%s]: %s%s\n", p.name.c_str(), p.unit.c_str(), p.summary.c_str(),
-                  p.required ? "" : " (optional)");
-  }
+// The tables of kinds that were asked for; nothing when none was.
+std::string lists(const ScenePrepOptions& o) {
+  return (o.list_models ? models().list() : "") + (o.list_phases ? phases().list() : "") +
+         (o.list_temperatures ? temperature_models().list() : "");
 }
 
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
@@ -260,7 +258,7 @@ int inspect(const ScenePrepOptions& o) {
 
 int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
-  if (o.list_models) return list_models(), 0;
+  if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.input.empty()) throw UsageError("an input is needed");
   const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();

@@ -40,7 +40,7 @@ std::vector<ModelCase> all_models() {
 class OpenFurnace : public testing::TestWithParam<ModelCase> {};
 
 TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
-  ModelSpec spec = find_model(GetParam().row).examples()[GetParam().example];
+  ModelSpec spec = models().find(GetParam().row).examples()[GetParam().example];
   const auto scene = scene_of({quad(1, 0, 0)}, {material("m", spec)});
   const std::vector<double> zeniths{0.05, 0.5, 1.0, 1.3, kPi - 0.6};
   std::vector<Band> bands;

@@ -63,13 +63,11 @@ class OrenNayar final : public ScatterModel {
 }  // namespace
 
 ModelRow oren_nayar_row() {
-  using P = ModelParameter;
-  return {"oren_nayar",
-          "rough matte surface of Lambert grooves (Oren & Nayar 1994)",
+  using P = Parameter;
+  return {{"oren_nayar", "rough matte surface of Lambert grooves (Oren & Nayar 1994)", "1/sr", make_model<OrenNayar>},
           {{"reflectance", P::Kind::curve, "1", "reflectance of the facets", 0, 1},
            {"sigma", P::Kind::number, "rad", "standard deviation of the slope angle", 0, 1.5707}},
           true,
-          make_model<OrenNayar>,
           []() -> std::vector<ModelSpec> {
             const Curve soil({0.3, 1.0, 2.6}, {0.1, 0.3, 0.5}, Outside::hold);
             return {{"oren_nayar", {{"sigma", 0.35}}, {{"reflectance", soil}}, {}, nullptr},

@@ -93,14 +93,13 @@ class RossLi final : public ScatterModel {
 }  // namespace
 
 ModelRow ross_li_row() {
-  using P = ModelParameter;
-  return {"ross_li",
-          "natural ground, RossThick and LiSparse kernels as in satellite products (Lucht 2000)",
+  using P = Parameter;
+  return {{"ross_li", "natural ground, RossThick and LiSparse kernels as in satellite products (Lucht 2000)", "1/sr",
+           make_model<RossLi>},
           {{"isotropic", P::Kind::curve, "1", "weight of the constant", 0, 1},
            {"volume", P::Kind::curve, "1", "weight of the RossThick kernel", -1, 1},
            {"geometry", P::Kind::curve, "1", "weight of the LiSparse kernel", -1, 1}},
           true,
-          make_model<RossLi>,
           []() -> std::vector<ModelSpec> {
             const Curve level({0.4, 0.65, 0.85, 2.0}, {0.04, 0.06, 0.3, 0.25}, Outside::hold);
             const Curve volume({0.4, 0.65, 0.85, 2.0}, {0.02, 0.03, 0.2, 0.1}, Outside::hold);

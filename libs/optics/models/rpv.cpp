@@ -94,26 +94,25 @@ class Rpv final : public ScatterModel {
 }  // namespace
 
 ModelRow rpv_row() {
-  using P = ModelParameter;
-  return {"rpv",
-          "natural ground with bowl, lobe and hot spot (Rahman, Pinty & Verstraete 1993)",
-          {{"rho0", P::Kind::curve, "1", "overall reflectance level", 0, 1},
-           {"k", P::Kind::curve, "1", "below 1 a bowl, above 1 a bell", 0.2, 2},
-           {"asymmetry", P::Kind::curve, "1", "negative scatters back to the light, positive forward", -0.9, 0.9},
-           {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1}},
-          true,
-          make_model<Rpv>,
-          []() -> std::vector<ModelSpec> {
-            const Curve level({0.4, 0.65, 0.85, 2.0}, {0.02, 0.04, 0.2, 0.15}, Outside::hold);
-            const Curve bowl({0.4, 0.65, 0.85, 2.0}, {0.7, 0.75, 0.85, 0.8}, Outside::hold);
-            const Curve back({0.4, 0.85, 2.0}, {-0.2, -0.1, -0.15}, Outside::hold);
-            return {{"rpv", {}, {{"rho0", level}, {"k", bowl}, {"asymmetry", back}, {"rho_c", level}}, {}, nullptr},
-                    {"rpv",
-                     {},
-                     {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
-                     {},
-                     nullptr}};
-          }};
+  using P = Parameter;
+  return {
+      {"rpv", "natural ground with bowl, lobe and hot spot (Rahman, Pinty & Verstraete 1993)", "1/sr", make_model<Rpv>},
+      {{"rho0", P::Kind::curve, "1", "overall reflectance level", 0, 1},
+       {"k", P::Kind::curve, "1", "below 1 a bowl, above 1 a bell", 0.2, 2},
+       {"asymmetry", P::Kind::curve, "1", "negative scatters back to the light, positive forward", -0.9, 0.9},
+       {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1}},
+      true,
+      []() -> std::vector<ModelSpec> {
+        const Curve level({0.4, 0.65, 0.85, 2.0}, {0.02, 0.04, 0.2, 0.15}, Outside::hold);
+        const Curve bowl({0.4, 0.65, 0.85, 2.0}, {0.7, 0.75, 0.85, 0.8}, Outside::hold);
+        const Curve back({0.4, 0.85, 2.0}, {-0.2, -0.1, -0.15}, Outside::hold);
+        return {{"rpv", {}, {{"rho0", level}, {"k", bowl}, {"asymmetry", back}, {"rho_c", level}}, {}, nullptr},
+                {"rpv",
+                 {},
+                 {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
+                 {},
+                 nullptr}};
+      }};
 }
 
 }  // namespace suite

@@ -184,22 +184,21 @@ std::vector<ModelSpec> examples() {
 }  // namespace
 
 ModelRow sqt_row() {
-  using P = ModelParameter;
-  return {"sqt",
-          "fitted spherical quad-tree (Goodenough & Brown 2017)",
+  using P = Parameter;
+  return {{"sqt", "fitted spherical quad-tree (Goodenough & Brown 2017)", "1/sr",
+           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
+             if (!spec.bundle) throw Error("model 'sqt': the file '" + spec.texts.at("file") + "' has not been loaded");
+             if (spec.bundle->info().function.quantity != sqt::Quantity::bsdf)
+               throw Error("model 'sqt': '" + spec.texts.at("file") + "' does not hold a surface function",
+                           "fit a BRDF or BTDF");
+             for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "model");
+             return std::make_unique<Sqt>(spec.bundle, stored_range(spec), state);
+           }},
           {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0},
            {"outside", P::Kind::text, "",
             "beyond half a spacing from the outermost channels (alone: 5 % of its wavelength): error, hold or zero", 0,
             0, false}},
           false,
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
-            if (!spec.bundle) throw Error("model 'sqt': the file '" + spec.texts.at("file") + "' has not been loaded");
-            if (spec.bundle->info().function.quantity != sqt::Quantity::bsdf)
-              throw Error("model 'sqt': '" + spec.texts.at("file") + "' does not hold a surface function",
-                          "fit a BRDF or BTDF");
-            for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "model");
-            return std::make_unique<Sqt>(spec.bundle, stored_range(spec), state);
-          },
           examples};
 }
 

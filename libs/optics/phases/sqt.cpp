@@ -116,24 +116,23 @@ class Haze final : public sqt::Function {
 }  // namespace
 
 PhaseRow sqt_phase_row() {
-  using P = ModelParameter;
-  return {"sqt",
-          "fitted spherical quad-tree of a phase function (Goodenough & Brown 2017)",
+  using P = Parameter;
+  return {{"sqt", "fitted spherical quad-tree of a phase function (Goodenough & Brown 2017)", "1/sr",
+           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const PhaseFunction> {
+             const std::string name = spec.texts.at("file");
+             if (!spec.bundle) throw Error("phase function 'sqt': the file '" + name + "' has not been loaded");
+             if (spec.bundle->info().function.quantity != sqt::Quantity::phase)
+               throw Error("phase function 'sqt': '" + name + "' does not hold a phase function",
+                           "fit one, e.g. sqt-fit --model hg:g=0.8");
+             if (stored_range(spec).outside == Outside::zero)
+               throw Error("phase function 'sqt': 'outside: zero' leaves nothing to normalise", "error or hold");
+             for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "phase function");
+             return std::make_unique<SqtPhase>(*spec.bundle, state);
+           }},
           {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0},
            {"outside", P::Kind::text, "",
             "beyond half a spacing from the outermost channels (alone: 5 % of its wavelength): error or hold", 0, 0,
             false}},
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const PhaseFunction> {
-            const std::string name = spec.texts.at("file");
-            if (!spec.bundle) throw Error("phase function 'sqt': the file '" + name + "' has not been loaded");
-            if (spec.bundle->info().function.quantity != sqt::Quantity::phase)
-              throw Error("phase function 'sqt': '" + name + "' does not hold a phase function",
-                          "fit one, e.g. sqt-fit --model hg:g=0.8");
-            if (stored_range(spec).outside == Outside::zero)
-              throw Error("phase function 'sqt': 'outside: zero' leaves nothing to normalise", "error or hold");
-            for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "phase function");
-            return std::make_unique<SqtPhase>(*spec.bundle, state);
-          },
           []() -> std::vector<ModelSpec> {
             static const std::shared_ptr<const sqt::Bundle> haze = [] {
               sqt::AlignedSource::Options options;
