@@ -17,7 +17,8 @@ namespace suite {
 struct ModelRow : RegistryRow<std::unique_ptr<const ScatterModel>(const ModelSpec& spec, const SpectralState& state)> {
   std::vector<Parameter> parameters;
   bool reciprocal;  // claims f(out, in) = f(in, out)
-  // Specs that the conformance tests run, chosen to reach the corners of the parameter space.
+  // Specs that the conformance tests run, chosen to reach the corners of the parameter space. Data that a text names
+  // are the tests' to supply.
   std::vector<ModelSpec> (*examples)();
 };
 

@@ -33,8 +33,8 @@
 #include "radiometry/live_path.h"
 #include "radiometry/path_generator.h"
 #include "radiometry/sources/source.h"
-#include "sqt/fit.h"
-#include "sqt/scattered.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/scattered.h"
 
 namespace suite {
 namespace {
