@@ -14,7 +14,7 @@ struct ScenePrepOptions {
   std::vector<std::string> search, mute, compress, settings;
   bool repair = false, quick = false, force = false;
   bool strict = false, list_issues = false, list_models = false, list_phases = false, list_temperatures = false,
-       summary = false;
+       list_importers = false, summary = false;
 };
 
 AppInfo scene_prep_info();

@@ -17,7 +17,7 @@
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
 #include "formats/scene_hdf/scene_hdf.h"
-#include "formats/scene_text/scene_text.h"
+#include "importers.h"
 #include "mesh/check.h"
 #include "optics/phase_function.h"
 #include "page/page.h"
@@ -41,7 +41,7 @@ void list_issues() {
 // The tables of kinds that were asked for; nothing when none was.
 std::string lists(const ScenePrepOptions& o) {
   return (o.list_models ? models().list() : "") + (o.list_phases ? phases().list() : "") +
-         (o.list_temperatures ? temperature_models().list() : "");
+         (o.list_temperatures ? temperature_models().list() : "") + (o.list_importers ? importers().list() : "");
 }
 
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
@@ -81,7 +81,7 @@ bool up_to_date(const ScenePrepOptions& o) {
       return read_provenance(o.output);
     }();
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
-           inputs_unchanged(o.input, {o.search, {}}, p.inputs);
+           inputs_unchanged(o.input, o.search, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
@@ -143,7 +143,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = read_scene_text(o.input, {o.search, o.settings}, report);
+  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -157,7 +157,8 @@ int prepare(const ScenePrepOptions& o) {
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (report.ok() && !o.output.empty()) {
-    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output, compression);
+    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft.inputs), draft.inputs}, o.output,
+                compression);
     steps.done("write");
   }
   if (!o.report.empty() && o.report != "-") steps.write(o, report);

@@ -126,7 +126,7 @@ std::optional<Curve> Reader::relative_index(const Params& p) {
 
 VoxelData Reader::read_voxel_input(const Params& p) {
   VoxelData data = read_voxels(input(p));
-  for (const std::string& raw : data.raw_files) companion(p, raw);
+  for (const std::string& raw : data.raw_files) inputs_.add_companion(p.as_text(), raw);
   return data;
 }
 
