@@ -1,6 +1,7 @@
 // Filling and reducing one tree; see paper_fit.h.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/error.h"
 #include "sqt_fit/paper_fit.h"
@@ -33,97 +34,110 @@ void Builder::insert(Dir in, double value) {
   ++count_[cell];
 }
 
-std::vector<PaperLeaf> Builder::reduce(double threshold) const {
-  // Average: one value per cell of the full partition.
-  std::vector<double> value(sum_.size());
-  std::vector<uint8_t> state(sum_.size(), kAbsent);
-  negative_ = 0;
-  for (size_t i = 0; i < sum_.size(); ++i)
-    if (count_[i]) {
-      value[i] = sum_[i] / count_[i];
-      if (value[i] < 0) ++negative_, value[i] = 0;
-      state[i] = kLeaf;
-    }
-  double level = 0, weight = 0;
-  for (size_t i = 0; i < sum_.size(); ++i)
-    if (count_[i]) level += value[i], weight += 1;
-  level = weight > 0 ? level / weight : 0;
-  std::vector<std::vector<uint8_t>> states(static_cast<size_t>(order_) + 1);
-  std::vector<std::vector<double>> values(static_cast<size_t>(order_) + 1);
-  states[static_cast<size_t>(order_)] = std::move(state);
-  values[static_cast<size_t>(order_)] = std::move(value);
-  auto outside = [&](CellId id) { return domain_ == Domain::hemisphere && below_horizon(id); };
+namespace {
 
-  // From the finest order upwards: a parent with an empty child takes its children in; a family of similar leaves too.
-  for (int order = order_ - 1; order >= 0; --order) {
-    const auto& below = states[static_cast<size_t>(order) + 1];
-    const auto& below_value = values[static_cast<size_t>(order) + 1];
-    auto& here = states[static_cast<size_t>(order)];
-    auto& here_value = values[static_cast<size_t>(order)];
-    here.assign(cell_count(order), kAbsent);
-    here_value.assign(cell_count(order), 0);
-    for (uint32_t p = 0; p < cell_count(order); ++p) {
-      int leaves = 0, splits = 0, needed = 0;
-      double low = INFINITY, high = -INFINITY, sum = 0;
-      for (uint32_t k = 0; k < 4; ++k) {
-        const uint32_t c = 4 * p + k;
-        if (outside(CellId::of(order + 1, c))) continue;
-        ++needed;
-        if (below[c] == kSplit) ++splits;
-        if (below[c] != kLeaf) continue;
-        ++leaves;
-        low = std::min(low, below_value[c]), high = std::max(high, below_value[c]), sum += below_value[c];
-      }
-      if (leaves + splits == 0) continue;
-      const double mean = leaves ? sum / leaves : 0;
-      const bool empty_child = leaves + splits < needed && splits == 0;
-      const bool similar = splits == 0 && leaves == needed && high - low <= threshold * level;
-      if (empty_child || similar) {
-        here[p] = kLeaf;
-        here_value[p] = mean;
-        for (uint32_t k = 0; k < 4; ++k) states[static_cast<size_t>(order) + 1][4 * p + k] = kAbsent;
-        continue;
-      }
-      here[p] = kSplit;
-      if (leaves + splits == needed) continue;
-      // Some child is split, another empty: the empty one takes the mean of its siblings that are leaves, or of all
-      // leaves below the split ones; there is no smaller partition in which it could be left out.
-      double total = sum;
-      int n = leaves;
-      if (!n)
-        for (uint32_t k = 0; k < 4; ++k)
-          if (below[4 * p + k] == kSplit) total += below_value[4 * p + k], ++n;
-      for (uint32_t k = 0; k < 4; ++k) {
-        const uint32_t c = 4 * p + k;
-        if (below[c] == kAbsent && !outside(CellId::of(order + 1, c))) {
-          states[static_cast<size_t>(order) + 1][c] = kLeaf;
-          values[static_cast<size_t>(order) + 1][c] = total / n;
-        }
-      }
+// The cells of all orders, each absent, a leaf with a value, or split.
+class Pyramid {
+ public:
+  // outside: whether a cell does not count.
+  Pyramid(int order, std::function<bool(CellId)> outside)
+      : states_(static_cast<size_t>(order) + 1), values_(states_.size()), outside_(std::move(outside)) {
+    for (size_t o = 0; o < states_.size(); ++o) {
+      states_[o].assign(cell_count(static_cast<int>(o)), kAbsent);
+      values_[o].assign(states_[o].size(), 0);
     }
-    // The value of a split cell is the mean below it, for the rule above.
+  }
+  void set_leaf(size_t order, size_t cell, double value) { states_[order][cell] = kLeaf, values_[order][cell] = value; }
+  // From the level below: a parent with an empty child takes its children in; a family that differs by `similar` at
+  // most too.
+  void take_in(int order, double similar) {
+    for (uint32_t p = 0; p < cell_count(order); ++p) take_in(static_cast<size_t>(order), p, similar);
+    // The value of a split cell is the mean below it, for the rule about empty children.
+    auto& here = values_[static_cast<size_t>(order)];
+    const auto& below = states_[static_cast<size_t>(order) + 1];
     for (uint32_t p = 0; p < cell_count(order); ++p)
-      if (here[p] == kSplit) {
+      if (states_[static_cast<size_t>(order)][p] == kSplit) {
         int n = 0;
-        for (uint32_t k = 0; k < 4; ++k)
-          if (states[static_cast<size_t>(order) + 1][4 * p + k] != kAbsent)
-            here_value[p] += below_value[4 * p + k], ++n;
-        here_value[p] /= n;
+        for (uint32_t c = 4 * p; c < 4 * p + 4; ++c)
+          if (below[c] != kAbsent) here[p] += values_[static_cast<size_t>(order) + 1][c], ++n;
+        here[p] /= n;
       }
   }
+  // Depth-first: neighbours in the file are neighbours on the sphere.
+  std::vector<PaperLeaf> leaves() const {
+    std::vector<PaperLeaf> leaves;
+    for (size_t order = 0; order < states_.size(); ++order)
+      for (uint32_t i = 0; i < states_[order].size(); ++i)
+        if (states_[order][i] == kLeaf)
+          leaves.push_back({CellId::of(static_cast<int>(order), i), static_cast<float>(values_[order][i])});
+    std::sort(leaves.begin(), leaves.end(), [](const PaperLeaf& a, const PaperLeaf& b) {
+      return a.id.index() << (2 * (kMaxOrder - a.id.order())) < b.id.index() << (2 * (kMaxOrder - b.id.order()));
+    });
+    return leaves;
+  }
   // Faces nobody measured are zero.
-  for (uint32_t f = 0; f < 12; ++f)
-    if (states[0][f] == kAbsent && !outside(CellId::of(0, f))) states[0][f] = kLeaf;
-  std::vector<PaperLeaf> leaves;
-  for (int order = 0; order <= order_; ++order)
-    for (uint32_t i = 0; i < cell_count(order); ++i)
-      if (states[static_cast<size_t>(order)][i] == kLeaf)
-        leaves.push_back({CellId::of(order, i), static_cast<float>(values[static_cast<size_t>(order)][i])});
-  // Depth-first order: neighbours in the file are neighbours on the sphere.
-  std::sort(leaves.begin(), leaves.end(), [](const PaperLeaf& a, const PaperLeaf& b) {
-    return a.id.index() << (2 * (kMaxOrder - a.id.order())) < b.id.index() << (2 * (kMaxOrder - b.id.order()));
-  });
-  return leaves;
+  void fill_faces() {
+    for (uint32_t f = 0; f < 12; ++f)
+      if (states_[0][f] == kAbsent && !outside_(CellId::of(0, f))) states_[0][f] = kLeaf;
+  }
+
+ private:
+  void take_in(size_t order, uint32_t p, double similar) {
+    auto& below = states_[order + 1];
+    const auto& value = values_[order + 1];
+    const auto is_outside = [&](uint32_t c) { return outside_(CellId::of(static_cast<int>(order) + 1, c)); };
+    int leaves = 0, splits = 0, needed = 0;
+    double low = INFINITY, high = -INFINITY, sum = 0;
+    for (uint32_t c = 4 * p; c < 4 * p + 4; ++c) {
+      if (is_outside(c)) continue;
+      ++needed;
+      if (below[c] == kSplit) ++splits;
+      if (below[c] != kLeaf) continue;
+      ++leaves;
+      low = std::min(low, value[c]), high = std::max(high, value[c]), sum += value[c];
+    }
+    if (leaves + splits == 0) return;
+    const bool empty_child = leaves + splits < needed && splits == 0;
+    if (empty_child || (splits == 0 && leaves == needed && high - low <= similar)) {
+      set_leaf(order, p, leaves ? sum / leaves : 0);
+      for (uint32_t c = 4 * p; c < 4 * p + 4; ++c) below[c] = kAbsent;
+      return;
+    }
+    states_[order][p] = kSplit;
+    if (leaves + splits == needed) return;
+    // Some child is split, another empty: the empty one takes the mean of its siblings that are leaves, or of all
+    // leaves below the split ones; there is no smaller partition in which it could be left out.
+    double total = sum;
+    int n = leaves;
+    if (!n)
+      for (uint32_t c = 4 * p; c < 4 * p + 4; ++c)
+        if (below[c] == kSplit) total += value[c], ++n;
+    for (uint32_t c = 4 * p; c < 4 * p + 4; ++c)
+      if (below[c] == kAbsent && !is_outside(c)) set_leaf(order + 1, c, total / n);
+  }
+  std::vector<std::vector<uint8_t>> states_;  // [order][cell]
+  std::vector<std::vector<double>> values_;
+  std::function<bool(CellId)> outside_;
+};
+
+}  // namespace
+
+std::vector<PaperLeaf> Builder::reduce(double threshold) const {
+  Pyramid pyramid(order_, [this](CellId id) { return domain_ == Domain::hemisphere && below_horizon(id); });
+  // One value per cell of the full partition; the mean of all.
+  negative_ = 0;
+  double level = 0, weight = 0;
+  for (size_t i = 0; i < sum_.size(); ++i) {
+    if (!count_[i]) continue;
+    double value = sum_[i] / count_[i];
+    if (value < 0) ++negative_, value = 0;
+    pyramid.set_leaf(static_cast<size_t>(order_), i, value);
+    level += value, weight += 1;
+  }
+  level = weight > 0 ? level / weight : 0;
+  for (int order = order_ - 1; order >= 0; --order) pyramid.take_in(order, threshold * level);
+  pyramid.fill_faces();
+  return pyramid.leaves();
 }
 
 }  // namespace suite::sqt

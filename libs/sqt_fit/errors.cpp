@@ -36,48 +36,55 @@ double ring_pdf(double s) { return 1 / ((s + kFine) * kRange * 2 * kPi); }  // p
 
 Reference::Reference(const Function& function, size_t pairs, uint64_t seed, const std::function<void(double)>& progress)
     : function_(function), channels_(function.info().wavelength_um.size()) {
-  const Function::Info& info = function.info();
-  weighted_ = info.quantity == Quantity::bsdf;
-  const bool sphere = info.domain == Domain::sphere;
-  const double solid_angle = sphere ? 4 * kPi : 2 * kPi;
-  const SampleStream stream(seed, 77, 0);
+  weighted_ = function.info().quantity == Quantity::bsdf;
   pairs_.resize(pairs);
   value_.resize(pairs * channels_);
+  const SampleStream stream(seed, 77, 0);
   const size_t chunk = 4096;
   parallel_for(0, pairs, chunk, [&](size_t begin, size_t end) {
     std::vector<double> f(channels_);
-    for (size_t n = begin; n < end; ++n) {
-      const auto u = stream.draw(static_cast<uint32_t>(n), 0);
-      const auto w = stream.draw(static_cast<uint32_t>(n), 1);
-      Pair& p = pairs_[n];
-      p.out = weighted_ ? uniform_sphere({u[0] / 2, u[1]}) : Dir{0, 0, 1};
-      if (w[0] < 0.5) {
-        p.in = uniform_sphere({sphere ? u[2] : u[2] / 2, u[3]});
-      } else {
-        const double s = near_height(u[2]), r = std::sqrt(s * (2 - s));
-        const Dir h{r * std::cos(2 * kPi * u[3]), r * std::sin(2 * kPi * u[3]), 1 - s};
-        p.in = h * (2 * dot(h, p.out)) - p.out;
-        if (sphere && w[0] >= 0.75) p.in.z = -p.in.z;
-      }
-      p.weight = 0;
-      if (!sphere && !(p.in.z > 0)) continue;
-      Dir folded = p.in;
-      if (sphere) folded.z = std::fabs(folded.z);  // both sides share the near density
-      const Dir h = normalized(folded + p.out);
-      double near = near_pdf(1 - h.z) / (4 * std::max(1e-9, dot(h, p.out)));
-      if (sphere) near = folded.z == 0 ? 0 : 0.5 * near;
-      if (sphere && w[0] >= 0.5 && w[0] < 0.75 && !(p.in.z > 0)) continue;
-      if (sphere && w[0] >= 0.75 && !(p.in.z < 0)) continue;
-      function_.value(p.out, p.in, f);
-      bool valid = true;
-      for (size_t c = 0; c < channels_; ++c) valid &= std::isfinite(f[c]);
-      if (!valid) continue;
-      p.weight = static_cast<float>(1 / solid_angle / (0.5 / solid_angle + 0.5 * near));
-      p.narrow = !weighted_ || (p.out.z > std::cos(kLimit) && std::fabs(p.in.z) > std::cos(kLimit));
-      for (size_t c = 0; c < channels_; ++c) value_[n * channels_ + c] = static_cast<float>(f[c]);
-    }
+    for (size_t n = begin; n < end; ++n)
+      ask(pairs_[n], stream.draw(static_cast<uint32_t>(n), 0), stream.draw(static_cast<uint32_t>(n), 1)[0], f,
+          &value_[n * channels_]);
     if (progress) progress(static_cast<double>(end - begin) / static_cast<double>(pairs));
   });
+  find_totals();
+  find_peaks();
+  find_unphysical();
+}
+
+// Draws a pair from u and w, half of them near the mirror direction, and asks the function there.
+void Reference::ask(Pair& p, const std::array<double, 4>& u, double w, std::span<double> f, float* value) const {
+  const bool sphere = function_.info().domain == Domain::sphere;
+  const double solid_angle = sphere ? 4 * kPi : 2 * kPi;
+  p.out = weighted_ ? uniform_sphere({u[0] / 2, u[1]}) : Dir{0, 0, 1};
+  if (w < 0.5) {
+    p.in = uniform_sphere({sphere ? u[2] : u[2] / 2, u[3]});
+  } else {
+    const double s = near_height(u[2]), r = std::sqrt(s * (2 - s));
+    const Dir h{r * std::cos(2 * kPi * u[3]), r * std::sin(2 * kPi * u[3]), 1 - s};
+    p.in = h * (2 * dot(h, p.out)) - p.out;
+    if (sphere && w >= 0.75) p.in.z = -p.in.z;
+  }
+  p.weight = 0;
+  if (!sphere && !(p.in.z > 0)) return;
+  Dir folded = p.in;
+  if (sphere) folded.z = std::fabs(folded.z);  // both sides share the near density
+  const Dir h = normalized(folded + p.out);
+  double near = near_pdf(1 - h.z) / (4 * std::max(1e-9, dot(h, p.out)));
+  if (sphere) near = folded.z == 0 ? 0 : 0.5 * near;
+  if (sphere && w >= 0.5 && w < 0.75 && !(p.in.z > 0)) return;
+  if (sphere && w >= 0.75 && !(p.in.z < 0)) return;
+  function_.value(p.out, p.in, f);
+  bool valid = true;
+  for (size_t c = 0; c < channels_; ++c) valid &= std::isfinite(f[c]);
+  if (!valid) return;
+  p.weight = static_cast<float>(1 / solid_angle / (0.5 / solid_angle + 0.5 * near));
+  p.narrow = !weighted_ || (p.out.z > std::cos(kLimit) && std::fabs(p.in.z) > std::cos(kLimit));
+  for (size_t c = 0; c < channels_; ++c) value[c] = static_cast<float>(f[c]);
+}
+
+void Reference::find_totals() {
   if (weighted_)
     for (int k = 0; k <= 8; ++k) theta_.push_back(k * 10 * kDegree);
   else
@@ -93,10 +100,12 @@ Reference::Reference(const Function& function, size_t pairs, uint64_t seed, cons
     total_.insert(total_.end(), W.begin(), W.end());
     for (const double w : W) findings_.largest_total = std::max(findings_.largest_total, w);
   }
-  find_peaks();
-  std::vector<double> f(channels_), back(channels_);
+}
+
+void Reference::find_unphysical() {
+  std::vector<double> back(channels_);
   double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
-  for (size_t n = 0; n < std::min<size_t>(pairs, 50000); ++n) {
+  for (size_t n = 0; n < std::min<size_t>(pairs_.size(), 50000); ++n) {
     const Pair& p = pairs_[n];
     if (p.weight == 0) {
       invalid += p.in.z > 0;
@@ -144,11 +153,11 @@ std::vector<double> Reference::integrate(const std::function<void(size_t, Dir, D
 }
 
 Reference::Brief Reference::brief(const Bundle& bundle) const {
-  struct Sums {
+  struct Part {
     double error = 0, data = 0, square = 0, data_square = 0;
   };
   const size_t chunk = 8192, chunks = (pairs_.size() + chunk - 1) / chunk;
-  std::vector<Sums> parts(chunks);
+  std::vector<Part> parts(chunks);
   parallel_for(0, chunks, 1, [&](size_t begin, size_t end) {
     std::vector<double> g(channels_);
     for (size_t k = begin; k < end; ++k)
@@ -166,8 +175,8 @@ Reference::Brief Reference::brief(const Bundle& bundle) const {
         }
       }
   });
-  Sums all;
-  for (const Sums& s : parts)
+  Part all;
+  for (const Part& s : parts)
     all.error += s.error, all.data += s.data, all.square += s.square, all.data_square += s.data_square;
   return {all.data > 0 ? all.error / all.data : 0, all.data_square > 0 ? std::sqrt(all.square / all.data_square) : 0};
 }
@@ -214,37 +223,70 @@ std::array<double, 3> Reference::least_peaks(const Bundle& bundle) const {
   return least;
 }
 
+struct Reference::Sums {
+  double l1 = 0, f = 0, square = 0, f_square = 0, plain = 0, weight = 0, recip = 0, g = 0;
+};
+
+// Of a chunk of pairs, one per channel.
+void Reference::add_pairs(const Bundle& bundle, size_t begin, size_t end, std::span<Sums> sums) const {
+  std::vector<double> g(channels_), back(channels_);
+  for (size_t n = begin; n < end; ++n) {
+    const Pair& p = pairs_[n];
+    if (p.weight == 0) continue;
+    bundle.value(p.out, p.in, g);
+    const bool swap = p.narrow && weighted_ && p.in.z > 0 && n % 8 == 0;
+    if (swap) bundle.value(p.in, p.out, back);
+    const double cosine = weighted_ ? std::fabs(p.in.z) : 1.0;
+    for (size_t c = 0; c < channels_; ++c) {
+      Sums& s = sums[c];
+      const double f = value_[n * channels_ + c], e = g[c] - f;
+      s.plain += p.weight * e * e;
+      s.weight += p.weight;
+      if (!p.narrow) continue;
+      s.l1 += p.weight * cosine * std::fabs(e);
+      s.f += p.weight * cosine * f;
+      s.square += p.weight * e * e * cosine * cosine;
+      s.f_square += p.weight * f * f * cosine * cosine;
+      if (swap) s.recip += p.weight * std::fabs(g[c] - back[c]), s.g += p.weight * (g[c] + back[c]);
+    }
+  }
+}
+
+// Totals, peaks and sampling weights of a channel.
+void Reference::measure_channel(const Bundle& bundle, size_t c, ErrorFigures& out) const {
+  for (size_t t = 0; t < theta_.size(); ++t) {
+    const Dir view = dir_from_angles(theta_[t], 0.3);
+    const double W = integrate(
+        [&](size_t point, Dir o, Dir i, std::span<double> v) {
+          std::fill(v.begin(), v.end(), 0.0);
+          if (valid_[t * kPoints + point]) v[c] = bundle.value(o, i, c);
+        },
+        view)[c];
+    const double expected = total_[t * channels_ + c];
+    if (expected > 0) out.total_error = std::max(out.total_error, std::fabs(W - expected) / expected);
+    const auto dirac = bundle.delta(view, c);
+    const double whole = bundle.total(view, c) - (dirac ? dirac->total : 0);
+    const SampleStream stream(5, t, c);
+    for (uint32_t n = 0; n < 2000 && whole > 0; ++n) {
+      const auto u = stream.draw(n, 0);
+      const auto in = bundle.sample(view, {u[0], u[1]}, u[2], c);
+      if (!in) continue;
+      const double p = bundle.pdf(view, *in, c);
+      if (p > 0) out.max_weight = std::max(out.max_weight, bundle.eval(view, *in, c) / p / whole);
+    }
+  }
+  const std::array<double, 3> ratio = peaks(bundle, c);
+  out.peak_ratio_20 = ratio[0], out.peak_ratio_45 = ratio[1], out.peak_ratio_70 = ratio[2];
+}
+
 std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
   const size_t count = channels_ + 1;
   std::vector<ErrorFigures> out(count);
-  struct Sums {
-    double l1 = 0, f = 0, square = 0, f_square = 0, plain = 0, weight = 0, recip = 0, g = 0;
-  };
   const size_t chunk = 8192, chunks = (pairs_.size() + chunk - 1) / chunk;
   std::vector<Sums> parts(chunks * channels_);
   parallel_for(0, chunks, 1, [&](size_t begin, size_t end) {
-    std::vector<double> g(channels_), back(channels_);
     for (size_t k = begin; k < end; ++k)
-      for (size_t n = k * chunk; n < std::min(pairs_.size(), (k + 1) * chunk); ++n) {
-        const Pair& p = pairs_[n];
-        if (p.weight == 0) continue;
-        bundle.value(p.out, p.in, g);
-        const bool swap = p.narrow && weighted_ && p.in.z > 0 && n % 8 == 0;
-        if (swap) bundle.value(p.in, p.out, back);
-        const double cosine = weighted_ ? std::fabs(p.in.z) : 1.0;
-        for (size_t c = 0; c < channels_; ++c) {
-          Sums& s = parts[k * channels_ + c];
-          const double f = value_[n * channels_ + c], e = g[c] - f;
-          s.plain += p.weight * e * e;
-          s.weight += p.weight;
-          if (!p.narrow) continue;
-          s.l1 += p.weight * cosine * std::fabs(e);
-          s.f += p.weight * cosine * f;
-          s.square += p.weight * e * e * cosine * cosine;
-          s.f_square += p.weight * f * f * cosine * cosine;
-          if (swap) s.recip += p.weight * std::fabs(g[c] - back[c]), s.g += p.weight * (g[c] + back[c]);
-        }
-      }
+      add_pairs(bundle, k * chunk, std::min(pairs_.size(), (k + 1) * chunk), {&parts[k * channels_], channels_});
   });
   std::vector<Sums> sums(count);
   for (size_t i = 0; i < parts.size(); ++i)
@@ -261,33 +303,8 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
     out[c].rmse = s.weight > 0 ? std::sqrt(s.plain / s.weight) : 0;
     out[c].reciprocity_error = s.g > 0 ? s.recip / s.g : 0;
   }
-  // Totals, peaks and sampling weights, channel by channel.
   parallel_for(0, channels_, 1, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) {
-      for (size_t t = 0; t < theta_.size(); ++t) {
-        const Dir view = dir_from_angles(theta_[t], 0.3);
-        const double W = integrate(
-            [&](size_t point, Dir o, Dir i, std::span<double> v) {
-              std::fill(v.begin(), v.end(), 0.0);
-              if (valid_[t * kPoints + point]) v[c] = bundle.value(o, i, c);
-            },
-            view)[c];
-        const double expected = total_[t * channels_ + c];
-        if (expected > 0) out[c].total_error = std::max(out[c].total_error, std::fabs(W - expected) / expected);
-        const auto dirac = bundle.delta(view, c);
-        const double whole = bundle.total(view, c) - (dirac ? dirac->total : 0);
-        const SampleStream stream(5, t, c);
-        for (uint32_t n = 0; n < 2000 && whole > 0; ++n) {
-          const auto u = stream.draw(n, 0);
-          const auto in = bundle.sample(view, {u[0], u[1]}, u[2], c);
-          if (!in) continue;
-          const double p = bundle.pdf(view, *in, c);
-          if (p > 0) out[c].max_weight = std::max(out[c].max_weight, bundle.eval(view, *in, c) / p / whole);
-        }
-      }
-      const std::array<double, 3> ratio = peaks(bundle, c);
-      out[c].peak_ratio_20 = ratio[0], out[c].peak_ratio_45 = ratio[1], out[c].peak_ratio_70 = ratio[2];
-    }
+    for (size_t c = begin; c < end; ++c) measure_channel(bundle, c, out[c]);
   });
   ErrorFigures& all = out[channels_];
   auto farther = [](double a, double b) {

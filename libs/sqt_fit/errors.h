@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sqt/bundle.h"
@@ -73,7 +74,13 @@ class Reference {
     std::vector<double> peak;  // [channel], of the data
   };
   std::array<Plane, 3> planes_;
+  struct Sums;  // of squares and differences
+  void ask(Pair& pair, const std::array<double, 4>& u, double w, std::span<double> f, float* value) const;
+  void find_totals();
   void find_peaks();
+  void find_unphysical();
+  void add_pairs(const Bundle& bundle, size_t begin, size_t end, std::span<Sums> sums) const;
+  void measure_channel(const Bundle& bundle, size_t channel, ErrorFigures& out) const;
   Findings findings_;
   // Totals per channel; points where not every channel is finite do not count.
   std::vector<double> integrate(const std::function<void(size_t, Dir, Dir, std::span<double>)>& f, Dir out) const;

@@ -333,6 +333,9 @@ static void add_trees(std::vector<Case>& c) {
                },
                {"view zenith", "deg", 85, 89.9, 1.01},
                {}});
+}
+
+static void add_sampled_trees(std::vector<Case>& c) {
   c.push_back({"SQT",
                "lobe of width 0.02 (near a delta): draws against W",
                "identity E[w/pdf] = W",
@@ -356,6 +359,7 @@ std::vector<Case> optics_cases() {
   add_furnaces(c);
   add_grazing(c);
   add_trees(c);
+  add_sampled_trees(c);
   return c;
 }
 
