@@ -35,11 +35,6 @@ namespace suite {
 
 namespace {
 
-int list_sensors() {
-  for (const SensorRow& row : sensor_kinds()) std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
-  return 0;
-}
-
 int list_sources() {
   for (const SourceRow& row : source_kinds())
     std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
@@ -53,13 +48,9 @@ int list_truth() {
   return 0;
 }
 
-int list_models() {
-  for (const ModelRow& row : models()) {
-    std::printf("%-16s %s\n", row.name.c_str(), row.summary.c_str());
-    for (const ModelParameter& p : row.parameters)
-      std::printf("    %-18s %s [%s]%s\n", p.name.c_str(), p.summary.c_str(), p.unit.c_str(),
-                  p.required ? "" : ", optional");
-  }
+// A table of kinds.
+int print(const std::string& list) {
+  std::fputs(list.c_str(), stdout);
   return 0;
 }
 
@@ -211,18 +202,48 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
   }
 }
 
+// What was asked instead of a picture; nothing when one is wanted.
+std::optional<int> answer(const RenderOptions& o) {
+  if (o.list_sensors) return print(sensor_kinds().list());
+  if (o.list_sources) return list_sources();
+  if (o.list_truth) return list_truth();
+  if (o.list_models) return print(models().list());
+  if (!o.explain.empty()) return print(explain(o.explain));
+  return std::nullopt;
+}
+
+void check_usage(const Cli& cli, const RenderOptions& o) {
+  if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))
+    throw UsageError("--more wants a number from 0 to 2^30");
+  if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
+    throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
+  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state ||
+                           o.resume || cli.given("--more")))
+    throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
+}
+
+// Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
+void check_sensors(Simulation& sim, const Scene& scene) {
+  for (size_t s = 0; s < sim.sensors.size(); ++s)
+    for (const Task& task : sim.sensors[s]->tasks())
+      for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
+  note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors)));
+  for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
+  const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
+  for (const auto& sensor : sim.sensors) {
+    check_preview(*sensor, sim.output.preview_of(sensor->name()));
+    for (const std::string& truth : sensor->truth()) find_truth(truth);
+    choose_bins_of(*sensor, scene, standing);
+  }
+}
+
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
-  if (o.list_sensors) return list_sensors();
-  if (o.list_sources) return list_sources();
-  if (o.list_truth) return list_truth();
-  if (o.list_models) return list_models();
-  if (!o.explain.empty()) return std::fputs(explain(o.explain).c_str(), stdout), 0;
+  if (const auto code = answer(o)) return *code;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
-  if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))
-    throw UsageError("--more wants a number from 0 to 2^30");
+  check_usage(cli, o);
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
@@ -247,11 +268,6 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.kit_bytes = kit_bytes_of(o);
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
-  if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
-    throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
-  if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state ||
-                           o.resume || cli.given("--more")))
-    throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
   if (o.dry_run) return dry_run(sim, options);
   check_memory(sim, options);
 
@@ -259,17 +275,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   std::vector<std::shared_ptr<const LaterReads>> later;
   const auto scene = std::make_shared<Scene>(load_scenes(sim, o.load_all, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  for (size_t s = 0; s < sim.sensors.size(); ++s)
-    for (const Task& task : sim.sensors[s]->tasks())
-      for (const Capture& c : task.captures) check_motion(*scene, c.window.begin, c.window.end, sim.sensor_where[s]);
-  note("parts of the renderer:\n" + text_of(features_of(*scene, sim.sources, sim.sensors)));
-  for (const std::string& sentence : tell_sources(sim.sources, *scene, sim.sensors)) note(sentence);
-  const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, *scene);
-  for (const auto& sensor : sim.sensors) {
-    check_preview(*sensor, sim.output.preview_of(sensor->name()));
-    for (const std::string& truth : sensor->truth()) find_truth(truth);
-    choose_bins_of(*sensor, *scene, standing);
-  }
+  check_sensors(sim, *scene);
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);

@@ -40,7 +40,10 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.flag("--no-crossing-check", o.quick, "do not look for triangles that cross each other");
   cli.flag("--force", o.force, "prepare again even when inputs, options and version are unchanged");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
+  cli.flag("--list-importers", o.list_importers, "print what scenes can be made from");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");
+  cli.flag("--list-phases", o.list_phases, "print the phase functions and their parameters");
+  cli.flag("--list-temperatures", o.list_temperatures, "print the temperature models and their parameters");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out", "FEATURE");
   cli.flag("--summary", o.summary, "print what a prepared scene holds");
   cli.option("--raycast", o.raycast,

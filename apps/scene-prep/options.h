@@ -13,7 +13,8 @@ struct ScenePrepOptions {
   long long pixels = 800;
   std::vector<std::string> search, mute, compress, settings;
   bool repair = false, quick = false, force = false;
-  bool strict = false, list_issues = false, list_models = false, summary = false;
+  bool strict = false, list_issues = false, list_models = false, list_phases = false, list_temperatures = false,
+       list_importers = false, summary = false;
 };
 
 AppInfo scene_prep_info();

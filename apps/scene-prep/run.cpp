@@ -17,14 +17,15 @@
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
 #include "formats/scene_hdf/scene_hdf.h"
-#include "formats/scene_text/scene_text.h"
+#include "importers.h"
 #include "mesh/check.h"
-#include "optics/models.h"
+#include "optics/phase_function.h"
 #include "page/page.h"
 #include "scene/bake.h"
 #include "scene/issues.h"
 #include "scene/summary.h"
 #include "surface/quick_look.h"
+#include "thermal/models.h"
 
 namespace suite {
 
@@ -37,13 +38,10 @@ void list_issues() {
     std::printf("%s  %-7s  %s\n", k.code.c_str(), to_text(k.severity), k.summary.c_str());
 }
 
-void list_models() {
-  for (const ModelRow& row : models()) {
-    std::printf("%s: %s\n", row.name.c_str(), row.summary.c_str());
-    for (const ModelParameter& p : row.parameters)
-      std::printf("    %s [%s]: %s%s\n", p.name.c_str(), p.unit.c_str(), p.summary.c_str(),
-                  p.required ? "" : " (optional)");
-  }
+// The tables of kinds that were asked for; nothing when none was.
+std::string lists(const ScenePrepOptions& o) {
+  return (o.list_models ? models().list() : "") + (o.list_phases ? phases().list() : "") +
+         (o.list_temperatures ? temperature_models().list() : "") + (o.list_importers ? importers().list() : "");
 }
 
 // The arguments that decide the result, without folders, so that the same work elsewhere gives the same bytes.
@@ -83,7 +81,7 @@ bool up_to_date(const ScenePrepOptions& o) {
       return read_provenance(o.output);
     }();
     return p.generator == kGenerator && p.arguments == canonical_arguments(o) &&
-           inputs_unchanged(o.input, {o.search, {}}, p.inputs);
+           inputs_unchanged(o.input, o.search, p.inputs);
   } catch (const Error&) {
     return false;  // whatever stands there is replaced
   }
@@ -145,7 +143,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = read_scene_text(o.input, {o.search, o.settings}, report);
+  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -159,7 +157,8 @@ int prepare(const ScenePrepOptions& o) {
   write_report(o, report);
   if (o.report != "-") std::fputs(report.text().c_str(), report.ok() ? stdout : stderr);
   if (report.ok() && !o.output.empty()) {
-    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft), draft.inputs}, o.output, compression);
+    write_scene(scene, {kGenerator, canonical_arguments(o), input_hash(draft.inputs), draft.inputs}, o.output,
+                compression);
     steps.done("write");
   }
   if (!o.report.empty() && o.report != "-") steps.write(o, report);
@@ -260,7 +259,7 @@ int inspect(const ScenePrepOptions& o) {
 
 int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
-  if (o.list_models) return list_models(), 0;
+  if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
   if (o.input.empty()) throw UsageError("an input is needed");
   const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();

@@ -7,9 +7,9 @@
 #include "base/files.h"
 #include "formats/measured/measured.h"
 #include "optics/model_function.h"
-#include "sqt/narrow_lobe.h"
-#include "sqt/scattered.h"
-#include "sqt/swapped.h"
+#include "sqt_fit/narrow_lobe.h"
+#include "sqt_fit/scattered.h"
+#include "sqt_fit/swapped.h"
 
 namespace suite {
 

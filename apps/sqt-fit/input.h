@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "options.h"
 #include "sqt/function.h"
 

@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "input.h"
 #include "page/page.h"
-#include "sqt/fit.h"
+#include "sqt_fit/fit.h"
 
 namespace suite {
 

@@ -8,7 +8,7 @@
 #include "base/files.h"
 #include "base/text_lines.h"
 #include "formats/brdf_csv/brdf_csv.h"
-#include "sqt/symmetry.h"
+#include "sqt_fit/symmetry.h"
 
 namespace suite {
 

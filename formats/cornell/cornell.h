@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "sqt/function.h"
+#include "sqt_fit/samples.h"
 
 namespace suite {
 

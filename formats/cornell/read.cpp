@@ -5,7 +5,7 @@
 #include "base/files.h"
 #include "base/text_lines.h"
 #include "formats/cornell/cornell.h"
-#include "sqt/symmetry.h"
+#include "sqt_fit/symmetry.h"
 
 namespace suite {
 

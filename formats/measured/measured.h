@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "sqt/function.h"
+#include "sqt_fit/samples.h"
 
 namespace suite {
 

@@ -4,7 +4,7 @@
 #include "base/files.h"
 #include "base/text_lines.h"
 #include "formats/samples/samples.h"
-#include "sqt/symmetry.h"
+#include "sqt_fit/symmetry.h"
 
 namespace suite {
 

@@ -1,11 +1,12 @@
 // Names, numbers and helpers that reader and writer share.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
 #include "formats/hdf5/h5.h"
 #include "formats/scene_hdf/needs.h"
-#include "scene/scene.h"
+#include "scene/tables.h"
 
 namespace suite {
 
@@ -22,6 +23,14 @@ auto pick(const std::vector<Row>& rows, Get get) {
   out.reserve(rows.size());
   for (const Row& r : rows) out.push_back(get(r));
   return out;
+}
+
+// 3 x 4, row-major.
+inline std::array<double, 12> numbers_of(const Affine3& t) {
+  return {t.a[0], t.a[1], t.a[2], t.b.x, t.a[3], t.a[4], t.a[5], t.b.y, t.a[6], t.a[7], t.a[8], t.b.z};
+}
+inline Affine3 transform_of(const double* t) {
+  return {{t[0], t[1], t[2], t[4], t[5], t[6], t[8], t[9], t[10]}, {t[3], t[7], t[11]}};
 }
 
 // Hands out consecutive stretches of one dataset; Error when it is shorter or longer than what the table declares.
@@ -65,7 +74,8 @@ class Stretch {
 struct Loading {
   SceneNeeds needs;
   LoadReport report;
-  bool conducts = false;  // some temperature model asks for layers
+  bool conducts = false;               // some temperature model asks for layers
+  std::vector<uint32_t> property_map;  // of each stored property map, its number among those read; kNone = left out
 
   bool sees(double low_um, double high_um) const;  // some window overlaps; true without windows
   // Whether a blackbody at this temperature shows in some window.
@@ -85,14 +95,21 @@ void drop_unseen(Scene& scene, Loading& loading);
 void write_curves(h5::Writer& w, const std::string& table, const std::vector<Curve>& curves);
 std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
 
-void write_media(h5::Writer& w, const Scene& scene);
-void read_media(h5::Reader& r, Scene& scene);
-void write_tracks(h5::Writer& w, const Scene& scene);
-void read_tracks(h5::Reader& r, Scene& scene, Loading& loading);
-
-void write_property_maps(h5::Writer& w, const Scene& scene);
-void read_property_maps(h5::Reader& r, Scene& scene, Loading& loading);
-void write_temperatures(h5::Writer& w, const Scene& scene);
-void read_temperatures(h5::Reader& r, Scene& scene, Loading& loading);
+// Tables whose descriptor (scene/tables.h) has no columns are stored in a way of their own.
+#define SUITE_OWN_WAY(Table)                                  \
+  void write_table(h5::Writer& w, const Scene& scene, Table); \
+  void read_table(h5::Reader& r, Scene& scene, Loading& loading, Table)
+SUITE_OWN_WAY(GroupTable);
+SUITE_OWN_WAY(TagTable);
+SUITE_OWN_WAY(TrackTable);
+SUITE_OWN_WAY(MaterialTable);
+SUITE_OWN_WAY(PropertyMapTable);
+SUITE_OWN_WAY(MediumTable);  // and which of them is ambient, and those behind and in front of materials
+SUITE_OWN_WAY(GridTable);
+SUITE_OWN_WAY(TemperatureTable);
+#undef SUITE_OWN_WAY
+// What the materials are decides what is read of the meshes, so they are read after everything else.
+void write_table(h5::Writer& w, const Scene& scene, MeshTable);
+void read_meshes(h5::Reader& r, const std::string& path, Scene& scene, Loading& loading);
 
 }  // namespace suite

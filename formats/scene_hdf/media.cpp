@@ -1,4 +1,4 @@
-// Media, voxel grids and volumes of a prepared scene.
+// Media and voxel grids of a prepared scene.
 #include "formats/scene_hdf/internal.h"
 
 namespace suite {
@@ -6,13 +6,6 @@ namespace suite {
 namespace {
 
 constexpr size_t kCurves = 3;  // of every medium: absorption, scattering, index
-
-std::array<double, 12> numbers_of(const Affine3& t) {
-  return {t.a[0], t.a[1], t.a[2], t.b.x, t.a[3], t.a[4], t.a[5], t.b.y, t.a[6], t.a[7], t.a[8], t.b.z};
-}
-Affine3 transform_of(const double* t) {
-  return {{t[0], t[1], t[2], t[4], t[5], t[6], t[8], t[9], t[10]}, {t[3], t[7], t[11]}};
-}
 
 void write_phases(h5::Writer& w, const std::vector<Medium>& media) {
   std::vector<uint32_t> number_of, curve_of, text_of;
@@ -60,33 +53,9 @@ void read_phases(h5::Reader& r, std::vector<Medium>& media) {
   for (size_t k = 0; k < curve_of.size(); ++k) media[curve_of[k]].phase.curves[curve_name[k]] = curves[k];
 }
 
-void read_grids(h5::Reader& r, Scene& s) {
-  const std::vector<std::string> names = r.get_names("/grids/name");
-  const auto n = static_cast<long long>(names.size());
-  const auto size = r.get<uint32_t>("/grids/size", "1", 6, n);
-  const auto frame = r.get<double>("/grids/to_local", "m", 12, n);
-  Stretch<uint32_t> media(r, "/grids/media", "1");
-  Stretch<float> density(r, "/grids/density", "1"), temperature(r, "/grids/temperature", "K");
-  Stretch<uint8_t> kind(r, "/grids/kind", "1");
-  for (size_t k = 0; k < names.size(); ++k) {
-    VoxelGrid g;
-    const uint32_t* z = &size[6 * k];
-    g.name = names[k];
-    g.cells = {z[0], z[1], z[2]};
-    if (uint64_t{z[0]} * z[1] > (uint64_t{1} << 40) || z[2] > (1u << 20)) r.fail("grid '" + g.name + "' is too large");
-    g.to_local = transform_of(&frame[12 * k]);
-    g.media = media.next(z[3]);
-    g.density = density.next(g.size());
-    if (z[4]) g.kind = kind.next(g.size());
-    if (z[5]) g.temperature = temperature.next(g.size());
-    s.grids.push_back(std::move(g));
-  }
-  media.finish(), density.finish(), kind.finish(), temperature.finish();
-}
-
 }  // namespace
 
-void write_media(h5::Writer& w, const Scene& s) {
+void write_table(h5::Writer& w, const Scene& s, MediumTable) {
   w.put_names("/volume_media/id", pick(s.media, [](const Medium& m) { return m.id; }));
   w.put_names("/volume_media/description", pick(s.media, [](const Medium& m) { return m.description; }));
   w.put_names("/volume_media/phase", pick(s.media, [](const Medium& m) { return m.phase.model; }));
@@ -99,40 +68,9 @@ void write_media(h5::Writer& w, const Scene& s) {
   w.put("/volume_media/ambient", std::vector<uint32_t>{s.ambient}, "1");
   w.put("/materials/inside", pick(s.materials, [](const Material& m) { return m.inside; }), "1");
   w.put("/materials/outside", pick(s.materials, [](const Material& m) { return m.outside; }), "1");
-
-  std::vector<uint32_t> size, media;
-  std::vector<double> frame, place;
-  size_t cells = 0, kinds = 0, temperatures = 0;
-  for (const VoxelGrid& g : s.grids) {
-    size.insert(size.end(), {g.cells[0], g.cells[1], g.cells[2], static_cast<uint32_t>(g.media.size()), !g.kind.empty(),
-                             !g.temperature.empty()});
-    const auto t = numbers_of(g.to_local);
-    frame.insert(frame.end(), t.begin(), t.end());
-    media.insert(media.end(), g.media.begin(), g.media.end());
-    cells += g.density.size(), kinds += g.kind.size(), temperatures += g.temperature.size();
-  }
-  w.put_names("/grids/name", pick(s.grids, [](const VoxelGrid& g) { return g.name; }));
-  w.put("/grids/size", size, "1", 6);
-  w.put("/grids/to_local", frame, "m", 12);
-  w.put("/grids/media", media, "1");
-  auto density = w.column("/grids/density", h5::native<float>(), cells, "1");
-  auto kind = w.column("/grids/kind", h5::native<uint8_t>(), kinds, "1");
-  auto temperature = w.column("/grids/temperature", h5::native<float>(), temperatures, "K");
-  for (const VoxelGrid& g : s.grids) {
-    density.append(std::span<const float>(g.density));
-    kind.append(std::span<const uint8_t>(g.kind));
-    temperature.append(std::span<const float>(g.temperature));
-  }
-  for (const Volume& v : s.volumes) {
-    const auto t = numbers_of(v.to_world);
-    place.insert(place.end(), t.begin(), t.end());
-  }
-  w.put("/volumes/grid", pick(s.volumes, [](const Volume& v) { return v.grid; }), "1");
-  w.put("/volumes/to_world", place, "m", 12);
-  w.put("/volumes/track", pick(s.volumes, [](const Volume& v) { return v.track; }), "1");
 }
 
-void read_media(h5::Reader& r, Scene& s) {
+void read_table(h5::Reader& r, Scene& s, Loading&, MediumTable) {
   const std::vector<std::string> ids = r.get_names("/volume_media/id");
   const auto n = static_cast<long long>(ids.size());
   const std::vector<std::string> description = r.get_names("/volume_media/description", n),
@@ -155,11 +93,56 @@ void read_media(h5::Reader& r, Scene& s) {
              outside = r.get<uint32_t>("/materials/outside", "1", 1, materials);
   for (size_t k = 0; k < s.materials.size(); ++k)
     s.materials[k].inside = inside[k], s.materials[k].outside = outside[k];
-  read_grids(r, s);
-  const auto grid = r.get<uint32_t>("/volumes/grid", "1");
-  const auto place = r.get<double>("/volumes/to_world", "m", 12, static_cast<long long>(grid.size()));
-  const auto track = r.get<uint32_t>("/volumes/track", "1", 1, static_cast<long long>(grid.size()));
-  for (size_t k = 0; k < grid.size(); ++k) s.volumes.push_back({grid[k], transform_of(&place[12 * k]), track[k]});
+}
+
+void write_table(h5::Writer& w, const Scene& s, GridTable) {
+  std::vector<uint32_t> size, media;
+  std::vector<double> frame;
+  size_t cells = 0, kinds = 0, temperatures = 0;
+  for (const VoxelGrid& g : s.grids) {
+    size.insert(size.end(), {g.cells[0], g.cells[1], g.cells[2], static_cast<uint32_t>(g.media.size()), !g.kind.empty(),
+                             !g.temperature.empty()});
+    const auto t = numbers_of(g.to_local);
+    frame.insert(frame.end(), t.begin(), t.end());
+    media.insert(media.end(), g.media.begin(), g.media.end());
+    cells += g.density.size(), kinds += g.kind.size(), temperatures += g.temperature.size();
+  }
+  w.put_names("/grids/name", pick(s.grids, [](const VoxelGrid& g) { return g.name; }));
+  w.put("/grids/size", size, "1", 6);
+  w.put("/grids/to_local", frame, "m", 12);
+  w.put("/grids/media", media, "1");
+  auto density = w.column("/grids/density", h5::native<float>(), cells, "1");
+  auto kind = w.column("/grids/kind", h5::native<uint8_t>(), kinds, "1");
+  auto temperature = w.column("/grids/temperature", h5::native<float>(), temperatures, "K");
+  for (const VoxelGrid& g : s.grids) {
+    density.append(std::span<const float>(g.density));
+    kind.append(std::span<const uint8_t>(g.kind));
+    temperature.append(std::span<const float>(g.temperature));
+  }
+}
+
+void read_table(h5::Reader& r, Scene& s, Loading&, GridTable) {
+  const std::vector<std::string> names = r.get_names("/grids/name");
+  const auto n = static_cast<long long>(names.size());
+  const auto size = r.get<uint32_t>("/grids/size", "1", 6, n);
+  const auto frame = r.get<double>("/grids/to_local", "m", 12, n);
+  Stretch<uint32_t> media(r, "/grids/media", "1");
+  Stretch<float> density(r, "/grids/density", "1"), temperature(r, "/grids/temperature", "K");
+  Stretch<uint8_t> kind(r, "/grids/kind", "1");
+  for (size_t k = 0; k < names.size(); ++k) {
+    VoxelGrid g;
+    const uint32_t* z = &size[6 * k];
+    g.name = names[k];
+    g.cells = {z[0], z[1], z[2]};
+    if (uint64_t{z[0]} * z[1] > (uint64_t{1} << 40) || z[2] > (1u << 20)) r.fail("grid '" + g.name + "' is too large");
+    g.to_local = transform_of(&frame[12 * k]);
+    g.media = media.next(z[3]);
+    g.density = density.next(g.size());
+    if (z[4]) g.kind = kind.next(g.size());
+    if (z[5]) g.temperature = temperature.next(g.size());
+    s.grids.push_back(std::move(g));
+  }
+  media.finish(), density.finish(), kind.finish(), temperature.finish();
 }
 
 }  // namespace suite

@@ -8,7 +8,7 @@ namespace {
 const std::string kTable = "/property_maps";
 }
 
-void write_property_maps(h5::Writer& w, const Scene& s) {
+void write_table(h5::Writer& w, const Scene& s, PropertyMapTable) {
   const std::vector<PropertyMap>& maps = s.property_maps;
   std::vector<uint32_t> size, materials;
   std::vector<uint8_t> rule;
@@ -43,13 +43,24 @@ void write_property_maps(h5::Writer& w, const Scene& s) {
   w.put(kTable + "/range", range, "SI", 2);
   auto values = w.column(kTable + "/values", h5::native<float>(), total, "SI");
   for (const PropertyMap& m : maps) values.append(std::span<const float>(m.values));
-  w.put("/property_bindings/material", pick(s.property_bindings, [](const PropertyBinding& b) { return b.material; }),
-        "1");
-  w.put("/property_bindings/property_map",
-        pick(s.property_bindings, [](const PropertyBinding& b) { return b.property_map; }), "1");
 }
 
-void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
+namespace {
+// kind, projection, extend, filter, outside.
+void take_rule(const h5::Reader& r, const uint8_t* q, PropertyMap& m) {
+  if (q[0] > static_cast<uint8_t>(MapKind::opacity) || q[1] > static_cast<uint8_t>(Projection::uv) ||
+      q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear) ||
+      q[4] > static_cast<uint8_t>(Outside::zero))
+    r.fail("map '" + m.name + "' has an unknown rule");
+  m.kind = static_cast<MapKind>(q[0]);
+  m.projection = static_cast<Projection>(q[1]);
+  m.drape.extend = static_cast<Drape::Extend>(q[2]);
+  m.filter = static_cast<PropertyMap::Filter>(q[3]);
+  m.outside = static_cast<Outside>(q[4]);
+}
+}  // namespace
+
+void read_table(h5::Reader& r, Scene& s, Loading& loading, PropertyMapTable) {
   const std::vector<std::string> names = r.get_names(kTable + "/name");
   const auto n = static_cast<long long>(names.size());
   const std::vector<std::string> parameter = r.get_names(kTable + "/parameter", n);
@@ -59,7 +70,7 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
   Stretch<uint32_t> materials(r, kTable + "/materials", "1");
   Stretch<double> wavelength(r, kTable + "/wavelength", "um");
   const auto range = r.get<float>(kTable + "/range", "SI", 2, n);
-  std::vector<uint32_t> number;  // of each stored map among those read
+  std::vector<uint32_t>& number = loading.property_map;
   Stretch<float> values(r, kTable + "/values", "SI");
   const std::vector<Curve> family = read_curves(r, kTable + "/family");
   size_t curve = 0;
@@ -68,17 +79,9 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
     m.name = names[k];
     m.parameter = parameter[k];
     const uint32_t* z = &size[6 * k];
-    const uint8_t* q = &rule[5 * k];
-    if (q[0] > static_cast<uint8_t>(MapKind::opacity) || q[1] > static_cast<uint8_t>(Projection::uv) ||
-        q[2] > static_cast<uint8_t>(Drape::Extend::none) || q[3] > static_cast<uint8_t>(PropertyMap::Filter::linear) ||
-        q[4] > static_cast<uint8_t>(Outside::zero))
-      r.fail("map '" + m.name + "' has an unknown rule");
     m.width = z[0], m.height = z[1], m.channels = z[2];
-    m.kind = static_cast<MapKind>(q[0]);
-    m.filter = static_cast<PropertyMap::Filter>(q[3]);
-    m.outside = static_cast<Outside>(q[4]);
-    m.projection = static_cast<Projection>(q[1]);
-    m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3], static_cast<Drape::Extend>(q[2])};
+    m.drape = {drape[4 * k], drape[4 * k + 1], drape[4 * k + 2], drape[4 * k + 3]};
+    take_rule(r, &rule[5 * k], m);
     // Three 32 bit numbers can overflow 64 bits only beyond this.
     if (uint64_t{z[0]} * z[1] > (uint64_t{1} << 40) || z[2] > (1u << 20)) r.fail("map '" + m.name + "' is too large");
     m.materials = materials.next(z[3]);
@@ -110,12 +113,6 @@ void read_property_maps(h5::Reader& r, Scene& s, Loading& loading) {
   }
   materials.finish(), wavelength.finish(), values.finish();
   if (curve != family.size()) r.fail("there are curves of no map");
-  const auto material = r.get<uint32_t>("/property_bindings/material", "1");
-  const auto map = r.get<uint32_t>("/property_bindings/property_map", "1", 1, static_cast<long long>(material.size()));
-  for (size_t k = 0; k < material.size(); ++k) {
-    if (map[k] >= number.size()) r.fail("a map binding names something that is not there");
-    if (number[map[k]] != kNone) s.property_bindings.push_back({material[k], number[map[k]]});
-  }
 }
 
 }  // namespace suite

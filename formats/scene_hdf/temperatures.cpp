@@ -29,7 +29,7 @@ SlabLayer layer_of(const double* v) {
 
 }  // namespace
 
-void write_temperatures(h5::Writer& w, const Scene& s) {
+void write_table(h5::Writer& w, const Scene& s, TemperatureTable) {
   std::vector<uint32_t> size;
   std::vector<uint8_t> repeat;
   std::vector<double> time, kelvin, layers, value, load_time, load;
@@ -62,7 +62,7 @@ void write_temperatures(h5::Writer& w, const Scene& s) {
   w.put(kTable + "/numbers/value", value, "SI");
 }
 
-void read_temperatures(h5::Reader& r, Scene& s, Loading& loading) {
+void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
   const std::vector<std::string> model = r.get_names(kTable + "/model");
   const auto n = static_cast<long long>(model.size());
   const auto size = r.get<uint32_t>(kTable + "/size", "1", 4, n);

@@ -33,7 +33,7 @@ TrackRecord take(h5::Reader& r, const Rows& rows, size_t& at, Stretch<double>& n
 
 }  // namespace
 
-void write_tracks(h5::Writer& w, const Scene& s) {
+void write_table(h5::Writer& w, const Scene& s, TrackTable) {
   Rows rows;
   std::vector<double> numbers;
   for (const SceneTrack& t : s.tracks) put(t.track->record(), rows, numbers);
@@ -45,7 +45,7 @@ void write_tracks(h5::Writer& w, const Scene& s) {
   w.put("/track_nodes/numbers", numbers, "SI");
 }
 
-void read_tracks(h5::Reader& r, Scene& s, Loading& loading) {
+void read_table(h5::Reader& r, Scene& s, Loading& loading, TrackTable) {
   Rows rows;
   const std::vector<std::string> names = r.get_names("/tracks/name");
   rows.text = r.get_names("/track_nodes/text");

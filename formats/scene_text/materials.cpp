@@ -93,18 +93,18 @@ void Reader::read_stored(const Params& p, ModelSpec& spec) {
 void Reader::read_model(const Params& p, ModelSpec& spec) {
   const Params model = p.at("model");
   spec.model = model.as_text();
-  const ModelRow& row = find_model(spec.model, model.where());
-  for (const ModelParameter& parameter : row.parameters) {
+  const ModelRow& row = models().find(spec.model, model.where());
+  for (const Parameter& parameter : row.parameters) {
     const auto value = p.find(parameter.name);
     if (!value) continue;
     switch (parameter.kind) {
-      case ModelParameter::Kind::number:
+      case Parameter::Kind::number:
         spec.numbers[parameter.name] = value->as_number();
         break;
-      case ModelParameter::Kind::curve:
+      case Parameter::Kind::curve:
         spec.curves[parameter.name] = read_curve_value(*value);
         break;
-      case ModelParameter::Kind::text:
+      case Parameter::Kind::text:
         if (parameter.name == "file")
           read_stored(*value, spec);
         else if (parameter.name != "outside" || is_rule(*value))
@@ -113,10 +113,10 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
     }
   }
   if (const bool wants = std::any_of(row.parameters.begin(), row.parameters.end(),
-                                     [](const ModelParameter& q) { return q.name == "index"; });
+                                     [](const Parameter& q) { return q.name == "index"; });
       wants && !spec.curves.count("index"))
     if (const auto index = relative_index(p)) spec.curves["index"] = *index;
-  for (const ModelParameter& q : row.parameters)
+  for (const Parameter& q : row.parameters)
     if (q.required && !spec.numbers.count(q.name) && !spec.curves.count(q.name) && !spec.texts.count(q.name))
       if (const auto near = p.misspelt(q.name)) throw *near;
   check_model(spec, model.where());

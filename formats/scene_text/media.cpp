@@ -46,12 +46,12 @@ void check_sum(const Params& p, const Curve& whole, const Curve& a, const Curve&
 void Reader::read_phase(const Params& p, ModelSpec& spec) {
   const Params model = p.at("model");
   spec.model = model.as_text();
-  for (const ModelParameter& parameter : find_phase(spec.model, model.where()).parameters) {
+  for (const Parameter& parameter : phases().find(spec.model, model.where()).parameters) {
     const auto value = p.find(parameter.name);
     if (!value) continue;
-    if (parameter.kind == ModelParameter::Kind::number)
+    if (parameter.kind == Parameter::Kind::number)
       spec.numbers[parameter.name] = value->as_number();
-    else if (parameter.kind == ModelParameter::Kind::curve)
+    else if (parameter.kind == Parameter::Kind::curve)
       spec.curves[parameter.name] = read_curve_value(*value);
     else if (parameter.name == "file")
       read_stored(*value, spec);
@@ -126,7 +126,7 @@ std::optional<Curve> Reader::relative_index(const Params& p) {
 
 VoxelData Reader::read_voxel_input(const Params& p) {
   VoxelData data = read_voxels(input(p));
-  for (const std::string& raw : data.raw_files) companion(p, raw);
+  for (const std::string& raw : data.raw_files) inputs_.add_companion(p.as_text(), raw);
   return data;
 }
 

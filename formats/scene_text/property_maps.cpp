@@ -61,7 +61,7 @@ void Reader::read_cube(const Params& p, PropertyMap& map) {
   map.outside = read_outside(p);
   const Params file = p.at("file");
   const EnviImage cube(input(file));
-  header_input(file);
+  header_input(file.as_text());
   const EnviHeader& h = cube.header();
   if (h.wavelength_um.empty())
     throw file.error("the cube has no wavelengths", "its header needs 'wavelength' and 'wavelength units'");
@@ -76,6 +76,32 @@ void Reader::read_cube(const Params& p, PropertyMap& map) {
   for (size_t line = 0; line < h.lines; ++line)
     for (const double v : cube.read_lines(line, 1)) map.values.push_back(static_cast<float>(v));
 }
+
+namespace {
+void read_filter(const Params& p, const std::string& type, PropertyMap& map) {
+  const bool smooth = type == "temperature" || type == "bump" || type == "normal";
+  if (type == "texture" || type == "curve_index") {
+    if (p.has("filter"))
+      throw p.at("filter").error("the pixels of a " + type + " map are numbers of curves, which cannot be mixed");
+  } else {
+    const auto filter = p.find("filter");
+    if (filter ? filter->as_choice({"nearest", "linear"}) == 1 : smooth) map.filter = PropertyMap::Filter::linear;
+    if (type == "bump" && map.filter == PropertyMap::Filter::nearest)
+      throw p.error("the heights of a bump map are always linear between pixels");
+  }
+}
+
+std::vector<std::array<double, 2>> read_bands_um(const Params& p) {
+  std::vector<std::array<double, 2>> bands;
+  for (const Params& band : p.items()) {
+    const std::vector<double> edges = band.as_numbers();
+    if (edges.size() != 2 || !(edges[0] > 0 && edges[0] < edges[1]))
+      throw band.error("a band is [low, high] in micron");
+    bands.push_back({edges[0], edges[1]});
+  }
+  return bands;
+}
+}  // namespace
 
 void Reader::read_property_map(const std::string& name, const Params& p, const std::string& type) {
   DraftPropertyMap m;
@@ -94,16 +120,7 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
     map.values = std::move(raster.values);
   }
   apply_transfer(p, map.values);
-  const bool smooth = type == "temperature" || type == "bump" || type == "normal";
-  if (type == "texture" || type == "curve_index") {
-    if (p.has("filter"))
-      throw p.at("filter").error("the pixels of a " + type + " map are numbers of curves, which cannot be mixed");
-  } else {
-    const auto filter = p.find("filter");
-    if (filter ? filter->as_choice({"nearest", "linear"}) == 1 : smooth) map.filter = PropertyMap::Filter::linear;
-    if (type == "bump" && map.filter == PropertyMap::Filter::nearest)
-      throw p.error("the heights of a bump map are always linear between pixels");
-  }
+  read_filter(p, type, map);
   const auto one_channel = [&](size_t count) {
     if (map.channels != count)
       throw p.error(strf("map '%s' has %u channels, %zu are needed", name.c_str(), map.channels, count));
@@ -118,13 +135,7 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
   } else if (type == "texture") {
     map.kind = MapKind::curve_index;
     map.family = read_family(p.at("family"));
-    std::vector<std::array<double, 2>> bands;
-    for (const Params& band : p.at("bands_um").items()) {
-      const std::vector<double> edges = band.as_numbers();
-      if (edges.size() != 2 || !(edges[0] > 0 && edges[0] < edges[1]))
-        throw band.error("a band is [low, high] in micron");
-      bands.push_back({edges[0], edges[1]});
-    }
+    const std::vector<std::array<double, 2>> bands = read_bands_um(p.at("bands_um"));
     one_channel(bands.size());
     const std::vector<uint16_t> chosen = choose_curves(map.values, map.channels, map.family, bands);
     map.values.assign(chosen.begin(), chosen.end());

@@ -1,4 +1,3 @@
-#include <cstring>
 #include <filesystem>
 
 #include "base/files.h"
@@ -9,20 +8,8 @@
 namespace suite {
 namespace {
 
-constexpr size_t kLargest = size_t{64} << 30;
-constexpr const char* kBrings = " -> ";  // in the name of an input that another one brings along
-
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-// Beside the text, then in the search folders.
-std::string find_input(const std::string& text, const std::string& name, const SceneTextOptions& options) {
-  const std::string beside = resolve_path(text, name);
-  if (file_exists(beside)) return beside;
-  for (const std::string& folder : options.search)
-    if (const std::string other = resolve_path(folder + "/.", name); file_exists(other)) return other;
-  return beside;
 }
 
 }  // namespace
@@ -39,33 +26,23 @@ void Reader::item(const char* code, const Params& p, const std::function<void()>
 }
 
 std::string Reader::input(const Params& p) {
-  const std::string name = p.as_text(), path = find_input(draft_.file, name, options_);
-  if (!hashes_.count(path)) {
-    try {
-      hashes_[path] = sha256(read_bytes(path, kLargest));
-    } catch (const Error& e) {
-      // Where it is named says more than where it was looked for.
-      throw Error(p.where(), "file '" + name + "' " + e.message(), e.hint(), "SP003");
-    }
-    draft_.inputs.push_back({name, hashes_[path]});
-    if (ends_with(path, ".sli") || ends_with(path, ".img")) header_input(p);
+  const std::string name = p.as_text();
+  TrackedInputs::Added added;
+  try {
+    added = inputs_.add(name);
+  } catch (const Error& e) {
+    // Where it is named says more than where it was looked for.
+    throw Error(p.where(), "file '" + name + "' " + e.message(), e.hint(), "SP003");
   }
-  return path;
+  if (added.first && (ends_with(added.path, ".sli") || ends_with(added.path, ".img"))) header_input(name);
+  return added.path;
 }
 
 // The header of an ENVI image or library decides as much as its values; so would one that is found before it.
-void Reader::header_input(const Params& p) {
-  const std::string file = std::filesystem::path(p.as_text()).filename().string();
+void Reader::header_input(const std::string& name) {
+  const std::string file = std::filesystem::path(name).filename().string();
   for (const std::string& header : {file + ".hdr", std::filesystem::path(file).stem().string() + ".hdr"})
-    companion(p, header);
-}
-
-void Reader::companion(const Params& p, const std::string& other) {
-  const std::string name = p.as_text() + kBrings + other,
-                    at = resolve_path(find_input(draft_.file, p.as_text(), options_), other);
-  for (const InputFile& known : draft_.inputs)
-    if (known.name == name) return;
-  draft_.inputs.push_back({name, file_exists(at) ? sha256(read_bytes(at, kLargest)) : ""});
+    inputs_.add_companion(name, header);
 }
 
 // none, wgs84, or {tolerance_m}.
@@ -80,7 +57,8 @@ void Reader::read_curvature(const Params& p, const Params& root) {
   draft_.curvature_where = p.where();
 }
 
-void Reader::run(const Params& root) {
+// What holds for the scene as a whole.
+void Reader::read_head(const Params& root) {
   root.integer("scene", 1, 1);
   draft_.name = root.text("name", "");
   draft_.description = root.text("description", "");
@@ -117,6 +95,10 @@ void Reader::run(const Params& root) {
                         strf("windows end at %g um", kLongestWave));
         draft_.windows.push_back({edge[0], edge[1], w.where()});
       });
+}
+
+void Reader::run(const Params& root) {
+  read_head(root);
   const auto each = [&](const char* key, const char* code,
                         const std::function<void(const std::string&, const Params&)>& read) {
     const auto table = root.find(key);
@@ -149,25 +131,21 @@ void Reader::run(const Params& root) {
 
 }  // namespace scene_text
 
-bool inputs_unchanged(const std::string& path, const SceneTextOptions& options, const std::vector<InputFile>& inputs) {
-  for (const InputFile& f : inputs) {
-    const size_t brings = f.name.find(kBrings);
-    std::string at = f.name.empty() ? path : find_input(path, f.name.substr(0, brings), options);
-    if (brings != std::string::npos) at = resolve_path(at, f.name.substr(brings + std::strlen(kBrings)));
-    const bool there = file_exists(at);
-    if (there != !f.sha256.empty() || (there && sha256(read_bytes(at, kLargest)) != f.sha256)) return false;
-  }
-  return !inputs.empty();
-}
-
-Draft read_scene_text(const std::string& path, const SceneTextOptions& options, Report& report) {
+Draft read_scene_text(const std::string& path, const ImportOptions& options, Report& report) {
   Draft draft;
   draft.file = path;
   const Params root = Params::parse_file(path, options.settings);
-  draft.inputs.push_back({"", sha256(read_bytes(path))});
+  TrackedInputs inputs(path, options.search);
   // The root itself must be a map with a version; without it nothing else means anything.
-  scene_text::Reader(options, report, draft).run(root);
+  scene_text::Reader(inputs, report, draft).run(root);
+  draft.inputs = inputs.all();
   return draft;
+}
+
+ImporterRow scene_text_importer() {
+  // Any text: what is wrong with one that is no scene, YAML and its keys tell best.
+  return {{"scene_text", "a scene text, YAML or JSON (formats/scene_text/FORMAT.md)", "", read_scene_text},
+          [](const std::string&, std::string_view head) { return head.find('\0') == head.npos; }};
 }
 
 }  // namespace suite

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/params.h"
+#include "base/tracked_inputs.h"
 #include "formats/curve/curve.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/voxel/voxel.h"
@@ -17,11 +18,11 @@ void read_projection(const Params& p, Projection& projection, Drape& drape);
 
 class Reader {
  public:
-  Reader(const SceneTextOptions& options, Report& report, Draft& draft)
-      : options_(options), report_(report), draft_(draft) {}
+  Reader(TrackedInputs& inputs, Report& report, Draft& draft) : inputs_(inputs), report_(report), draft_(draft) {}
   void run(const Params& root);
 
  private:
+  void read_head(const Params& root);
   void read_curvature(const Params& p, const Params& root);
   // materials.cpp
   void read_curves(const Params& list);
@@ -68,16 +69,13 @@ class Reader {
   void item(const char* code, const Params& p, const std::function<void()>& read);
   // The file a value names, looked for beside the text and in the search folders; hashed into the inputs.
   std::string input(const Params& p);
-  // A file that stands beside the one that p names and is read with it: hashed too, or noted as not being there.
-  void companion(const Params& p, const std::string& other);
-  void header_input(const Params& p);
+  void header_input(const std::string& name);
   static Reference reference(const Params& p) { return {p.as_text(), p.where()}; }
 
-  const SceneTextOptions& options_;
+  TrackedInputs& inputs_;
   Report& report_;
   Draft& draft_;
   std::map<std::string, Curve> curves_;
-  std::map<std::string, std::string> hashes_;                         // resolved path -> sha256
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> stored_;  // name in the scene -> what it holds
   std::map<std::string, std::string> embedded_;                       // resolved path -> name in the scene
 };

@@ -45,7 +45,7 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
   if (!m.temperature) m.temperature.emplace();
   TemperatureSpec& spec = *m.temperature;
   spec.model = p.text("model", p.has("table") ? "tabulated" : "");
-  const TemperatureRow& row = find_temperature_model(spec.model, p.where());
+  const TemperatureRow& row = temperature_models().find(spec.model, p.where());
   if (const auto table = p.find("table"))
     for (const Params& pair : table->items()) {
       const std::vector<double> v = pair.as_numbers();
@@ -66,12 +66,12 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
     if (spec.loads.empty()) throw loads->error("the table of loads is empty");
     spec.loads_repeat = loads->boolean("repeat", false);
   }
-  for (const TemperatureParameter& parameter : row.parameters)
+  for (const Parameter& parameter : row.parameters)
     if (const auto value = p.find(parameter.name)) spec.numbers[parameter.name] = value->as_number();
   // What the material says of itself holds unless the model says otherwise.
   if (spec.layers.empty())
     for (const auto& [name, value] : m.material.thermal) {
-      const auto known = [&](const TemperatureParameter& q) { return q.name == name; };
+      const auto known = [&](const Parameter& q) { return q.name == name; };
       if (std::any_of(row.parameters.begin(), row.parameters.end(), known)) spec.numbers.try_emplace(name, value);
     }
   if (!row.takes_layers && !spec.layers.empty())

@@ -288,12 +288,12 @@ LampSpec read_lamp(const Params& p, size_t number, std::vector<AskedCurve>& aske
 ModelSpec read_phase(const Params& p) {
   ModelSpec spec;
   spec.model = p.text("model");
-  for (const ModelParameter& parameter : find_phase(spec.model, p.at("model").where()).parameters) {
+  for (const Parameter& parameter : phases().find(spec.model, p.at("model").where()).parameters) {
     const auto value = p.find(parameter.name);
     if (!value) continue;
-    if (parameter.kind == ModelParameter::Kind::number)
+    if (parameter.kind == Parameter::Kind::number)
       spec.numbers[parameter.name] = value->as_number();
-    else if (parameter.kind == ModelParameter::Kind::curve)
+    else if (parameter.kind == Parameter::Kind::curve)
       spec.curves[parameter.name] = read_curve_value(*value);
     else
       spec.texts[parameter.name] = value->as_text();

@@ -4,6 +4,8 @@
 #include "base/params.h"
 #include "formats/sqt/container.h"
 #include "formats/sqt/sqt.h"
+#include "sqt/aligned.h"
+#include "sqt/paper.h"
 
 namespace suite {
 

@@ -1,6 +1,7 @@
 #include "base/error.h"
 #include "formats/sqt/container.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 
 namespace suite {
 

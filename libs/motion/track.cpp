@@ -378,37 +378,6 @@ void Track::check_time(double t) const {
     throw Error(strf("a motion is asked for at %.9g s", t), strf("it covers %.9g to %.9g s", c.begin, c.end));
 }
 
-Quat platform_rotation(double azimuth, double pitch, double roll) {
-  return quat_about({0, 0, 1}, azimuth - kPi / 2) * quat_about({1, 0, 0}, pitch) * quat_about({0, 1, 0}, roll);
-}
-
-Pose pose_from_ecef(const SceneFrame& frame, Vec3 ecef, const Quat& rotation) {
-  return {normalized(frame.to_ecef().rotation.conjugate() * rotation), frame.enu_from_ecef(ecef)};
-}
-
-Quat geodetic_axes(const SceneFrame& frame, const Geodetic& place) {
-  return normalized(frame.to_ecef().rotation.conjugate() * SceneFrame(place).to_ecef().rotation);
-}
-
-Quat utm_axes(const SceneFrame& frame, const UtmPoint& point) {
-  const Geodetic place = geodetic_from_utm(point);
-  // The grid's north, seen from true north, from two points 20 m apart on the grid's north line.
-  UtmPoint north = point, south = point;
-  north.northing += 10;
-  south.northing -= 10;
-  const SceneFrame local(place);
-  const Vec3 along = local.enu_from_utm(north) - local.enu_from_utm(south);
-  return normalized(geodetic_axes(frame, place) * quat_about({0, 0, 1}, std::atan2(-along.x, along.y)));
-}
-
-Pose pose_from_geodetic(const SceneFrame& frame, const Geodetic& place, const Quat& rotation) {
-  return {normalized(geodetic_axes(frame, place) * rotation), frame.enu_from_geodetic(place)};
-}
-
-Pose pose_from_utm(const SceneFrame& frame, const UtmPoint& point, const Quat& rotation) {
-  return {normalized(utm_axes(frame, point) * rotation), frame.enu_from_utm(point)};
-}
-
 TrackPtr static_track(const Pose& pose) { return std::make_shared<Static>(pose); }
 TrackPtr keyframe_track(std::vector<PoseKey> keys) { return std::make_shared<Keyframes>(std::move(keys)); }
 TrackPtr straight_track(const StraightMotion& motion) { return std::make_shared<Straight>(motion); }

@@ -113,15 +113,13 @@ class PhaseModelFunction final : public sqt::Function {
 // A model, or else a phase function.
 bool is_phase(const std::string& name, const Where& where) {
   if (name == "sqt") throw Error(where, "'sqt' is what a fit makes", "sqt-inspect looks into .sqt files");
+  if (phases().look_up(name)) return true;
+  if (models().look_up(name)) return false;
   std::vector<std::string> known;
   for (const ModelRow& row : models())
     if (row.name != "sqt") known.push_back(row.name);
-  for (const PhaseRow& row : phases()) {
-    if (row.name == name) return true;
+  for (const PhaseRow& row : phases())
     if (row.name != "sqt") known.push_back(row.name);
-  }
-  for (const std::string& k : known)
-    if (k == name) return false;
   throw Error(where, "unknown model '" + name + "'", name_hint(name, known), "OP101");
 }
 

@@ -4,73 +4,52 @@
 
 namespace suite {
 
-std::span<const ModelRow> models() {
-  static const std::vector<ModelRow> table{lambert_row(),    oren_nayar_row(),     leaf_row(), rpv_row(),
-                                           ross_li_row(),    ward_row(),           ggx_row(),  mirror_row(),
-                                           dielectric_row(), ggx_dielectric_row(), sqt_row()};
+const Registry<ModelRow>& models() {
+  static const Registry<ModelRow> table(
+      "model", "OP101",
+      {lambert_row(), oren_nayar_row(), leaf_row(), rpv_row(), ross_li_row(), ward_row(), ggx_row(), mirror_row(),
+       dielectric_row(), ggx_dielectric_row(), sqt_row()});
   return table;
 }
 
-const ModelRow& find_model(const std::string& name, const Where& where) {
-  std::vector<std::string> known;
-  for (const ModelRow& row : models()) {
-    if (row.name == name) return row;
-    known.push_back(row.name);
-  }
-  throw Error(where, "unknown model '" + name + "'", name_hint(name, known), "OP101");
-}
-
-namespace {
-// " um" of a quantity, nothing of a plain number.
-std::string unit_after(const ModelParameter& p) { return p.unit.empty() || p.unit == "1" ? "" : " " + p.unit; }
-void check_range(const char* what, const ModelSpec& spec, const ModelParameter& p, double value, const Where& where) {
-  if (!(value >= p.low && value <= p.high))
-    throw Error(where, strf("%s '%s': %s = %g is outside its range", what, spec.model.c_str(), p.name.c_str(), value),
-                strf("give %g to %g", p.low, p.high) + unit_after(p), "OP103");
-}
-}  // namespace
-
 void check_model(ModelSpec& spec, const Where& where) {
-  check_parameters(spec, find_model(spec.model, where).parameters, "model", where);
+  check_parameters(spec, models().find(spec.model, where).parameters, "model", where);
 }
 
-void check_parameters(ModelSpec& spec, std::span<const ModelParameter> parameters, const char* what,
-                      const Where& where) {
-  std::vector<std::string> known;
-  for (const ModelParameter& p : parameters) known.push_back(p.name);
-  auto reject = [&](const std::string& name, ModelParameter::Kind kind) {
-    for (const ModelParameter& p : parameters)
+void check_parameters(ModelSpec& spec, std::span<const Parameter> parameters, const char* what, const Where& where) {
+  const std::string of = std::string(what) + " '" + spec.model + "'";
+  auto reject = [&](const std::string& name, Parameter::Kind kind) {
+    for (const Parameter& p : parameters)
       if (p.name == name && p.kind == kind) return;
-    throw Error(where, std::string(what) + " '" + spec.model + "' has no parameter '" + name + "'",
-                name_hint(name, known), "OP102");
+    throw Error(where, of + " has no parameter '" + name + "'", name_hint(name, names_of(parameters)), "OP102");
   };
   // A number given for a curve parameter is a constant curve.
-  for (const ModelParameter& p : parameters)
-    if (p.kind == ModelParameter::Kind::curve)
+  for (const Parameter& p : parameters)
+    if (p.kind == Parameter::Kind::curve)
       if (const auto n = spec.numbers.find(p.name); n != spec.numbers.end()) {
         spec.curves[p.name] = Curve::constant(n->second);
         spec.numbers.erase(n);
       }
-  for (const auto& [name, value] : spec.numbers) reject(name, ModelParameter::Kind::number);
-  for (const auto& [name, value] : spec.curves) reject(name, ModelParameter::Kind::curve);
-  for (const auto& [name, value] : spec.texts) reject(name, ModelParameter::Kind::text);
-  for (const ModelParameter& p : parameters) {
+  for (const auto& [name, value] : spec.numbers) reject(name, Parameter::Kind::number);
+  for (const auto& [name, value] : spec.curves) reject(name, Parameter::Kind::curve);
+  for (const auto& [name, value] : spec.texts) reject(name, Parameter::Kind::text);
+  for (const Parameter& p : parameters) {
     const bool given = spec.numbers.count(p.name) || spec.curves.count(p.name) || spec.texts.count(p.name);
     if (!given && p.required)
-      throw Error(where, std::string(what) + " '" + spec.model + "' needs '" + p.name + "'",
-                  p.summary + (unit_after(p).empty() ? "" : " [" + p.unit + "]"), "OP104");
-    if (!given && p.kind == ModelParameter::Kind::number) spec.numbers[p.name] = p.otherwise;
-    if (!given && p.kind == ModelParameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
-    if (p.kind == ModelParameter::Kind::number) check_range(what, spec, p, spec.numbers.at(p.name), where);
-    if (p.kind == ModelParameter::Kind::curve) {
-      check_range(what, spec, p, spec.curves.at(p.name).min(), where);
-      check_range(what, spec, p, spec.curves.at(p.name).max(), where);
+      throw Error(where, of + " needs '" + p.name + "'",
+                  p.summary + (p.unit.empty() || p.unit == "1" ? "" : " [" + p.unit + "]"), "OP104");
+    if (!given && p.kind == Parameter::Kind::number) spec.numbers[p.name] = p.otherwise;
+    if (!given && p.kind == Parameter::Kind::curve) spec.curves[p.name] = Curve::constant(p.otherwise);
+    if (p.kind == Parameter::Kind::number) check_range(of, p, spec.numbers.at(p.name), where, "OP103");
+    if (p.kind == Parameter::Kind::curve) {
+      check_range(of, p, spec.curves.at(p.name).min(), where, "OP103");
+      check_range(of, p, spec.curves.at(p.name).max(), where, "OP103");
     }
   }
 }
 
 std::unique_ptr<const ScatterModel> bake(const ModelSpec& spec, const SpectralState& state) {
-  return find_model(spec.model).make(spec, state);
+  return models().find(spec.model).make(spec, state);
 }
 
 }  // namespace suite

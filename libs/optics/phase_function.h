@@ -35,16 +35,12 @@ class PhaseFunction {
 // The direction `in` for an outgoing direction, a cosine from sample() and one more uniform number for the azimuth.
 Dir scattered_direction(Dir out, double cos_scatter, double u);
 
-struct PhaseRow {
-  std::string name;
-  std::string summary;
-  std::vector<ModelParameter> parameters;
-  std::unique_ptr<const PhaseFunction> (*make)(const ModelSpec& spec, const SpectralState& state);
+struct PhaseRow : RegistryRow<std::unique_ptr<const PhaseFunction>(const ModelSpec& spec, const SpectralState& state)> {
+  std::vector<Parameter> parameters;
   std::vector<ModelSpec> (*examples)();
 };
-std::span<const PhaseRow> phases();
-// As find_model, check_model and bake of the surface models.
-const PhaseRow& find_phase(const std::string& name, const Where& where = {});
+const Registry<PhaseRow>& phases();
+// As check_model and bake of the surface models.
 void check_phase(ModelSpec& spec, const Where& where = {});
 std::unique_ptr<const PhaseFunction> bake_phase(const ModelSpec& spec, const SpectralState& state);
 

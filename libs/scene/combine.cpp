@@ -5,28 +5,41 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <type_traits>
 
 #include "base/error.h"
 #include "motion/track.h"
 #include "scene/curvature.h"
+#include "scene/tables.h"
 
 namespace suite {
 
 namespace {
 
 template <class T>
-uint32_t move_behind(std::vector<T>& all, std::vector<T>& more) {
-  const auto first = static_cast<uint32_t>(all.size());
+void move_behind(std::vector<T>& all, std::vector<T>& more) {
   if (all.empty())
     all = std::move(more);
   else
     all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  return first;
 }
 
-void shift(uint32_t& index, uint32_t by) {
-  if (index != kNone) index += by;
-}
+// Moves the indices of a part behind what is there already; `tags` says where its tags have gone.
+struct Shift {
+  const Scene& all;
+  const std::vector<uint32_t>& tags;
+  template <class Table>
+  void must(uint32_t& index) const {
+    if constexpr (std::is_same_v<Table, TagTable>)
+      index = tags[index];
+    else
+      index += static_cast<uint32_t>((all.*Table::rows).size());
+  }
+  template <class Table>
+  void may(uint32_t& index) const {
+    if (index != kNone) must<Table>(index);
+  }
+};
 
 SceneFrame frame_of(const GeodeticOrigin& o) {
   return SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m});
@@ -57,57 +70,42 @@ class Combiner {
     names(part, first);
     Scene& s = part.scene;
     const double later = time_shift(s);
-    const auto tracks = static_cast<uint32_t>(all_.tracks.size());
     for (SceneTrack& t : s.tracks) {
       if (later != 0) t.track = delayed_track(t.track, later);
       if (!first) t.name += " in " + part.name;
-      all_.tracks.push_back(std::move(t));
     }
-    indices(s, tracks);
+    indices(s);
     if (part.motion) {
-      root.track = static_cast<uint32_t>(all_.tracks.size());
-      all_.tracks.push_back({"'" + part.name + "'", part.motion});
+      root.track = static_cast<uint32_t>(all_.tracks.size() + s.tracks.size());
+      s.tracks.push_back({"'" + part.name + "'", part.motion});
     }
-    media(part, root);
-    root.target = move_behind(all_.groups, s.groups);
-    all_.groups[0].placements.push_back(root);
+    volumes(part, root);
+    root.target = static_cast<uint32_t>(all_.groups.size());
     if (!part.motion) all_.bounds.grow(transformed(s.bounds, root.to_parent));
-    move_behind(all_.class_maps, s.class_maps), move_behind(all_.map_bindings, s.map_bindings);
-    move_behind(all_.property_maps, s.property_maps), move_behind(all_.property_bindings, s.property_bindings);
-    move_behind(all_.temperatures, s.temperatures);
-    move_behind(all_.meshes, s.meshes), move_behind(all_.primitives, s.primitives);
-    move_behind(all_.materials, s.materials), move_behind(all_.files, s.files);
+    for_each_table([&]<class Table>(Table) {
+      if constexpr (!std::is_same_v<Table, TagTable>) move_behind(all_.*Table::rows, s.*Table::rows);
+    });
+    all_.groups[0].placements.push_back(root);
   }
 
-  // Media, grids and volumes follow their scene's placement.
-  void media(ScenePart& part, const Placement& root) {
+  // Volumes follow their scene's placement.
+  void volumes(ScenePart& part, const Placement& root) {
     Scene& s = part.scene;
     const Affine3& place = root.to_parent;
-    if (s.ambient != kNone && all_.ambient != kNone)
-      throw Error("two scenes have an ambient medium", "one may fill what no body fills");
-    const uint32_t first = move_behind(all_.media, s.media);
-    shift(s.ambient, first);
-    if (s.ambient != kNone) all_.ambient = s.ambient;
-    for (Material& m : s.materials) shift(m.inside, first), shift(m.outside, first);
-    for (VoxelGrid& g : s.grids)
-      for (uint32_t& m : g.media) m += first;
-    const uint32_t grids = move_behind(all_.grids, s.grids);
-    for (const Volume& v : s.volumes) {
+    for (Volume& v : s.volumes) {
       if (v.track == kNone) {
-        all_.volumes.push_back({v.grid + grids, place * v.to_world, root.track});
+        v.to_world = place * v.to_world, v.track = root.track;
         continue;
       }
       // What moves in a scene that stands elsewhere would need the scene's placement after its own motion.
       if (!(place == Affine3{}))
         throw Error("scene '" + part.name + "' has a volume that moves, so it cannot be placed",
                     "make it the first scene, without a placement");
-      uint32_t track = v.track;
       if (part.motion) {
-        const SceneTrack own = all_.tracks[track];
-        track = static_cast<uint32_t>(all_.tracks.size());
-        all_.tracks.push_back({own.name, composed_track(part.motion, own.track)});
+        const SceneTrack own = s.tracks[v.track - all_.tracks.size()];
+        v.track = static_cast<uint32_t>(all_.tracks.size() + s.tracks.size());
+        s.tracks.push_back({own.name, composed_track(part.motion, own.track)});
       }
-      all_.volumes.push_back({v.grid + grids, v.to_world, track});
     }
   }
 
@@ -184,37 +182,23 @@ class Combiner {
     return instant_from_utc(parse_iso8601(s.epoch)) - instant_from_utc(parse_iso8601(all_.epoch));
   }
 
-  void indices(Scene& s, uint32_t tracks) {
-    const auto materials = static_cast<uint32_t>(all_.materials.size()),
-               meshes = static_cast<uint32_t>(all_.meshes.size());
-    const auto primitives = static_cast<uint32_t>(all_.primitives.size()),
-               groups = static_cast<uint32_t>(all_.groups.size());
+  // Every index of a part, and its ambient medium and tags, so that its tables can stand behind those that are there.
+  void indices(Scene& s) {
+    if (s.ambient != kNone && all_.ambient != kNone)
+      throw Error("two scenes have an ambient medium", "one may fill what no body fills");
     std::vector<uint32_t> tags;
     for (const std::string& tag : s.tags) {
       const auto found = std::find(all_.tags.begin(), all_.tags.end(), tag);
       tags.push_back(static_cast<uint32_t>(found - all_.tags.begin()));
       if (found == all_.tags.end()) all_.tags.push_back(tag);
     }
-    for (Mesh& m : s.meshes)
-      for (Part& p : m.parts) shift(p.material, materials);
-    for (Primitive& p : s.primitives) shift(p.material, materials);
-    for (Group& g : s.groups)
-      for (Placement& p : g.placements) {
-        p.target += p.kind == TargetKind::mesh ? meshes : p.kind == TargetKind::group ? groups : primitives;
-        shift(p.material_override, materials);
-        shift(p.track, tracks);
-        if (p.tag != kNone) p.tag = tags[p.tag];
-      }
-    for (Volume& v : s.volumes) shift(v.track, tracks);
-    for (ClassMap& m : s.class_maps)
-      for (uint32_t& id : m.materials) id += materials;
-    for (MapBinding& b : s.map_bindings)
-      b.material += materials, b.class_map += static_cast<uint32_t>(all_.class_maps.size());
-    for (PropertyMap& m : s.property_maps)
-      for (uint32_t& id : m.materials) id += materials;
-    for (PropertyBinding& b : s.property_bindings)
-      b.material += materials, b.property_map += static_cast<uint32_t>(all_.property_maps.size());
-    for (TemperatureBinding& t : s.temperatures) t.material += materials;
+    const Shift shift{all_, tags};
+    shift.may<MediumTable>(s.ambient);
+    if (s.ambient != kNone) all_.ambient = s.ambient;
+    for_each_table([&]<class Table>(Table) {
+      for (auto& row : s.*Table::rows)
+        if constexpr (requires { Table::indices(row, shift); }) Table::indices(row, shift);
+    });
   }
 
   std::vector<ScenePart> parts_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/tracked_inputs.h"
 #include "scene/scatter.h"
 #include "scene/scene.h"
 
@@ -138,12 +139,6 @@ struct DraftVolume {
 struct SpectralWindow {
   double low_um = 0, high_um = 0;
   Where where;
-};
-
-// One file that the scene was made from: the name as written, and its SHA-256. A file that another one brings along is
-// called "grid.vox -> density.raw"; one that would be read if it were there has no hash.
-struct InputFile {
-  std::string name, sha256;
 };
 
 // The span of time (s) that every motion must cover.

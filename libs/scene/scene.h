@@ -185,7 +185,7 @@ struct GeodeticOrigin {
   bool given = false;
 };
 
-// combine.cpp has to know every table and every index in it.
+// tables.h has to know every table and every index in it.
 struct Scene {
   std::string name, description, author;
   GeodeticOrigin origin;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "base/files.h"
 #include "base/progress.h"
 #include "motion/track.h"
+#include "scene/tables.h"
 
 namespace suite {
 
@@ -21,8 +21,49 @@ std::vector<double> flattened_counts(const Scene& s) {
   return meshes;
 }
 
-namespace {
-std::string media_text(const Scene& s) {
+std::string MeshTable::summary(const Scene& s) {
+  size_t vertices = 0, triangles = 0, bytes = 0;
+  double flat = 0;
+  const std::vector<double> counts = flattened_counts(s);
+  for (size_t i = 0; i < s.meshes.size(); ++i) {
+    const Mesh& m = s.meshes[i];
+    vertices += m.vertex_count();
+    triangles += m.triangle_count();
+    flat += counts[i] * static_cast<double>(m.triangle_count());
+    bytes += 4 * (m.positions.size() + m.indices.size() + m.normals.size() + m.uvs.size());
+  }
+  return strf("meshes        %zu with %zu vertices, %zu triangles (%s); flattened %s triangles\n", s.meshes.size(),
+              vertices, triangles, human_bytes(static_cast<double>(bytes)).c_str(), human_count(flat).c_str());
+}
+
+std::string GroupTable::summary(const Scene& s) {
+  size_t placements = 0;
+  for (const Group& g : s.groups) placements += g.placements.size();
+  return strf("placements    %zu in %zu groups\n", placements, s.groups.size());
+}
+
+std::string ClassMapTable::summary(const Scene& s) {
+  size_t pixels = 0;
+  for (const ClassMap& m : s.class_maps) pixels += m.classes.size();
+  return s.class_maps.empty() ? "" : strf("class maps    %zu with %zu pixels\n", s.class_maps.size(), pixels);
+}
+
+std::string MaterialTable::summary(const Scene& s) {
+  std::string out = strf("materials     %zu\n", s.materials.size());
+  for (const Material& m : s.materials) {
+    out += strf("  %-20s %s", m.id.c_str(), m.surface.model.c_str());
+    for (const auto& [name, curve] : m.surface.curves)
+      out += curve.is_constant() ? strf("; %s %g", name.c_str(), curve.value().front())
+                                 : strf("; %s %g to %g um, outside: %s", name.c_str(), curve.low_um(), curve.high_um(),
+                                        to_text(curve.outside()));
+    for (const auto& [name, text] : m.surface.texts) out += "; " + name + " " + text;
+    if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
+    out += "\n";
+  }
+  return out;
+}
+
+std::string MediumTable::summary(const Scene& s) {
   if (s.media.empty()) return "";
   std::string out = strf("media         %zu\n", s.media.size());
   for (size_t i = 0; i < s.media.size(); ++i) {
@@ -33,7 +74,12 @@ std::string media_text(const Scene& s) {
     if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
     out += s.ambient == i ? "; ambient\n" : "\n";
   }
-  out += strf("voxel grids   %zu in %zu volumes\n", s.grids.size(), s.volumes.size());
+  return out;
+}
+
+std::string GridTable::summary(const Scene& s) {
+  if (s.grids.empty()) return "";
+  std::string out = strf("voxel grids   %zu\n", s.grids.size());
   for (const VoxelGrid& g : s.grids) {
     const size_t filled =
         static_cast<size_t>(std::count_if(g.density.begin(), g.density.end(), [](float d) { return d > 0; }));
@@ -43,7 +89,6 @@ std::string media_text(const Scene& s) {
   }
   return out;
 }
-}  // namespace
 
 namespace {
 // What holds in part of the spectrum or for some time only: a simulation that looks beyond is refused.
@@ -70,47 +115,23 @@ std::string coverage_text(const Scene& s) {
 }
 }  // namespace
 
-std::string summary_text(const Scene& s) {
-  size_t vertices = 0, triangles = 0, placements = 0, bytes = 0, pixels = 0;
-  double flat = 0;
-  const std::vector<double> counts = flattened_counts(s);
-  for (size_t i = 0; i < s.meshes.size(); ++i) {
-    const Mesh& m = s.meshes[i];
-    vertices += m.vertex_count();
-    triangles += m.triangle_count();
-    flat += counts[i] * static_cast<double>(m.triangle_count());
-    bytes += 4 * (m.positions.size() + m.indices.size() + m.normals.size() + m.uvs.size());
-  }
-  for (const Group& g : s.groups) placements += g.placements.size();
-  for (const ClassMap& m : s.class_maps) pixels += m.classes.size();
-  std::string out = strf("scene         %s\n", s.name.c_str());
-  if (s.origin.given)
-    out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg,
-                s.origin.ellipsoid_height_m);
-  if (s.curved) out += "curvature     laid onto WGS84; draped maps lie on the flat plane\n";
-  if (!s.bounds.empty())
-    out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x,
-                s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);
-  out += strf("meshes        %zu with %zu vertices, %zu triangles (%s)\n", s.meshes.size(), vertices, triangles,
-              human_bytes(static_cast<double>(bytes)).c_str());
-  out += strf("primitives    %zu\n", s.primitives.size());
-  out += strf("placements    %zu in %zu groups; flattened %s triangles\n", placements, s.groups.size(),
-              human_count(flat).c_str());
-  out += strf("class maps    %zu with %zu pixels\nfiles inside  %zu\ntags          %zu\nmaterials     %zu\n",
-              s.class_maps.size(), pixels, s.files.size(), s.tags.size(), s.materials.size());
-  for (const Material& m : s.materials) {
-    out += strf("  %-20s %s", m.id.c_str(), m.surface.model.c_str());
-    for (const auto& [name, curve] : m.surface.curves)
-      out += curve.is_constant() ? strf("; %s %g", name.c_str(), curve.value().front())
-                                 : strf("; %s %g to %g um, outside: %s", name.c_str(), curve.low_um(), curve.high_um(),
-                                        to_text(curve.outside()));
-    for (const auto& [name, text] : m.surface.texts) out += "; " + name + " " + text;
-    if (m.temperature_k > 0) out += strf("; %g K", m.temperature_k);
-    out += "\n";
-  }
-  out += coverage_text(s);
-  out += media_text(s);
+namespace {
+// What a table has to say; without words of its own, how many rows it has.
+template <class Table>
+std::string table_text(const Scene& s) {
+  if constexpr (requires { Table::summary(s); }) return Table::summary(s);
+  const size_t count = (s.*Table::rows).size();
+  std::string label = Table::name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return count ? strf("%-13s %zu\n", label.c_str(), count) : "";
+}
+
+std::set<std::string> features(const Scene& s) {
   std::set<std::string> uses;
+  for_each_table([&]<class Table>(Table) {
+    if constexpr (requires { Table::feature; })
+      if (!(s.*Table::rows).empty()) uses.insert(Table::feature);
+  });
   for (const Mesh& m : s.meshes) {
     if (!m.normals.empty()) uses.insert("vertex normals");
     if (!m.uvs.empty()) uses.insert("texture coordinates");
@@ -119,25 +140,26 @@ std::string summary_text(const Scene& s) {
     if (m.temperature_k > 0) uses.insert("temperatures");
   for (const PropertyMap& m : s.property_maps)
     uses.insert(m.kind == MapKind::temperature ? "temperature maps" : "property maps");
-  if (!s.class_maps.empty()) uses.insert("class maps");
-  if (!s.primitives.empty()) uses.insert("exact primitives");
-  if (!s.files.empty()) uses.insert("embedded files");
   if (uses_media(s)) uses.insert("media");
-  if (!s.volumes.empty()) uses.insert("voxel grids");
   if (s.groups.size() > 1) uses.insert("nested groups");
-  if (!s.tracks.empty()) uses.insert("motion");
-  out += "uses          ";
+  return uses;
+}
+}  // namespace
+
+std::string summary_text(const Scene& s) {
+  std::string out = strf("scene         %s\n", s.name.c_str());
+  if (s.origin.given)
+    out += strf("origin        %.9f N %.9f E, %.3f m above WGS84\n", s.origin.latitude_deg, s.origin.longitude_deg,
+                s.origin.ellipsoid_height_m);
+  if (s.curved) out += "curvature     laid onto WGS84; draped maps lie on the flat plane\n";
+  if (!s.bounds.empty())
+    out += strf("extent        x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", s.bounds.low.x, s.bounds.high.x,
+                s.bounds.low.y, s.bounds.high.y, s.bounds.low.z, s.bounds.high.z);
+  for_each_table([&]<class Table>(Table) { out += table_text<Table>(s); });
+  out += coverage_text(s) + "uses          ";
+  const std::set<std::string> uses = features(s);
   for (const std::string& u : uses) out += (u == *uses.begin() ? "" : ", ") + u;
   return out + "\n";
-}
-
-std::string input_hash(const Draft& draft) {
-  std::vector<std::string> lines;
-  for (const InputFile& f : draft.inputs) lines.push_back(f.name + '\0' + f.sha256 + '\n');
-  std::sort(lines.begin(), lines.end());
-  std::string all;
-  for (const std::string& line : lines) all += line;
-  return sha256(all);
 }
 
 }  // namespace suite

@@ -14,7 +14,4 @@ std::string summary_text(const Scene& scene);
 // How many times each mesh is placed, all hierarchies flattened (saturates at 2^53).
 std::vector<double> flattened_counts(const Scene& scene);
 
-// SHA-256 over the names and hashes of all inputs, in an order that does not depend on how they were found.
-std::string input_hash(const Draft& draft);
-
 }  // namespace suite

@@ -268,10 +268,10 @@ std::string load_plugin(const std::string& path) {
   if (plugin->size < sizeof(suite_sensor_plugin) || !plugin->kind || !*plugin->kind || !plugin->make)
     throw Error(where, "describes no kind of sensor");
   try {
-    add_sensor_kind({plugin->kind, plugin->summary ? plugin->summary : "",
-                     [plugin](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-                       return std::make_unique<PluginSensor>(*plugin, p, c);
-                     }});
+    sensor_kinds().add({plugin->kind, plugin->summary ? plugin->summary : "", "",
+                        [plugin](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
+                          return std::make_unique<PluginSensor>(*plugin, p, c);
+                        }});
   } catch (const Error& e) {
     throw Error(where, e.message(), e.hint());
   }

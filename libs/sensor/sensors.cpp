@@ -11,12 +11,6 @@ namespace suite {
 namespace {
 constexpr double kSpectralError = 1e-3, kLeastSpectralError = 1e-5;
 
-std::vector<SensorRow>& table() {
-  static std::vector<SensorRow> rows{frame_camera_row(), platform_row(),   orthographic_row(), fisheye_row(),
-                                     point_row(),        goniometer_row(), rami_row()};
-  return rows;
-}
-
 void refuse_geodetic_keys(const Params& params, const std::string& kind) {
   for (const std::string& key : params.keys()) {
     const bool is_place = key == "position" || key == "position_m" || key == "look_at" || key == "look_at_m";
@@ -34,28 +28,22 @@ void refuse_geodetic(const Params& params, const std::string& kind) {
 }
 }  // namespace
 
-std::span<const SensorRow> sensor_kinds() { return table(); }
-
-void add_sensor_kind(SensorRow row) {
-  for (const SensorRow& known : table())
-    if (known.name == row.name)
-      throw Error("there is a sensor kind '" + row.name + "' already", "rename the plug-in's");
-  table().push_back(std::move(row));
+Registry<SensorRow>& sensor_kinds() {
+  static Registry<SensorRow> table("sensor kind", "SE101",
+                                   {frame_camera_row(), platform_row(), orthographic_row(), fisheye_row(), point_row(),
+                                    goniometer_row(), rami_row()});
+  return table;
 }
 
 std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context) {
   const std::string kind = params.text("kind");
-  std::vector<std::string> known;
-  for (const SensorRow& row : sensor_kinds()) {
-    if (row.name == kind) try {
-        return row.make(params, context);
-      } catch (const Error&) {
-        refuse_geodetic(params, kind);
-        throw;
-      }
-    known.push_back(row.name);
+  const SensorRow& row = sensor_kinds().find(kind, params.at("kind").where());
+  try {
+    return row.make(params, context);
+  } catch (const Error&) {
+    refuse_geodetic(params, kind);
+    throw;
   }
-  throw params.at("kind").error("unknown sensor kind '" + kind + "'", name_hint(kind, known), "SE101");
 }
 
 double read_spectral_error(const Params& p) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/params.h"
+#include "base/registry.h"
 #include "motion/jitter.h"
 #include "motion/track.h"
 #include "sensor/delivery.h"
@@ -34,16 +35,11 @@ struct SensorContext {
   std::function<std::string(double)> utc;                 // UTC text of a simulation time; empty = no clock
 };
 
-struct SensorRow {
-  std::string name;     // "frame_camera"
-  std::string summary;  // one line for --list-sensors
-  std::function<std::unique_ptr<Sensor>(const Params& params, const SensorContext& context)> make;
-};
+using SensorRow = RegistryRow<std::unique_ptr<Sensor>(const Params& params, const SensorContext& context)>;
 
-// The kinds that come with the suite and those added since the program started.
-std::span<const SensorRow> sensor_kinds();
-// Adds a row (a plug-in's). Error when the name is taken. Not to be called while sensors are being made.
-void add_sensor_kind(SensorRow row);
+// The kinds that come with the suite and those added since the program started (a plug-in's), which is not to be done
+// while sensors are being made.
+Registry<SensorRow>& sensor_kinds();
 // Reads `kind` and makes the sensor; located Error for anything wrong.
 std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context);
 

@@ -1,10 +1,10 @@
 // The syntax of the aligned method's symbols: which nodes are divided, and the quantised levels of a node's
-// differences, each in the context of levels that are known already. Internal to libs/sqt.
+// differences, each in the context of levels that are known already. Internal to libs/sqt and libs/sqt_fit.
 //
 // A block has rows (detail x channel frequency) of levels over view frequencies. Of channels: how many have any level
 // but 0, then for each of these which details have; of a row: how many levels up to the last one that is not 0, then
 // these, sign after number. Contexts: levels of the same place in the block of the node above, in the detail and the
-// channel before, and the level before.
+// channel before, and the level before. Bodies of the templates are in block_code_coders.h.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -23,6 +23,7 @@ class BlockCode {
   // Of all kinds; the last are those of code_finer, which plain layouts have not.
   static constexpr size_t kContexts = 170, kPlainContexts = 160;
   static constexpr int kMostFiner = 31;
+  static size_t contexts_of(const AlignedLayout& layout) { return layout.refined ? kContexts : kPlainContexts; }
   BlockCode(const AlignedLayout& layout, const BlockTransform& transform);
 
   // Levels [detail][channel][view] of the root that comes next (one detail), or of a divided node (three). above: the

@@ -13,15 +13,15 @@
 #include <span>
 #include <vector>
 
-#include "sqt/lattice.h"
 #include "sqt/log_scale.h"
+#include "sqt/region.h"
 #include "sqt/vectors.h"
 
 namespace suite::sqt {
 
 class CodedLattice {
  public:
-  static constexpr int kRootOrder = Lattice::kRootOrder;
+  static constexpr int kRootOrder = Region::kRootOrder;
   // A node that covers the cell across an edge: of the same order, or coarser; then the cell's centre lies
   // (x, y) / 2^(orders between + 1) cell widths from the node's.
   struct Link {

@@ -1,7 +1,6 @@
-// A scattering function as sqt-fit sees it: something measured or modelled that can be asked at any pair of directions,
-// or a list of scattered samples.
+// A scattering function: something measured or modelled that can be asked at any pair of directions, and what is known
+// of it. What bundles are fitted to.
 #pragma once
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,13 +44,6 @@ class Function {
     for (double& w : W) w = 0;
   }
   virtual double dirac_core() const { return 0; }
-};
-
-// Scattered measurements (goniometer tables, raw sample text): value per channel for each pair.
-struct Samples {
-  Function::Info info;
-  std::vector<Dir> out, in;   // same length n
-  std::vector<double> value;  // n x channels, row-major; NaN = invalid
 };
 
 }  // namespace suite::sqt

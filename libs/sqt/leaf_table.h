@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "sqt/aligned.h"
-#include "sqt/lattice.h"
+#include "sqt/region.h"
 #include "sqt/view_lanes.h"
 
 namespace suite::sqt {

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "sqt/paper.h"
 #include "sqt/theta_grid.h"
+#include "sqt/tree.h"
 
 namespace suite::sqt {
 
@@ -29,10 +30,10 @@ double leaf_weight(CellId id, Weighting weighting) {
                                       : cosine_integral(id, weighting == Weighting::both_sides);
 }
 
-Slice make_slice(std::span<const Builder::Leaf> leaves, Weighting weighting) {
+Slice make_slice(std::span<const PaperLeaf> leaves, Weighting weighting) {
   Slice s;
   std::vector<CellId> cells;
-  for (const Builder::Leaf& leaf : leaves) {
+  for (const PaperLeaf& leaf : leaves) {
     const int extra = weighting != Weighting::none ? std::max(0, kSampleOrder - leaf.id.order()) : 0;
     for (uint32_t k = 0; k < (1u << (2 * extra)); ++k) {
       cells.push_back(CellId::of(leaf.id.order() + extra, (leaf.id.index() << (2 * extra)) + k));
@@ -134,7 +135,7 @@ class PaperBundle final : public Bundle {
     std::vector<Cell> out;
     const double mass = slice(view, channel).mass();
     const double scale = mass > 0 ? view_total(view, channel) / mass : 0;
-    for (const Builder::Leaf& leaf : data_.slices[view * channels() + channel]) {
+    for (const PaperLeaf& leaf : data_.slices[view * channels() + channel]) {
       const double part = leaf.value * leaf_weight(leaf.id, weighting());
       out.push_back({leaf.id, 0, leaf.value * scale, mass > 0 ? part / mass : 0});
     }
@@ -217,7 +218,7 @@ void check(const PaperData& d) {
   for (const auto& slice : d.slices) {
     // Disjoint: in depth-first order every cell begins where or after the one before ends.
     uint64_t end = 0;
-    for (const Builder::Leaf& leaf : slice) {
+    for (const PaperLeaf& leaf : slice) {
       require(leaf.id.code >= 4 && leaf.id.order() <= kMaxOrder && leaf.id.index() < cell_count(leaf.id.order()),
               "a cell does not exist");
       const int shift = 2 * (kMaxOrder - leaf.id.order());
@@ -241,7 +242,7 @@ std::shared_ptr<const Bundle> make_bundle(PaperData data) {
   info.views = data.views;
   for (const auto& slice : data.slices) {
     info.leaves += slice.size();
-    for (const Builder::Leaf& leaf : slice) info.max_order = std::max(info.max_order, leaf.id.order());
+    for (const PaperLeaf& leaf : slice) info.max_order = std::max(info.max_order, leaf.id.order());
   }
   return std::make_shared<PaperBundle>(std::move(data), std::move(info));
 }

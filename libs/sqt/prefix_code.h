@@ -3,6 +3,8 @@
 //
 // Based on: D. A. Huffman, Proc. IRE 40, 1952; canonical codes as in RFC 1951 (Deflate).
 #pragma once
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "sqt/range_coder.h"
+#include "base/error.h"
+#include "sqt/range_decoder.h"
 
 namespace suite::sqt {
 
@@ -43,40 +46,6 @@ struct PrefixLengths {
 
 // How large a number a symbol stands for, roughly: 0 to 3.
 constexpr uint32_t size_class(uint32_t symbol) { return (symbol > 0) + (symbol > 1) + (symbol > 4); }
-
-class PrefixEncoder {
- public:
-  static constexpr bool kEncodes = true;
-  explicit PrefixEncoder(size_t contexts) : contexts_(contexts) {}
-  // Takes note of a symbol (< kSymbols); returns it.
-  uint32_t symbol(size_t context, uint32_t symbol) {
-    noted_.push_back({static_cast<uint16_t>(context), static_cast<uint8_t>(symbol), 0, 0});
-    return symbol;
-  }
-  // Raw bits (at most 24), to follow the last symbol or the raw bits before; returns them.
-  uint32_t raw(uint32_t value, uint32_t bits) {
-    noted_.push_back({kRaw, 0, static_cast<uint8_t>(bits), value});
-    return value;
-  }
-  uint32_t number(size_t context, uint32_t number, uint32_t exact) {
-    const Token t = token_of(number, exact);
-    symbol(context, t.symbol);
-    if (t.bits) raw(t.raw, t.bits);
-    return number;
-  }
-  // u16 length of the codes' lengths, these, then the symbols.
-  std::vector<std::byte> finish() const;
-
- private:
-  static constexpr uint16_t kRaw = 0xFFFF;
-  struct Note {
-    uint16_t context;
-    uint8_t symbol, bits;
-    uint32_t value;
-  };
-  size_t contexts_;
-  std::vector<Note> noted_;
-};
 
 // Bits ahead, lowest first. Past the end it reads zeros; overrun() tells. Inner loops work on a copy.
 class BitReader {
@@ -121,7 +90,7 @@ class BitReader {
   size_t missing_ = 0;
 };
 
-// Reads what PrefixEncoder wrote.
+// Reads what PrefixEncoder (libs/sqt_fit) wrote.
 class PrefixDecoder {
  public:
   static constexpr bool kEncodes = false;
@@ -160,5 +129,39 @@ class PrefixDecoder {
   std::vector<Entry> entries_;
   BitReader bits_;
 };
+
+// The lowest `bits` bits of a code, first one last.
+inline uint32_t reversed_bits(uint32_t code, uint32_t bits) {
+  uint32_t r = 0;
+  for (uint32_t b = 0; b < bits; ++b) r |= ((code >> b) & 1) << (bits - 1 - b);
+  return r;
+}
+
+template <class Coder>
+void PrefixLengths::code(Coder& coder, size_t contexts) {
+  of.resize(contexts * kSymbols, 0);
+  // Per context how many symbols there are, then their lengths; what the symbol had in the last context that was used
+  // says most about it.
+  std::array<std::array<BitContext, 64>, 1> many;
+  std::array<std::array<BitContext, 16>, kMost + 1> model;
+  std::array<uint8_t, kSymbols> before{};
+  const auto tree = [&](auto& bits, uint32_t value, uint32_t depth) {
+    uint32_t node = 1;
+    for (uint32_t b = depth; b-- > 0;) node = 2 * node + (coder.bit(bits[node], (value >> b) & 1) ? 1u : 0u);
+    return node - (1u << depth);
+  };
+  for (size_t c = 0; c < contexts; ++c) {
+    uint8_t* length = &of[c * kSymbols];
+    uint32_t n = kSymbols;
+    while (n > 0 && !length[n - 1]) --n;
+    n = tree(many[0], n, 6);
+    if (n > kSymbols) throw Error("SQT payload is damaged: a code with too many symbols");
+    for (uint32_t s = 0; s < n; ++s) {
+      length[s] = static_cast<uint8_t>(tree(model[before[s]], length[s], 4));
+      if (length[s] > kMost) throw Error("SQT payload is damaged: a code that is too long");
+    }
+    if (n) std::copy_n(length, kSymbols, before.begin());
+  }
+}
 
 }  // namespace suite::sqt

@@ -143,6 +143,44 @@ void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const L
   }
 }
 
+namespace {
+// What property maps say of a material; whether any says something.
+bool bake_maps(const Scene& scene, size_t index, const SpectralState& state, MaterialMaps& maps) {
+  const ModelSpec& model = scene.materials[index].surface;
+  bool any = false;
+  for (const PropertyBinding& b : scene.property_bindings) {
+    const PropertyMap& map = scene.property_maps[b.property_map];
+    if (b.material != index || map.kind == MapKind::opacity) continue;  // rays decide about holes
+    any = true;
+    maps.needs_uv |= map.projection == Projection::uv;
+    switch (map.kind) {
+      case MapKind::mixture:
+        maps.mixture = &map;
+        break;
+      case MapKind::curve_index:
+        maps.curve_index = &map;
+        maps.variants = bake_family(map, model, state);
+        break;
+      case MapKind::cube:
+        maps.cube = std::make_unique<BakedCube>(map, model, state);
+        break;
+      case MapKind::temperature:
+        maps.temperature = &map;
+        break;
+      case MapKind::bump:
+        maps.bump = &map;
+        break;
+      case MapKind::normal:
+        maps.normal = &map;
+        break;
+      case MapKind::opacity:
+        break;
+    }
+  }
+  return any;
+}
+}  // namespace
+
 void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
   const Material& m = scene.materials[index];
   BakedMaterial& baked = materials_[index];
@@ -157,36 +195,7 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
           static_cast<float>(planck_band_radiance(b.low_um, b.high_um, m.temperature_k) / (b.high_um - b.low_um)));
   }
   auto maps = std::make_unique<MaterialMaps>();
-  bool any = false;
-  for (const PropertyBinding& b : scene.property_bindings) {
-    const PropertyMap& map = scene.property_maps[b.property_map];
-    if (b.material != index || map.kind == MapKind::opacity) continue;  // rays decide about holes
-    any = true;
-    maps->needs_uv |= map.projection == Projection::uv;
-    switch (map.kind) {
-      case MapKind::mixture:
-        maps->mixture = &map;
-        break;
-      case MapKind::curve_index:
-        maps->curve_index = &map;
-        maps->variants = bake_family(map, m.surface, state_);
-        break;
-      case MapKind::cube:
-        maps->cube = std::make_unique<BakedCube>(map, m.surface, state_);
-        break;
-      case MapKind::temperature:
-        maps->temperature = &map;
-        break;
-      case MapKind::bump:
-        maps->bump = &map;
-        break;
-      case MapKind::normal:
-        maps->normal = &map;
-        break;
-      case MapKind::opacity:
-        break;
-    }
-  }
+  bool any = bake_maps(scene, index, state_, *maps);
   const TemperatureSpec* spec = nullptr;
   for (const TemperatureBinding& t : scene.temperatures)
     if (t.material == index && !t.spec.model.empty()) spec = &t.spec, any = true;

@@ -131,15 +131,7 @@ Box3 World::local_box(const TracedObject& o) const {
   return meshes[o.mesh].box;
 }
 
-World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
-    : scene(std::move(given)),
-      periodic(cell),
-      filter(std::move(holes)),
-      flat(flatten(*scene)),
-      meshes(new MeshEntry[scene->meshes.size()]),
-      all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
-                           [](const Material& m) { return m.bounds_medium(); })) {
-  const FlushDenormals flush;
+void World::measure_meshes() {
   std::vector<bool> used(scene->meshes.size(), false);
   for (const TracedObject& o : flat.objects)
     if (o.mesh != kNone) used[o.mesh] = true;
@@ -154,6 +146,18 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       m.room = enlarged(m.room, 16 * FLT_EPSILON * m.scale + 1e-30);
     }
   });
+}
+
+World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
+    : scene(std::move(given)),
+      periodic(cell),
+      filter(std::move(holes)),
+      flat(flatten(*scene)),
+      meshes(new MeshEntry[scene->meshes.size()]),
+      all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
+                           [](const Material& m) { return m.bounds_medium(); })) {
+  const FlushDenormals flush;
+  measure_meshes();
   if (periodic) repeat_at_sides();
   if (filter) {
     holed_meshes.assign(scene->meshes.size(), 0);

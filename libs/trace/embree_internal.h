@@ -178,6 +178,7 @@ struct World {
   Box3 local_box(const TracedObject& o) const;
 
  private:
+  void measure_meshes();  // that something shows
   void repeat_at_sides();
   void fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes);
 };

@@ -1,10 +1,10 @@
 # The house rules of the build: one function per kind of target, and a configuration that fails when a library looks
 # up or to its right. The order below is the drawing in README.md read row by row from the ground, left to right.
-set(SUITE_ORDER base math page  spectral motion sqt  optics thermal scene mesh  sensor trace surface light estimate transport scheduler study)
+set(SUITE_ORDER base math page  spectral motion sqt sqt_fit  optics thermal scene mesh  sensor trace surface light estimate transport scheduler study)
 set(SUITE_ROW_OF_base 0)
 set(SUITE_ROW_OF_math 0)
 set(SUITE_ROW_OF_page 0)
-foreach(lib spectral motion sqt)
+foreach(lib spectral motion sqt sqt_fit)
   set(SUITE_ROW_OF_${lib} 1)
 endforeach()
 foreach(lib optics thermal scene mesh)
@@ -71,6 +71,27 @@ function(suite_app name)
   target_link_libraries(${name} PRIVATE ${library})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# suite_forbid(<target> libraries...): the configuration fails when the target links one of them, by whatever way.
+function(suite_forbid target)
+  set(open ${target})
+  set(seen)
+  while(NOT "${open}" STREQUAL "")
+    list(POP_FRONT open one)
+    if(NOT TARGET ${one} OR one IN_LIST seen)
+      continue()
+    endif()
+    list(APPEND seen ${one})
+    if(one IN_LIST ARGN)
+      message(FATAL_ERROR "${target} links '${one}', which it must not")
+    endif()
+    get_target_property(links ${one} LINK_LIBRARIES)
+    get_target_property(passed ${one} INTERFACE_LINK_LIBRARIES)
+    # A private link of a static library appears as $<LINK_ONLY:name>.
+    list(TRANSFORM passed REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1")
+    list(APPEND open ${links} ${passed})
+  endwhile()
 endfunction()
 
 # What the leak sanitizer must not count: leaks of libraries that are not ours.

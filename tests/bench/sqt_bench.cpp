@@ -8,9 +8,10 @@
 #include "base/parallel.h"
 #include "formats/measured/measured.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "math/sampling.h"
 #include "math/warps.h"
-#include "sqt/fit.h"
+#include "sqt_fit/fit.h"
 
 namespace suite {
 namespace {

@@ -15,7 +15,8 @@
 #include "formats/measured/measured.h"
 #include "formats/merl/merl.h"
 #include "formats/sqt/sqt.h"
-#include "sqt/fit.h"
+#include "formats/sqt/sqt_write.h"
+#include "sqt_fit/fit.h"
 
 namespace suite {
 namespace {

@@ -32,9 +32,9 @@
 #include "light/kinds/sun.h"
 #include "math/sampling.h"
 #include "math/warps.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/scattered.h"
 #include "transport/shares.h"
-#include "sqt/fit.h"
-#include "sqt/scattered.h"
 
 namespace suite {
 namespace {

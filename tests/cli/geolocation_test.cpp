@@ -10,7 +10,7 @@
 #include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
 #include "motion/scene_frame.h"
-#include "support/run_command.h"
+#include "support/programs_kit.h"
 
 namespace suite {
 namespace {
@@ -66,34 +66,24 @@ Colour colour_at(double x, double y, double near) {
   return Colour::grey;
 }
 
-class Geolocation : public testing::Test {
+class Geolocation : public ProgramsTest<Geolocation> {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
+    make_folder();
     std::string text = kSimulation;
     for (size_t at; (at = text.find("BANDS")) != std::string::npos;)
       text.replace(at, 5, "bands: [{name: pan, center_um: 0.6, fwhm_um: 0.1}]");
     for (const bool on_earth : {true, false}) {
       const std::string name = on_earth ? "earth" : "plane";
-      write_file(*folder_ / (name + ".yaml"), std::string_view(scene_text(on_earth)));
+      prepare(scene_text(on_earth), name);
       std::string sim = text;
       sim.replace(sim.find("SCENE"), 5, name + ".h5");
       write_file(*folder_ / (name + "_sim.yaml"), std::string_view(sim));
-      ASSERT_EQ(run("scene-prep " + name + ".yaml -o " + name + ".h5 -q").code, 0);
       const CommandResult r = run("dirsig-render " + name + "_sim.yaml -o " + name + " -q");
       ASSERT_EQ(r.code, 0) << r.err;
     }
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static CommandResult run(const std::string& command) {
-    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
-  }
-  static TempFolder* folder_;
 };
-TempFolder* Geolocation::folder_ = nullptr;
 
 // What a picture on a map shows where, compared with what is there.
 struct Agreement {

@@ -10,7 +10,7 @@
 #include "formats/raster/raster.h"
 #include "spectral/planck.h"
 #include "spectral/thermometer.h"
-#include "support/run_command.h"
+#include "support/programs_kit.h"
 
 namespace suite {
 namespace {
@@ -38,29 +38,15 @@ std::string map(const std::string& more, int gsd = 2) {
          "}\n";
 }
 
-class ImageFacts : public testing::Test {
+class ImageFacts : public ProgramsTest<ImageFacts> {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
-    write_file(*folder_ / "scene.yaml", std::string_view(kScene));
-    ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static CommandResult run(const std::string& command) {
-    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
-  }
-  static CommandResult render(const std::string& text, const std::string& out) {
-    write_file(*folder_ / (out + ".yaml"), std::string_view(text));
-    return run("dirsig-render " + out + ".yaml -o " + out + " -q");
+    make_folder();
+    prepare(kScene);
   }
   static EnviHeader header(const std::string& name) { return read_envi_header(*folder_ / name); }
   static std::vector<double> values(const std::string& name) { return EnviImage(*folder_ / name).read_all(); }
-  static TempFolder* folder_;
 };
-TempFolder* ImageFacts::folder_ = nullptr;
 
 // The sun: PyEphem 4 (Observer at 49 N 8 E, 120 m, pressure 0; 2026/6/21 10:30:00; Sun.az, Sun.alt).
 TEST_F(ImageFacts, EveryHeaderHasTheDateTheSunAndItsBands) {

@@ -280,6 +280,14 @@ TEST_F(ScenePrep, UsageAndPlaces) {
   EXPECT_EQ(run("good.yaml -o .").code, 1);
   EXPECT_THAT(run("--list-issues").out, HasSubstr("SP201"));
   EXPECT_THAT(run("--list-models").out, HasSubstr("lambert"));
+  EXPECT_THAT(run("--list-phases").out, HasSubstr("rayleigh"));
+  EXPECT_THAT(run("--list-temperatures").out, HasSubstr("slab"));
+  EXPECT_THAT(run("--list-importers").out, HasSubstr("scene_text"));
+  write_file(folder_ / "picture.png", std::string_view("\x89PNG\0\0", 6));
+  const CommandResult picture = run("picture.png");
+  EXPECT_EQ(picture.code, 1);
+  EXPECT_THAT(picture.err,
+              HasSubstr("picture.png: error: is nothing that a scene can be made from; known: a scene text"));
 }
 
 TEST_F(ScenePrep, CityAndForestInSmall) {

@@ -10,7 +10,7 @@
 #include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
 #include "motion/scene_frame.h"
-#include "support/run_command.h"
+#include "support/programs_kit.h"
 
 namespace suite {
 namespace {
@@ -32,30 +32,18 @@ const std::string kFlight =
     "  - kind: platform\n    name: uas\n    motion: {kind: straight, position_m: [0, 0, 100], heading_deg: 0, "
     "speed_m_s: 10}\n";
 
-class SensorOutput : public testing::Test {
+class SensorOutput : public ProgramsTest<SensorOutput> {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
-    write_file(*folder_ / "scene.yaml", std::string_view(kScene));
-    ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5 -q").code, 0);
+    make_folder();
+    prepare(kScene);
   }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static CommandResult run(const std::string& command) {
-    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
-  }
-  // Renders into the folder `out`.
   static void render(const std::string& text, const std::string& out) {
-    write_file(*folder_ / (out + ".yaml"), std::string_view(kLight + text));
-    const CommandResult r = run("dirsig-render " + out + ".yaml -o " + out + " -q");
+    const CommandResult r = ProgramsTest::render(kLight + text, out);
     ASSERT_EQ(r.code, 0) << r.err;
   }
   static bool there(const std::string& name) { return file_exists(*folder_ / name); }
-  static TempFolder* folder_;
 };
-TempFolder* SensorOutput::folder_ = nullptr;
 
 std::string two_tasks(const std::string& files) {
   return "output: {files: " + files + "}\nsensors:\n" + kFlight +

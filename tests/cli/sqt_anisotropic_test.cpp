@@ -115,6 +115,18 @@ struct Picture {
   std::vector<double> radiance, error;
 };
 
+// Variance along y over that along x of what is brighter than half of the peak.
+double elongation(const Picture& p) {
+  double peak = 0, n = 0, x = 0, y = 0, xx = 0, yy = 0;
+  for (const double L : p.radiance) peak = std::max(peak, L);
+  for (size_t i = 0; i < p.radiance.size(); ++i) {
+    if (p.radiance[i] < 0.5 * peak) continue;
+    const double c = static_cast<double>(i % 24), r = static_cast<double>(i / 24);
+    n += 1, x += c, y += r, xx += c * c, yy += r * r;
+  }
+  return (yy / n - y * y / (n * n)) / std::max(0.1, xx / n - x * x / (n * n));
+}
+
 TEST_F(SqtAnisotropic, TheHighlightLiesAcrossTheMarks) {
   ASSERT_EQ(fit_.code, 0) << fit_.err;
   write_file(path("scene.yaml"),
@@ -160,17 +172,6 @@ TEST_F(SqtAnisotropic, TheHighlightLiesAcrossTheMarks) {
   EXPECT_LT(apart / sum, 0.03);
   EXPECT_LE(beyond, analytic.radiance.size() / 100);
   EXPECT_GT(apart_turned / sum, 0.2);  // the control
-  // Elongation of what is brighter than half of the peak.
-  auto elongation = [](const Picture& p) {
-    double peak = 0, n = 0, x = 0, y = 0, xx = 0, yy = 0;
-    for (const double L : p.radiance) peak = std::max(peak, L);
-    for (size_t i = 0; i < p.radiance.size(); ++i) {
-      if (p.radiance[i] < 0.5 * peak) continue;
-      const double c = static_cast<double>(i % 24), r = static_cast<double>(i / 24);
-      n += 1, x += c, y += r, xx += c * c, yy += r * r;
-    }
-    return (yy / n - y * y / (n * n)) / std::max(0.1, xx / n - x * x / (n * n));
-  };
   std::printf("variance of the highlight along y over x: analytic %.1f, fitted %.1f, turned %.2f\n",
               elongation(analytic), elongation(fitted), elongation(turned));
   EXPECT_GT(elongation(fitted), 2);

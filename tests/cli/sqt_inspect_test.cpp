@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "base/params.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "optics/model_function.h"
 #include "support/run_command.h"
 

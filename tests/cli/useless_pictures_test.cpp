@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "support/run_command.h"
+#include "support/programs_kit.h"
 
 namespace suite {
 namespace {
@@ -47,23 +47,12 @@ std::string camera(const std::string& position, const std::string& look_at, doub
       position.c_str(), look_at.c_str(), band_um);
 }
 
-class UselessPictures : public testing::Test {
+class UselessPictures : public ProgramsTest<UselessPictures> {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
-    write_file(*folder_ / "scene.yaml", std::string_view(kScene));
-    write_file(*folder_ / "boards.yaml", std::string_view(kBoards));
-    for (const char* scene : {"scene", "boards"}) {
-      const CommandResult r = run(std::string("scene-prep ") + scene + ".yaml -o " + scene + ".h5 -q");
-      ASSERT_EQ(r.code, 0) << r.err;
-    }
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-  static CommandResult run(const std::string& command) {
-    return run_command("cd '" + folder_->path() + "' && " SUITE_BIN_DIR "/" + command);
+    make_folder();
+    prepare(kScene);
+    prepare(kBoards, "boards");
   }
   // What the renderer says on standard error; it ends well.
   static std::string said(const std::string& text, const std::string& scene = "scene") {
@@ -86,9 +75,7 @@ class UselessPictures : public testing::Test {
     for (const std::string& w : words) EXPECT_THAT(err, HasSubstr(w));
     EXPECT_EQ(err.find("warning:") < err.find("wrote out/eye.img"), before) << err;
   }
-  static TempFolder* folder_;
 };
-TempFolder* UselessPictures::folder_ = nullptr;
 
 TEST_F(UselessPictures, GoodOnesAreNotDoubted) {
   EXPECT_EQ(warnings(said(kDay + kSky + camera("[0, -20, 30]", "[0, 0, 0]"))), 0u);

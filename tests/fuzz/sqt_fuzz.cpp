@@ -1,5 +1,6 @@
 #include "formats/sqt/container.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "support/fuzz.h"
 #include "support/sqt_examples.h"
 

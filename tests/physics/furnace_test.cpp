@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "math/stats.h"
 #include "spectral/planck.h"
+#include "tests/support/model_examples.h"
 #include "tests/support/radiometry_kit.h"
 
 namespace suite::test {
@@ -40,7 +41,7 @@ std::vector<ModelCase> all_models() {
 class OpenFurnace : public testing::TestWithParam<ModelCase> {};
 
 TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
-  ModelSpec spec = find_model(GetParam().row).examples()[GetParam().example];
+  ModelSpec spec = test::examples_of(models().find(GetParam().row))[GetParam().example];
   const auto scene = scene_of({quad(1, 0, 0)}, {material("m", spec)});
   const std::vector<double> zeniths{0.05, 0.5, 1.0, 1.3, kPi - 0.6};
   std::vector<Band> bands;

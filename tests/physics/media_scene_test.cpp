@@ -7,8 +7,7 @@
 #include "math/sampling.h"
 #include "motion/track.h"
 #include "optics/model_function.h"
-#include "sqt/aligned.h"
-#include "sqt/aligned_source.h"
+#include "sqt_fit/aligned_fit.h"
 #include "tests/support/media_kit.h"
 
 namespace suite::test {

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "sqt/aligned.h"
-#include "sqt/aligned_source.h"
+#include "sqt_fit/aligned_fit.h"
 #include "tests/support/radiometry_kit.h"
 
 namespace suite::test {

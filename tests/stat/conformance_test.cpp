@@ -7,6 +7,7 @@
 #include "math/warps.h"
 #include "optics/models.h"
 #include "support/conformance.h"
+#include "support/model_examples.h"
 
 namespace suite {
 namespace {
@@ -32,7 +33,7 @@ std::vector<Case> cases() {
   std::vector<Case> list;
   for (const ModelRow& row : models()) {
     size_t n = 0;
-    for (ModelSpec spec : row.examples()) {
+    for (ModelSpec spec : test::examples_of(row)) {
       check_model(spec);
       list.push_back({row.name + "_" + std::to_string(n++), std::move(spec), row.reciprocal});
     }

@@ -5,7 +5,7 @@
 
 #include "apps/sqt-inspect/check.h"
 #include "optics/model_function.h"
-#include "sqt/paper.h"
+#include "sqt_fit/paper_fit.h"
 
 namespace suite {
 namespace {

@@ -11,7 +11,7 @@ namespace {
 using test::ConformanceOptions;
 
 std::unique_ptr<const ScatterModel> example(const char* row, size_t n, const SpectralState& state) {
-  ModelSpec spec = find_model(row).examples()[n];
+  ModelSpec spec = models().find(row).examples()[n];
   check_model(spec);
   return bake(spec, state);
 }

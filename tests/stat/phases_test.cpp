@@ -9,6 +9,7 @@
 #include "optics/phase_function.h"
 #include "optics/phases/henyey_greenstein.h"
 #include "support/conformance.h"
+#include "support/model_examples.h"
 
 namespace suite {
 namespace {
@@ -54,7 +55,7 @@ TEST(Phases, SamplesFollowTheDensityAndItsMean) {
   const SpectralState state = test::test_state(3);
   std::vector<float> p(state.size()), q(state.knots.size()), g(state.size());
   for (const PhaseRow& row : phases())
-    for (ModelSpec spec : row.examples()) {
+    for (ModelSpec spec : test::examples_of(row)) {
       check_phase(spec);
       const auto phase = bake_phase(spec, state);
       phase->asymmetry(g);

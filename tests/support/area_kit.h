@@ -6,39 +6,35 @@
 #include <vector>
 
 #include "math/sampling.h"
+#include "tests/support/one_state_sensor.h"
 #include "tests/support/radiometry_kit.h"
 
 namespace suite::test {
 
 // Parallel rays, straight up or down, each problem over one square metre; one band.
-class AreaSensor final : public Sensor {
+class AreaSensor final : public OneStateSensor {
  public:
   AreaSensor(double z, Dir direction, uint32_t edge, Convergence goal, bool neighbours)
-      : z_(z), direction_(direction), bands_(one_band()), state_(make_state(bands_, 0.02)) {
-    Capture c;
-    c.columns = c.rows = edge;
-    c.neighbours = neighbours;
-    c.convergence = goal;
-    tasks_.push_back({"area", {}, {c}});
-  }
-  std::string name() const override { return "area"; }
-  std::span<const SpectralState> states() const override { return {&state_, 1}; }
-  std::span<const Band> bands(size_t) const override { return bands_; }
-  std::span<const Task> tasks() const override { return tasks_; }
+      : OneStateSensor("area", one_band(), make_state(one_band(), 0.02), {capture(edge, goal, neighbours)}),
+        z_(z),
+        direction_(direction) {}
   SensorRay ray(const RayRequest& r) const override {
-    const double x = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
-                 y = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
+    const auto [x, y] = place_of(r);
     return {{{x, y, z_}, direction_, 0}, 1};
   }
   void accept(CaptureResult&& r) override { result = std::move(r); }
   CaptureResult result;
 
  private:
+  static Capture capture(uint32_t edge, Convergence goal, bool neighbours) {
+    Capture c;
+    c.columns = c.rows = edge;
+    c.neighbours = neighbours;
+    c.convergence = goal;
+    return c;
+  }
   double z_;
   Dir direction_;
-  std::vector<Band> bands_;
-  SpectralState state_;
-  std::vector<Task> tasks_;
 };
 
 inline constexpr uint32_t kEdge = 48;

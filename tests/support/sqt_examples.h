@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 
-#include "sqt/aligned.h"
-#include "sqt/paper.h"
+#include "sqt_fit/aligned_fit.h"
+#include "sqt_fit/paper_fit.h"
 
 namespace suite::test {
 

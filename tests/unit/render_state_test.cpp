@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "formats/hdf5/h5.h"
 #include "support/message_of.h"
+#include "support/one_state_sensor.h"
 #include "support/radiometry_kit.h"
 #include "support/temp_folder.h"
 
@@ -18,22 +19,13 @@ namespace {
 const StateIdentity kIdentity{{"scene", "abc"}, {"seed", "1"}};
 
 // A sky over a reflecting corner, looked at by a grid of rays: some variance in every problem.
-class Grid final : public Sensor {
+class Grid final : public OneStateSensor {
  public:
-  Grid(uint32_t paths, double target) {
-    Capture c;
-    c.columns = 20, c.rows = 20;
-    c.convergence = {target > 0 ? 32 : paths, paths, target, 0};
-    tasks_.push_back({"grid", {}, {c, c}});
-    tasks_[0].captures[1].columns = 3;
-  }
-  std::string name() const override { return "grid"; }
-  std::span<const SpectralState> states() const override { return {&state_, 1}; }
-  std::span<const Band> bands(size_t) const override { return bands_; }
-  std::span<const Task> tasks() const override { return tasks_; }
+  Grid(uint32_t paths, double target)
+      : OneStateSensor("grid", two_bands(), make_state(two_bands(), 0.01, 0, 4),
+                       {capture(20, paths, target), capture(3, paths, target)}) {}
   SensorRay ray(const RayRequest& r) const override {
-    const double x = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
-                 y = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
+    const auto [x, y] = place_of(r);
     SensorRay ray{{{0, 0, 3}, normalized(Vec3{x / 10 - 1, y / 10 - 1, -1}), 0}, 1};
     if (!rejects) return ray;
     ray.spectral = true;
@@ -45,9 +37,15 @@ class Grid final : public Sensor {
   bool rejects = false;  // some samples are no number
 
  private:
-  std::vector<Band> bands_{Band::rectangular("a", 0.5, 0.02), Band::rectangular("b", 0.7, 0.02)};
-  SpectralState state_ = make_state(bands_, 0.01, 0, 4);
-  std::vector<Task> tasks_;
+  static std::vector<Band> two_bands() {
+    return {Band::rectangular("a", 0.5, 0.02), Band::rectangular("b", 0.7, 0.02)};
+  }
+  static Capture capture(uint32_t columns, uint32_t paths, double target) {
+    Capture c;
+    c.columns = columns, c.rows = 20;
+    c.convergence = {target > 0 ? 32 : paths, paths, target, 0};
+    return c;
+  }
 };
 
 std::shared_ptr<const Scene> corner() {

@@ -14,6 +14,28 @@ namespace {
 
 using ::testing::HasSubstr;
 
+void add_maps(Scene& s) {
+  s.class_maps = {{"map", 2, 2, {0, 1, 1, 0}, {0, 1}, Projection::drape, {10, 20, 2, 3, Drape::Extend::repeat}}};
+  s.map_bindings = {{0, 0}};
+  PropertyMap cube;
+  cube.name = "cube";
+  cube.kind = MapKind::cube;
+  cube.width = 2, cube.height = 1, cube.channels = 2;
+  cube.values = {0.1f, 0.2f, 0.3f, 0.4f};
+  cube.wavelength_um = {0.5, 0.6};
+  cube.parameter = "reflectance";
+  PropertyMap index = cube;
+  index.name = "index";
+  index.kind = MapKind::curve_index;
+  index.channels = 1;
+  index.values = {1, 0};
+  index.wavelength_um = {};
+  index.family = {Curve::constant(0.5), Curve({0.4, 0.5}, {0.1, 0.2}, Outside::zero)};
+  index.projection = Projection::uv;
+  s.property_maps = {cube, index};
+  s.property_bindings = {{0, 1}};
+}
+
 Scene small_scene() {
   Scene s;
   s.name = "small";
@@ -55,25 +77,7 @@ Scene small_scene() {
   b.kind = TargetKind::primitive;
   s.groups = {{"world", {p, b}}, {"inner", {q, q}}};
   s.tags = {"first"};
-  s.class_maps = {{"map", 2, 2, {0, 1, 1, 0}, {0, 1}, Projection::drape, {10, 20, 2, 3, Drape::Extend::repeat}}};
-  s.map_bindings = {{0, 0}};
-  PropertyMap cube;
-  cube.name = "cube";
-  cube.kind = MapKind::cube;
-  cube.width = 2, cube.height = 1, cube.channels = 2;
-  cube.values = {0.1f, 0.2f, 0.3f, 0.4f};
-  cube.wavelength_um = {0.5, 0.6};
-  cube.parameter = "reflectance";
-  PropertyMap index = cube;
-  index.name = "index";
-  index.kind = MapKind::curve_index;
-  index.channels = 1;
-  index.values = {1, 0};
-  index.wavelength_um = {};
-  index.family = {Curve::constant(0.5), Curve({0.4, 0.5}, {0.1, 0.2}, Outside::zero)};
-  index.projection = Projection::uv;
-  s.property_maps = {cube, index};
-  s.property_bindings = {{0, 1}};
+  add_maps(s);
   s.files = {{"data.bin", {std::byte{1}, std::byte{2}, std::byte{3}}}, {"empty.bin", {}}};
   s.bounds = scene_bounds(s);
   return s;
@@ -350,7 +354,7 @@ TEST_F(SceneHdf, BadIndicesAreRefused) {
   EXPECT_THAT(refused([](Scene& s) { s.meshes[0].parts[0].material = 7; }),
               HasSubstr("names a material that is not there"));
   EXPECT_THAT(refused([](Scene& s) { s.groups[0].placements[0].target = 9; }),
-              HasSubstr("places something that is not there"));
+              HasSubstr("names a group that is not there"));
   EXPECT_THAT(refused([](Scene& s) { s.groups[1].placements[0].kind = TargetKind::group; }), HasSubstr("not below it"));
   EXPECT_THAT(refused([](Scene& s) { s.class_maps[0].classes[0] = 5; }), HasSubstr("class 5 has no material"));
   EXPECT_THAT(refused([](Scene& s) { s.property_maps[1].values[0] = 2; }), HasSubstr("curve 2 of 2"));

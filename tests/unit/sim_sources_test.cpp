@@ -8,6 +8,7 @@
 #include "formats/picture/picture.h"
 #include "formats/sim_text/sources.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "support/message_of.h"
 #include "support/sqt_examples.h"
 #include "support/temp_folder.h"

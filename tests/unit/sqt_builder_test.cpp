@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sqt/paper.h"
+#include "sqt_fit/paper_fit.h"
 #include "support/sqt_examples.h"
 
 namespace suite::sqt {
@@ -26,7 +26,7 @@ TEST(PaperBuilder, HenyeyGreensteinBecomesAFewHundredLeaves) {
   // Energy and mean error against the function, by the leaves' own solid angles.
   double energy = 0, error = 0;
   int deepest = 0;
-  for (const Builder::Leaf& leaf : leaves) {
+  for (const PaperLeaf& leaf : leaves) {
     deepest = std::max(deepest, leaf.id.order());
     for (int k = 0; k < 64; ++k) {
       const Dir d = direction_in(leaf.id, {(k % 8 + 0.5) / 8, (k / 8 + 0.5) / 8});

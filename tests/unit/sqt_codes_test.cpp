@@ -7,7 +7,7 @@
 #include "math/sampling.h"
 #include "sqt/cell_centers.h"
 #include "sqt/coded_lattice.h"
-#include "sqt/prefix_code.h"
+#include "sqt_fit/prefix_encoder.h"
 
 namespace suite::sqt {
 namespace {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "formats/sqt/sqt.h"
+#include "formats/sqt/sqt_write.h"
 #include "math/sampling.h"
 #include "math/warps.h"
 #include "support/sqt_examples.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "formats/merl/merl.h"
-#include "sqt/fit.h"
-#include "sqt/lobe_detection.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/lobe_detection.h"
 
 namespace suite::sqt {
 namespace {

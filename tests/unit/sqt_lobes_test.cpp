@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "sqt/fit.h"
-#include "sqt/lobe_detection.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/lobe_detection.h"
 #include "support/sqt_examples.h"
 
 namespace suite::sqt {

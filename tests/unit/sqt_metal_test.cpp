@@ -5,7 +5,8 @@
 
 #include "formats/merl/merl.h"
 #include "formats/sqt/sqt.h"
-#include "sqt/fit.h"
+#include "formats/sqt/sqt_write.h"
+#include "sqt_fit/fit.h"
 #include "support/sqt_examples.h"
 
 namespace suite::sqt {

@@ -5,7 +5,7 @@
 
 #include "optics/model_function.h"
 #include "optics/phase_function.h"
-#include "sqt/fit.h"
+#include "sqt_fit/fit.h"
 
 namespace suite {
 namespace {

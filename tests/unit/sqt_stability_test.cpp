@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "formats/merl/merl.h"
 #include "math/sampling.h"
-#include "sqt/fit.h"
-#include "sqt/narrow_lobe.h"
-#include "sqt/scattered.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/narrow_lobe.h"
+#include "sqt_fit/scattered.h"
 #include "support/sqt_examples.h"
 
 namespace suite::sqt {

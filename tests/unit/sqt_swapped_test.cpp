@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "sqt/swapped.h"
+#include "sqt_fit/swapped.h"
 
 namespace suite::sqt {
 namespace {

@@ -72,7 +72,7 @@ TEST_P(EveryTemperatureModel, LoadsMatterExactlyWhenItSaysSo) {
 
 TEST_P(EveryTemperatureModel, RefusesEveryParameterOutsideItsRangeAndUnknownOnes) {
   const auto& [row, spec] = GetParam();
-  for (const TemperatureParameter& p : row->parameters) {
+  for (const Parameter& p : row->parameters) {
     for (const double bad : {p.low - std::fmax(1e-12, std::fabs(p.low) * 0.01), p.high * 1.01 + 1, double{NAN}}) {
       TemperatureSpec s = spec;
       s.numbers[p.name] = bad;
@@ -95,11 +95,11 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryTemperatureModel, testing::ValuesIn(all_exa
                          [](const auto& each) { return each.param.first->name + std::to_string(each.index); });
 
 TEST(TemperatureModels, UnknownNamesGetTheNearest) {
-  EXPECT_THAT(complaint([] { find_temperature_model("slap"); }), HasSubstr("did you mean 'slab'?"));
+  EXPECT_THAT(complaint([] { temperature_models().find("slap"); }), HasSubstr("did you mean 'slab'?"));
 }
 
 TEST(TemperatureModels, SlabInBalanceStaysThere) {
-  for (const TemperatureSpec& example : find_temperature_model("slab").examples()) {
+  for (const TemperatureSpec& example : temperature_models().find("slab").examples()) {
     TemperatureSpec spec = example;
     spec.numbers["initial_k"] = 280;
     if (spec.numbers.count("deep_temperature_k")) spec.numbers["deep_temperature_k"] = 280;
@@ -109,7 +109,7 @@ TEST(TemperatureModels, SlabInBalanceStaysThere) {
 }
 
 TEST(TemperatureModels, SlabIsPeriodicUnderPeriodicLoads) {
-  const auto model = make_temperature_model(find_temperature_model("slab").examples()[0]);
+  const auto model = make_temperature_model(temperature_models().find("slab").examples()[0]);
   const auto k = ask(*model, {0, 30000, 86400, 116400}, sunny_day());
   EXPECT_NEAR(k[0], k[2], 0.02);
   EXPECT_NEAR(k[1], k[3], 0.02);
@@ -117,7 +117,7 @@ TEST(TemperatureModels, SlabIsPeriodicUnderPeriodicLoads) {
 }
 
 TEST(TemperatureModels, SpecsThatContradictThemselves) {
-  TemperatureSpec good = find_temperature_model("slab").examples()[0];
+  TemperatureSpec good = temperature_models().find("slab").examples()[0];
   auto changed = [&](auto change) {
     TemperatureSpec s = good;
     change(s);
@@ -148,7 +148,7 @@ TEST(TemperatureModels, SpecsThatContradictThemselves) {
               HasSubstr("2 times and 1 values"));
   const auto model = make_temperature_model({"tabulated", {}, {0, 1}, {300, 301}, false, {}});
   EXPECT_THAT(complaint([&] { ask(*model, {2}, {}); }), HasSubstr("it covers 0 to 1 s"));
-  TemperatureSpec late = find_temperature_model("slab").examples()[1];
+  TemperatureSpec late = temperature_models().find("slab").examples()[1];
   const auto slab = make_temperature_model(late);
   EXPECT_THAT(complaint([&] { ask(*slab, {-1e6}, cave(280)); }), HasSubstr("earlier start_s"));
   EXPECT_THAT(complaint([&] { ask(*slab, {10, 5}, cave(280)); }), HasSubstr("times ascend"));
@@ -238,7 +238,7 @@ TEST(Loads, TablesInterpolateRepeatAndRefuse) {
 
 TEST(TemperatureField, AsksTheModelWithTheLoadsOfThePlace) {
   const std::shared_ptr<const TemperatureModel> slab =
-      make_temperature_model(find_temperature_model("slab").examples()[0]);
+      make_temperature_model(temperature_models().find("slab").examples()[0]);
   const auto field = field_of(slab, [](Vec3 p) { return cave(p.x > 0 ? 300 : 270); });
   EXPECT_NEAR(field->kelvin({1, 0, 0}, 1000), 300, 0.1);
   EXPECT_NEAR(field->kelvin({-1, 0, 0}, 1000), 270, 0.1);
@@ -248,7 +248,7 @@ TEST(TemperatureField, AsksTheModelWithTheLoadsOfThePlace) {
 
 TEST(TemperatureField, SolvedOnceIsTheModelAskedAnew) {
   // A day that repeats, with the sun switched on within seconds: rows of loads are kinks of the temperature.
-  TemperatureSpec spec = find_temperature_model("slab").examples()[0];
+  TemperatureSpec spec = temperature_models().find("slab").examples()[0];
   spec.load_times = {0, 21600, 21601, 64800, 64801, 86400};
   spec.loads = {{0, 300, 280, 1},   {0, 300, 282, 1}, {500, 320, 285, 2},
                 {400, 330, 290, 2}, {0, 320, 286, 1}, {0, 300, 280, 1}};

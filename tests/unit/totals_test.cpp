@@ -9,6 +9,7 @@
 #include "math/stats.h"
 #include "optics/models.h"
 #include "support/conformance.h"
+#include "support/model_examples.h"
 
 namespace suite {
 namespace {
@@ -39,7 +40,7 @@ TEST(Totals, AgreeWithTheIntegralOfEval) {
   const SpectralState state = test::test_state(3);
   std::vector<float> W(state.size());
   for (const ModelRow& row : models())
-    for (ModelSpec spec : row.examples()) {
+    for (ModelSpec spec : test::examples_of(row)) {
       check_model(spec);
       const auto model = bake(spec, state);
       double worst = 0, worst_deg = 0;

@@ -82,12 +82,11 @@ class Dielectric final : public ScatterModel {
 }  // namespace
 
 ModelRow dielectric_row() {
-  using P = ModelParameter;
-  return {"dielectric",
-          "smooth transparent interface: reflection and refraction after Fresnel, dispersive",
+  using P = Parameter;
+  return {{"dielectric", "smooth transparent interface: reflection and refraction after Fresnel, dispersive", "1/sr",
+           make_model<Dielectric>},
           {{"index", P::Kind::curve, "1", "refractive index of the back side relative to the front side", 1, 5}},
           false,
-          make_model<Dielectric>,
           []() -> std::vector<ModelSpec> {
             const Curve glass({0.4, 0.6, 0.9, 2.0}, {1.531, 1.516, 1.509, 1.495}, Outside::hold);
             return {{"dielectric", {}, {{"index", Curve::constant(1.5)}}, {}, nullptr},

@@ -148,18 +148,18 @@ std::vector<ModelSpec> examples() {
 }  // namespace
 
 ModelRow ggx_row() {
-  using P = ModelParameter;
-  return {"ggx",
-          "rough metal, GGX micro-facets (Walter 2007); loses no energy: what meets several facets is a lobe of its "
-          "own (Kulla & "
-          "Conty 2017), which sends up to 6 % of the light astray",
+  using P = Parameter;
+  return {{"ggx",
+           "rough metal, GGX micro-facets (Walter 2007); loses no energy: what meets several facets is a lobe of its "
+           "own (Kulla & "
+           "Conty 2017), which sends up to 6 % of the light astray",
+           "1/sr", make_model<GgxConductor>},
           {{"f0", P::Kind::curve, "1", "reflectance at normal incidence (Schlick); or give n and k", 0, 1, false, 0},
            {"n", P::Kind::curve, "1", "real part of the refractive index", 0, 100, false, 0},
            {"k", P::Kind::curve, "1", "imaginary part of the refractive index, absorbing positive", 0, 200, false, 0},
            {"roughness", P::Kind::number, "1", "GGX alpha (along x when anisotropic)", 1e-4, 1},
            {"roughness_y", P::Kind::number, "1", "GGX alpha along y; 0 = as along x", 0, 1, false, 0}},
           true,
-          make_model<GgxConductor>,
           examples};
 }
 

@@ -249,15 +249,15 @@ class GgxDielectric final : public ScatterModel {
 }  // namespace
 
 ModelRow ggx_dielectric_row() {
-  using P = ModelParameter;
-  return {"ggx_dielectric",
-          "rough transparent interface, GGX micro-facets (Walter 2007), dispersive; loses no energy: what meets "
-          "several facets "
-          "is a lobe of its own (shares after Heitz 2016), which sends up to 31 % of the light astray at roughness 1",
+  using P = Parameter;
+  return {{"ggx_dielectric",
+           "rough transparent interface, GGX micro-facets (Walter 2007), dispersive; loses no energy: what meets "
+           "several facets "
+           "is a lobe of its own (shares after Heitz 2016), which sends up to 31 % of the light astray at roughness 1",
+           "1/sr", make_model<GgxDielectric>},
           {{"index", P::Kind::curve, "1", "refractive index of the back side relative to the front side", 1.0001, 5},
            {"roughness", P::Kind::number, "1", "GGX alpha", 1e-3, 1}},
           false,
-          make_model<GgxDielectric>,
           []() -> std::vector<ModelSpec> {
             const Curve glass({0.4, 0.6, 0.9, 2.0}, {1.531, 1.516, 1.509, 1.495}, Outside::hold);
             return {{"ggx_dielectric", {{"roughness", 0.3}}, {{"index", Curve::constant(1.5)}}, {}, nullptr},

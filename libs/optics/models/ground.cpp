@@ -38,4 +38,17 @@ std::vector<GroundNode> ground_nodes(Dir out) {
   return nodes;
 }
 
+void GroundModel::fill_totals(const char* model, const char* help, const SpectralState& state,
+                              const std::function<void(Dir out, std::span<float> W)>& integrate) {
+  constexpr size_t kRows = 97;
+  table_ = DirectionalTable(1, 1, kRows, state.size(), [&](Dir out, std::span<float> W) {
+    integrate(out, W);
+    for (size_t i = 0; i < W.size(); ++i)
+      if (W[i] > 1)
+        throw Error(strf("model '%s': seen from %.1f deg the ground returns %.3f of the light at %g um", model,
+                         polar_angle(out) / kDegree, static_cast<double>(W[i]), state.bins[i].center_um()),
+                    std::string("more than it receives; ") + help);
+  });
+}
+
 }  // namespace suite

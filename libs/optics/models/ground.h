@@ -1,9 +1,11 @@
 // What the empirical models of natural ground share: they diverge at grazing and have no closed total.
 #pragma once
 #include <cmath>
+#include <functional>
 #include <vector>
 
-#include "math/vec.h"
+#include "optics/models/cosine_lobe.h"
+#include "optics/models/directional_table.h"
 
 namespace suite {
 
@@ -23,5 +25,23 @@ struct GroundNode {
   double weight;
 };
 std::vector<GroundNode> ground_nodes(Dir out);
+
+// Totals come from a table over the polar angle, integrated when the model is made.
+class GroundModel : public CosineLobe {
+ public:
+  void total(Dir out, std::span<float> W) const final {
+    if (out.z == 0) return zero(W);
+    table_.at(up(out), W);
+  }
+
+ protected:
+  // integrate: the totals W of a direction on the upper side. Error, naming the model and what would help, when more
+  // than all of the light returns.
+  void fill_totals(const char* model, const char* help, const SpectralState& state,
+                   const std::function<void(Dir out, std::span<float> W)>& integrate);
+
+ private:
+  DirectionalTable table_;
+};
 
 }  // namespace suite

@@ -2,6 +2,7 @@
 // Based on: Goodenough & Brown, equations 7-9 (w = R/pi cos, cosine sampling); the bi-Lambertian leaf is the usual one
 // of canopy work (Ross 1981): both sides reflect rho and pass tau, each diffusely.
 #include "math/warps.h"
+#include "optics/models/common.h"
 #include "optics/models/rows.h"
 
 namespace suite {
@@ -76,15 +77,11 @@ std::vector<ModelSpec> examples() {
 }  // namespace
 
 ModelRow lambert_row() {
-  using P = ModelParameter;
-  return {"lambert",
-          "perfectly diffuse reflection and transmission (Lambert 1760)",
+  using P = Parameter;
+  return {{"lambert", "perfectly diffuse reflection and transmission (Lambert 1760)", "1/sr", make_model<Lambert>},
           {{"reflectance", P::Kind::curve, "1", "hemispherical reflectance of both sides", 0, 1},
            {"transmittance", P::Kind::curve, "1", "hemispherical transmittance, diffuse", 0, 1, false, 0}},
           true,
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
-            return std::make_unique<Lambert>(spec, state);
-          },
           examples};
 }
 

@@ -69,15 +69,14 @@ class Leaf final : public ScatterModel {
 }  // namespace
 
 ModelRow leaf_row() {
-  using P = ModelParameter;
-  return {"leaf",
-          "two-sided diffuse leaf with its own reflectance and transmittance on either side (after Ross 1981)",
+  using P = Parameter;
+  return {{"leaf", "two-sided diffuse leaf with its own reflectance and transmittance on either side (after Ross 1981)",
+           "1/sr", make_model<Leaf>},
           {{"reflectance_front", P::Kind::curve, "1", "hemispherical reflectance of the upper side", 0, 1},
            {"reflectance_back", P::Kind::curve, "1", "hemispherical reflectance of the lower side", 0, 1},
            {"transmittance_front", P::Kind::curve, "1", "of light that enters at the upper side", 0, 1},
            {"transmittance_back", P::Kind::curve, "1", "of light that enters at the lower side", 0, 1}},
           false,
-          make_model<Leaf>,
           []() -> std::vector<ModelSpec> {
             const Curve front({0.4, 0.55, 0.65, 0.8, 2.0}, {0.05, 0.12, 0.05, 0.48, 0.2}, Outside::hold);
             const Curve back({0.4, 0.55, 0.65, 0.8, 2.0}, {0.08, 0.2, 0.1, 0.45, 0.25}, Outside::hold);

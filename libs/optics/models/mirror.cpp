@@ -35,14 +35,13 @@ class Mirror final : public ScatterModel {
 }  // namespace
 
 ModelRow mirror_row() {
-  using P = ModelParameter;
-  return {"mirror",
-          "perfectly specular reflection (Dirac lobe)",
+  using P = Parameter;
+  return {{"mirror", "perfectly specular reflection (Dirac lobe)", "1/sr",
+           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
+             return std::make_unique<Mirror>(spec, state);
+           }},
           {{"reflectance", P::Kind::curve, "1", "specular reflectance of both sides", 0, 1}},
           true,
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const ScatterModel> {
-            return std::make_unique<Mirror>(spec, state);
-          },
           []() -> std::vector<ModelSpec> {
             return {{"mirror", {}, {{"reflectance", Curve::constant(0.8)}}, {}, nullptr}};
           }};

@@ -5,15 +5,14 @@
 // elementary).
 #include <cmath>
 
-#include "math/warps.h"
-#include "optics/models/common.h"
+#include "optics/models/cosine_lobe.h"
 #include "optics/models/rows.h"
 
 namespace suite {
 
 namespace {
 
-class OrenNayar final : public ScatterModel {
+class OrenNayar final : public CosineLobe {
  public:
   OrenNayar(const ModelSpec& spec, const SpectralState& state) : rho_(state.sample(spec.curves.at("reflectance"))) {
     const double s2 = std::pow(spec.numbers.at("sigma"), 2);
@@ -38,16 +37,6 @@ class OrenNayar final : public ScatterModel {
     const double a = out.z == 0 ? 0 : albedo(std::min(1.0, std::fabs(out.z)));
     for (size_t i = 0; i < W.size(); ++i) W[i] = static_cast<float>(rho_[i] * a);
   }
-  std::optional<Sample> sample(Dir out, Vec2 u, double, int) const override {
-    const Dir in = cosine_hemisphere(u);
-    if (out.z == 0 || !(in.z > 0)) return std::nullopt;
-    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, 0, false};
-  }
-  void pdf(Dir out, Dir in, std::span<float> p) const override {
-    std::fill(p.begin(), p.end(), same_side(out, in) ? static_cast<float>(std::fabs(in.z) / kPi) : 0.0f);
-  }
-  bool spectrally_uniform_shape() const override { return true; }
-  bool single_lobe() const override { return true; }
 
  private:
   // a + (b / pi) [sin (theta - sin cos) + (2/3) tan (1 - sin^3)]
@@ -63,13 +52,11 @@ class OrenNayar final : public ScatterModel {
 }  // namespace
 
 ModelRow oren_nayar_row() {
-  using P = ModelParameter;
-  return {"oren_nayar",
-          "rough matte surface of Lambert grooves (Oren & Nayar 1994)",
+  using P = Parameter;
+  return {{"oren_nayar", "rough matte surface of Lambert grooves (Oren & Nayar 1994)", "1/sr", make_model<OrenNayar>},
           {{"reflectance", P::Kind::curve, "1", "reflectance of the facets", 0, 1},
            {"sigma", P::Kind::number, "rad", "standard deviation of the slope angle", 0, 1.5707}},
           true,
-          make_model<OrenNayar>,
           []() -> std::vector<ModelSpec> {
             const Curve soil({0.3, 1.0, 2.6}, {0.1, 0.3, 0.5}, Outside::hold);
             return {{"oren_nayar", {{"sigma", 0.35}}, {{"reflectance", soil}}, {}, nullptr},

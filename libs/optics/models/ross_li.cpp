@@ -4,17 +4,12 @@
 // semiempirical BRDF models", IEEE TGRS 38(2), 2000, equations 37-44.
 #include <cmath>
 
-#include "math/warps.h"
-#include "optics/models/common.h"
-#include "optics/models/directional_table.h"
 #include "optics/models/ground.h"
 #include "optics/models/rows.h"
 
 namespace suite {
 
 namespace {
-
-constexpr size_t kRows = 97;
 
 struct Kernels {
   double volume, geometry;
@@ -31,26 +26,20 @@ struct Kernels {
   }
 };
 
-class RossLi final : public ScatterModel {
+class RossLi final : public GroundModel {
  public:
   RossLi(const ModelSpec& spec, const SpectralState& state)
       : isotropic_(state.sample(spec.curves.at("isotropic"))),
         volume_(state.sample(spec.curves.at("volume"))),
-        geometry_(state.sample(spec.curves.at("geometry"))),
-        uniform_(same_shares()) {
-    table_ = DirectionalTable(1, 1, kRows, isotropic_.size(), [&](Dir out, std::span<float> W) {
+        geometry_(state.sample(spec.curves.at("geometry"))) {
+    uniform_ = same_shares();
+    fill_totals("ross_li", "lower the kernel weights", state, [&](Dir out, std::span<float> W) {
       std::vector<double> sum(W.size());
       for (const GroundNode& n : ground_nodes(out)) {
         const Kernels k(out, n.in);
         for (size_t i = 0; i < W.size(); ++i) sum[i] += n.weight * f(k, i);
       }
-      for (size_t i = 0; i < W.size(); ++i) {
-        W[i] = static_cast<float>(sum[i]);
-        if (W[i] > 1)
-          throw Error(strf("model 'ross_li': seen from %.1f deg the ground returns %.3f of the light at %g um",
-                           polar_angle(out) / kDegree, sum[i], state.bins[i].center_um()),
-                      "more than it receives; lower the kernel weights");
-      }
+      for (size_t i = 0; i < W.size(); ++i) W[i] = static_cast<float>(sum[i]);
     });
   }
 
@@ -59,20 +48,6 @@ class RossLi final : public ScatterModel {
     const Kernels k(up(out), up(in));
     for (size_t i = 0; i < w.size(); ++i) w[i] = static_cast<float>(f(k, i) * std::fabs(in.z));
   }
-  void total(Dir out, std::span<float> W) const override {
-    if (out.z == 0) return zero(W);
-    table_.at(up(out), W);
-  }
-  std::optional<Sample> sample(Dir out, Vec2 u, double, int) const override {
-    const Dir in = cosine_hemisphere(u);
-    if (out.z == 0 || !(in.z > 0)) return std::nullopt;
-    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, 0, false};
-  }
-  void pdf(Dir out, Dir in, std::span<float> p) const override {
-    std::fill(p.begin(), p.end(), same_side(out, in) ? static_cast<float>(std::fabs(in.z) / kPi) : 0.0f);
-  }
-  bool spectrally_uniform_shape() const override { return uniform_; }
-  bool single_lobe() const override { return true; }
 
  private:
   double f(const Kernels& k, size_t i) const {
@@ -86,21 +61,18 @@ class RossLi final : public ScatterModel {
     return true;
   }
   std::vector<float> isotropic_, volume_, geometry_;
-  bool uniform_;
-  DirectionalTable table_;
 };
 
 }  // namespace
 
 ModelRow ross_li_row() {
-  using P = ModelParameter;
-  return {"ross_li",
-          "natural ground, RossThick and LiSparse kernels as in satellite products (Lucht 2000)",
+  using P = Parameter;
+  return {{"ross_li", "natural ground, RossThick and LiSparse kernels as in satellite products (Lucht 2000)", "1/sr",
+           make_model<RossLi>},
           {{"isotropic", P::Kind::curve, "1", "weight of the constant", 0, 1},
            {"volume", P::Kind::curve, "1", "weight of the RossThick kernel", -1, 1},
            {"geometry", P::Kind::curve, "1", "weight of the LiSparse kernel", -1, 1}},
           true,
-          make_model<RossLi>,
           []() -> std::vector<ModelSpec> {
             const Curve level({0.4, 0.65, 0.85, 2.0}, {0.04, 0.06, 0.3, 0.25}, Outside::hold);
             const Curve volume({0.4, 0.65, 0.85, 2.0}, {0.02, 0.03, 0.2, 0.1}, Outside::hold);

@@ -4,9 +4,6 @@
 // 1993, equations 2-5.
 #include <cmath>
 
-#include "math/warps.h"
-#include "optics/models/common.h"
-#include "optics/models/directional_table.h"
 #include "optics/models/ground.h"
 #include "optics/models/rows.h"
 
@@ -14,9 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kRows = 97;
-
-class Rpv final : public ScatterModel {
+class Rpv final : public GroundModel {
  public:
   Rpv(const ModelSpec& spec, const SpectralState& state)
       : rho0_(state.sample(spec.curves.at("rho0"))),
@@ -25,7 +20,7 @@ class Rpv final : public ScatterModel {
         rho_c_(state.sample(spec.curves.at("rho_c"))) {
     for (size_t i = 1; i < rho0_.size(); ++i) uniform_ = uniform_ && same_shape(i, 0);
     // The shape is integrated once for every set of shape parameters.
-    table_ = DirectionalTable(1, 1, kRows, rho0_.size(), [&](Dir out, std::span<float> W) {
+    fill_totals("rpv", "lower rho0 or raise k", state, [&](Dir out, std::span<float> W) {
       const std::vector<GroundNode> nodes = ground_nodes(out);
       for (size_t i = 0; i < W.size(); ++i) {
         if (i > 0 && same_shape(i, i - 1)) {
@@ -34,11 +29,6 @@ class Rpv final : public ScatterModel {
         }
         W[i] = static_cast<float>(integral(out, nodes, i));
       }
-      for (size_t i = 0; i < W.size(); ++i)
-        if (W[i] > 1)
-          throw Error(strf("model 'rpv': seen from %.1f deg the ground returns %.3f of the light at %g um",
-                           polar_angle(out) / kDegree, static_cast<double>(W[i]), state.bins[i].center_um()),
-                      "more than it receives; lower rho0 or raise k");
     });
   }
 
@@ -47,20 +37,6 @@ class Rpv final : public ScatterModel {
     const Geometry g(up(out), up(in));
     for (size_t i = 0; i < w.size(); ++i) w[i] = static_cast<float>(f(g, i) * std::fabs(in.z));
   }
-  void total(Dir out, std::span<float> W) const override {
-    if (out.z == 0) return zero(W);
-    table_.at(up(out), W);
-  }
-  std::optional<Sample> sample(Dir out, Vec2 u, double, int) const override {
-    const Dir in = cosine_hemisphere(u);
-    if (out.z == 0 || !(in.z > 0)) return std::nullopt;
-    return Sample{out.z > 0 ? in : Dir{in.x, in.y, -in.z}, 0, false};
-  }
-  void pdf(Dir out, Dir in, std::span<float> p) const override {
-    std::fill(p.begin(), p.end(), same_side(out, in) ? static_cast<float>(std::fabs(in.z) / kPi) : 0.0f);
-  }
-  bool spectrally_uniform_shape() const override { return uniform_; }
-  bool single_lobe() const override { return true; }
 
  private:
   struct Geometry {
@@ -87,33 +63,30 @@ class Rpv final : public ScatterModel {
   }
 
   std::vector<float> rho0_, k_, asymmetry_, rho_c_;
-  bool uniform_ = true;
-  DirectionalTable table_;
 };
 
 }  // namespace
 
 ModelRow rpv_row() {
-  using P = ModelParameter;
-  return {"rpv",
-          "natural ground with bowl, lobe and hot spot (Rahman, Pinty & Verstraete 1993)",
-          {{"rho0", P::Kind::curve, "1", "overall reflectance level", 0, 1},
-           {"k", P::Kind::curve, "1", "below 1 a bowl, above 1 a bell", 0.2, 2},
-           {"asymmetry", P::Kind::curve, "1", "negative scatters back to the light, positive forward", -0.9, 0.9},
-           {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1}},
-          true,
-          make_model<Rpv>,
-          []() -> std::vector<ModelSpec> {
-            const Curve level({0.4, 0.65, 0.85, 2.0}, {0.02, 0.04, 0.2, 0.15}, Outside::hold);
-            const Curve bowl({0.4, 0.65, 0.85, 2.0}, {0.7, 0.75, 0.85, 0.8}, Outside::hold);
-            const Curve back({0.4, 0.85, 2.0}, {-0.2, -0.1, -0.15}, Outside::hold);
-            return {{"rpv", {}, {{"rho0", level}, {"k", bowl}, {"asymmetry", back}, {"rho_c", level}}, {}, nullptr},
-                    {"rpv",
-                     {},
-                     {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
-                     {},
-                     nullptr}};
-          }};
+  using P = Parameter;
+  return {
+      {"rpv", "natural ground with bowl, lobe and hot spot (Rahman, Pinty & Verstraete 1993)", "1/sr", make_model<Rpv>},
+      {{"rho0", P::Kind::curve, "1", "overall reflectance level", 0, 1},
+       {"k", P::Kind::curve, "1", "below 1 a bowl, above 1 a bell", 0.2, 2},
+       {"asymmetry", P::Kind::curve, "1", "negative scatters back to the light, positive forward", -0.9, 0.9},
+       {"rho_c", P::Kind::curve, "1", "hot spot: 1 - rho_c is its height; 1 = none", 0, 1, false, 1}},
+      true,
+      []() -> std::vector<ModelSpec> {
+        const Curve level({0.4, 0.65, 0.85, 2.0}, {0.02, 0.04, 0.2, 0.15}, Outside::hold);
+        const Curve bowl({0.4, 0.65, 0.85, 2.0}, {0.7, 0.75, 0.85, 0.8}, Outside::hold);
+        const Curve back({0.4, 0.85, 2.0}, {-0.2, -0.1, -0.15}, Outside::hold);
+        return {{"rpv", {}, {{"rho0", level}, {"k", bowl}, {"asymmetry", back}, {"rho_c", level}}, {}, nullptr},
+                {"rpv",
+                 {},
+                 {{"rho0", Curve::constant(0.1)}, {"k", Curve::constant(1.2)}, {"asymmetry", Curve::constant(0.3)}},
+                 {},
+                 nullptr}};
+      }};
 }
 
 }  // namespace suite

@@ -53,11 +53,9 @@ constexpr double kMost = 0.9999;
 }  // namespace
 
 PhaseRow hg_row() {
-  using P = ModelParameter;
-  return {"hg",
-          "one-parameter phase function (Henyey & Greenstein 1941)",
+  using P = Parameter;
+  return {{"hg", "one-parameter phase function (Henyey & Greenstein 1941)", "1/sr", make_phase<DoubleHg>},
           {{"g", P::Kind::curve, "1", "mean cosine of the scattering angle", -kMost, kMost}},
-          make_phase<DoubleHg>,
           []() -> std::vector<ModelSpec> {
             const Curve haze({0.4, 0.8, 2.0}, {0.8, 0.6, 0.3}, Outside::hold);
             return {{"hg", {}, {{"g", haze}}, {}, nullptr},
@@ -67,13 +65,11 @@ PhaseRow hg_row() {
 }
 
 PhaseRow double_hg_row() {
-  using P = ModelParameter;
-  return {"double_hg",
-          "forward and backward lobe (Kattawar 1975)",
+  using P = Parameter;
+  return {{"double_hg", "forward and backward lobe (Kattawar 1975)", "1/sr", make_phase<DoubleHg>},
           {{"g1", P::Kind::curve, "1", "mean cosine of the first lobe", -kMost, kMost},
            {"g2", P::Kind::curve, "1", "mean cosine of the second lobe", -kMost, kMost},
            {"share", P::Kind::curve, "1", "share of the first lobe", 0, 1}},
-          make_phase<DoubleHg>,
           []() -> std::vector<ModelSpec> {
             return {{"double_hg",
                      {},

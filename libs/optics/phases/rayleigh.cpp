@@ -37,11 +37,9 @@ class Rayleigh final : public PhaseFunction {
 }  // namespace
 
 PhaseRow rayleigh_row() {
-  using P = ModelParameter;
-  return {"rayleigh",
-          "molecules (Rayleigh 1871; depolarisation after Bucholtz 1995)",
+  using P = Parameter;
+  return {{"rayleigh", "molecules (Rayleigh 1871; depolarisation after Bucholtz 1995)", "1/sr", make_phase<Rayleigh>},
           {{"depolarisation", P::Kind::number, "1", "depolarisation factor; 0.0279 for air", 0, 0.5, false, 0}},
-          make_phase<Rayleigh>,
           []() -> std::vector<ModelSpec> {
             return {{"rayleigh", {}, {}, {}, nullptr}, {"rayleigh", {{"depolarisation", 0.0279}}, {}, {}, nullptr}};
           }};

@@ -10,7 +10,6 @@
 #include "optics/phases/cosine_table.h"
 #include "optics/phases/rows.h"
 #include "optics/stored_range.h"
-#include "sqt/aligned.h"
 #include "sqt/bundle.h"
 
 namespace suite {
@@ -93,57 +92,28 @@ class SqtPhase final : public PhaseFunction {
   std::vector<size_t> knots_;
 };
 
-// Two colours of haze, for the conformance tests.
-class Haze final : public sqt::Function {
- public:
-  Haze() {
-    info_.name = "haze";
-    info_.wavelength_um = {0.45, 0.65};
-    info_.domain = sqt::Domain::sphere;
-    info_.quantity = sqt::Quantity::phase;
-  }
-  const Info& info() const override { return info_; }
-  void value(Dir out, Dir in, std::span<double> f) const override {
-    const double c = scattering_cosine(out, in);
-    f[0] = std::exp(3 * (c - 1)) + 0.02;
-    f[1] = std::exp(1.5 * (c - 1)) + 0.05;
-  }
-
- private:
-  Info info_;
-};
-
 }  // namespace
 
 PhaseRow sqt_phase_row() {
-  using P = ModelParameter;
-  return {"sqt",
-          "fitted spherical quad-tree of a phase function (Goodenough & Brown 2017)",
+  using P = Parameter;
+  return {{"sqt", "fitted spherical quad-tree of a phase function (Goodenough & Brown 2017)", "1/sr",
+           [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const PhaseFunction> {
+             const std::string name = spec.texts.at("file");
+             if (!spec.bundle) throw Error("phase function 'sqt': the file '" + name + "' has not been loaded");
+             if (spec.bundle->info().function.quantity != sqt::Quantity::phase)
+               throw Error("phase function 'sqt': '" + name + "' does not hold a phase function",
+                           "fit one, e.g. sqt-fit --model hg:g=0.8");
+             if (stored_range(spec).outside == Outside::zero)
+               throw Error("phase function 'sqt': 'outside: zero' leaves nothing to normalise", "error or hold");
+             for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "phase function");
+             return std::make_unique<SqtPhase>(*spec.bundle, state);
+           }},
           {{"file", P::Kind::text, "", "name of the .sqt file", 0, 0},
            {"outside", P::Kind::text, "",
             "beyond half a spacing from the outermost channels (alone: 5 % of its wavelength): error or hold", 0, 0,
             false}},
-          [](const ModelSpec& spec, const SpectralState& state) -> std::unique_ptr<const PhaseFunction> {
-            const std::string name = spec.texts.at("file");
-            if (!spec.bundle) throw Error("phase function 'sqt': the file '" + name + "' has not been loaded");
-            if (spec.bundle->info().function.quantity != sqt::Quantity::phase)
-              throw Error("phase function 'sqt': '" + name + "' does not hold a phase function",
-                          "fit one, e.g. sqt-fit --model hg:g=0.8");
-            if (stored_range(spec).outside == Outside::zero)
-              throw Error("phase function 'sqt': 'outside: zero' leaves nothing to normalise", "error or hold");
-            for (const Bin& bin : state.bins) require_stored(spec, bin.low_um, bin.high_um, "phase function");
-            return std::make_unique<SqtPhase>(*spec.bundle, state);
-          },
-          []() -> std::vector<ModelSpec> {
-            static const std::shared_ptr<const sqt::Bundle> haze = [] {
-              sqt::AlignedSource::Options options;
-              options.views = 2;
-              options.base_order = 4;
-              options.max_order = 6;
-              const sqt::AlignedSource source(Haze(), options);
-              return std::shared_ptr<const sqt::Bundle>(sqt::make_bundle(sqt::encode_aligned(source, 0.05).data));
-            }();
-            return {{"sqt", {}, {}, {{"file", "haze.sqt"}, {"outside", "hold"}}, haze}};
+          []() -> std::vector<ModelSpec> {  // the tests fit a bundle to it
+            return {{"sqt", {}, {}, {{"file", "haze.sqt"}, {"outside", "hold"}}, nullptr}};
           }};
 }
 

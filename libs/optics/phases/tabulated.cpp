@@ -68,11 +68,10 @@ class Tabulated final : public PhaseFunction {
 }  // namespace
 
 PhaseRow tabulated_row() {
-  using P = ModelParameter;
-  return {"tabulated",
-          "a table over the scattering angle, for example from a Mie calculation",
+  using P = Parameter;
+  return {{"tabulated", "a table over the scattering angle, for example from a Mie calculation", "1/sr",
+           make_phase<Tabulated>},
           {{"table", P::Kind::text, "deg, any", "angle_deg value, angle_deg value, ... from 0 to 180", 0, 0}},
-          make_phase<Tabulated>,
           []() -> std::vector<ModelSpec> {
             return {{"tabulated",
                      {},

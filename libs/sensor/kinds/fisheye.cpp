@@ -42,10 +42,8 @@ class Fisheye final : public SimpleSensor {
 }  // namespace
 
 SensorRow fisheye_row() {
-  return {"fisheye", "radiance from a hemisphere or more around the vertical, in one round picture",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<Fisheye>(p, c);
-          }};
+  return {"fisheye", "radiance from a hemisphere or more around the vertical, in one round picture", "",
+          make_kind<Fisheye>};
 }
 
 }  // namespace suite

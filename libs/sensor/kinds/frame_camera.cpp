@@ -90,10 +90,7 @@ class FrameCamera final : public Sensor {
 }  // namespace
 
 SensorRow frame_camera_row() {
-  return {"frame_camera", "2-D framing array behind a pinhole, global shutter",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<FrameCamera>(p, c);
-          }};
+  return {"frame_camera", "2-D framing array behind a pinhole, global shutter", "", make_kind<FrameCamera>};
 }
 
 }  // namespace suite

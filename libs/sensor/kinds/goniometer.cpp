@@ -80,10 +80,7 @@ class Goniometer final : public SimpleSensor {
 }  // namespace
 
 SensorRow goniometer_row() {
-  return {"goniometer", "BRDF of a patch of a scene as samples for sqt-fit",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<Goniometer>(p, c);
-          }};
+  return {"goniometer", "BRDF of a patch of a scene as samples for sqt-fit", "", make_kind<Goniometer>};
 }
 
 }  // namespace suite

@@ -35,10 +35,8 @@ class Orthographic final : public SimpleSensor {
 }  // namespace
 
 SensorRow orthographic_row() {
-  return {"orthographic", "a map: parallel rays straight down, with map coordinates in its header",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<Orthographic>(p, c);
-          }};
+  return {"orthographic", "a map: parallel rays straight down, with map coordinates in its header", "",
+          make_kind<Orthographic>};
 }
 
 }  // namespace suite

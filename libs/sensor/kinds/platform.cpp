@@ -260,9 +260,7 @@ class Platform final : public Sensor {
 
 SensorRow platform_row() {
   return {"platform", "a vehicle with instruments: cameras, push-brooms, whiskbrooms, logs; motion, jitter, detectors",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<Platform>(p, c);
-          }};
+          "", make_kind<Platform>};
 }
 
 }  // namespace suite

@@ -67,10 +67,7 @@ class PointCollectors final : public SimpleSensor {
 }  // namespace
 
 SensorRow point_row() {
-  return {"point", "irradiance, radiance and flux at points, as CSV",
-          [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> {
-            return std::make_unique<PointCollectors>(p, c);
-          }};
+  return {"point", "irradiance, radiance and flux at points, as CSV", "", make_kind<PointCollectors>};
 }
 
 }  // namespace suite

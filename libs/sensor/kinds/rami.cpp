@@ -195,9 +195,8 @@ class Rami final : public SimpleSensor {
 }  // namespace
 
 SensorRow rami_row() {
-  return {
-      "rami", "BRF in two planes, black-sky albedo and absorbed fluxes of a canopy, as CSV and .mes tables",
-      [](const Params& p, const SensorContext& c) -> std::unique_ptr<Sensor> { return std::make_unique<Rami>(p, c); }};
+  return {"rami", "BRF in two planes, black-sky albedo and absorbed fluxes of a canopy, as CSV and .mes tables", "",
+          make_kind<Rami>};
 }
 
 }  // namespace suite

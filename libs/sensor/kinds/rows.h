@@ -12,4 +12,9 @@ SensorRow point_row();
 SensorRow goniometer_row();
 SensorRow rami_row();
 
+template <class Kind>
+std::unique_ptr<Sensor> make_kind(const Params& params, const SensorContext& context) {
+  return std::make_unique<Kind>(params, context);
+}
+
 }  // namespace suite

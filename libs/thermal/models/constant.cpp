@@ -21,14 +21,14 @@ class Constant final : public TemperatureModel {
 }  // namespace
 
 TemperatureRow constant_temperature_row() {
-  return {"constant",
-          "one temperature at all times",
-          {{"kelvin", "temperature", 1, 10000}},
+  using P = Parameter;
+  return {{"constant", "one temperature at all times", "K",
+           [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
+             return std::make_unique<Constant>(spec.numbers.at("kelvin"));
+           }},
+          {{"kelvin", P::Kind::number, "K", "temperature", 1, 10000}},
           false,
           false,
-          [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
-            return std::make_unique<Constant>(spec.numbers.at("kelvin"));
-          },
           [] {
             return std::vector<TemperatureSpec>{{"constant", {{"kelvin", 300}}, {}, {}, false, {}}};
           }};

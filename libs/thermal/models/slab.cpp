@@ -94,28 +94,30 @@ std::vector<TemperatureSpec> examples() {
 }  // namespace
 
 TemperatureRow slab_temperature_row() {
-  return {"slab",
-          "conduction in layers, radiation, convection and absorbed light on top",
-          {{"thickness_m", "of the one layer, when no layers are given", 1e-9, 1e6, false, NAN},
-           {"density_kg_m3", "of the one layer", 1e-6, 1e5, false, NAN},
-           {"specific_heat_j_kg_k", "of the one layer", 1e-6, 1e6, false, NAN},
-           {"conductivity_w_m_k", "of the one layer", 1e-9, 1e5, false, NAN},
-           {"emissivity", "of the surface in the thermal infrared", 0, 1, false, 0.95},
-           {"convection_still_w_m2_k", "transfer to still air", 0, 1e4, false, 0},
-           {"convection_wind_j_m3_k", "its growth per m/s of wind", 0, 1e4, false, 0},
-           {"deep_flux_w_m2", "flux from below", -1e5, 1e5, false, 0},
-           {"deep_temperature_k", "temperature held below, instead of a flux", 1, 10000, false, NAN},
-           {"initial_k", "where the past begins", 1, 10000, false, 290},
-           {"start_s", "when the past begins", -1e12, 1e12, false, NAN},
-           {"period_s", "the loads repeat: begin in the state that repeats with them", 1e-3, 1e12, false, NAN},
-           {"tolerance_k", "error of one step", 1e-6, 10, false, 0.01},
-           {"max_step_s", "longest step", 1e-6, 1e9, false, 1800}},
-          false,
-          true,
-          [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
-            return std::make_unique<SlabModel>(spec);
-          },
-          examples};
+  using P = Parameter;
+  return {
+      {"slab", "conduction in layers, radiation, convection and absorbed light on top", "K",
+       [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
+         return std::make_unique<SlabModel>(spec);
+       }},
+      {{"thickness_m", P::Kind::number, "m", "of the one layer, when no layers are given", 1e-9, 1e6, false, NAN},
+       {"density_kg_m3", P::Kind::number, "kg/m3", "of the one layer", 1e-6, 1e5, false, NAN},
+       {"specific_heat_j_kg_k", P::Kind::number, "J/(kg K)", "of the one layer", 1e-6, 1e6, false, NAN},
+       {"conductivity_w_m_k", P::Kind::number, "W/(m K)", "of the one layer", 1e-9, 1e5, false, NAN},
+       {"emissivity", P::Kind::number, "1", "of the surface in the thermal infrared", 0, 1, false, 0.95},
+       {"convection_still_w_m2_k", P::Kind::number, "W/(m2 K)", "transfer to still air", 0, 1e4, false, 0},
+       {"convection_wind_j_m3_k", P::Kind::number, "J/(m3 K)", "its growth per m/s of wind", 0, 1e4, false, 0},
+       {"deep_flux_w_m2", P::Kind::number, "W/m2", "flux from below", -1e5, 1e5, false, 0},
+       {"deep_temperature_k", P::Kind::number, "K", "temperature held below, instead of a flux", 1, 10000, false, NAN},
+       {"initial_k", P::Kind::number, "K", "where the past begins", 1, 10000, false, 290},
+       {"start_s", P::Kind::number, "s", "when the past begins", -1e12, 1e12, false, NAN},
+       {"period_s", P::Kind::number, "s", "the loads repeat: begin in the state that repeats with them", 1e-3, 1e12,
+        false, NAN},
+       {"tolerance_k", P::Kind::number, "K", "error of one step", 1e-6, 10, false, 0.01},
+       {"max_step_s", P::Kind::number, "s", "longest step", 1e-6, 1e9, false, 1800}},
+      false,
+      true,
+      examples};
 }
 
 }  // namespace suite

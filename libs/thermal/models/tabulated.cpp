@@ -23,14 +23,13 @@ class Tabulated final : public TemperatureModel {
 }  // namespace
 
 TemperatureRow tabulated_temperature_row() {
-  return {"tabulated",
-          "temperatures over time, linear in between",
+  return {{"tabulated", "temperatures over time, linear in between", "K",
+           [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
+             return std::make_unique<Tabulated>(spec);
+           }},
           {},
           true,
           false,
-          [](const TemperatureSpec& spec) -> std::unique_ptr<const TemperatureModel> {
-            return std::make_unique<Tabulated>(spec);
-          },
           [] {
             return std::vector<TemperatureSpec>{
                 {"tabulated", {}, {-100000, 0, 3600, 200000}, {280, 300, 310, 290}, false, {}},

@@ -153,7 +153,7 @@ double thin_cells(double thickness) {
 
 }  // namespace
 
-std::vector<Case> media_cases() {
+static std::vector<Case> layers() {
   using N = const Numerics&;
   return {
       {"medium",
@@ -188,6 +188,12 @@ std::vector<Case> media_cases() {
        [](N, double x) { return against_doubling(x); },
        {"optical depth", "1", 64, 1024, 4},
        {}},
+  };
+}
+
+static std::vector<Case> bodies() {
+  using N = const Numerics&;
+  return {
       {"medium",
        "conservative ball, g = 0.9999",
        "closed form 1",
@@ -221,6 +227,12 @@ std::vector<Case> media_cases() {
        {"thickness", "m", 1e-3, 1e-6, 10},
        {}},
   };
+}
+
+std::vector<Case> media_cases() {
+  std::vector<Case> all = layers();
+  for (Case& c : bodies()) all.push_back(std::move(c));
+  return all;
 }
 
 }  // namespace suite::extreme

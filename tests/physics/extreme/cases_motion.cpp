@@ -38,8 +38,7 @@ const Psd kBand{{1, 100}, {2e-9, 2e-9}, Psd::Between::linear};
 
 }  // namespace
 
-std::vector<Case> motion_cases() {
-  std::vector<Case> c;
+static void add_rotations(std::vector<Case>& c) {
   c.push_back({"rotation",
                "screw by 1e-9 rad",
                "closed form",
@@ -92,6 +91,9 @@ std::vector<Case> motion_cases() {
                },
                {"angle", "rad", 1e-9, 1e-15, 10},
                {}});
+}
+
+static void add_frames(std::vector<Case>& c) {
   c.push_back({"frames",
                "screw in ECEF against ENU",
                "one pose",
@@ -108,6 +110,9 @@ std::vector<Case> motion_cases() {
                [](const Numerics&, double) { return framed_error(700); },
                {},
                {}});
+}
+
+static void add_exposures(std::vector<Case>& c) {
   c.push_back({"exposure",
                "jitter over 1 ns: nothing moves within it",
                "closed form (pi T)^2 / 3 integral of S f^2",
@@ -143,6 +148,13 @@ std::vector<Case> motion_cases() {
        },
        {"exposure", "s", 86400, 864000, 10},
        {}});
+}
+
+std::vector<Case> motion_cases() {
+  std::vector<Case> c;
+  add_rotations(c);
+  add_frames(c);
+  add_exposures(c);
   return c;
 }
 

@@ -9,8 +9,9 @@
 #include "optics/phase_function.h"
 #include "physics/extreme/case.h"
 #include "spectral/planck.h"
-#include "sqt/fit.h"
-#include "sqt/scattered.h"
+#include "sqt_fit/fit.h"
+#include "sqt_fit/scattered.h"
+#include "support/model_examples.h"
 #include "support/sqt_examples.h"
 #include "tests/support/radiometry_kit.h"
 
@@ -81,7 +82,7 @@ Case henyey_mass(double g) {
 double furnace(const ModelRow& row, double zenith) {
   double worst = 0;
   const SpectralState state = one_state();
-  for (const ModelSpec& spec : row.examples()) {
+  for (const ModelSpec& spec : test::examples_of(row)) {
     const auto scene = scene_of({quad(1, 0, 0)}, {material("m", spec)});
     SourceSpecs sources;
     sources.sky = uniform_sky(2, true);
@@ -254,7 +255,7 @@ static void add_grazing(std::vector<Case>& c) {
                  const SpectralState state = one_state();
                  std::vector<float> W(state.size());
                  for (const ModelRow& row : models())
-                   for (const ModelSpec& spec : row.examples()) {
+                   for (const ModelSpec& spec : test::examples_of(row)) {
                      const auto m = bake(material("m", spec).surface, state);
                      m->total({0, 0, 1}, W);
                      faults += !(W[0] >= 0 && W[0] <= 1.001f);
@@ -273,7 +274,7 @@ static void add_grazing(std::vector<Case>& c) {
                  const SpectralState state = one_state();
                  std::vector<float> w(state.size());
                  for (const ModelRow& row : models())
-                   for (const ModelSpec& spec : row.examples()) {
+                   for (const ModelSpec& spec : test::examples_of(row)) {
                      const auto m = bake(material("m", spec).surface, state);
                      m->eval({1, 0, 0}, {0, 0, 1}, w);
                      faults += w[0] != 0 || m->sample({1, 0, 0}, {0.3, 0.6}, 0.5, 0).has_value();
@@ -332,6 +333,9 @@ static void add_trees(std::vector<Case>& c) {
                },
                {"view zenith", "deg", 85, 89.9, 1.01},
                {}});
+}
+
+static void add_sampled_trees(std::vector<Case>& c) {
   c.push_back({"SQT",
                "lobe of width 0.02 (near a delta): draws against W",
                "identity E[w/pdf] = W",
@@ -355,6 +359,7 @@ std::vector<Case> optics_cases() {
   add_furnaces(c);
   add_grazing(c);
   add_trees(c);
+  add_sampled_trees(c);
   return c;
 }
 

@@ -79,8 +79,7 @@ Case apart(const char* name, bool opposite, double from, double to) {
 
 }  // namespace
 
-std::vector<Case> quantity_cases() {
-  std::vector<Case> c;
+static void add_planck(std::vector<Case>& c) {
   c.push_back(planck("10 000 K at 0.2 um", 10000, 0.2, 1e-13, 1000, 10));
   c.push_back(planck("10 000 K at 1000 um (Rayleigh-Jeans)", 10000, 1000, 1e-14, 1e9, 10));
   c.push_back(planck("300 K at 10 um", 300, 10, 1e-14, 1e9, 10));
@@ -127,7 +126,9 @@ std::vector<Case> quantity_cases() {
                [](const Numerics& n, double T) { return relative(brightness_temperature(0.2, n.planck(0.2, T)), T); },
                {"temperature", "K", 1e4, 120, 2},
                {}});
+}
 
+static void add_angles(std::vector<Case>& c) {
   c.push_back({"angles",
                "1 - cos of 1e-4 rad",
                "long double",
@@ -173,6 +174,9 @@ std::vector<Case> quantity_cases() {
                },
                {},
                {}});
+}
+
+static void add_near_directions(std::vector<Case>& c) {
   c.push_back(apart("1e-6 rad apart", false, 1e-6, 1e-12));
   c.push_back(apart("1e-6 rad short of opposite", true, 1e-6, 1e-12));
 
@@ -194,6 +198,9 @@ std::vector<Case> quantity_cases() {
        [](const Numerics& n, double x) { return std::fabs(n.mean_of_equal(0.1, static_cast<uint64_t>(x)) / 0.1 - 1); },
        {"samples", "1", 1e7, 1e9, 10},
        {}});
+}
+
+static void add_sums(std::vector<Case>& c) {
   c.push_back({"sums",
                "variance 1/12 on an offset of 1e6",
                "closed form",
@@ -227,6 +234,14 @@ std::vector<Case> quantity_cases() {
                },
                {"z", "1", 20, 50, 1.1},
                {}});
+}
+
+std::vector<Case> quantity_cases() {
+  std::vector<Case> c;
+  add_planck(c);
+  add_angles(c);
+  add_near_directions(c);
+  add_sums(c);
   return c;
 }
 

@@ -153,9 +153,7 @@ static void add_distances(std::vector<Case>& c) {
   c.push_back(placed_case("geometry in Earth-centred coordinates", {0.6, 0, 0.8}, 6.378e6, 6.378e6));
 }
 
-std::vector<Case> scene_cases() {
-  std::vector<Case> c;
-  add_distances(c);
+static void add_instances(std::vector<Case>& c) {
   c.push_back({"instances",
                "64 deep, turned and moved",
                "product in double",
@@ -188,6 +186,9 @@ std::vector<Case> scene_cases() {
                [](const Numerics&, double scale) { return nested(1, 1 / scale, false); },
                {"scale", "1", 1e-6, 1e-12, 10},
                {}});
+}
+
+static void add_triangles(std::vector<Case>& c) {
   c.push_back({"triangles",
                "one of zero area among them",
                "closed form rho E cos z / pi",
@@ -236,6 +237,9 @@ std::vector<Case> scene_cases() {
                },
                {"aspect ratio", "1", 1e6, 1e30, 10},
                {}});
+}
+
+static void add_sun(std::vector<Case>& c) {
   c.push_back({"sun",
                "disk of 1e-4 rad",
                "closed form rho E cos z / pi",
@@ -252,6 +256,9 @@ std::vector<Case> scene_cases() {
                [](const Numerics&, double x) { return plane_under_disk(0, (90 - x) * kDegree); },
                {"elevation", "deg", 0.1, 1e-6, 10},
                {}});
+}
+
+static void add_nothing(std::vector<Case>& c) {
   c.push_back({"nothing",
                "empty scene, no sources",
                "closed form 0",
@@ -297,6 +304,15 @@ std::vector<Case> scene_cases() {
                },
                {"nodes", "1", 16, 64, 2},
                {}});
+}
+
+std::vector<Case> scene_cases() {
+  std::vector<Case> c;
+  add_distances(c);
+  add_instances(c);
+  add_triangles(c);
+  add_sun(c);
+  add_nothing(c);
   return c;
 }
 

@@ -172,8 +172,7 @@ double lunar_night() {
 
 }  // namespace
 
-std::vector<Case> thermal_cases() {
-  std::vector<Case> c;
+static void add_steps(std::vector<Case>& c) {
   for (const double dt : {1.0, 10.0, 60.0, 600.0})
     c.push_back({"slab",
                  "10 um film on concrete, steps of " + std::to_string(static_cast<int>(dt)) + " s",
@@ -207,6 +206,9 @@ std::vector<Case> thermal_cases() {
                [](const Numerics&, double q) { return mean_flux(q); },
                {"flux from below", "W/m2", 0.2, 20, 10},
                {}});
+}
+
+static void add_slabs(std::vector<Case>& c) {
   c.push_back({"slab",
                "10 um film on concrete, steps of an hour",
                "steps of 1 s",
@@ -239,6 +241,12 @@ std::vector<Case> thermal_cases() {
                [](const Numerics&, double) { return lunar_night(); },
                {},
                {}});
+}
+
+std::vector<Case> thermal_cases() {
+  std::vector<Case> c;
+  add_steps(c);
+  add_slabs(c);
   return c;
 }
 

@@ -1,0 +1,159 @@
+#include "sqt_fit/scattered.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace suite::sqt {
+
+namespace {
+
+constexpr size_t kDimensions = 4, kNeighbours = 8;
+using Point = std::array<double, kDimensions>;
+
+// Balanced k-d tree over points, implicit: the middle of every range splits it along the widest side of that range.
+class NearestTree {
+ public:
+  explicit NearestTree(std::vector<Point> points)
+      : points_(std::move(points)), order_(points_.size()), axis_(points_.size()) {
+    for (size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<uint32_t>(i);
+    build(0, order_.size());
+  }
+  struct Found {
+    double distance2;
+    uint32_t index;
+  };
+  // The nearest min(kNeighbours, size) points, unordered; returns how many.
+  size_t nearest(const Point& at, std::array<Found, kNeighbours>& found) const {
+    size_t count = 0;
+    search(0, order_.size(), at, found, count);
+    return count;
+  }
+
+ private:
+  void build(size_t begin, size_t end) {
+    if (end - begin < 2) return;
+    Point low, high;
+    low.fill(INFINITY), high.fill(-INFINITY);
+    for (size_t i = begin; i < end; ++i)
+      for (size_t d = 0; d < kDimensions; ++d) {
+        low[d] = std::min(low[d], points_[order_[i]][d]);
+        high[d] = std::max(high[d], points_[order_[i]][d]);
+      }
+    size_t axis = 0;
+    for (size_t d = 1; d < kDimensions; ++d)
+      if (high[d] - low[d] > high[axis] - low[axis]) axis = d;
+    const size_t middle = (begin + end) / 2;
+    std::nth_element(order_.begin() + static_cast<ptrdiff_t>(begin), order_.begin() + static_cast<ptrdiff_t>(middle),
+                     order_.begin() + static_cast<ptrdiff_t>(end), [&](uint32_t a, uint32_t b) {
+                       return points_[a][axis] != points_[b][axis] ? points_[a][axis] < points_[b][axis] : a < b;
+                     });
+    axis_[middle] = static_cast<uint8_t>(axis);
+    build(begin, middle);
+    build(middle + 1, end);
+  }
+  void search(size_t begin, size_t end, const Point& at, std::array<Found, kNeighbours>& found, size_t& count) const {
+    if (begin >= end) return;
+    const size_t middle = (begin + end) / 2;
+    const Point& p = points_[order_[middle]];
+    double d2 = 0;
+    for (size_t d = 0; d < kDimensions; ++d) d2 += (p[d] - at[d]) * (p[d] - at[d]);
+    if (count < kNeighbours || d2 < found[0].distance2) {  // found is a heap, farthest first
+      auto farther = [](const Found& a, const Found& b) { return a.distance2 < b.distance2; };
+      if (count == kNeighbours)
+        std::pop_heap(found.begin(), found.end(), farther);
+      else
+        ++count;
+      found[count - 1] = {d2, order_[middle]};
+      std::push_heap(found.begin(), found.begin() + static_cast<ptrdiff_t>(count), farther);
+    }
+    const double side = at[axis_[middle]] - p[axis_[middle]];
+    const bool lower_first = side < 0;
+    if (lower_first)
+      search(begin, middle, at, found, count);
+    else
+      search(middle + 1, end, at, found, count);
+    if (count < kNeighbours || side * side < found[0].distance2) {
+      if (lower_first)
+        search(middle + 1, end, at, found, count);
+      else
+        search(begin, middle, at, found, count);
+    }
+  }
+  std::vector<Point> points_;
+  std::vector<uint32_t> order_;
+  std::vector<uint8_t> axis_;
+};
+
+class Scattered final : public Function {
+ public:
+  explicit Scattered(const Samples& s) : info_(s.info) {
+    const size_t channels = info_.wavelength_um.size();
+    if (s.out.size() != s.in.size() || s.value.size() != s.in.size() * channels || channels == 0)
+      throw Error("scattered samples: the numbers of directions and values do not fit");
+    std::array<std::vector<Point>, 2> points;
+    for (size_t i = 0; i < s.in.size(); ++i) {
+      bool valid = true;
+      for (size_t c = 0; c < channels; ++c) valid &= std::isfinite(s.value[i * channels + c]);
+      if (!valid || (surface() && (!(s.out[i].z > 0) || s.in[i].z == 0))) continue;
+      const size_t side = side_of(s.in[i]);
+      points[side].push_back(coordinates(s.out[i], s.in[i]));
+      for (size_t c = 0; c < channels; ++c) values_[side].push_back(static_cast<float>(s.value[i * channels + c]));
+    }
+    if (points[0].empty() && points[1].empty())
+      throw Error("scattered samples: none of them is valid", "every channel of a sample needs a finite value");
+    for (size_t side = 0; side < 2; ++side)
+      if (!points[side].empty()) trees_[side] = std::make_unique<NearestTree>(std::move(points[side]));
+  }
+  const Info& info() const override { return info_; }
+  void value(Dir out, Dir in, std::span<double> f) const override {
+    const size_t side = side_of(in);
+    const bool nothing = surface() && (!(out.z > 0) || in.z == 0 || (in.z < 0 && info_.domain == Domain::hemisphere));
+    if (nothing || !trees_[side]) {
+      std::fill(f.begin(), f.end(), nothing ? std::nan("") : 0.0);
+      return;
+    }
+    std::array<NearestTree::Found, kNeighbours> found;
+    const size_t count = trees_[side]->nearest(coordinates(out, in), found);
+    // Weights fall to zero at the farthest of the neighbours, so that the function is continuous as neighbours change.
+    double farthest = 0;
+    for (size_t i = 0; i < count; ++i) farthest = std::max(farthest, found[i].distance2);
+    farthest = std::sqrt(farthest) * 1.0001 + 1e-12;
+    std::fill(f.begin(), f.end(), 0.0);
+    double sum = 0;
+    for (size_t i = 0; i < count; ++i) {
+      const double d = std::sqrt(found[i].distance2) + 1e-9, w = std::pow((farthest - d) / (farthest * d), 2) + 1e-12;
+      sum += w;
+      for (size_t c = 0; c < f.size(); ++c) f[c] += w * values_[side][found[i].index * f.size() + c];
+    }
+    for (double& v : f) v /= sum;
+  }
+
+ private:
+  bool surface() const { return info_.quantity == Quantity::bsdf; }
+  size_t side_of(Dir in) const { return surface() && in.z < 0 ? 1 : 0; }
+  Point coordinates(Dir out, Dir in) const {
+    if (info_.quantity == Quantity::phase) return {0, 0, 0, 3 * angle_between(out, in)};
+    if (info_.quantity == Quantity::intensity) return {in.x, in.y, in.z, 0};
+    if (in.z < 0) in.z = -in.z;
+    const Vec3 sum = out + in;
+    const double len = length(sum);
+    const Dir h = len > 1e-12 ? sum / len : Dir{0, 0, 1};
+    // The view counts half: shapes change slowly with it once the lobe stands still.
+    if (!info_.isotropic) return {h.x, h.y, 0.5 * out.x, 0.5 * out.y};
+    const double r = std::hypot(out.x, out.y);
+    const double c = r > 1e-9 ? out.x / r : 1, s = r > 1e-9 ? out.y / r : 0;
+    const double x = c * h.x + s * h.y, y = c * h.y - s * h.x;
+    return {x, info_.bilateral ? std::fabs(y) : y, 0.5 * polar_angle(out), 0};
+  }
+  Info info_;
+  std::unique_ptr<NearestTree> trees_[2];
+  std::vector<float> values_[2];
+};
+
+}  // namespace
+
+std::shared_ptr<const Function> interpolate(const Samples& samples) { return std::make_shared<Scattered>(samples); }
+
+}  // namespace suite::sqt
