@@ -140,6 +140,7 @@ class PathKernel final : public PathTracing {
   std::vector<PathRecord> records_;
   std::vector<FirstMeeting> firsts_;
   std::vector<SensorRay::Receiver> receivers_;
+  std::vector<LastAsked> last_;
   // Of the stage.
   bool first_stage_ = true;
   std::vector<uint32_t> active_, received_;  // paths; those that start at receivers

@@ -36,6 +36,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       contributions_(std::max<size_t>(256, 4 * width)),
       transmission_(bins_) {
   list_lights();
+  if (!glowing_.empty()) last_.resize(width);
   for (auto* list : {&active_, &received_, &onward_}) list->reserve(width);
   nodes_.reserve(width);
 }
@@ -76,7 +77,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.origin = ray.ray.origin;
   path.direction = ray.ray.direction;
   path.time = ray.ray.time;
-  path.length = path.arrival = path.last_density = path.last_length = 0;
+  path.length = path.arrival = path.last_density = 0;
   path.before = 1;
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
@@ -85,7 +86,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   std::fill_n(path.throughput, knots(), 1.0);
   if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));
   PathRecord& record = records_[p];
-  record.ray = ray.ray;
+  record.time = ray.ray.time;
   record.end = PathEnd::absorbed;
   record.truncated = 0;
   record.scattered_first = record.met = false;
@@ -290,21 +291,21 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, const Hit& hit) {
   const Path& path = paths_[p];
+  const LastAsked& last = last_[p];
   const bool shared = path.order() > 1 && options_.explicit_sources && path.last_density > 0;
   double distance = hit.distance;
   if (Space::kScatters && shared)  // boundaries of media may have been passed on the way
-    distance = surface_.tracer().periodic() ? path.length - path.last_length
-                                            : length(hit.position - path.last.position);
+    distance = surface_.tracer().periodic() ? path.length - last.length : length(hit.position - last.at.position);
   const double cosine = -dot(path.direction, hit.normal);
   for (const Asked& light : glowing_) {
-    const auto met = light.light->met_surface(path.last, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
+    const auto met = light.light->met_surface(last.at, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
     if (!met) continue;
     Contribution& c = contribution(p, light.index);
     c.order -= 1;  // not scattered by what shines
     c.scale = static_cast<float>(met->scale);
     if (shared && met->density > 0)
       c.scale *= static_cast<float>(Estimator::by_chance(
-          light.nature, path.before * path.last_draws * met->density / path.last_density));
+          light.nature, path.before * last.draws * met->density / path.last_density));
     c.radiance = met->spectrum;
     if (c.scale != 0) contribute();
   }

@@ -29,9 +29,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
     Path& path = paths_[node.path];
     path.u = numbers(node, dimensions::kOfScatter);
     if (glowing_.empty()) continue;
-    path.last = receiver(node);
-    path.last_length = path.length;
-    path.last_draws = 1;
+    last_[node.path] = {receiver(node), path.length, 1};
   }
   Estimator::ask(*this, options_);
   space_.sight().begin(sight_rays_);
@@ -41,11 +39,11 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& node, const Asked& light,
                                                                   const LightSample& sample, int draws) {
   const uint32_t p = node.path;
-  Path& path = paths_[p];
+  const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
   if (!(sample.scale > 0)) return;
   if (!node.event && !surfaces_.takes(p, hit, -path.direction, sample.direction)) return;
-  if (!light.nature.far) path.last_draws = draws;
+  if (!light.nature.far && !glowing_.empty()) last_[p].draws = draws;
   Vec3 origin;
   if constexpr (Space::kScatters) {
     if (node.event) origin = space_.place(p);
@@ -153,7 +151,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   c.scale = static_cast<float>(passes * q.scale / denominator);
   c.factor = factor;
   c.radiance = radiance;
-  c.missed = missed;
+  c.missed = static_cast<float>(missed);
   if (distance < std::numeric_limits<double>::infinity()) c.arrival += space_.optical_way(p, i, distance);
   contribute();
 }
@@ -173,7 +171,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.factor = {};
   c.radiance = nullptr;
   c.arrival = path.arrival;
-  c.missed = std::numeric_limits<double>::infinity();
+  c.missed = std::numeric_limits<float>::infinity();
   return c;
 }
 

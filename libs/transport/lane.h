@@ -27,9 +27,6 @@ struct Lane {
   double throughput[K];         // at the knots, for roulette
   double before = 1;            // A before the last event over A after it
   double last_density = 0;      // p_h of the last event, without roulette; 0 after a Dirac event or none
-  LightReceiver last;           // that asked for light last; kept where surfaces shine
-  double last_length = 0;       // `length` there
-  int last_draws = 1;           // samples of a light that it took at most
   int knot = 0;                 // whose shapes draw this path
   uint32_t surfaces = 0;        // met so far, the receiver included
   uint32_t scatterings = 0;     // in media so far
@@ -39,11 +36,18 @@ struct Lane {
   uint32_t order() const { return surfaces + scatterings; }
 };
 
+// The last place of a path that asked for light; kept where surfaces shine.
+struct LastAsked {
+  LightReceiver at;
+  double length = 0;  // m from the sensor
+  int draws = 1;      // samples of a light that it took at most
+};
+
 enum class PathEnd : uint8_t { escaped, absorbed, roulette, max_nodes };
 
 // What remains of a path when it has ended.
 struct PathRecord {
-  Ray ray;  // the sensor's
+  double time = 0;  // s, of the sensor's ray
   PathEnd end = PathEnd::absorbed;
   Dir escape;                    // direction in which it left the scene
   double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes

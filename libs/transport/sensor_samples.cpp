@@ -24,7 +24,7 @@ size_t bin_of(const Capture& capture, const PathRecord& path) {
   if (capture.bin_by == Capture::BinBy::none) return 0;
   if (capture.bin_by == Capture::BinBy::time) {
     const double span = capture.window.end - capture.window.begin;
-    const double at = span > 0 ? std::floor((path.ray.time - capture.window.begin) / span * capture.bins) : 0;
+    const double at = span > 0 ? std::floor((path.time - capture.window.begin) / span * capture.bins) : 0;
     return static_cast<size_t>(std::clamp(at, 0.0, capture.bins - 1.0));
   }
   if (path.end != PathEnd::escaped || path.escape.z < 0) return capture.bins;

@@ -29,7 +29,7 @@ class RadianceSink final : public Sink<SpectralThroughputs> {
     for (const Contribution& c : stage) {
       const size_t group = groups_ == 1 ? 0 : c.light;
       const bool lost = !c.arrived();
-      if (lost) missed_[c.path] = std::min(missed_[c.path], c.missed);
+      if (lost) missed_[c.path] = std::min(missed_[c.path], double{c.missed});
       throughputs.shine(c.path, c.factor, c.scale, c.radiance, static_cast<uint16_t>(target(group, false, lost)),
                         single_ && c.order <= 1 ? static_cast<uint16_t>(target(group, true, lost))
                                                 : SpectralThroughputs::kNone);

@@ -87,7 +87,7 @@ void add_place_rows(std::vector<TruthRow>& table) {
       {"time", "s", "mean time of the sample rays", [](const TruthContext& c) {
          return simple(
              c, 1, {"time [s]"},
-             [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.ray.time; },
+             [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.time; },
              [](const TruthContext&, const double* sum, const TruthCounts& n, double* v) { v[0] = sum[0] / n.paths; });
        }});
   table.push_back({"range", "m", "mean distance from the sensor to the first hits", [](const TruthContext& c) {
