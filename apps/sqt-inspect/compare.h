@@ -13,6 +13,7 @@
 #include "base/json.h"
 #include "formats/picture/picture.h"
 #include "sqt/bundle.h"
+#include "sqt_fit/samples.h"
 
 namespace suite {
 
