@@ -35,18 +35,22 @@ Accumulators::Accumulators(const Shape& shape) : shape_(shape) {
 
 void Accumulators::join(const Accumulators& part, size_t first) {
   SUITE_CHECK(first + part.problems() <= problems());
+  for (size_t i = 0; i < part.problems(); ++i) join_problem(first + i, part, i);
+}
+
+void Accumulators::join_problem(size_t problem, const Accumulators& part, size_t there) {
   SUITE_CHECK(part.scrambles() <= scrambles());
   const auto into = columns();
   const auto from = part.columns();
-  for (size_t c = 0; c < kColumns; ++c) SUITE_CHECK(into[c].width == from[c].width || part.problems() == 0);
-  for (size_t i = 0; i < part.problems(); ++i)
-    for (int s = 0; s < part.scrambles(); ++s) {
-      if (part.taken(i, s) <= taken(first + i, s)) continue;
-      const size_t to = row(first + i, s), of = part.row(i, s);
-      for (size_t c = 0; c < kColumns; ++c)
-        if (from[c].width)
-          std::memcpy(into[c].data + to * into[c].width, from[c].data + of * from[c].width, from[c].width);
+  for (int s = 0; s < part.scrambles(); ++s) {
+    if (part.taken(there, s) <= taken(problem, s)) continue;
+    const size_t to = row(problem, s), of = part.row(there, s);
+    for (size_t c = 0; c < kColumns; ++c) {
+      SUITE_CHECK(into[c].width == from[c].width);
+      if (from[c].width)
+        std::memcpy(into[c].data + to * into[c].width, from[c].data + of * from[c].width, from[c].width);
     }
+  }
 }
 
 uint32_t Accumulators::paths(size_t problem) const {

@@ -25,8 +25,8 @@ class Accumulators {
     int scrambles = 4;       // 4 or 8
     size_t truth_slots = 0;  // doubles of truth
     bool missing = false;    // light may be lost (transport/lost_light.h), and what is known of it is kept
-    // Bytes of all problems.
-    size_t bytes() const;
+    size_t bytes() const;    // of all problems
+    bool operator==(const Shape&) const = default;
   };
   explicit Accumulators(const Shape& shape);
 
@@ -122,9 +122,11 @@ class Accumulators {
   void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
 
   // Takes over, row by row, what another has computed further: after any sequence of joins a row is that of the part
-  // that went furthest with it. The other's problem i is problem first + i here; both must be of one run and one shape
-  // but for the number of problems and, where the other has fewer, of scrambles.
+  // that went furthest with it. Both must be of one run and one shape but for the number of problems and, where the
+  // other has fewer, of scrambles. The other's problem i is problem first + i here, or one problem is that of another
+  // number there; joins of distinct problems may run at the same time.
   void join(const Accumulators& part, size_t first = 0);
+  void join_problem(size_t problem, const Accumulators& part, size_t there);
   // Forgets everything.
   void clear();
 

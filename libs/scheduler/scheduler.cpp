@@ -7,12 +7,15 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/progress.h"
-#include "estimate/error_histogram.h"
 #include "estimate/plan.h"
-#include "scheduler/capture_run.h"
+#include "scheduler/in_flight.h"
 #include "scheduler/items.h"
+#include "scheduler/judge.h"
 #include "scheduler/kits.h"
+#include "scheduler/planner.h"
+#include "scheduler/primed.h"
 #include "scheduler/result.h"
 #include "surface/cut_out.h"
 
@@ -22,6 +25,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+// Captures whose rounds are run together: as many as keep many threads busy to the end, unless they take more memory.
+constexpr size_t kBlocksInFlight = 1024;
+constexpr size_t kPrimedInFlight = 16;  // each has working memory of its own
+constexpr double kBytesInFlight = 256 << 20;
 
 // One run of all captures: what changes from capture to capture.
 class Job {
@@ -54,11 +62,8 @@ class Job {
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
     for (const auto& sensor : sensors_) report_.quality.push_back({sensor->name(), {}});
-    try {
-      for (const Item& item : items) run_item(item);
-    } catch (const Stopped&) {
-      report_.stopped = true;
-    }
+    saving_.store = options_.store;
+    for (std::span<const Item> left = items; !left.empty() && !report_.stopped;) left = run_batch(left);
     if (progress_) progress_->finish();
     if (!report_.stopped) doubt_after();
     finish();
@@ -153,68 +158,127 @@ class Job {
       if (told_.insert(s).second) options_.warn(s);
   }
 
-  void run_item(const Item& item) {
+  using Batch = std::vector<std::unique_ptr<InFlight>>;
+
+  // Runs the first captures that are left, as many as may be in flight together, round by round of all of them, and
+  // delivers them in their order. Returns those that are left then.
+  std::span<const Item> run_batch(std::span<const Item> left) {
     const Clock::time_point begun = Clock::now();
+    Batch batch;
+    size_t blocks = 0;
+    double bytes = 0;
+    // Whether more may come depends on nothing that differs between processes or numbers of threads but memory.
+    const auto more = [&] {
+      return blocks < kBlocksInFlight && bytes < kBytesInFlight && primed_.size() < kPrimedInFlight;
+    };
+    while (batch.size() < left.size() && (batch.empty() || more())) {
+      if (options_.budget.seconds > 0 && !cap_ && !batch.empty()) break;  // the first pilot tells what time is worth
+      const double before = heap_in_use();
+      batch.push_back(take_up(left[batch.size()]));
+      bytes += std::max(0.0, heap_in_use() - before);
+      blocks += blocks_of(batch.back()->work.capture).size();
+    }
+    try {
+      while (run_rounds(batch)) {
+      }
+    } catch (...) {
+      for (const auto& c : batch) c->planner->save();
+      throw;
+    }
+    share_seconds(batch, seconds_since(begun));
+    for (auto& c : batch)
+      if (report_.stopped)
+        report_.statistics.merge(c->planner->statistics());
+      else
+        deliver(*c), c.reset();
+    if (primed_.size() > 1) primed_.erase(primed_.begin(), primed_.end() - 1);
+    return left.subspan(batch.size());
+  }
+
+  // One round of every capture that is not finished, all of them at once. False when there is nothing more to run.
+  bool run_rounds(const Batch& batch) {
+    std::vector<Round> rounds;
+    std::vector<CapturePlanner*> of;
+    for (const auto& c : batch)
+      if (auto round = c->planner->next()) rounds.push_back(std::move(*round)), of.push_back(&*c->planner);
+    if (rounds.empty()) return false;
+    report_.stopped = !(options_.executor ? *options_.executor : local_).run(rounds, options_.stop, progress_.get());
+    for (size_t i = 0; i < rounds.size(); ++i) of[i]->ran(rounds[i]);
+    if (report_.stopped)
+      for (CapturePlanner* p : of) p->save();
+    return !report_.stopped;
+  }
+
+  // The seconds of a batch, shared out by what its captures took.
+  static void share_seconds(const Batch& batch, double seconds) {
+    double cycles = 0;
+    for (const auto& c : batch) cycles += static_cast<double>(c->planner->statistics().cycles);
+    for (const auto& c : batch) {
+      const double share = cycles > 0 ? static_cast<double>(c->planner->statistics().cycles) / cycles
+                                      : 1 / static_cast<double>(batch.size());
+      c->log.seconds = share * seconds;
+    }
+  }
+
+  std::shared_ptr<const Primed> prime(const Item& item, CaptureLog& log) {
     const Sensor& sensor = *sensors_[item.sensor];
     const Capture& capture = capture_of(item);
-    CaptureLog log;
     log.new_tracer = tracer_of(capture);
     const size_t bakes = kits_->optics_bakes();
-    const Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
+    Kit kit = kits_->get(item.state.spectral, sensor, capture, tracer_);
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
     warn_of_lost_light(sensor, capture, kit);
-    const SpectralState& state = kit.optics->state();
-    const BandProjection& projection = kit.bands->projection;
-    const size_t reference_band = kit.bands->reference;
-    const Surface surface(*tracer_, *kit.optics);
-    const TruthPlan truth(sensor.truth(),
-                          {*tracer_, state, capture.state, sensor.bands(capture.state), projection, *kit.environment});
-    const Pipeline pipeline(surface, *kit.optics, *kit.environment, state, projection, reference_band, truth,
-                            options_.pipeline);
+    for (const auto& p : primed_)
+      if (p->made_of(*tracer_, kit)) return p;
+    primed_.push_back(
+        std::make_shared<const Primed>(tracer_, std::move(kit), sensor, capture.state, options_.pipeline));
+    return primed_.back();
+  }
+
+  std::unique_ptr<InFlight> take_up(const Item& item) {
+    const Sensor& sensor = *sensors_[item.sensor];
+    const Capture& capture = capture_of(item);
+    CaptureLog log;
+    std::shared_ptr<const Primed> primed = prime(item, log);
     if (options_.store && !cap_) cap_ = options_.store->cap();
-    CaptureWork work{pipeline,
-                     sensor,
-                     capture,
-                     item.id,
-                     goals_of(sensor, capture, budget()),
-                     judged_bands(capture, kit),
-                     options_.store,
-                     progress_.get(),
-                     {},
-                     options_.stop};
-    if (options_.budget.seconds > 0 && !cap_)
-      work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
+    auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(sensor, capture, budget()),
+                                        judged_bands(capture, primed->kit));
+    c->log = std::move(log);
+    if (options_.budget.seconds > 0 && !cap_) {
+      c->work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
         fix_cap(w, needs, paths, seconds);
       };
-    if (work.after_pilot) shorten_pilots(work.goals);
-    const size_t bands = projection.bands(), channels = sensor.channels().size();
-    ResultBuilder builder(capture, bands, channels, reference_band, truth, work.goals);
-    sensors_[item.sensor]->begin(capture);
-    try {
-      run_capture(work, bands * channels * capture.bins, truth.slots(), builder, log.statistics);
-    } catch (const Stopped&) {
-      report_.statistics.merge(log.statistics);
-      throw;
+      shorten_pilots(c->work.goals);
     }
-    CaptureResult result = builder.finish();
-    report_.shortfalls[item.sensor].shortfall.merge(builder.shortfall());
+    c->plan(saving_);
+    sensors_[item.sensor]->begin(capture);
+    return c;
+  }
+
+  void deliver(InFlight& c) {
+    const Item& item = c.item;
+    const Sensor& sensor = c.work.sensor;
+    const Capture& capture = c.work.capture;
+    CaptureLog& log = c.log;
+    log.statistics = c.planner->statistics();
+    CaptureResult result = c.result->finish();
+    report_.shortfalls[item.sensor].shortfall.merge(c.result->shortfall());
     result.task = item.task;
     result.capture = item.capture;
-    judge(item, work, kit, result, log);
+    judge_.add(item.sensor, c.work, c.primed->kit.bands->reference, result, report_, log);
     outcomes_[item.sensor].add(sensor.bands(capture.state), result, log.statistics);
     if (item.task == 0 && item.capture == 0)
       outcomes_[item.sensor].looks_down = middle_ray(sensor, capture, capture.problems() / 2).ray.direction.z < 0;
     log.sensor = sensor.name();
     log.task = sensor.tasks()[item.task].name;
     log.capture = capture.name;
-    log.state = state.text();
-    log.kernel = pipeline.kernel();
+    log.state = c.primed->state().text();
+    log.kernel = c.primed->pipeline.kernel();
     log.id = item.id;
     log.window = capture.window;
     log.problems = capture.problems();
-    log.seconds = seconds_since(begun);
     report_.statistics.merge(log.statistics);
     ++report_.captures;
     report_.problems += capture.problems();
@@ -264,69 +328,13 @@ class Job {
     if (options_.store) options_.store->save_cap(cap_);
   }
 
-  void judge(const Item& item, const CaptureWork& work, const Kit& kit, const CaptureResult& r, CaptureLog& log) {
-    const size_t values = r.values_per_problem();
-    report_.quality[item.sensor].counts.add(r.quality);
-    ErrorHistogram errors;
-    for (size_t i = 0; i < work.capture.problems(); ++i) {
-      if (const double mean = r.radiance[i * values + kit.bands->reference]; mean > 0)
-        errors.add(r.standard_error[i * values + kit.bands->reference] / mean);
-      double worst = 0;
-      const Convergence goal = work.goals.of(i);
-      for (const auto [b, weight] : work.judged) {
-        const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
-        if (scale > 0) worst = std::max(worst, std::sqrt(weight) * r.standard_error[i * values + b] / scale);
-      }
-      if (worst > report_.worst.relative_error)
-        report_.worst = {sensors_[item.sensor]->name(), work.capture.name,
-                         static_cast<uint32_t>(i % work.capture.columns),
-                         static_cast<uint32_t>(i / work.capture.columns), worst};
-      if (!(goal.relative_error > 0)) continue;
-      with_target_ += 1;
-      at_target_ += worst <= goal.relative_error ? 1 : 0;
-      at_maximum_ += r.paths[i] >= goal.max_paths ? 1 : 0;
-      target_ = std::max(target_, goal.relative_error);
-    }
-    log.median_relative_error = errors.median();
-    errors_.merge(errors);
-  }
-
   void finish() {
     report_.optics_bakes = kits_->optics_bakes(), report_.light_bakes = kits_->light_bakes();
-    report_.median_relative_error = errors_.median();
     report_.share_in_embree = report_.statistics.cycles ? static_cast<double>(report_.statistics.trace.cycles) /
                                                               static_cast<double>(report_.statistics.cycles)
                                                         : 0;
     report_.seconds = seconds_since(start_);
-    if (with_target_ > 0) report_.share_at_target = at_target_ / with_target_;
-    for (const auto& [sensor, counts] : report_.quality)
-      if (counts.problems)
-        report_.share_flagged +=
-            static_cast<double>(counts.with(quality_heavy_tail)) / static_cast<double>(report_.problems);
-    std::string& s = report_.stopped_by;
-    if (report_.stopped)
-      s = strf("stopped from outside after %zu of %zu captures", report_.captures, report_.captures_asked);
-    else if (options_.pipeline.stop == StopRule::change)
-      s = strf(
-          "each problem stopped when one more path changed its mean by less than %g of it, which is biased low where "
-          "rare events carry the light",
-          options_.pipeline.change);
-    else if (with_target_ > 0)
-      s = strf(
-          "stopped by the plan for a target of %g %%, or by its maximum of paths (%.1f %% of the problems); %.1f %% of "
-          "the problems are at the target",
-          100 * target_, 100 * at_maximum_ / with_target_, 100 * report_.share_at_target);
-    else
-      s = "every problem ran the paths it was given";
-    if (report_.time_cap)
-      s += strf("; the time was worth %u paths a problem (--paths %u repeats this run)", report_.time_cap,
-                report_.time_cap);
-    else if (cap_)
-      s += strf("; at most %u paths a problem, as the time was found to be worth", cap_);
-    const WorstProblem& w = report_.worst;
-    if (w.relative_error > 0)
-      s += strf("; the worst is column %u, row %u of '%s' with %.2g %%", w.column, w.row, w.capture.c_str(),
-                100 * w.relative_error);
+    judge_.finish(options_, cap_, report_);
   }
 
   std::shared_ptr<const Scene> scene_;
@@ -340,51 +348,18 @@ class Job {
   std::unique_ptr<Progress> progress_;
   TimeSpan window_;  // of all captures
   std::unique_ptr<Kits> kits_;
+  std::vector<std::shared_ptr<const Primed>> primed_;  // of the captures in flight, and the one before
+  LocalExecutor local_;
+  Saving saving_;
   std::vector<SensorOutcome> outcomes_;  // of each sensor
   std::set<std::string> doubted_;        // sensors
-  ErrorHistogram errors_;
+  Judge judge_;
   std::set<std::string> told_;
-  double total_problems_ = 0, with_target_ = 0, at_target_ = 0, at_maximum_ = 0, target_ = 0;
+  double total_problems_ = 0;
   uint32_t cap_ = 0;
 };
 
 }  // namespace
-
-double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
-  double sum = 0;
-  for (const auto& s : sensors)
-    for (const Task& t : s->tasks())
-      for (const Capture& c : t.captures) {
-        const Goals goals = goals_of(*s, c, options.budget);
-        auto least = [](const Convergence& goal) {
-          return static_cast<double>(goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
-        };
-        if (goals.own.empty()) sum += static_cast<double>(c.problems()) * least(goals.all);
-        for (const Convergence& goal : goals.own) sum += least(goal);
-      }
-  return sum;
-}
-
-double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
-  double most = 0;
-  for (const auto& s : sensors)
-    for (const Task& t : s->tasks())
-      for (const Capture& c : t.captures) {
-        const size_t bands = s->bands(c.state).size();
-        const Accumulators::Shape sums{c.problems(), bands,
-                                       scrambles_for(goals_of(*s, c, options.budget).all.max_paths)};
-        const double result = static_cast<double>(c.problems()) * (24.0 * static_cast<double>(bands) + 200);
-        most = std::max(most, static_cast<double>(sums.bytes()) + result);
-      }
-  return most;
-}
-
-JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves, bool dated) {
-  JobOrder order;
-  for (const Item& i : in_cheapest_order(items_of(sensors, moves), dated, order.state_changes))
-    order.captures.push_back(i.id);
-  return order;
-}
 
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
                   std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {

@@ -24,12 +24,15 @@ struct StoredWork {
   double paths = 0;                   // that need not be run again
 };
 
+class Executor;  // executor.h
+
 struct JobOptions {
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;
   size_t kit_bytes = kDefaultKitBytes;  // of optics and lights that are kept for captures to come (kits.h)
   StateStore* store = nullptr;          // keeps what is needed to continue; null = nothing is kept
+  Executor* executor = nullptr;         // who runs the rounds; null = the threads of this process
   bool progress = true;
   // Asked between blocks of problems: true ends the job in good order, with all that is finished in the store. Empty =
   // never.

@@ -155,7 +155,8 @@ class Sensor {
   virtual Convergence convergence(const Capture& capture, size_t) const { return capture.convergence; }
   // Called before a run's first capture, from one thread, when its bins are chosen.
   virtual void start(const RunFacts&) {}
-  // Called once per capture before it is rendered, from one thread. Single rays may be asked for before.
+  // Called once per capture before it is rendered, from one thread; several captures may be rendered at the same time.
+  // Single rays may be asked for before.
   virtual void begin(const Capture&) {}
   // The ray of a sample. Called from many threads; does not throw.
   virtual SensorRay ray(const RayRequest& request) const = 0;

@@ -6,7 +6,9 @@
 #include "sensor/kinds/platform.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "sensor/kinds/rows.h"
 
@@ -57,15 +59,13 @@ class Platform final : public Sensor {
   void begin(const Capture& capture) override {
     const Segment& s = spec_.segments[capture.state];
     const Instrument& instrument = spec_.instruments[spec_.arrays[s.array].instrument];
-    prepared_ = {};
-    prepared_.state = capture.state;
-    prepared_.window = capture.window;
+    Prepared prepared;
     const TimeSpan span{capture.window.begin, capture.window.end};
-    if (spec_.jitter) prepared_.vehicle = std::make_unique<JitterWindow>(*spec_.jitter, span);
+    if (spec_.jitter) prepared.vehicle = std::make_unique<JitterWindow>(*spec_.jitter, span);
     for (const Attachment& a : instrument.chain)
-      prepared_.chain.push_back(a.jitter ? std::make_unique<JitterWindow>(*a.jitter, span) : nullptr);
-    prepared_.ready = true;
-    if (capture.window.begin == capture.window.end) prepared_.still = pose(instrument, capture, capture.window.begin);
+      prepared.chain.push_back(a.jitter ? std::make_unique<JitterWindow>(*a.jitter, span) : nullptr);
+    if (capture.window.begin == capture.window.end) prepared.still = pose(instrument, &prepared, capture.window.begin);
+    prepared_[key_of(capture)] = std::move(prepared);
   }
 
   SensorRay ray(const RayRequest& request) const override {
@@ -98,7 +98,8 @@ class Platform final : public Sensor {
     }
 
     // Send the ray from the instrument's pose at that time.
-    const Pose at = prepared_.still && mine(capture) ? *prepared_.still : pose(instrument, capture, t);
+    const Prepared* prepared = prepared_for(capture);
+    const Pose at = prepared && prepared->still ? *prepared->still : pose(instrument, prepared, t);
     Dir direction = instrument.lens.look(place);
     Vec3 origin;
     if (instrument.lens.thin()) {
@@ -114,6 +115,7 @@ class Platform final : public Sensor {
     const PlatformSpec::Part part = spec_.parts[result.task][result.capture];
     const FocalArray& array = spec_.arrays[part.array];
     const Segment& segment = spec_.segments[part.segment];
+    prepared_.erase(key_of(spec_.tasks[result.task].captures[result.capture]));
     Piece piece;
     piece.products = detect(spec_, segment, result, part.event);
     piece.result = std::move(result);
@@ -136,24 +138,24 @@ class Platform final : public Sensor {
     CaptureResult result;
     std::vector<Product> products;
   };
-  // What belongs to the capture that is being rendered.
+  // What belongs to a capture that is being rendered, by its state and window.
   struct Prepared {
-    bool ready = false;
-    size_t state = 0;
-    TimeWindow window;
     std::unique_ptr<JitterWindow> vehicle;
     std::vector<std::unique_ptr<JitterWindow>> chain;
     std::optional<Pose> still;
   };
-  bool mine(const Capture& c) const {
-    return prepared_.ready && prepared_.state == c.state && prepared_.window == c.window;
+  using Key = std::array<double, 3>;
+  static Key key_of(const Capture& c) { return {static_cast<double>(c.state), c.window.begin, c.window.end}; }
+  const Prepared* prepared_for(const Capture& c) const {
+    const auto found = prepared_.find(key_of(c));
+    return found == prepared_.end() ? nullptr : &found->second;
   }
 
-  Pose pose(const Instrument& instrument, const Capture& capture, double t) const {
-    if (!mine(capture)) return pose_at(spec_, instrument, t);
+  Pose pose(const Instrument& instrument, const Prepared* prepared, double t) const {
+    if (!prepared) return pose_at(spec_, instrument, t);
     Pose p = spec_.track->at(t);
-    if (prepared_.vehicle) p = p * prepared_.vehicle->pose(t);
-    for (size_t i = 0; i < instrument.chain.size(); ++i) p = instrument.chain[i].at(t, p, prepared_.chain[i].get());
+    if (prepared->vehicle) p = p * prepared->vehicle->pose(t);
+    for (size_t i = 0; i < instrument.chain.size(); ++i) p = instrument.chain[i].at(t, p, prepared->chain[i].get());
     return p;
   }
 
@@ -251,7 +253,7 @@ class Platform final : public Sensor {
   std::vector<std::vector<ImageRows>> rows_;
   std::map<size_t, std::vector<std::string>> lines_;  // by array: texts of the tasks
   bool wide_ = false;
-  Prepared prepared_;
+  std::map<Key, Prepared> prepared_;
   std::map<std::pair<size_t, uint64_t>, std::map<size_t, Piece>>
       waiting_;  // events of which not all segments are there
 };

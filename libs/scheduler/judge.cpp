@@ -1,0 +1,71 @@
+#include "scheduler/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "sensor/quality.h"
+
+namespace suite {
+
+void Judge::add(size_t sensor, const CaptureWork& work, size_t reference, const CaptureResult& r, JobReport& report,
+                CaptureLog& log) {
+  const size_t values = r.values_per_problem();
+  report.quality[sensor].counts.add(r.quality);
+  ErrorHistogram errors;
+  for (size_t i = 0; i < work.capture.problems(); ++i) {
+    if (const double mean = r.radiance[i * values + reference]; mean > 0)
+      errors.add(r.standard_error[i * values + reference] / mean);
+    double worst = 0;
+    const Convergence goal = work.goals.of(i);
+    for (const auto [b, weight] : work.judged) {
+      const double scale = std::max(r.radiance[i * values + b], goal.absolute_floor);
+      if (scale > 0) worst = std::max(worst, std::sqrt(weight) * r.standard_error[i * values + b] / scale);
+    }
+    if (worst > report.worst.relative_error)
+      report.worst = {work.sensor.name(), work.capture.name, static_cast<uint32_t>(i % work.capture.columns),
+                      static_cast<uint32_t>(i / work.capture.columns), worst};
+    if (!(goal.relative_error > 0)) continue;
+    with_target_ += 1;
+    at_target_ += worst <= goal.relative_error ? 1 : 0;
+    at_maximum_ += r.paths[i] >= goal.max_paths ? 1 : 0;
+    target_ = std::max(target_, goal.relative_error);
+  }
+  log.median_relative_error = errors.median();
+  errors_.merge(errors);
+}
+
+void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) const {
+  report.median_relative_error = errors_.median();
+  if (with_target_ > 0) report.share_at_target = at_target_ / with_target_;
+  for (const auto& [sensor, counts] : report.quality)
+    if (counts.problems)
+      report.share_flagged +=
+          static_cast<double>(counts.with(quality_heavy_tail)) / static_cast<double>(report.problems);
+  std::string& s = report.stopped_by;
+  if (report.stopped)
+    s = strf("stopped from outside after %zu of %zu captures", report.captures, report.captures_asked);
+  else if (options.pipeline.stop == StopRule::change)
+    s = strf(
+        "each problem stopped when one more path changed its mean by less than %g of it, which is biased low where "
+        "rare events carry the light",
+        options.pipeline.change);
+  else if (with_target_ > 0)
+    s = strf(
+        "stopped by the plan for a target of %g %%, or by its maximum of paths (%.1f %% of the problems); %.1f %% of "
+        "the problems are at the target",
+        100 * target_, 100 * at_maximum_ / with_target_, 100 * report.share_at_target);
+  else
+    s = "every problem ran the paths it was given";
+  if (report.time_cap)
+    s +=
+        strf("; the time was worth %u paths a problem (--paths %u repeats this run)", report.time_cap, report.time_cap);
+  else if (cap)
+    s += strf("; at most %u paths a problem, as the time was found to be worth", cap);
+  const WorstProblem& w = report.worst;
+  if (w.relative_error > 0)
+    s += strf("; the worst is column %u, row %u of '%s' with %.2g %%", w.column, w.row, w.capture.c_str(),
+              100 * w.relative_error);
+}
+
+}  // namespace suite

@@ -1,0 +1,23 @@
+// How good the results of a job are: medians, worst problems, shares at the target, and the sentence about what ended
+// it.
+#pragma once
+#include "estimate/error_histogram.h"
+#include "scheduler/planner.h"
+#include "scheduler/scheduler.h"
+
+namespace suite {
+
+class Judge {
+ public:
+  // Takes a capture of a sensor (its number in the report). reference: band.
+  void add(size_t sensor, const CaptureWork& work, size_t reference, const CaptureResult& result, JobReport& report,
+           CaptureLog& log);
+  // Fills what the report says about errors. cap: maximum of paths that a time budget is worth; 0 = none.
+  void finish(const JobOptions& options, uint32_t cap, JobReport& report) const;
+
+ private:
+  ErrorHistogram errors_;
+  double with_target_ = 0, at_target_ = 0, at_maximum_ = 0, target_ = 0;  // problems; the largest target
+};
+
+}  // namespace suite

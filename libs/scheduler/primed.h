@@ -1,0 +1,36 @@
+// What the core is primed with for a capture (paper, section III-C): a tracer, a kit, and the pipeline over them.
+// Captures that share them all share the pipeline with its working memory.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "scheduler/kits.h"
+
+namespace suite {
+
+struct Primed {
+  Primed(std::shared_ptr<const Tracer> t, Kit k, const Sensor& sensor, size_t sensor_state,
+         const PipelineOptions& options)
+      : tracer(std::move(t)),
+        kit(std::move(k)),
+        surface(*tracer, *kit.optics),
+        truth(sensor.truth(),
+              {*tracer, state(), sensor_state, sensor.bands(sensor_state), projection(), *kit.environment}),
+        pipeline(surface, *kit.optics, *kit.environment, state(), projection(), kit.bands->reference, truth, options) {}
+  Primed(const Primed&) = delete;
+
+  const SpectralState& state() const { return kit.optics->state(); }
+  const BandProjection& projection() const { return kit.bands->projection; }
+  // Whether it is what these would make. (Bands belong to one sensor and one of its states.)
+  bool made_of(const Tracer& t, const Kit& k) const {
+    return tracer.get() == &t && kit.optics == k.optics && kit.environment == k.environment && kit.bands == k.bands;
+  }
+
+  const std::shared_ptr<const Tracer> tracer;
+  const Kit kit;
+  const Surface surface;
+  const TruthPlan truth;
+  const Pipeline pipeline;
+};
+
+}  // namespace suite
