@@ -167,6 +167,29 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
   EXPECT_LT(chi_square_test(observed, wrong, 20), 1e-6);
 }
 
+TEST_P(SourceKinds, MembersIncludeTheirProbability) {
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Light& light = Asked(e, row().key, tracer, state.size()).light();
+  if (light.nature().wide) {
+    EXPECT_EQ(light.members(), 0u);
+    return;
+  }
+  ASSERT_EQ(light.members(), 1u);
+  // The same place on the only member there is, chosen always and every fourth time.
+  const LightReceiver at{{0, 0, 0}, {}, true};
+  const auto whole = light.nature().numbers == 2 ? light.sample(at, {0.3, 0.6}, 0) : light.sample(at, {0, 0.3, 0.6}, 0);
+  const auto part = light.sample_member(0, 0.25, at, {0, 0.3, 0.6}, 0);
+  ASSERT_TRUE(whole && part);
+  EXPECT_EQ(part->direction, whole->direction);
+  EXPECT_EQ(part->spectrum, whole->spectrum);
+  EXPECT_EQ(part->density, 0.25 * whole->density);
+  EXPECT_EQ(part->scale, whole->density > 0 ? whole->scale : 4 * whole->scale);
+}
+
 class DistantKinds : public SourceKinds {};  // lamps are held to form factors in lamps_test
 TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
   // Irradiance of a horizontal plane: mean of radiance x cosine / density of the samples, against midpoint quadrature
