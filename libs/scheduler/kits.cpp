@@ -47,7 +47,7 @@ void Kits::light(Held& held, const std::shared_ptr<const Tracer>& tracer, double
     held.environment = bake_environment(now, *tracer, periodic_, held.optics->state());
     ++light_bakes_;
   } else if (held.moment != moment) {
-    rebake_dated(held.environment, sources_.written(), now, held.optics->state());
+    rebake_changed(held.environment, now, *tracer, held.optics->state());
     ++light_bakes_;
   }
   held.lamps_of = tracer;

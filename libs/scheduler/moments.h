@@ -23,8 +23,8 @@ class SourcesInTime {
   SourcesInTime(const SourceSpecs& written, const Scene& scene) : written_(written), scene_(scene) {}
   const SourceSpecs& written() const { return written_; }
   bool dated() const { return written_.dated(); }
-  // Sources at a moment (s); they hold until the next call. Without dates they are the same at all moments. Error: as
-  // resolve_sources.
+  // Sources at a moment (s); they hold until the next call. Without dates they are the same at all moments. Lights that
+  // nothing has to be computed for stay the same objects. Error: as resolve_sources.
   const SourceSpecs& at(double moment);
 
  private:

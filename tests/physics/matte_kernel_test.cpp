@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "math/sampling.h"
+#include "support/lamps_kit.h"
 #include "support/radiometry_kit.h"
 
 namespace suite {
@@ -32,8 +33,8 @@ std::shared_ptr<Scene> court(const std::function<void(Scene&)>& change = {}) {
 
 SourceSpecs sources(double half_angle, bool full_sphere) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(0.6, 1), half_angle, Curve({0.3, 1.0}, {2000, 900}, Outside::hold)};
-  s.sky = test::uniform_sky(30, full_sphere);
+  s.add(SunSpec{dir_from_angles(0.6, 1), half_angle, Curve({0.3, 1.0}, {2000, 900}, Outside::hold)});
+  s.add(test::uniform_sky(30, full_sphere));
   return s;
 }
 
@@ -137,7 +138,7 @@ TEST(MatteKernel, ForAnyNumberOfBands) {
 
 TEST(MatteKernel, WithEitherSourceAloneAndFewNodesOrSamples) {
   SourceSpecs sun = sources(0.02, false), sky = sun;
-  sun.sky.reset(), sky.sun.reset();
+  sun.lights.pop_back(), sky.lights.erase(sky.lights.begin());
   expect_same(court(), sun, side_by_side(3));
   expect_same(court(), sky, side_by_side(3));
   expect_same(court(), sources(0.02, true), side_by_side(3), 3, 1);
@@ -164,14 +165,12 @@ TEST(MatteKernel, IsNotTakenWhereItDoesNotServe) {
       "general");
   EXPECT_EQ(kernel(court([](Scene& s) { s.materials[1].temperature_k = 2000; }), plain), "general");
   SourceSpecs lamp = plain, moon = plain, table = plain;
-  lamp.lamps.push_back({});
-  lamp.lamps[0].intensity = Curve::constant(1);
-  lamp.lamps[0].positions = {{0, 0, 3}};
+  lamp.add(test::point_lamp({{0, 0, 3}}, 1));
   EXPECT_EQ(kernel(court(), lamp), "general");
-  table.sky->table = {1, 2, 1, 2}, table.sky->zeniths = 2, table.sky->azimuths = 2;
+  table.lights.pop_back();
+  table.add(SkySpec{Curve::constant(30), {1, 2, 1, 2}, 2, 2, false});
   EXPECT_EQ(kernel(court(), table), "general");
-  moon.moon.emplace();
-  moon.moon->disk = *plain.sun, moon.moon->by_phase = false;
+  moon.add(MoonSpec{{*plain.sun()->disk()}, false, {}});
   EXPECT_EQ(kernel(court(), moon), "general");
   PipelineOptions paper, change, chance;
   paper.method = Method::paper, change.stop = StopRule::change, chance.explicit_sources = false;

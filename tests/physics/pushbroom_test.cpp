@@ -62,7 +62,7 @@ std::string broom() {
 TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
   PlatformKit kit;
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   kit.render(terrain(), sources, broom());
   // North and height of every pixel, by band, line and column.
   struct Seen {
