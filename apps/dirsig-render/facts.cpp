@@ -8,16 +8,16 @@ namespace suite {
 
 Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
   if (sim.epoch) clock_ = Clock(*sim.epoch);
-  sun_.sun = sim.sources.sun;
+  if (const LightSpecPtr sun = sim.sources.sun()) sun_.lights = {sun};
   sun_.dut1 = sim.sources.dut1;
 }
 
 std::string Facts::utc(double seconds) const { return clock_ ? to_iso8601(clock_->utc(seconds), 6) : std::string(); }
 
-std::optional<SunSpec> Facts::sun(double seconds) const {
-  if (!sun_.sun) return std::nullopt;
+std::optional<FarDisk> Facts::sun(double seconds) const {
+  if (!sun_.any()) return std::nullopt;
   SourcesInTime sources(sun_, *scene_);
-  return sources.at(seconds).sun;
+  return *sources.at(seconds).sun()->disk();
 }
 
 std::array<double, 2> azimuth_elevation_deg(Dir d) {
@@ -37,7 +37,7 @@ void check_wishes(const Simulation& sim, const Facts& facts) {
               "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
               "leave out one of the two");
         if (wishes.quantity != Quantity::toa_reflectance) continue;
-        const std::optional<SunSpec> sun = facts.sun(moment_of(c));
+        const std::optional<FarDisk> sun = facts.sun(moment_of(c));
         if (!sun)
           throw Error(wishes.where, "units: toa_reflectance compares with the sun's light, and there is no sun",
                       "give the simulation a `sun`, or leave the units at radiance");

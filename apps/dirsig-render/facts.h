@@ -16,7 +16,7 @@ class Facts {
   // UTC of a time of the simulation in ISO 8601 with a Z; empty without an `epoch`.
   std::string utc(double seconds) const;
   // The sun at that time, as the text gives it: above the air when there is air. Nothing without one.
-  std::optional<SunSpec> sun(double seconds) const;
+  std::optional<FarDisk> sun(double seconds) const;
   bool sun_moves() const { return sun_.dated(); }
 
  private:

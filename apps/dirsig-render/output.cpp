@@ -179,7 +179,7 @@ void OutputWriter::tell_moment(Image& m) const {
   std::vector<std::pair<std::string, std::string>> extra;
   if (lasts && !utc.empty())
     extra.push_back({"acquisition time range", "{" + facts_.utc(begin) + ", " + facts_.utc(end) + "}"});
-  const std::optional<SunSpec> sun = facts_.sun(middle);
+  const std::optional<FarDisk> sun = facts_.sun(middle);
   if (sun && facts_.sun_moves() && lasts) {
     const auto first = azimuth_elevation_deg(facts_.sun(begin)->direction),
                last = azimuth_elevation_deg(facts_.sun(end)->direction);

@@ -29,7 +29,7 @@ Conversion::Conversion(const Delivery& d, Quantity quantity, OutputSpec::Units u
     : per_pixel_(d.result.values_per_problem()), bands_(d.result.bands), columns_(d.result.columns) {
   std::vector<ColumnBands> columns = d.columns;
   if (columns.empty()) columns.push_back({d.result.columns, d.bands});
-  std::optional<SunSpec> sun;
+  std::optional<FarDisk> sun;
   if (quantity == Quantity::toa_reflectance)
     sun = facts.sun(moment_of(d.sensor.tasks()[d.result.task].captures[d.result.capture]));
   for (const ColumnBands& c : columns) {

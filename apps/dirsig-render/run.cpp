@@ -17,7 +17,7 @@
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
 #include "guard.h"
-#include "light/source_table.h"
+#include "light/light_rows.h"
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
@@ -36,8 +36,7 @@ namespace suite {
 namespace {
 
 int list_sources() {
-  for (const SourceRow& row : source_kinds())
-    std::printf("%-6s %-8s %s\n", row.key.c_str(), row.kind.c_str(), row.summary.c_str());
+  std::fputs(light_rows().list().c_str(), stdout);
   return 0;
 }
 

@@ -29,14 +29,16 @@ void read_epoch(const Params& root, Simulation& sim) {
   }
   // Sun and Moon by date stand there at second 0, and go on with the simulation's one clock.
   SourceSpecs& s = sim.sources;
-  for (const auto& [body, time] : {std::pair{"sun", s.sun ? s.sun->time : std::nullopt},
-                                   std::pair{"moon", s.moon ? s.moon->disk.time : std::nullopt}}) {
+  for (const LightSpecPtr& light : s.lights) {
+    const SourceTime* const time = light->date();
     if (!time) continue;
     const Utc date = parse_iso8601(time->utc);
     if (!sim.epoch) sim.epoch = date;
     if (std::fabs(instant_from_utc(date) - instant_from_utc(*sim.epoch)) > 1e-6)
       throw Error(
-          time->where, strf("the %s's date is not that of second 0, which is %s", body, to_iso8601(*sim.epoch).c_str()),
+          time->where,
+          strf("the %s's date is not that of second 0, which is %s", light->key().c_str(),
+               to_iso8601(*sim.epoch).c_str()),
           "give the same date: Sun and Moon by date go on with the captures' times; one that stands still has a "
           "direction {zenith_deg, azimuth_deg}");
   }

@@ -1,7 +1,8 @@
-// The sources of a simulation text: sun, moon, sky, lamps, atmosphere, earth.
+// The sources of a simulation text: lights by their table, atmosphere, earth.
 #pragma once
 #include "base/params.h"
 #include "light/environment.h"
+#include "light/light_rows.h"
 #include "sensor/sensor.h"
 
 namespace suite {
@@ -9,12 +10,6 @@ namespace suite {
 // A number, a file name, or a map {file, column, scale, outside} / {wavelength_um: [...], value: [...], outside}.
 Curve read_curve_value(const Params& p);
 
-// A curve of a source and where it stands, for the check that it covers what the sensors see.
-struct AskedCurve {
-  Where where;
-  std::string what;  // "irradiance"
-  Curve curve;
-};
 // Error at the curve when a band of the sensor, which stands at `where`, reaches beyond it.
 void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& where);
 

@@ -170,8 +170,10 @@ bool Params::as_bool() const {
   throw error("expected true or false", {});
 }
 size_t Params::as_choice(std::initializer_list<const char*> names) const {
+  return as_choice(std::vector<std::string>(names.begin(), names.end()));
+}
+size_t Params::as_choice(const std::vector<std::string>& known) const {
   const std::string text = as_text();
-  std::vector<std::string> known(names.begin(), names.end());
   for (size_t i = 0; i < known.size(); ++i)
     if (known[i] == text) return i;
   throw error("'" + text + "' is none of the choices here", name_hint(text, known));

@@ -62,6 +62,7 @@ class Params {
   long long as_integer(long long low, long long high) const;
   bool as_bool() const;  // true/false/yes/no/on/off
   size_t as_choice(std::initializer_list<const char*> names) const;
+  size_t as_choice(const std::vector<std::string>& names) const;
   std::vector<double> as_numbers() const;  // list of finite numbers
   std::array<double, 3> as_vec3() const;
   std::array<double, 3> as_direction() const;  // three numbers, not all 0, made a unit vector

@@ -44,6 +44,7 @@ struct AtmosphereSpec {
     std::vector<Curve> layers;  // when not empty: one per layer, and `column` is not used
   };
   std::vector<Gas> gases;
+  Where where = {};  // in the text
 };
 
 class Atmosphere {

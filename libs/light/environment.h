@@ -13,25 +13,29 @@
 #include "light/kinds/moon.h"
 #include "light/kinds/sky.h"
 #include "light/kinds/sun.h"
-#include "light/light.h"
+#include "light/light_spec.h"
 
 namespace suite {
 
-// Sources before they are baked for a state. Plain ones may be baked at once; dates and clear skies are turned into
-// directions, spectra and tables by resolve_sources. Dates are those of second 0; bodies that have one go on with time.
+// Sources before they are baked for a state. Dates are those of second 0; what has one goes on with time.
 struct SourceSpecs {
-  std::optional<SunSpec> sun = {};
-  std::optional<SkySpec> sky = {};
-  std::optional<MoonSpec> moon = {};
-  std::optional<ClearSkySpec> clear =
-      {};  // instead of `sky`: sky and direct beam from the sun's irradiance above the air
-  std::vector<LampSpec> lamps = {};
+  std::vector<LightSpecPtr> lights = {};  // the index is a light's identity, in the environment as well
   std::optional<AtmosphereSpec> atmosphere = {};
   std::optional<EarthSpec> earth = {};
   double dut1 = 0;  // s, UT1 - UTC, -0.9..0.9
-  bool any() const { return sun || sky || moon || clear || !lamps.empty() || atmosphere; }
+
+  // Adds lights; those that can be one with others become so (LightSpec::joined).
+  void add(std::vector<LightSpecPtr> more);
+  // What a kind is made of: SunSpec, SkySpec, LampSpec, ...
+  template <class Spec>
+  void add(Spec spec) {
+    add(std::vector<LightSpecPtr>{make_light(std::move(spec))});
+  }
+  // The first sun; null = none.
+  LightSpecPtr sun() const;
+  bool any() const { return !lights.empty() || atmosphere; }
   // Something follows from a date, so that it is another one at every moment.
-  bool dated() const { return (sun && sun->time) || (moon && moon->disk.time); }
+  bool dated() const;
 };
 
 inline constexpr size_t kNoLight = static_cast<size_t>(-1);
@@ -40,6 +44,7 @@ inline constexpr size_t kNoLight = static_cast<size_t>(-1);
 struct Environment {
   std::vector<std::shared_ptr<const Light>> lights;  // as asked for; the index is a light's identity
   size_t sun = kNoLight;                             // index of the light that truth calls the sun, if any
+  std::vector<LightSpecPtr> specs;                   // what each was baked from
   // Null = none.
   std::shared_ptr<const Atmosphere> atmosphere;
   std::shared_ptr<const Earth> earth;
@@ -49,30 +54,21 @@ struct Environment {
     if (sun == kNoLight) return std::nullopt;
     return lights[sun]->beam()->direction;
   }
-  // Whether a light stands in the scene, so that it belongs to a tracer.
-  bool lamps_in_scene() const;
-
-  // The same lights by kind, for kernels that know them. Null = none.
-  const Sun *sun_disk = nullptr, *moon_disk = nullptr;
-  const Sky* sky = nullptr;
-  const Lamps* lamps = nullptr;
 };
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear
-// skies, `seconds` after the dates. Returns a sentence about each body. What is resolved already stays. Error: a date
-// without a geodetic origin of the scene; a clear sky without a sun, beside a sky or beside an atmosphere (it stands
-// for both), or with the sun below the horizon.
+// skies, `seconds` after the dates. Returns a sentence about each body. What is resolved already stays. Error: as
+// LightSpec::resolved and settle.
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds = 0);
 
 // Bakes resolved sources. periodic: the scene repeats itself. Error: as the sources' constructors; unknown material of
 // the Earth, or one that bounds a medium; an Earth in a periodic scene.
 Environment bake_environment(const SourceSpecs& specs, const Tracer& tracer, bool periodic, const SpectralState& state);
 
-// Puts what dates move (Sun, Moon, a clear sky, the beams of the air) into an environment that was baked for another
-// moment, and leaves the rest (lamps, other skies, the Earth) alone. written: the sources before they were resolved;
-// now: resolved for the moment. The result is the same as that of bake_environment(now, ...).
-void rebake_dated(Environment& environment, const SourceSpecs& written, const SourceSpecs& now,
-                  const SpectralState& state);
+// Brings an environment to another moment: bakes the lights that are no longer what they were baked from, and the air
+// when one of them was, and leaves the rest alone. now: the same sources, resolved for the moment. The result is the
+// same as that of bake_environment(now, ...).
+void rebake_changed(Environment& environment, const SourceSpecs& now, const Tracer& tracer, const SpectralState& state);
 
 // Index of the Earth's material. Error when the scene has none of that name.
 uint32_t earth_material(const EarthSpec& spec, const Scene& scene);

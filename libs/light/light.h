@@ -24,8 +24,8 @@ namespace suite {
 struct LightNature {
   bool far = false;    // stands at infinity: rays that leave the scene meet it
   bool delta = false;  // nothing meets it by chance: collimated, points
-  bool disk =
-      false;  // small and even: its samples hardly vary by themselves, so continuations count little beside them
+  // Small and even: its samples hardly vary by themselves, so that what continuations find counts little beside them.
+  bool disk = false;
   bool wide = false;   // fills much of the sphere (skies): continuations find it by themselves
   bool drawn = true;   // sample() is worth asking; false = met by chance only (uniform skies)
   bool moves = false;  // what it sends depends on the time of the ray
@@ -41,8 +41,8 @@ struct LightSample {
   double density = 0;  // 1/sr, every choice included; 0 = the only direction there is
   // scale * spectrum[k] = radiance, or, with density 0, irradiance over the probability of the choice. Positive.
   double scale = 0;
-  const float* spectrum =
-      nullptr;  // per bin; null = the shape differs with direction: scale times what Light::add adds
+  // Per bin; null = the shape differs with direction: scale times what Light::add adds.
+  const float* spectrum = nullptr;
 };
 
 // What far lights draw.

@@ -28,29 +28,29 @@ bool glows(const Scene& scene) {
                      [](auto& m) { return m.kind == MapKind::temperature; });
 }
 
-bool set(const SunSpec& body) { return body.direction.z < -std::sin(body.half_angle); }
+bool set(const FarDisk& body) { return body.direction.z < -std::sin(body.half_angle); }
 
-std::string when(const SourceSpecs& written, double moment) {
-  return written.sun->time
-             ? " at " +
-                   to_iso8601(utc_from_instant(instant_from_utc(parse_iso8601(written.sun->time->utc)) + moment), 0)
-             : std::string();
+std::string when(const SourceTime* date, double moment) {
+  return date ? " at " + to_iso8601(utc_from_instant(instant_from_utc(parse_iso8601(date->utc)) + moment), 0)
+              : std::string();
 }
 
-// The sun has set whenever the sensor looks, and nothing else shines.
+// Sun and Moon have set whenever the sensor looks, and nothing else shines.
 std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
-  if (!written.sun || written.sky || written.clear || written.atmosphere || !written.lamps.empty() || glows(scene))
-    return std::nullopt;
+  const bool others = std::any_of(written.lights.begin(), written.lights.end(), [](auto& l) { return !l->disk(); });
+  if (!written.sun() || others || written.atmosphere || glows(scene)) return std::nullopt;
   SourcesInTime sources(written, scene);
   double highest = -1, moment = 0;
   for (const Capture* c : some_captures(sensor, 64)) {
     const SourceSpecs& now = sources.at(moment_of(*c));
-    if (!set(*now.sun) || (now.moon && !set(now.moon->disk))) return std::nullopt;
-    if (now.sun->direction.z > highest) highest = now.sun->direction.z, moment = moment_of(*c);
+    for (const LightSpecPtr& light : now.lights)
+      if (!set(*light->disk())) return std::nullopt;
+    const double height = now.sun()->disk()->direction.z;
+    if (height > highest) highest = height, moment = moment_of(*c);
   }
   return Doubt{sensor.name(),
                strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
-                    -std::asin(std::max(-1.0, highest)) / kDegree, when(written, moment).c_str()),
+                    -std::asin(std::max(-1.0, highest)) / kDegree, when(written.sun()->date(), moment).c_str()),
                "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
 }
 
@@ -65,18 +65,11 @@ std::string named(const std::vector<std::string>& names) {
 // Bands in which no source sends anything, of a scene that does not glow itself.
 std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
   if (!now.any() || glows(scene) || now.atmosphere) return std::nullopt;
-  std::vector<const Curve*> lights;
-  if (now.sun) lights.push_back(&now.sun->irradiance);
-  if (now.moon) lights.push_back(&now.moon->disk.irradiance);
-  if (now.sky && !now.sky->layers.empty()) return std::nullopt;
-  if (now.sky) lights.push_back(&now.sky->radiance);
-  for (const LampSpec& l : now.lamps) lights.push_back(l.kind == LampSpec::Kind::surface ? &l.radiance : &l.intensity);
   std::vector<std::string> names;
   for (size_t s = 0; s < sensor.states().size(); ++s)
     for (const Band& b : sensor.bands(s)) {
-      const bool lit = std::any_of(lights.begin(), lights.end(), [&](const Curve* c) {
-        return !c->covers(b.low_um(), b.high_um()) || c->integral(b.low_um(), b.high_um()) > 0;
-      });
+      const bool lit = std::any_of(now.lights.begin(), now.lights.end(),
+                                   [&](auto& light) { return light->shines(b.low_um(), b.high_um()); });
       const std::string name = strf("'%s' (%.3g um)", b.name.c_str(), b.center_um);
       if (!lit && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }

@@ -1,47 +1,58 @@
 #include "scheduler/features.h"
 
-#include <algorithm>
 #include <set>
 
 #include "base/error.h"
+#include "light/light_rows.h"
 
 namespace suite {
 
 namespace {
 
 struct Feature {
-  const char *name, *text;
+  std::string name, text;
 };
-constexpr Feature kFeatures[] = {
-    {"media",
-     "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface; one "
-     "null pointer is asked for a stage of a block of paths."},
-    {"motion", "Things that move. Without any, all time windows share one set of acceleration structures."},
-    {"SQT",
-     "Materials of measured or fitted scattering. Their trees are decoded when a material that geometry shows has "
-     "one."},
-    {"class maps", "Rasters that choose the material of a place."},
-    {"property maps",
-     "Rasters that vary a material: mixtures, textures, curves, cubes, temperatures, bumps, normals, holes. A "
-     "material without any costs a null pointer; one with some is put together at every hit."},
-    {"emission",
-     "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
-     "which it is when it shows in some spectral window (--explain temperatures)."},
-    {"sun", "A sample of the Sun at every node, with a visibility ray."},
-    {"moon", "A sample of the Moon at every node, with a visibility ray."},
-    {"sky", "Light from everywhere else. A uniform sky is met by chance alone; others are also sampled at every node."},
-    {"lamps", "Point, spot and glowing lamps: a light tree is built over them and one is sampled at every node."},
-    {"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
-    {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
-    {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
-    {"bands", "Spectral bins are carried only where a band of the state responds."},
-};
+// The keys of the lights stand where their table does.
+std::vector<Feature> all_features() {
+  std::vector<Feature> all{
+      {"media",
+       "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface; one "
+       "null pointer is asked for a stage of a block of paths."},
+      {"motion", "Things that move. Without any, all time windows share one set of acceleration structures."},
+      {"SQT",
+       "Materials of measured or fitted scattering. Their trees are decoded when a material that geometry shows has "
+       "one."},
+      {"class maps", "Rasters that choose the material of a place."},
+      {"property maps",
+       "Rasters that vary a material: mixtures, textures, curves, cubes, temperatures, bumps, normals, holes. A "
+       "material without any costs a null pointer; one with some is put together at every hit."},
+      {"emission",
+       "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
+       "which it is when it shows in some spectral window (--explain temperatures)."}};
+  for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
+  all.insert(all.end(), {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
+                         {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
+                         {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
+                         {"bands", "Spectral bins are carried only where a band of the state responds."}});
+  return all;
+}
 
-FeatureUse count(const char* name, size_t n, const char* what, const char* none) {
+FeatureUse count(const std::string& name, size_t n, const char* what, const char* none) {
   return {name, n > 0, n > 0 ? strf("%zu %s", n, what) : none};
 }
-FeatureUse source(const char* name, bool there) {
+FeatureUse source(const std::string& name, bool there) {
   return {name, there, there ? "given by the simulation" : "not in the simulation"};
+}
+
+// One entry a key of the lights.
+void add_lights(const SourceSpecs& sources, std::vector<FeatureUse>& to) {
+  for (const LightRow* row : light_keys()) {
+    size_t entries = 0;
+    for (const LightSpecPtr& light : sources.lights)
+      if (light->key() == row->key()) entries += light->entries();
+    to.push_back(row->list ? count(row->key(), entries, "entries", "not in the simulation")
+                           : source(row->key(), entries > 0));
+  }
 }
 
 }  // namespace
@@ -58,20 +69,18 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
   }
   std::string names;
   for (const std::string& t : truth) names += (names.empty() ? "" : ", ") + t;
-  return {count("media", scene.media.size(), "in the scene", "none in the scene"),
-          count("motion", scene.tracks.size(), "motions", "nothing moves"),
-          count("SQT", fitted, "materials", "no material is a fit"),
-          count("class maps", scene.class_maps.size(), "in the scene", "none in the scene"),
-          count("property maps", scene.property_maps.size(), "in the scene", "none in the scene"),
-          count("emission", warm, "temperatures", "no temperature shows in any window"),
-          source("sun", sources.sun.has_value()),
-          source("moon", sources.moon.has_value()),
-          source("sky", sources.sky || sources.clear),
-          count("lamps", sources.lamps.size(), "entries", "not in the simulation"),
-          source("atmosphere", sources.atmosphere.has_value()),
-          source("earth", sources.earth.has_value()),
-          {"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names},
-          {"bands", true, strf("%zu in %zu spectral states", bands, states)}};
+  std::vector<FeatureUse> all{count("media", scene.media.size(), "in the scene", "none in the scene"),
+                              count("motion", scene.tracks.size(), "motions", "nothing moves"),
+                              count("SQT", fitted, "materials", "no material is a fit"),
+                              count("class maps", scene.class_maps.size(), "in the scene", "none in the scene"),
+                              count("property maps", scene.property_maps.size(), "in the scene", "none in the scene"),
+                              count("emission", warm, "temperatures", "no temperature shows in any window")};
+  add_lights(sources, all);
+  all.push_back(source("atmosphere", sources.atmosphere.has_value()));
+  all.push_back(source("earth", sources.earth.has_value()));
+  all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
+  all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});
+  return all;
 }
 
 std::string text_of(const std::vector<FeatureUse>& features) {
@@ -82,15 +91,14 @@ std::string text_of(const std::vector<FeatureUse>& features) {
 }
 
 std::optional<std::string> explain_use(const std::string& feature) {
-  const auto found =
-      std::find_if(std::begin(kFeatures), std::end(kFeatures), [&](const Feature& f) { return feature == f.name; });
-  if (found == std::end(kFeatures)) return std::nullopt;
-  return std::string(found->name) + ": " + found->text + "\n";
+  for (const Feature& f : all_features())
+    if (f.name == feature) return f.name + ": " + f.text + "\n";
+  return std::nullopt;
 }
 
 std::vector<std::string> feature_names() {
   std::vector<std::string> names;
-  for (const Feature& f : kFeatures) names.push_back(f.name);
+  for (const Feature& f : all_features()) names.push_back(f.name);
   return names;
 }
 

@@ -23,7 +23,8 @@ size_t nearest_band(std::span<const Band> bands, double reference_um) {
 
 // Whether lights depend on the geometry of a tracer: glowing surfaces, and an Earth that lies under all there is.
 bool by_geometry(const SourceSpecs& sources) {
-  return !sources.lamps.empty() || (sources.earth && !sources.earth->height);
+  return (sources.earth && !sources.earth->height) ||
+         std::any_of(sources.lights.begin(), sources.lights.end(), [](const auto& l) { return l->in_scene(); });
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ std::shared_ptr<const Kits::Lit> Kits::lights(size_t state, const Optics& optics
   return cache_.get<Lit>({KitCache::Kind::lights_at, state, of, moment}, [&] {
     ++light_bakes_;
     Lit lit = *first;
-    rebake_dated(lit.environment, sources_.written(), sources_.at(moment), optics.state());
+    rebake_changed(lit.environment, sources_.at(moment), *tracer, optics.state());
     lit.moment = moment;
     return std::make_shared<const Lit>(std::move(lit));
   });

@@ -13,8 +13,8 @@ double moment_of(const Capture& capture) { return 0.5 * (capture.window.begin + 
 
 double SourcesInTime::on_grid(double moment) const {
   if (!dated()) return 0;
-  const SourceTime& dated = written_.sun && written_.sun->time ? *written_.sun->time : *written_.moon->disk.time;
-  const Instant zero = instant_from_utc(parse_iso8601(dated.utc)), then = zero + moment;
+  const auto dated = std::find_if(written_.lights.begin(), written_.lights.end(), [](const auto& l) { return l->date(); });
+  const Instant zero = instant_from_utc(parse_iso8601((*dated)->date()->utc)), then = zero + moment;
   const auto steps = [](double seconds) { return std::floor(seconds / kMomentQuantum); };
   // Whole steps first: one moment of the grid is one number.
   const double whole = static_cast<double>(then.day - zero.day) * (86400 / kMomentQuantum) +
@@ -23,14 +23,8 @@ double SourcesInTime::on_grid(double moment) const {
 }
 
 const SourceSpecs& SourcesInTime::at(double moment) {
-  if (!dated() && !written_.clear && !(written_.moon && written_.moon->by_phase)) return written_;
-  if (!moment_)
-    now_ = written_;
-  else if (!dated() || *moment_ == moment)
-    return now_;
-  // Everything that is resolved begins anew from what was written; tables of other skies and lamps stay.
-  now_.sun = written_.sun, now_.moon = written_.moon, now_.clear = written_.clear;
-  if (written_.clear) now_.sky.reset();
+  if (moment_ && (!dated() || *moment_ == moment)) return now_;
+  now_ = written_;
   resolve_sources(now_, scene_, dated() ? moment : 0);
   moment_ = moment;
   return now_;
@@ -51,19 +45,20 @@ std::map<double, Named> moments_of(Sensors sensors) {
   return all;
 }
 
-// A clear sky is the sky of a sun that is up.
-void check_clear(const SourceSpecs& written, const Scene& scene, const std::map<double, Named>& moments) {
+// Lights that cannot be without the sun: it has to be up.
+void check_sun_up(const SourceSpecs& written, const std::string& what, const Scene& scene,
+                  const std::map<double, Named>& moments) {
   SourceSpecs bodies;
-  bodies.sun = written.sun, bodies.dut1 = written.dut1;
+  bodies.lights = {written.sun()}, bodies.dut1 = written.dut1;
   SourcesInTime suns(bodies, scene);
   for (const auto& [moment, who] : moments) {
-    const double height = suns.at(suns.on_grid(moment)).sun->direction.z;
+    const double height = suns.at(suns.on_grid(moment)).sun()->disk()->direction.z;
     if (height > 0) continue;
     throw Error(
-        written.sun->time->where,
-        strf("a clear sky needs the sun above the horizon; at %g s, when '%s' of sensor '%s' is taken, it stands "
+        written.sun()->date()->where,
+        strf("%s needs the sun above the horizon; at %g s, when '%s' of sensor '%s' is taken, it stands "
              "%.2f degrees below",
-             moment, who.capture->name.c_str(), who.sensor->name().c_str(), -std::asin(height) / kDegree),
+             what.c_str(), moment, who.capture->name.c_str(), who.sensor->name().c_str(), -std::asin(height) / kDegree),
         "leave out the captures at night, or render them with a `sky` or an `atmosphere`");
   }
 }
@@ -71,15 +66,15 @@ void check_clear(const SourceSpecs& written, const Scene& scene, const std::map<
 constexpr double kUsualRadius = 0.00465;  // rad, of bodies that are taken as collimated
 
 // How far a body goes during a capture, and what that does to the light on level ground.
-LongExposure exposure(const std::string& body, const Capture& c, const SunSpec& begin, const SunSpec& middle,
-                      const SunSpec& end, double reference_um) {
+LongExposure exposure(const std::string& body, const Capture& c, const FarDisk& begin, const FarDisk& middle,
+                      const FarDisk& end, double reference_um) {
   LongExposure e{body,
                  c.name,
                  c.window.end - c.window.begin,
                  angle_between(begin.direction, end.direction),
                  middle.half_angle > 0 ? middle.half_angle : kUsualRadius,
                  0};
-  auto level = [&](const SunSpec& s) {
+  auto level = [&](const FarDisk& s) {
     return s.irradiance.covers(reference_um, reference_um)
                ? s.irradiance.at(reference_um) * std::max(0.0, s.direction.z)
                : std::max(0.0, s.direction.z);
@@ -102,15 +97,8 @@ std::vector<SourceSpecs> sources_at_all_times(const SourceSpecs& written, const 
   std::vector<SourceSpecs> all;
   for (const double zenith_deg : {0.0, 60.0, 85.0}) {
     SourceSpecs s = written;
-    if (s.sun && s.sun->time) {
-      s.sun->time.reset();
-      s.sun->direction = dir_from_angles(zenith_deg * kDegree, 0);
-    }
-    if (s.moon && s.moon->disk.time) {
-      s.moon->disk.time.reset();
-      s.moon->disk.direction = Dir{0, 0, 1};
-      s.moon->geometry.phase = s.moon->geometry.sun_longitude = 1.5 * zenith_deg * kDegree;
-    }
+    for (LightSpecPtr& light : s.lights)
+      if (auto still = light->standing(zenith_deg * kDegree)) light = std::move(still);
     resolve_sources(s, scene, 0);
     all.push_back(std::move(s));
     if (!written.dated()) break;
@@ -120,7 +108,9 @@ std::vector<SourceSpecs> sources_at_all_times(const SourceSpecs& written, const 
 
 std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
   const std::map<double, Named> moments = written.dated() ? moments_of(sensors) : std::map<double, Named>{};
-  if (written.clear && written.sun && written.sun->time) check_clear(written, scene, moments);
+  if (written.sun() && written.sun()->date())
+    for (const LightSpecPtr& light : written.lights)
+      if (const std::string what = light->needs_sun_up(); !what.empty()) check_sun_up(written, what, scene, moments);
   SourceSpecs first = written;
   std::vector<std::string> said = resolve_sources(first, scene, moments.empty() ? 0 : moments.begin()->first);
   if (moments.size() < 2) return said;
@@ -133,9 +123,11 @@ std::vector<std::string> tell_sources(const SourceSpecs& written, const Scene& s
 
 std::optional<LongExposure> long_exposure(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   if (!written.dated()) return std::nullopt;
-  // Above the air: where a clear sky ends does not matter here.
+  // Above the air: what others make of a body does not matter here.
   SourceSpecs bare;
-  bare.sun = written.sun, bare.moon = written.moon, bare.dut1 = written.dut1;
+  for (const LightSpecPtr& light : written.lights)
+    if (light->date() && light->disk()) bare.lights.push_back(light);
+  bare.dut1 = written.dut1;
   SourcesInTime sources(bare, scene);
   std::optional<LongExposure> worst;
   auto excess = [](const LongExposure& e) {
@@ -146,16 +138,12 @@ std::optional<LongExposure> long_exposure(const SourceSpecs& written, const Scen
       constexpr double kNever = 1;  // s, in which the sky turns by 15 arc seconds
       if (c.window.end - c.window.begin < kNever) continue;
       const double middle = moment_of(c), reference = sensor.states()[c.state].reference_um;
-      std::array<std::vector<SunSpec>, 2> bodies;  // sun, moon at the beginning, the middle and the end
-      for (const double t : {c.window.begin, middle, c.window.end}) {
-        const SourceSpecs& now = sources.at(t);
-        if (now.sun && written.sun->time) bodies[0].push_back(*now.sun);
-        if (now.moon && written.moon->disk.time) bodies[1].push_back(now.moon->disk);
-      }
-      for (size_t b = 0; b < 2; ++b) {
-        if (bodies[b].size() < 3) continue;
-        const bool up = std::any_of(bodies[b].begin(), bodies[b].end(), [](auto& s) { return s.direction.z > 0; });
-        const LongExposure e = exposure(b ? "moon" : "sun", c, bodies[b][0], bodies[b][1], bodies[b][2], reference);
+      std::array<std::vector<LightSpecPtr>, 3> at;  // the beginning, the middle and the end
+      for (size_t i = 0; const double t : {c.window.begin, middle, c.window.end}) at[i++] = sources.at(t).lights;
+      for (size_t b = 0; b < bare.lights.size(); ++b) {
+        const auto body = [&](size_t i) -> const FarDisk& { return *at[i][b]->disk(); };
+        const bool up = body(0).direction.z > 0 || body(1).direction.z > 0 || body(2).direction.z > 0;
+        const LongExposure e = exposure(bare.lights[b]->key(), c, body(0), body(1), body(2), reference);
         if (up && excess(e) > 1 && (!worst || excess(e) > excess(*worst))) worst = e;
       }
     }

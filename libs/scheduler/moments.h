@@ -34,7 +34,7 @@ class SourcesInTime {
   // The moment of the grid that is nearest to one; 0 where no source has a date.
   double on_grid(double moment) const;
   // Sources at a moment (s), exactly; they hold until the next call. Without dates they are the same at all moments.
-  // Error: as resolve_sources.
+  // Lights that nothing has to be computed for stay the same objects. Error: as resolve_sources.
   const SourceSpecs& at(double moment);
 
  private:

@@ -154,7 +154,7 @@ class Job {
   void warn_of_lost_light(const Sensor& sensor, const Capture& capture, const Kit& kit) {
     if (!options_.warn) return;
     const uint32_t paths = goals_of(sensor, capture, budget()).all.max_paths;
-    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, *kit.environment, options_.pipeline, paths))
+    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline, paths))
       if (told_.insert(s).second) options_.warn(s);
   }
 

@@ -15,16 +15,6 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > most ? out + strf(" and %zu more", names.size() - most) : out;
 }
 
-// A disk that too few paths meet, in words; empty for others. It is met by a path that is scattered evenly over a
-// hemisphere with the probability solid angle / pi at most.
-std::string small_disk(const char* name, const Sun* disk, uint32_t paths) {
-  if (!disk) return {};
-  if (disk->collimated()) return std::string(name) + " (collimated)";
-  const double chance = 1 / (kPi * disk->density());
-  if (chance * paths >= Accumulators::kEnoughMeetings) return {};
-  return strf("%s (a disk that one path in %.2g meets by chance)", name, 1 / chance);
-}
-
 std::string share(const Shortfall::Part& part) {
   return strf("%.3g %% of their radiance on average, %.3g %% at most", 100 * part.mean(), 100 * part.most);
 }
@@ -70,14 +60,11 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
 }
 
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
-                                    const Environment& environment, const PipelineOptions& options, uint32_t paths) {
+                                    const PipelineOptions& options, uint32_t paths) {
   if (!options.explicit_sources) return {};
   std::vector<std::string> lights, refracting, mirrors;
-  for (const std::string& disk :
-       {small_disk("the sun", environment.sun_disk, paths), small_disk("the moon", environment.moon_disk, paths)})
-    if (!disk.empty()) lights.push_back(disk);
-  for (const LampSpec& lamp : sources.lamps)
-    if (lamp.kind != LampSpec::Kind::surface) lights.push_back("lamp '" + lamp.name + "' (a point)");
+  for (const LightSpecPtr& light : sources.lights)
+    for (const std::string& part : light->hardly_met(Accumulators::kEnoughMeetings / paths)) lights.push_back(part);
   if (lights.empty()) return {};
   for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
   for (uint32_t i = 0; i < scene.materials.size(); ++i)

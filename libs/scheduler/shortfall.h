@@ -44,6 +44,6 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
 // estimated, and by way of mirrors, which is not. paths: that a problem takes at most; disks that these meet often
 // enough are left out.
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
-                                    const Environment& environment, const PipelineOptions& options, uint32_t paths);
+                                    const PipelineOptions& options, uint32_t paths);
 
 }  // namespace suite

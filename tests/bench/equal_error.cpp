@@ -108,8 +108,7 @@ Case trees() {
     p.to_parent = translation({x, y, terrain_height(x, y) + 3});
     scene->groups[0].placements.push_back(p);
   }
-  SourceSpecs sources = terrain_sources();
-  sources.sun->half_angle = 0.00465;
+  SourceSpecs sources = terrain_sources(0.00465);
   return {"terrain with trees", scene, std::move(sources), {0, -220, 190}, {0, 0, 0}, 0.1, 16, 512, 512, 4096};
 }
 
@@ -134,7 +133,7 @@ Case street() {
                    line = 60.0 * std::floor(9 * random.uniform() - 4) + side;
       lamp.positions.push_back(k % 2 ? Vec3{along, line, 8} : Vec3{line, along, 8});
     }
-    sources.lamps.push_back(lamp);
+    sources.add(lamp);
   }
   return {"street, 1000 lamps",
           scene_of(std::move(meshes), {material("road", lambert(0.15)), material("wall", lambert(0.4))}),
@@ -173,8 +172,8 @@ Case gloss(const char* name, double radius, double height, double roughness, Vec
     scene->groups[0].placements.push_back(p);
   }
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.7, 0.5), 0.00465, solar_irradiance()};
-  sources.clear = ClearSkySpec{};
+  sources.add(SunSpec{dir_from_angles(0.7, 0.5), 0.00465, solar_irradiance()});
+  sources.add(ClearSkySpec{});
   resolve_sources(sources, *scene);
   return {name, scene, std::move(sources), from, to, half_angle, 8, 256, 1024, 4096};
 }

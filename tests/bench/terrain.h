@@ -49,10 +49,11 @@ inline std::shared_ptr<Scene> terrain_scene(uint32_t edge, double reflectance = 
   return scene;
 }
 
-inline SourceSpecs terrain_sources() {
+// half_angle: of the sun, rad.
+inline SourceSpecs terrain_sources(double half_angle = 0) {
   SourceSpecs sources;
-  sources.sun = SunSpec{normalized(Vec3{0.5, -0.3, 0.8}), 0, Curve::constant(3)};
-  sources.sky = SkySpec{Curve::constant(0.3), {}, 0, 0, true};
+  sources.add(SunSpec{normalized(Vec3{0.5, -0.3, 0.8}), half_angle, Curve::constant(3)});
+  sources.add(SkySpec{Curve::constant(0.3), {}, 0, 0, true});
   return sources;
 }
 
@@ -66,7 +67,7 @@ inline SourceSpecs lamps_over_terrain(int n) {
     lamp.positions.push_back({x, y, terrain_height(x, y) + 5});
   }
   SourceSpecs sources;
-  sources.lamps.push_back(lamp);
+  sources.add(lamp);
   return sources;
 }
 

@@ -174,7 +174,7 @@ TEST(Layered, SunlitFloorThroughTheAir) {
   const auto scene = scene_of({quad(1e5, 0, 0)}, {material("floor", lambert(0.4))});
   SourceSpecs s;
   const Dir to_sun = dir_from_angles(0.5, 2);
-  s.sun = SunSpec{to_sun, 0, Curve::constant(1800)};
+  s.add(SunSpec{to_sun, 0, Curve::constant(1800)});
   s.atmosphere = hazy();
   PipelineOptions single;
   single.max_nodes = 1;  // the air lights the floor as well; here only the direct beam is wanted
@@ -234,7 +234,7 @@ TEST(Earth, NothingLeavesDownwards) {
   // From a pit below the ellipsoid: up is free, down is closed.
   EXPECT_FALSE(earth.meet({0, 0, -2000}, {0, 0, 1}, kFar));
   EXPECT_TRUE(earth.meet({0, 0, -2000}, {0, 0, -1}, kFar));
-  s.sky = uniform_sky(1, true);
+  s.add(uniform_sky(1, true));
   const auto run = render(scene, s, std::make_unique<RaySensor>(rays, one_band(), 64));
   for (const double L : run.result.radiance) EXPECT_NEAR(L, 1, 2e-2);
 }
@@ -243,7 +243,7 @@ TEST(Earth, HidesTheSunAtNight) {
   auto scene = scene_of({quad(100, 0, 0)}, {material("quad", lambert(0.5, 0.5)), material("soil", lambert(0))});
   scene->origin = {0, 0, 0, true};
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(100 * kDegree, 0), 0, Curve::constant(1)};
+  s.add(SunSpec{dir_from_angles(100 * kDegree, 0), 0, Curve::constant(1)});
   auto look = [] { return std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 10}, {0, 0, -1}, 0}}, one_band(), 4); };
   EXPECT_GT(render(scene, s, look()).result.radiance[0], 0)
       << "without an Earth the sun shines through the leaf from below";

@@ -222,8 +222,8 @@ TEST_P(CrownRadiance, IsThatOfPlainPathTracingInDouble) {
   // The same lines of sight for both: only what the paths do afterwards is compared.
   const std::vector<Ray> rays = views(longer ? 100000 : 4000, 29);
   SourceSpecs sources;
-  sources.sun = SunSpec{kSun, 0, Curve::constant(kSunIrradiance)};
-  sources.sky = uniform_sky(kSkyRadiance, false);
+  sources.add(SunSpec{kSun, 0, Curve::constant(kSunIrradiance)});
+  sources.add(uniform_sky(kSkyRadiance, false));
   PipelineOptions options;
   options.max_nodes = 64;
   const uint32_t paths = longer ? 128 : 64;

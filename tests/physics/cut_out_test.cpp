@@ -144,7 +144,7 @@ TEST(CutOut, ShadowsAreAsDeepAsTheOpacity) {
   scene->property_maps = {opacity({0.4f}, 1, Projection::drape)};
   scene->property_bindings = {{1, 0}};
   SourceSpecs sources;
-  sources.sun = SunSpec{{0, 0, 1}, 0, Curve::constant(kPi)};
+  sources.add(SunSpec{{{0, 0, 1}, 0, Curve::constant(kPi)}});
   // Seen from below the sheet, so only the sun's ray passes it; the same ray for all paths.
   const Dir out = dir_from_angles(1.2, 0.3);
   const auto run = render(

@@ -65,23 +65,25 @@ std::shared_ptr<Scene> scene() {
 // Everything that a date moves, and a lamp, which it does not.
 SourceSpecs sources(const std::string& utc, bool air) {
   SourceSpecs s;
-  s.sun = SunSpec{};
-  s.sun->irradiance = Curve({0.2, 0.5, 0.6, 5}, {1500, 1900, 1800, 1500}, Outside::hold);
-  s.sun->time = SourceTime{utc, {}};
-  s.sun->disk_by_time = s.sun->at_1_au = true;
-  s.moon = MoonSpec{};
-  s.moon->disk.time = SourceTime{utc, {}};
-  s.moon->disk.disk_by_time = true;
+  SunSpec sun;
+  sun.irradiance = Curve({0.2, 0.5, 0.6, 5}, {1500, 1900, 1800, 1500}, Outside::hold);
+  sun.time = SourceTime{utc, {}};
+  sun.disk_by_time = sun.at_1_au = true;
+  s.add(sun);
+  MoonSpec moon;
+  moon.disk.time = SourceTime{utc, {}};
+  moon.disk.disk_by_time = true;
+  s.add(moon);
   s.dut1 = 0.3;
   if (air)
     s.atmosphere = AtmosphereSpec{};
   else
-    s.clear = ClearSkySpec{};
+    s.add(ClearSkySpec{});
   LampSpec lamp;
   lamp.name = "lamp";
   lamp.positions = {{0, 1, 1}};
   lamp.intensity = Curve::constant(3);
-  s.lamps.push_back(lamp);
+  s.add(lamp);
   return s;
 }
 
@@ -182,8 +184,11 @@ TEST(Day, Dut1TurnsTheSky) {
   s.dut1 = -0.45, t.dut1 = 0.45;
   resolve_sources(s, *at), resolve_sources(t, *at);
   const double declination = 23.43 * kDegree;
-  EXPECT_NEAR(angle_between(s.sun->direction, t.sun->direction), 0.9 * 2 * kPi / 86164 * std::cos(declination), 2e-7);
-  EXPECT_GT(angle_between(s.moon->disk.direction, t.moon->disk.direction), 5e-5);
+  const auto turned = [&](size_t body) {
+    return angle_between(s.lights[body]->disk()->direction, t.lights[body]->disk()->direction);
+  };
+  EXPECT_NEAR(turned(0), 0.9 * 2 * kPi / 86164 * std::cos(declination), 2e-7);
+  EXPECT_GT(turned(1), 5e-5);
 }
 
 TEST(Day, SentencesAndRefusals) {
@@ -202,7 +207,7 @@ TEST(Day, SentencesAndRefusals) {
 TEST(Day, LongCapturesAreTold) {
   const auto at = scene();
   SourceSpecs s = sources(kMorning, true);
-  s.moon.reset();
+  std::erase_if(s.lights, [](auto& light) { return light->key() == "moon"; });
   // 2 s: the sun moves by 0.008 degrees, less than its radius, and the light of the morning changes by less than 0.1 %.
   EXPECT_FALSE(long_exposure(s, *at, Day("short", true, 2)));
   const auto found = long_exposure(s, *at, Day("long", true, 600));

@@ -15,7 +15,7 @@ using test::PlatformKit;
 
 SourceSpecs sun_at_60(double irradiance) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(60 * kDegree, 0.3), 0, Curve::constant(irradiance)};
+  s.add(SunSpec{dir_from_angles(60 * kDegree, 0.3), 0, Curve::constant(irradiance)});
   return s;
 }
 std::shared_ptr<Scene> plane(double reflectance) {

@@ -47,7 +47,7 @@ TEST_P(OpenFurnace, ConvexBodyReturnsItsTotal) {
   std::vector<Band> bands;
   for (const double c : {0.45, 0.65, 0.85}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
   SourceSpecs sources;
-  sources.sky = uniform_sky(2, true);
+  sources.add(uniform_sky(2, true));
   const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square(zeniths), bands, 1 << 16));
   // The reference is the model's own total, whose truth the conformance tests establish.
   const SpectralState state = make_state(bands, 0.01);
@@ -80,7 +80,7 @@ TEST(OpenFurnaces, RoughPaneReturnsAll) {
     const ModelSpec spec{"ggx_dielectric", {{"roughness", roughness}}, {{"index", Curve::constant(1.5)}}, {}, nullptr};
     const auto scene = scene_of({box({-5, -5, -0.01}, {5, 5, 0}, 0, true)}, {material("pane", spec)});
     SourceSpecs sources;
-    sources.sky = uniform_sky(2, true);
+    sources.add(uniform_sky(2, true));
     const std::vector<double> zeniths{0, 63 * kDegree};
     const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square(zeniths), one_band(), 1 << 15),
                             PipelineOptions{});
@@ -131,7 +131,7 @@ TEST(LambertPlane, UnderCollimatedSun) {
   const auto scene = scene_of({quad(5, 0, 0)}, {material("m", lambert(0.37))});
   for (const double zenith : {0.0, 0.5, 1.0, 1.5}) {
     SourceSpecs sources;
-    sources.sun = SunSpec{dir_from_angles(zenith, 2), 0, Curve::constant(1361)};
+    sources.add(SunSpec{dir_from_angles(zenith, 2), 0, Curve::constant(1361)});
     const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.1, 0.9}), one_band(), 4));
     const double expected = 0.37 * 1361 * std::cos(zenith) / kPi;
     for (const double L : run.result.radiance) EXPECT_NEAR(L, expected, 1e-5 * expected) << zenith;
@@ -143,7 +143,7 @@ TEST(LambertPlane, UnderSunDisk) {
   const auto scene = scene_of({quad(5, 0, 0)}, {material("m", lambert(0.37))});
   for (const double half_angle : {0.0001, 0.00465, 0.1}) {
     SourceSpecs sources;
-    sources.sun = SunSpec{dir_from_angles(0.8, 2), half_angle, Curve::constant(1361)};
+    sources.add(SunSpec{dir_from_angles(0.8, 2), half_angle, Curve::constant(1361)});
     const auto run =
         render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.1, 0.9}), one_band(), 4096));
     const double expected = 0.37 * 1361 * std::cos(0.8) / kPi;
@@ -155,7 +155,7 @@ TEST(LambertPlane, ExplicitAndChanceSunsAgree) {
   // A wide sun, met explicitly and by chance (multiple importance sampling) or by chance alone: the same mean.
   const auto scene = scene_of({quad(5, 0, 0)}, {material("m", lambert(0.5))});
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.6, 2), 0.3, Curve::constant(100)};
+  sources.add(SunSpec{dir_from_angles(0.6, 2), 0.3, Curve::constant(100)});
   PipelineOptions chance;
   chance.explicit_sources = false;
   const auto both = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.3}), one_band(), 1 << 14));
@@ -173,7 +173,7 @@ TEST(LambertPlane, TabulatedSkyMatchesItsIntegral) {
   for (size_t r = 0; r < 181; ++r)
     for (size_t c = 0; c < 4; ++c) sky.table.push_back(std::pow(std::cos(static_cast<double>(r) * kPi / 360), 2));
   SourceSpecs sources;
-  sources.sky = sky;
+  sources.add(sky);
   const auto scene = scene_of({quad(5, 0, 0)}, {material("m", lambert(0.5))});
   const auto run = render(scene, sources, std::make_unique<RaySensor>(rays_onto_square({0.3}), one_band(), 1 << 14));
   EXPECT_NEAR(run.result.radiance[0], 0.5 * 3 / 2, 1e-3 * 0.75);  // the table's chords are within 1e-4 of the function
@@ -202,8 +202,8 @@ TEST(Determinism, SameBytesForAnyNumberOfThreads) {
   const auto scene =
       scene_of({quad(5, 0, 0), box({-1, -1, 0.5}, {1, 1, 1.5}, 1, true)}, {material("floor", lambert(0.5)), leaf});
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.6, 2), 0.00465, Curve::constant(1000)};
-  sources.sky = uniform_sky(20, false);
+  sources.add(SunSpec{dir_from_angles(0.6, 2), 0.00465, Curve::constant(1000)});
+  sources.add(uniform_sky(20, false));
   std::vector<Ray> rays;
   for (int i = 0; i < 300; ++i) rays.push_back({{-2 + i * 0.013, 0.1, 5}, normalized(Vec3{0.05, 0.02, -1}), 0});
   std::vector<double> first;

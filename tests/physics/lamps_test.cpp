@@ -16,7 +16,7 @@ namespace {
 
 SourceSpecs lit_by(std::vector<LampSpec> lamps) {
   SourceSpecs s;
-  s.lamps = std::move(lamps);
+  s.add(std::move(lamps));
   return s;
 }
 // A floor of reflectance 0.5 and the primitive, placed by `to_parent`, with a black material "lamp".

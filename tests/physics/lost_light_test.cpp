@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
 namespace suite::test {
@@ -26,9 +27,9 @@ std::shared_ptr<Scene> water_bed(ModelSpec surface) {
   return scene;
 }
 
-SourceSpecs sun(double half_angle_deg) {
+SourceSpecs sun(double half_angle_deg, double zenith = kSunZenith) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(kSunZenith, 0), half_angle_deg * kDegree, Curve::constant(1)};
+  s.add(SunSpec{dir_from_angles(zenith, 0), half_angle_deg * kDegree, Curve::constant(1)});
   return s;
 }
 
@@ -88,9 +89,7 @@ TEST(WaterBed, SmallDiskIsMissedWideDiskIsMet) {
 
 // Straight lines that meet the surface from below beyond the critical angle: real light has a way in.
 TEST(WaterBed, LowSun) {
-  SourceSpecs low = sun(0);
-  low.sun->direction = dir_from_angles(70 * kDegree, 0);
-  const auto run = render(water_bed(smooth(kIndex)), low, look(1024));
+  const auto run = render(water_bed(smooth(kIndex)), sun(0, 70 * kDegree), look(1024));
   const double expected = closed_form() * std::cos(70 * kDegree) / std::cos(kSunZenith) *
                           fresnel_dielectric(std::cos(70 * kDegree), kIndex).transmittance /
                           fresnel_dielectric(std::cos(kSunZenith), kIndex).transmittance;
@@ -99,18 +98,16 @@ TEST(WaterBed, LowSun) {
 }
 
 TEST(WaterBed, PointLampsAboveAreMissedBelowAreNot) {
-  SourceSpecs s;
-  LampSpec lamp;
-  lamp.name = "lamp";
-  lamp.intensity = Curve::constant(1);
-  lamp.positions = {{0.5, 0, kDepth + 1}};
-  s.lamps = {lamp};
-  const auto above = render(water_bed(smooth(kIndex)), s, look(256));
+  const auto lamp_at = [](double height) {
+    SourceSpecs s;
+    s.add(point_lamp({{0.5, 0, height}}, 1));
+    return s;
+  };
+  const auto above = render(water_bed(smooth(kIndex)), lamp_at(kDepth + 1), look(256));
   EXPECT_TRUE(unresolved(above));
   EXPECT_EQ(above.result.radiance[0], 0);
   EXPECT_GT(above.result.standard_error[0], 0);
-  s.lamps[0].positions = {{0.5, 0, kDepth - 1}};
-  const auto below = render(water_bed(smooth(kIndex)), s, look(256));
+  const auto below = render(water_bed(smooth(kIndex)), lamp_at(kDepth - 1), look(256));
   EXPECT_FALSE(unresolved(below));
   EXPECT_GT(below.result.radiance[0], 0);
 }

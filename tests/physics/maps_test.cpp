@@ -52,12 +52,12 @@ struct Case {
 };
 SourceSpecs sky(double radiance) {
   SourceSpecs s;
-  s.sky = uniform_sky(radiance, true);
+  s.add(uniform_sky(radiance, true));
   return s;
 }
 SourceSpecs sun(Dir towards) {
   SourceSpecs s;
-  s.sun = SunSpec{towards, 0, Curve::constant(kPi)};
+  s.add(SunSpec{towards, 0, Curve::constant(kPi)});
   return s;
 }
 ModelSpec ward(double diffuse, double specular, double rough, double rough_y) {
@@ -219,9 +219,8 @@ TEST(Maps, BumpsLeakNoLightAndHaveNoBlackEdges) {
     const Dir out = dir_from_angles((0.5 + i % 89) * kDegree, 0.7 * i);
     rays.push_back({Vec3{0.9 * std::sin(1.0 * i), 0.9 * std::cos(2.3 * i), 0} + out * 0.01, -out, 0});
   }
-  SourceSpecs below = sky(1);
-  below.sky->table = {0, 0, 0, 1, 1};  // zeniths 0, 45, 90, 135, 180 deg; the horizon itself is dark
-  below.sky->zeniths = 5, below.sky->azimuths = 1;
+  SourceSpecs below;
+  below.add(SkySpec{Curve::constant(1), {0, 0, 0, 1, 1}, 5, 1, true});  // every 45 deg; the horizon itself is dark
   const auto dark = c.run(rays, one_band(), below, 256);
   const auto lit = c.run(rays, one_band(), sky(1), 256);
   for (size_t i = 0; i < rays.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "math/sampling.h"
+#include "support/lamps_kit.h"
 #include "support/radiometry_kit.h"
 
 namespace suite {
@@ -32,8 +33,8 @@ std::shared_ptr<Scene> court(const std::function<void(Scene&)>& change = {}) {
 
 SourceSpecs sources(double half_angle, bool full_sphere) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(0.6, 1), half_angle, Curve({0.3, 1.0}, {2000, 900}, Outside::hold)};
-  s.sky = test::uniform_sky(30, full_sphere);
+  s.add(SunSpec{dir_from_angles(0.6, 1), half_angle, Curve({0.3, 1.0}, {2000, 900}, Outside::hold)});
+  s.add(test::uniform_sky(30, full_sphere));
   return s;
 }
 
@@ -138,7 +139,7 @@ TEST(MatteKernel, ForAnyNumberOfBands) {
 
 TEST(MatteKernel, WithEitherSourceAloneAndFewNodesOrSamples) {
   SourceSpecs sun = sources(0.02, false), sky = sun;
-  sun.sky.reset(), sky.sun.reset();
+  sun.lights.pop_back(), sky.lights.erase(sky.lights.begin());
   expect_same(court(), sun, side_by_side(3));
   expect_same(court(), sky, side_by_side(3));
   expect_same(court(), sources(0.02, true), side_by_side(3), 3, 1);
@@ -147,15 +148,14 @@ TEST(MatteKernel, WithEitherSourceAloneAndFewNodesOrSamples) {
 
 TEST(MatteKernel, UnderAnyLightsAndInAir) {
   SourceSpecs lamp = sources(0.02, false), moon = lamp, table = lamp, air = lamp;
-  lamp.lamps.push_back({});
-  lamp.lamps[0].intensity = Curve::constant(1);
-  lamp.lamps[0].positions = {{0, 0, 3}, {0.5, 0.2, 2}};
+  lamp.add(test::point_lamp({{0, 0, 3}, {0.5, 0.2, 2}}, 1));
   expect_same(court(), lamp, side_by_side(3));
-  table.sky->table = {1, 2, 1, 2}, table.sky->zeniths = 2, table.sky->azimuths = 2;
+  table.lights.pop_back();
+  table.add(SkySpec{Curve::constant(30), {1, 2, 1, 2}, 2, 2, false});
   expect_same(court(), table, side_by_side(3));
-  moon.moon.emplace();
-  moon.moon->disk = *moon.sun, moon.moon->by_phase = false;
-  moon.moon->disk.direction = {0.6, 0, 0.8};
+  FarDisk disk = *moon.sun()->disk();
+  disk.direction = {0.6, 0, 0.8};
+  moon.add(MoonSpec{{disk}, false, {}});
   expect_same(court(), moon, side_by_side(3));
   air.atmosphere.emplace();
   expect_same(court(), air, side_by_side(3));
@@ -181,15 +181,13 @@ TEST(MatteKernel, IsNotTakenWhereItDoesNotServe) {
       "general");
   EXPECT_EQ(kernel(court([](Scene& s) { s.materials[1].temperature_k = 2000; }), plain), "general");
   SourceSpecs lamp = plain, moon = plain, table = plain;
-  lamp.lamps.push_back({});
-  lamp.lamps[0].intensity = Curve::constant(1);
-  lamp.lamps[0].positions = {{0, 0, 3}};
   // Any lights do, and air.
+  lamp.add(test::point_lamp({{0, 0, 3}}, 1));
   EXPECT_EQ(kernel(court(), lamp), "matte");
-  table.sky->table = {1, 2, 1, 2}, table.sky->zeniths = 2, table.sky->azimuths = 2;
+  table.lights.pop_back();
+  table.add(SkySpec{Curve::constant(30), {1, 2, 1, 2}, 2, 2, false});
   EXPECT_EQ(kernel(court(), table), "matte");
-  moon.moon.emplace();
-  moon.moon->disk = *plain.sun, moon.moon->by_phase = false;
+  moon.add(MoonSpec{{*plain.sun()->disk()}, false, {}});
   EXPECT_EQ(kernel(court(), moon), "matte");
   SourceSpecs air = plain;
   air.atmosphere.emplace();

@@ -83,7 +83,7 @@ TEST(AirAndMedia, AbsorptionAndEmissionAreTheIntegral) {
 TEST(AirAndMedia, MediaElsewhereChangeNothing) {
   // Sunlit ground seen through hazy air, with a cloud behind the viewer and without.
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.5, 1), 0, Curve::constant(1000)};
+  sources.add(SunSpec{dir_from_angles(0.5, 1), 0, Curve::constant(1000)});
   sources.atmosphere = AtmosphereSpec{};
   AtmosphereSpec::Aerosol haze;
   haze.depth_550 = 0.3;
@@ -150,7 +150,7 @@ TEST(AirAndMedia, SunlightScatteredOnceIsTheIntegral) {
   const Dir sun = dir_from_angles(0.6, 1);
   const Medium haze = medium(Curve::constant(0), Curve::constant(kScattering), hg(0.7));
   SourceSpecs sources;
-  sources.sun = SunSpec{sun, 0, Curve::constant(kIrradiance)};
+  sources.add(SunSpec{sun, 0, Curve::constant(kIrradiance)});
   sources.atmosphere = thick_air(0.1);  // cold: no light of its own
   const Ray ray{{0, 0, 10}, kAlong, 0};
   const auto bands = two_bands();

@@ -39,7 +39,7 @@ TEST(PeriodicMedia, TransmittanceOfAFieldOfCopies) {
   // Looking through from below at a bright sky, level rays included as far as the copies reach: no chance in it.
   const auto gas = medium(Curve::constant(0.4), Curve::constant(0));
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   std::vector<Ray> rays;
   Pcg32 random(3);
   for (int i = 0; i < 60; ++i)
@@ -60,7 +60,7 @@ TEST(PeriodicMedia, TransmittanceOfAFieldOfCopies) {
 TEST(PeriodicMedia, ScatteringFieldIsTheFieldOfCopies) {
   const auto cloud = medium(Curve::constant(0.1), Curve::constant(1), hg(0.5));
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.5, 1), 0, Curve::constant(3)};
+  sources.add(SunSpec{dir_from_angles(0.5, 1), 0, Curve::constant(3)});
   const Ray look{{1, 3, 8}, normalized(Vec3{-0.2, 0.1, -1}), 0};
   const auto mean = [](const CaptureResult& r) { return over_problems(r, 0); };
   const Repeated one = mean(render_cell(cloud_field(cloud, 0), sources, repeated(look), 1 << 9, kCell)),
@@ -76,7 +76,7 @@ TEST(PeriodicMedia, WhiteFieldReturnsWhatItGets) {
   auto scene = cloud_field(medium(Curve::constant(0), Curve::constant(2), hg(0.8)), 0);
   scene->materials = {material("ground", lambert(1))};
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   const auto r = render_cell(scene, sources, repeated({{1, 3, 8}, normalized(Vec3{-0.2, 0.1, -1}), 0}), 64, kCell);
   for (const double L : r.radiance) EXPECT_NEAR(L, 1, 1e-3);
 }
@@ -90,7 +90,7 @@ TEST(PeriodicMedia, BodiesAcrossTheSideAreOneBody) {
   place(*scene, PrimitiveKind::sphere, {1.5}, 0, translation({5, 6, 3}));
   check_scene(*scene, "ball");
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   std::vector<Ray> rays;
   const std::vector<double> azimuths{0.1, 1.2, 2.5, 3.7, 5.5};
   for (const double a : azimuths) {
@@ -134,7 +134,7 @@ TEST(MovingMedia, ABoxOfGasPassesBy) {
   scene->volumes.push_back({0, rotation({0, 0, 1}, -kPi / 2), 0});
   check_scene(*scene, "flight");
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   // Where the box is at an instant, as its pose says.
   const auto at = [&](double t, Vec3 p) {
     const Affine3 in = (scene->tracks[0].track->at(t).affine() * scene->volumes[0].to_world).inverse();
@@ -176,7 +176,7 @@ TEST(Lamps, SingleScatteringFromAPoint) {
   lamp.name = "bulb";
   lamp.positions = {{0, 0, 0}};
   lamp.intensity = Curve::constant(intensity);
-  sources.lamps = {lamp};
+  sources.add(lamp);
   PipelineOptions once;
   once.max_scatterings = 1;
   std::vector<double> distances{1, 2, 4}, seen;
@@ -210,7 +210,7 @@ TEST(Lamps, InverseSquareInAThinMedium) {
   lamp.name = "bulb";
   lamp.positions = {{0, 0, 0}};
   lamp.intensity = Curve::constant(1);
-  sources.lamps = {lamp};
+  sources.add(lamp);
   PipelineOptions once;
   once.max_scatterings = 1;
   for (const double h : {40.0, 80.0}) {
@@ -237,9 +237,9 @@ TEST(Moon, SingleScatteringOfASlab) {
   const auto scene = slab_scene(medium(Curve::constant(tau * (1 - albedo)), Curve::constant(tau * albedo)), 1);
   SourceSpecs sources;
   MoonSpec moon;
-  moon.disk = SunSpec{{std::sqrt(1 - m0 * m0), 0, m0}, 0, Curve::constant(E)};
+  moon.disk = SunSpec{{{std::sqrt(1 - m0 * m0), 0, m0}, 0, Curve::constant(E)}};
   moon.by_phase = false;
-  sources.moon = moon;
+  sources.add(moon);
   PipelineOptions once;
   once.max_scatterings = 1;
   const Dir down{0, std::sqrt(1 - m * m), -m};
@@ -273,7 +273,7 @@ TEST(SqtPhase, FittedHenyeyGreensteinIsHenyeyGreenstein) {
     phase->asymmetry(p);
     EXPECT_NEAR(p[0], g, 3e-3);
     SourceSpecs sources;
-    sources.sun = SunSpec{dir_from_angles(0.6, 0), 0, Curve::constant(2)};
+    sources.add(SunSpec{dir_from_angles(0.6, 0), 0, Curve::constant(2)});
     const Ray look{{0, 0, 3}, normalized(Vec3{0.3, 0.2, -1}), 0};
     const auto with = [&](const ModelSpec& spec, uint64_t seed) {
       PipelineOptions other;

@@ -64,7 +64,7 @@ struct Fluxes {
 };
 Fluxes fluxes(const std::shared_ptr<const Scene>& scene, const Case& c, double thickness, uint32_t paths) {
   SourceSpecs sources;
-  sources.sun = SunSpec{{std::sqrt(1 - c.mu0 * c.mu0), 0, c.mu0}, 0, Curve::constant(c.beam)};
+  sources.add(SunSpec{{{std::sqrt(1 - c.mu0 * c.mu0), 0, c.mu0}, 0, Curve::constant(c.beam)}});
   const std::vector<Ray> looks{{{0, 0, thickness + 0.5}, {0, 0, -1}, 0}, {{0, 0, -0.5}, {0, 0, 1}, 0}};
   PipelineOptions options;
   options.seed = 7;
@@ -93,7 +93,7 @@ struct Flux {
 std::array<Flux, 2> fluxes_by_reciprocity(const std::shared_ptr<const Scene>& scene, const Case& c, double tau,
                                           double thickness, std::array<int, 2> powers) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   PipelineOptions options;
   options.seed = 11;
   options.roulette_after = 100000;
@@ -206,7 +206,7 @@ TEST(Layer, TransmitsAsItsThicknessSays) {
   const auto scene = layer(medium(Curve::constant(absorption), Curve::constant(0)), z0, z1);
   EXPECT_TRUE(Tracer(scene).bounds().empty()) << "it has no end";
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   std::vector<Ray> looks;
   std::vector<double> expected;
   for (const double z : {-1e3, 0.0, 2.5, 4.0, 6.0})

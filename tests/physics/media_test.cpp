@@ -74,7 +74,7 @@ TEST(BeerLambert, GridsTurnedScaledAndThin) {
       const double size = length((to_world * g.to_local).vector(Vec3{17, 9, 30}));
       const std::vector<Ray> rays = rays_through((to_world * g.to_local).point(Vec3{8.5, 4.5, 15}), size / 3, 40);
       SourceSpecs sources;
-      sources.sky = uniform_sky(2, true);
+      sources.add(uniform_sky(2, true));
       const auto bands = bands_at({0.45, 0.65, 0.85}, 1e-5);
       const auto run = render(scene_with(gas, g, to_world), sources, std::make_unique<RaySensor>(rays, bands, 2));
       for (size_t r = 0; r < rays.size(); ++r) {
@@ -96,7 +96,7 @@ TEST(BeerLambert, OpticalDepthsFromTinyToHuge) {
         scene_with(medium(Curve::constant(tau), Curve::constant(0)),
                    grid_of({1, 1, 4}, translation({-5, -5, 0}) * scaling({10, 10, 0.25}), [](auto...) { return 1; }));
     SourceSpecs sources;
-    sources.sky = uniform_sky(1, true);
+    sources.add(uniform_sky(1, true));
     const auto run = render(scene, sources,
                             std::make_unique<RaySensor>(std::vector<Ray>{{{0, 0, 3}, {0, 0, -1}, 0}}, one_band(), 2));
     EXPECT_NEAR(run.result.radiance[0], std::exp(-tau), 1e-4 * std::exp(-tau) + 1e-37) << tau;
@@ -193,7 +193,7 @@ TEST(Furnace, ConservativeBodiesVanish) {
     scene->volumes.push_back({0, rotation({0, 0, 1}, 0.5)});
     check_scene(*scene, "furnace");
     SourceSpecs sources;
-    sources.sky = uniform_sky(2, true);
+    sources.add(uniform_sky(2, true));
     const std::vector<Ray> rays{{{0, 0, 5}, {0, 0, -1}, 0},
                                 {{5, 0.1, 0.1}, {-1, 0, 0}, 0},
                                 {{0, 0, 0}, {0.6, 0, 0.8}, 0},
@@ -209,7 +209,7 @@ TEST(Furnace, OpticalDepthSweep) {
   // A slab with albedo 1 - 1e-7 in a uniform field: what does not come out is in the report of the cut energy.
   for (const double tau : {1e-6, 1e-3, 1.0, 30.0, 1e3, 1e6}) {
     SourceSpecs sources;
-    sources.sky = uniform_sky(1, true);
+    sources.add(uniform_sky(1, true));
     PipelineOptions options;
     options.max_scatterings = 3000;
     const auto scene = slab_scene(medium(Curve::constant(1e-7 * tau), Curve::constant((1 - 1e-7) * tau)), 1);
@@ -233,7 +233,7 @@ TEST(Inside, CamerasInsideNestedBodies) {
   place(*scene, PrimitiveKind::sphere, {3}, 0);
   place(*scene, PrimitiveKind::sphere, {1}, 1);
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   const std::vector<Ray> rays{
       {{0, 0, 0}, {0, 0, 1}, 0}, {{0, 0, 2}, {0, 0, 1}, 0}, {{0, 0, 2}, {0, 0, -1}, 0}, {{0, 0, 9}, {0, 0, -1}, 0}};
   const std::vector<double> expected{2 + 1, 0.5, 0.5 + 4 + 1, 1 + 4 + 1};
@@ -266,7 +266,7 @@ TEST(Shadows, GroundUnderAnAbsorbingGrid) {
         scene->volumes.push_back({0, {}});
       }
       SourceSpecs sources;
-      sources.sun = SunSpec{dir_from_angles(zenith, 2), half_angle, Curve::constant(E)};
+      sources.add(SunSpec{dir_from_angles(zenith, 2), half_angle, Curve::constant(E)});
       const auto bands = bands_at({0.45, 0.65, 0.85}, 1e-5);
       const auto run = render(
           scene, sources,
@@ -297,11 +297,11 @@ std::shared_ptr<Scene> coloured_cloud() {
 }
 SourceSpecs sun_and_sky(double half_angle) {
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.6, 1), half_angle, Curve::constant(2)};
+  sources.add(SunSpec{dir_from_angles(0.6, 1), half_angle, Curve::constant(2)});
   SkySpec sky{Curve::constant(1), {}, 10, 4, false};
   for (size_t r = 0; r < 10; ++r)
     for (size_t c = 0; c < 4; ++c) sky.table.push_back(r < 3 ? 2.0 : 0.5 + 0.2 * static_cast<double>(c));
-  sources.sky = sky;
+  sources.add(sky);
   return sources;
 }
 const Ray kOntoCloud{{3, 0.5, 4}, normalized(Vec3{-3, -0.4, -4}), 0};
@@ -366,7 +366,7 @@ TEST(Water, RadianceOverIndexSquaredIsKept) {
   const double n = 1.34, depth = 3;
   const auto scene = water(n, medium(Curve::constant(0.1), Curve::constant(0)));
   SourceSpecs sources;
-  sources.sky = uniform_sky(5, false);
+  sources.add(uniform_sky(5, false));
   const std::vector<double> zeniths{0, 0.3, 0.6, 0.9, 1.2};
   std::vector<Ray> rays;
   for (const double z : zeniths) rays.push_back({{0, 0, -depth}, dir_from_angles(z, 0.3), 0});
@@ -418,7 +418,7 @@ TEST(Water, SmallestDeviationOfADispersivePrism) {
     const double delta = incidence + std::asin(n * std::sin(inside)) - A;
     const double travel = from + kPi - delta;  // turned towards the base, clockwise
     SourceSpecs sources;
-    sources.sun = SunSpec{{std::cos(travel), 0, std::sin(travel)}, 1e-3, Curve::constant(1)};
+    sources.add(SunSpec{{{std::cos(travel), 0, std::sin(travel)}, 1e-3, Curve::constant(1)}});
     std::vector<Band> bands = bands_at({colours[0], colours[1], colours[2]}, 1e-4);
     const auto run = render(scene, sources, std::make_unique<RaySensor>(repeated(ray), bands, 1 << 9));
     const double R1 = fresnel_unpolarised(std::cos(incidence), n), R2 = fresnel_unpolarised(std::cos(inside), 1 / n);

@@ -85,7 +85,7 @@ double worst_error(PlatformKit& kit, const Case& c) {
            kRows, c.paths) +
       c.bands + "]}]\n";
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   kit.shots.clear();
   kit.render(edge_scene(), sources, text);
   const std::vector<double> frequency{0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5};

@@ -44,8 +44,8 @@ TEST(NarrowLobe, SeesThePartOfTheDiskThatItReflects) {
   const auto scene = scene_of({quad(5, 0, 0)}, {material("m", {"sqt", {}, {}, {{"file", "polished.sqt"}}, bundle})});
   const double zenith = 0.5, irradiance = 1000;
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(zenith, 0), kSun, Curve::constant(irradiance)};
-  const Frame disk = Frame::around(sources.sun->direction);
+  sources.add(SunSpec{dir_from_angles(zenith, 0), kSun, Curve::constant(irradiance)});
+  const Frame disk = Frame::around(sources.sun()->disk()->direction);
   double middle = 0;
   for (const double off : {0.0, 0.002, 0.005, 0.008}) {
     const Dir out = dir_from_angles(zenith + off, kPi);

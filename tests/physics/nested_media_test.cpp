@@ -49,7 +49,7 @@ const Cut kCuts[] = {Cut::planes, Cut::boxes, Cut::meshes};
 
 SourceSpecs bright() {
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   return sources;
 }
 void expect_alike(const Repeated& a, const Repeated& b, double least) {
@@ -91,7 +91,7 @@ TEST(CutSlab, AbsorbsAsTheSumOfItsSheets) {
 TEST(CutSlab, ScattersAsTheUncut) {
   const auto gas = medium(Curve::constant(0.2), Curve::constant(2), hg(0.5));
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
+  sources.add(SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)});
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.3, 0.2, -1}), 0});
   const Repeated whole = over_problems(render_cell(cut_slab({gas}, 1, 1, Cut::planes), sources, rays, 1 << 11), 0);
   for (const Cut cut : kCuts)
@@ -148,7 +148,7 @@ TEST(NestedBodies, ConcentricSpheres) {
   std::printf("spheres in each other, absorbing, 1 to 200: worst %.1e\n", worst);
   const auto gas = medium(Curve::constant(0.2), Curve::constant(2), hg(0.5));
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
+  sources.add(SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)});
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 3}, normalized(Vec3{0.1, 0.05, -1}), 0});
   const Repeated whole = over_problems(render_cell(spheres({gas}, 1), sources, rays, 1 << 11), 0);
   for (const uint32_t n : {16u, 64u}) {  // every ray is asked for all of them: no box parts spheres in each other
@@ -171,7 +171,7 @@ TEST(TouchingBodies, SlabOnTheGround) {
       place(*scene, PrimitiveKind::plane, {100, 100}, n);
       check_scene(*scene, "slab on the ground");
       SourceSpecs sources;
-      sources.sun = SunSpec{dir_from_angles(0.5, 0.3), 0, Curve::constant(2)};
+      sources.add(SunSpec{dir_from_angles(0.5, 0.3), 0, Curve::constant(2)});
       const auto r =
           render_cell(scene, sources, {{{0.2, 0.1, 3}, {0.6, 0, -0.8}, 0}, {{0.2, 0.1, 3}, {0, 0, -1}, 0}}, 4);
       const double ground = rho / kPi * 2 * m0 * std::exp(-a / m0);
@@ -196,7 +196,7 @@ TEST(TouchingBodies, GlassOnASheet) {
   };
   const std::vector<Ray> rays = repeated({{0.2, 0.1, 4}, {0, 0, -1}, 0});
   SourceSpecs below;  // bright below the horizon only: what is reflected upwards sees nothing
-  below.sky = SkySpec{Curve::constant(1), {0, 0, 1}, 3, 1, true};
+  below.add(SkySpec{Curve::constant(1), {0, 0, 1}, 3, 1, true});
   const Repeated with = over_problems(render_cell(scene_with_sheet(true), below, rays, 1 << 8), 0),
                  without = over_problems(render_cell(scene_with_sheet(false), below, rays, 1 << 8), 0);
   // Light that is reflected inside the plate leaves it downwards as well: every path passes the sheet once.
@@ -257,7 +257,7 @@ TEST(Earth, LetsLightThroughBesideAMedium) {
   check_scene(*scene, "earth");
   SourceSpecs sources = bright();
   sources.earth = EarthSpec{"leaf", 0.0, {}};
-  sources.sun = SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)};
+  sources.add(SunSpec{dir_from_angles(0.6, 0.3), 0, Curve::constant(3)});
   const auto r = render_cell(scene, sources, {{{0.2, 0.1, 40}, {0, 0, -1}, 0}, {{80, 0.1, 40}, {0, 0, -1}, 0}}, 64);
   for (const double L : r.radiance) EXPECT_GT(L, 0.1);
   scene->materials[1].inside = 0;

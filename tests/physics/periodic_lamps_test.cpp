@@ -21,7 +21,7 @@ Repeated render_mean(const std::shared_ptr<const Scene>& scene, const std::vecto
   job.periodic = cell;
   job.pipeline = pipeline;
   SourceSpecs sources;
-  sources.lamps = lamps;
+  sources.add(lamps);
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<RaySensor>(repeated(ray), one_band(), paths));
   const JobReport report = run_job(scene, sources, sensors, job);

@@ -106,7 +106,7 @@ TEST(Periodic, WhiteCellReturnsWhatItGets) {
   auto scene = spheres(0);
   for (Material& m : scene->materials) m = material(m.id, lambert(1));
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   std::vector<Ray> rays;
   for (int i = 0; i < 8; ++i) rays.push_back({{2.0 + i, 3, 50}, normalized(Vec3{0.1 * i, 0.2, -1}), 0});
   JobOptions options;

@@ -17,8 +17,8 @@ constexpr double kSun = 1500, kSky = 60, kGround = 0.3, kZenith = 35 * kDegree;
 
 SourceSpecs sun_and_sky(double half_angle, bool sky = true) {
   SourceSpecs s;
-  s.sun = SunSpec{{std::sin(kZenith), 0, std::cos(kZenith)}, half_angle, Curve::constant(kSun)};
-  if (sky) s.sky = test::uniform_sky(kSky, false);
+  s.add(SunSpec{{{std::sin(kZenith), 0, std::cos(kZenith)}, half_angle, Curve::constant(kSun)}});
+  if (sky) s.add(test::uniform_sky(kSky, false));
   return s;
 }
 // A wide Lambertian plane at z = 0.
@@ -104,7 +104,7 @@ TEST(Point, LampsObeyTheInverseSquareAndTheCosine) {
   lamp.name = "lamp";
   lamp.positions = {{3, 0, 6}};
   lamp.intensity = Curve::constant(10);
-  sources.lamps = {lamp};
+  sources.add(lamp);
   PlatformKit kit;
   kit.render(scene, sources,
              collectors("  - {quantity: irradiance, position_m: [0, 0, 2], normal: [0, 0, 1]}\n"

@@ -110,8 +110,8 @@ TEST(PrimitiveRadiance, EqualsThatOfItsTessellation) {
     rays.push_back({out * 5.0 + Vec3{0.6 * std::sin(i), 0.6 * std::cos(i), 0}, -out, 0});
   }
   SourceSpecs sources;
-  sources.sun = SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.00465, Curve::constant(2)};
-  sources.sky = uniform_sky(0.2, false);
+  sources.add(SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.00465, Curve::constant(2)});
+  sources.add(uniform_sky(0.2, false));
   const auto a = render(fine, sources, std::make_unique<RaySensor>(rays, one_band(), 2048)).result;
   const auto b = render(exact, sources, std::make_unique<RaySensor>(rays, one_band(), 2048)).result;
   int compared = 0;

@@ -91,7 +91,7 @@ double line_of(const Lines& lines, size_t column, double north) {
 TEST(PushBroom, ParallaxOfTheBandsIsThatOfTheRelief) {
   PlatformKit kit;
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   kit.render(terrain(), sources, broom());
   const SeenByBand of = seen_by_band(kit);
   ASSERT_EQ(of.size(), 9u);

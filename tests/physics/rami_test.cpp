@@ -55,7 +55,7 @@ Views render(const std::shared_ptr<Scene>& scene, double half, const std::string
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(kit.make(text));
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(sun * kDegree, 0), 0, Curve::constant(2)};
+  sources.add(SunSpec{dir_from_angles(sun * kDegree, 0), 0, Curve::constant(2)});
   JobOptions job;
   job.progress = false;
   job.pipeline.max_nodes = 64;

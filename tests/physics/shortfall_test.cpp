@@ -23,7 +23,7 @@ Rendered cavity(double reflectance, int max_nodes, uint32_t paths) {
   lamp.positions = {{0, 0, 0}};
   lamp.intensity = Curve::constant(1);
   SourceSpecs sources;
-  sources.lamps = {lamp};
+  sources.add(lamp);
   PipelineOptions options;
   options.max_nodes = max_nodes;
   return render(scene, sources,
@@ -67,7 +67,7 @@ TEST(Mirrors, ChainsThatCarryMuchDoNotVary) {
   const ModelSpec mirror{"mirror", {}, {{"reflectance", Curve::constant(0.99)}}, {}, nullptr};
   const auto scene = scene_of({quad(50, 0, 0), quad(50, 1, 0)}, {material("mirror", mirror)});
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   PipelineOptions options;
   options.max_nodes = 64;
   for (const double step : {3.0, 6.1, 12.7}) {
@@ -113,7 +113,7 @@ class Failing final : public RaySensor {
 TEST(RejectedSamples, IntervalsCover) {
   constexpr int problems = 4000;
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, true);
+  sources.add(uniform_sky(1, true));
   const auto scene = scene_of({quad(1, 0, 0)}, {material("floor", lambert(0.5))});
   const auto run =
       render(scene, sources,

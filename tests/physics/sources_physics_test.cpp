@@ -126,26 +126,27 @@ TEST(Moon, PublishedReflectance) {
 TEST(Moon, FollowsTheDate) {
   auto scene = scene_of({quad(5, 0, 0)}, {material("m", lambert(0.5))});
   scene->origin = {45, 8, 300, true};
-  SourceSpecs s;
-  s.moon = MoonSpec{};
-  s.moon->disk.time = SourceTime{"2026-03-03T22:00:00Z", {}};  // a night of full moon (eclipse at 11:33 UTC that day)
-  s.moon->disk.disk_by_time = true;
-  const std::vector<std::string> said = resolve_sources(s, *scene);
+  MoonSpec written;
+  written.disk.time = SourceTime{"2026-03-03T22:00:00Z", {}};  // a night of full moon (eclipse at 11:33 UTC that day)
+  written.disk.disk_by_time = true;
+  std::vector<std::string> said;
+  const MoonSpec moon = resolved(written, {*scene, 0, 0, said});
   ASSERT_EQ(said.size(), 1u);
-  EXPECT_LT(s.moon->geometry.phase, 8 * kDegree);
-  EXPECT_GT(s.moon->disk.direction.z, 0);
-  EXPECT_NEAR(s.moon->disk.half_angle, 0.26 * kDegree, 0.025 * kDegree);
-  EXPECT_LT(s.moon->geometry.sun_longitude, 0) << "waning";
-  SourceSpecs sun;
-  sun.sun = SunSpec{};
-  sun.sun->irradiance = solar_irradiance();
-  sun.sun->at_1_au = true;
-  sun.sun->time = SourceTime{"2026-01-04T11:00:00Z", {}};
+  EXPECT_LT(moon.geometry.phase, 8 * kDegree);
+  EXPECT_GT(moon.disk.direction.z, 0);
+  EXPECT_NEAR(moon.disk.half_angle, 0.26 * kDegree, 0.025 * kDegree);
+  EXPECT_LT(moon.geometry.sun_longitude, 0) << "waning";
+  SunSpec dated;
+  dated.irradiance = solar_irradiance();
+  dated.at_1_au = true;
+  dated.time = SourceTime{"2026-01-04T11:00:00Z", {}};
+  SourceSpecs sun, nowhere;
+  sun.add(dated), nowhere.add(dated);
   resolve_sources(sun, *scene);
-  EXPECT_NEAR(sun.sun->irradiance.at(0.55) / solar_irradiance().at(0.55), 1.034, 5e-4) << "at perihelion, 0.9833 AU";
+  EXPECT_NEAR(sun.sun()->disk()->irradiance.at(0.55) / solar_irradiance().at(0.55), 1.034, 5e-4)
+      << "at perihelion, 0.9833 AU";
   scene->origin.given = false;
-  sun.sun->time = SourceTime{"2026-01-04T11:00:00Z", {}};
-  EXPECT_THAT(message_of([&] { resolve_sources(sun, *scene); }), testing::HasSubstr("geodetic origin"));
+  EXPECT_THAT(message_of([&] { resolve_sources(nowhere, *scene); }), testing::HasSubstr("geodetic origin"));
 }
 
 TEST(ThermalSky, LayersOfAir) {

@@ -65,8 +65,7 @@ Seen seen(const World& w) {
     s.rays.push_back({{x + 0.7, 0.8, 5}, {0, 0, -1}, 0});
   }
   s.scene = test::scene_of(std::move(meshes), std::move(materials));
-  s.sources = test::sun_of(w.sun);
-  s.sources.sun->half_angle = 0;
+  s.sources.add(SunSpec{{{0, 0, 1}, 0, w.sun}});
   return s;
 }
 

@@ -58,7 +58,7 @@ struct Picture {
 Picture picture_of(const Ground& ground, const std::string& yaml) {
   PlatformKit kit;
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   kit.render(ground.scene(), sources, yaml);
   Picture p;
   std::map<uint32_t, const test::Shot*> in_order;

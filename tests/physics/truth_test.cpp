@@ -37,7 +37,7 @@ TEST(Penumbra, EdgeBeforeTheSun) {
   // A sun overhead, the edge of a black plate 1 m above the floor, places across the penumbra.
   for (const double half_angle : {0.00465, 0.1}) {
     SourceSpecs s;
-    s.sun = SunSpec{{0, 0, 1}, half_angle, Curve::constant(1000)};
+    s.add(SunSpec{{{0, 0, 1}, half_angle, Curve::constant(1000)}});
     const Mesh plate = mesh_of({{0, -2, 1}, {2, -2, 1}, {2, 2, 1}, {0, 2, 1}}, {0, 1, 2, 0, 2, 3}, 1);
     const auto scene =
         scene_of({quad(2, 0, 0), plate}, {material("floor", lambert(0.5)), material("plate", lambert(0))});
@@ -75,7 +75,7 @@ TEST(TwoPlates, OneBounce) {
   }
   check_scene(*scene, "test scene");
   SourceSpecs s;
-  s.sun = SunSpec{{0, 0, -1}, 0, Curve::constant(E)};
+  s.add(SunSpec{{{0, 0, -1}, 0, Curve::constant(E)}});
   const Vec3 from{0.3, 0.2, 0.25};
   const auto run = render(
       scene, s, std::make_unique<RaySensor>(std::vector<Ray>{{from, normalized(-from), 0}}, one_band(), 1 << 14));

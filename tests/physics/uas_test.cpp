@@ -49,7 +49,7 @@ double edge_variance(const std::vector<double>& picture, int row) {
 TEST(Uas, TheStarePointStaysSharpAndTheRestIsBlurredByItsVelocity) {
   constexpr double integration = 0.05;
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   PlatformKit still, moving;
   still.render(boards(), sources, camera(0));
   moving.render(boards(), sources, camera(integration));

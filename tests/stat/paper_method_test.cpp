@@ -33,19 +33,19 @@ std::shared_ptr<Scene> room() {
                   {material("floor", {"ggx", {{"roughness", 0.4}}, {{"f0", Curve::constant(0.6)}}, {}, nullptr}),
                    material("wall", lambert(0.5)), material("lit", lambert(0.2))});
 }
-SourceSpecs everything() {
+SourceSpecs everything(bool glowing = true) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(0.6, 1), 0.05, Curve::constant(3)};
-  s.sky = uniform_sky(0.2, false);
+  s.add(SunSpec{dir_from_angles(0.6, 1), 0.05, Curve::constant(3)});
+  s.add(uniform_sky(0.2, false));
   LampSpec points;
   points.positions = {{0, 0, 4}, {2, 1, 5}, {-3, 2, 4}, {1, -3, 6}, {-1, 3, 5}, {3, 3, 4}};
   points.intensity = Curve::constant(2);
-  s.lamps.push_back(points);
+  s.add(points);
   LampSpec glow;
   glow.kind = LampSpec::Kind::surface;
   glow.material = "lit";
   glow.radiance = Curve::constant(0.3);
-  s.lamps.push_back(glow);
+  if (glowing) s.add(glow);
   return s;
 }
 
@@ -68,8 +68,7 @@ TEST(PaperMethod, HasTheMeanOfTheDefault) {
 }
 
 TEST(PaperMethod, AsksOneSourceANode) {
-  SourceSpecs sources = everything();
-  sources.lamps.pop_back();
+  const SourceSpecs sources = everything(false);
   const auto scene = scene_of({quad(50, 0, 0)}, {material("floor", lambert(0.5))});
   const auto rays_per_path = [&](Method method) {
     const RunStatistics s = run(scene, sources, method, 64, 64, 1, 1).report.statistics;
@@ -83,7 +82,7 @@ TEST(PaperMethod, AsksOneSourceANode) {
 // the disk that the lobe seldom wants.
 TEST(PaperMethod, SharesNothingWithContinuations) {
   SourceSpecs sources;
-  sources.sun = SunSpec{{0, 0, 1}, 0.1, Curve::constant(3)};
+  sources.add(SunSpec{{{0, 0, 1}, 0.1, Curve::constant(3)}});
   const auto scene =
       scene_of({quad(50, 0, 0)},
                {material("floor", {"ggx", {{"roughness", 0.005}}, {{"f0", Curve::constant(0.6)}}, {}, nullptr})});
@@ -103,7 +102,7 @@ TEST(PaperMethod, SharesNothingWithContinuations) {
 // disk, which hardly vary (under the balance heuristic the relative variance of a path was 7.5e-4).
 TEST(SharedSun, RareContinuationsIntoTheDiskBringLittle) {
   SourceSpecs sources;
-  sources.sun = SunSpec{{0, 0, 1}, 0.01, Curve::constant(3)};
+  sources.add(SunSpec{{{0, 0, 1}, 0.01, Curve::constant(3)}});
   const auto scene =
       scene_of({quad(50, 0, 0)},
                {material("floor", {"ggx", {{"roughness", 0.2}}, {{"f0", Curve::constant(0.6)}}, {}, nullptr})});
@@ -124,7 +123,7 @@ TEST(SharedSun, RareContinuationsIntoTheDiskBringLittle) {
 // variance of the binomial distribution, low-discrepancy ones far less.
 TEST(PaperMethod, DrawsIndependentNumbers) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   const auto scene = scene_of({quad(100, 0, 0), box({-3.5, -90, 0}, {-3.2, 90, 80}, 1, true)},
                               {material("floor", lambert(1)), material("wall", lambert(0))});
   const auto ratio = [&](Method method) {  // observed variance of the problems' errors over the binomial one

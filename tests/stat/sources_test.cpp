@@ -1,22 +1,28 @@
-// Every kind of source of the table: its example is read, its samples follow its density, and what it samples adds up
-// to the irradiance of its radiance. Significance 1e-5 for the family; a density 2 % off must be refused.
+// Every kind of light of the table, and one that a test adds to it: its example is read, its samples follow its
+// density, what it samples adds up to the irradiance of its radiance, and asking for it and meeting it by chance share
+// that irradiance. Significance 1e-5 for the family; a density 2 % off must be refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "formats/picture/picture.h"
 #include "formats/sim_text/sources.h"
-#include "light/source_table.h"
+#include "light/light_rows.h"
 #include "math/sampling.h"
 #include "math/stats.h"
 #include "math/warps.h"
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"
+#include "tests/support/ring_light.h"
 #include "tests/support/temp_folder.h"
 
 namespace suite::test {
 namespace {
+
+// One more row, before anything asks the table.
+const bool kRingAdded = (light_rows().add(ring_row()), true);
 
 // A horizontal glowing triangle 1.5 m over the origin, facing down.
 std::shared_ptr<Scene> lamp_scene() {
@@ -24,9 +30,11 @@ std::shared_ptr<Scene> lamp_scene() {
                   {material("lamp", lambert(0))});
 }
 
+const LightRow& row_of(size_t number) { return *(light_rows().begin() + static_cast<ptrdiff_t>(number)); }
+
 class SourceKinds : public testing::TestWithParam<size_t> {
  protected:
-  const SourceRow& row() const { return source_kinds()[GetParam()]; }
+  const LightRow& row() const { return row_of(GetParam()); }
   // The example's sources, resolved.
   SourceSpecs specs(const Scene& scene) {
     Canvas picture(16, 8);
@@ -115,7 +123,7 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
   for (const double c : {0.45, 0.55, 0.65}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
   const SpectralState state = make_state(bands, 0.01);
   const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source(e, row().key, tracer, state.size());
+  const Asked source(e, row().key(), tracer, state.size());
   const auto first = source.draw({0.5, 0.5, 0.5, 0.5});
   ASSERT_TRUE(first);
   if (first->density == 0) {  // a point or a collimated beam: one direction, nothing to distribute
@@ -149,7 +157,7 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
     const auto d = source.draw(random);
     if (d) observed[cell_of(d->direction)] += 1;
   }
-  const int fine = row().key == "lamps" ? 150 : 100;
+  const int fine = row().key() == "lamps" ? 150 : 100;
   for (int r = 0; r < rings * fine; ++r)
     for (int k = 0; k < sectors * fine; ++k) {
       const double h = drop * (r + 0.5) / (rings * fine), phi = 2 * kPi * (k + 0.5) / (sectors * fine), z = 1 - h,
@@ -167,6 +175,102 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
   EXPECT_LT(chi_square_test(observed, wrong, 20), 1e-6);
 }
 
+TEST_P(SourceKinds, MembersIncludeTheirProbability) {
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Light& light = Asked(e, row().key(), tracer, state.size()).light();
+  if (light.nature().wide) {
+    EXPECT_EQ(light.members(), 0u);
+    return;
+  }
+  ASSERT_EQ(light.members(), 1u);
+  // The same place on the only member there is, chosen always and every fourth time.
+  const LightReceiver at{{0, 0, 0}, {}, true};
+  const auto whole = light.nature().numbers == 2 ? light.sample(at, {0.3, 0.6}, 0) : light.sample(at, {0, 0.3, 0.6}, 0);
+  const auto part = light.sample_member(0, 0.25, at, {0, 0.3, 0.6}, 0);
+  ASSERT_TRUE(whole && part);
+  EXPECT_EQ(part->direction, whole->direction);
+  EXPECT_EQ(part->spectrum, whole->spectrum);
+  EXPECT_EQ(part->density, 0.25 * whole->density);
+  EXPECT_EQ(part->scale, whole->density > 0 ? whole->scale : 4 * whole->scale);
+}
+
+TEST_P(SourceKinds, TimeIsThatOfTheRay) {
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Light& light = Asked(e, row().key(), tracer, state.size()).light();
+  ASSERT_FALSE(light.nature().moves);  // what moves: riding_lamp_test
+  const LightReceiver at{{0, 0, 0}, {}, true};
+  const auto now = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 0), later = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 1e4);
+  ASSERT_TRUE(now && later);
+  EXPECT_EQ(now->direction, later->direction);
+  EXPECT_EQ(now->scale, later->scale);
+}
+
+// Sums of estimates of an irradiance.
+struct Mean {
+  double sum = 0, square = 0;
+  int n = 0;
+  void add(double x) { sum += x, square += x * x, ++n; }
+  double mean() const { return sum / n; }
+  double variance() const { return (square / n - mean() * mean()) / n; }
+};
+double p_of(const Mean& a, const Mean& b) {
+  return normal_two_sided((a.mean() - b.mean()) / std::sqrt(a.variance() + b.variance()));
+}
+
+TEST_P(SourceKinds, AskingAndMeetingByChanceAreComplements) {
+  const auto scene = lamp_scene();
+  const SourceSpecs s = specs(*scene);
+  const Tracer tracer(scene);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
+  const Environment e = bake_environment(s, tracer, false, state);
+  const Asked source(e, row().key(), tracer, state.size());
+  Pcg32 random(23);
+  if (source.light().nature().delta) {
+    for (int i = 0; i < 1000; ++i) {
+      const Dir d = uniform_sphere({random.uniform(), random.uniform()});
+      EXPECT_FALSE(source.met(d));
+    }
+    EXPECT_FALSE(source.met(source.draw(random)->direction)) << "not even where it is";
+    return;
+  }
+  // By chance: evenly over a cone that holds the light.
+  Vec3 sum;
+  std::vector<Dir> pilot;
+  for (int i = 0; i < 2000; ++i) pilot.push_back(source.draw(random)->direction), sum += pilot.back();
+  const Frame frame = Frame::around(normalized(sum));
+  double farthest = 0;
+  for (const Dir& d : pilot) farthest = std::max(farthest, angle_between(d, frame.z));
+  const double drop = one_minus_cos(std::min(kPi, 1.2 * farthest)), chance = 1 / (2 * kPi * drop);
+  // Radiance times cosine over the density: one of the two alone, and both with the balance heuristic. off: of the
+  // density that chance is told, for the control.
+  const auto flux = [](Dir d, float radiance) { return static_cast<double>(radiance) * std::max(0.0, d.z); };
+  Mean asked, met, both, wrong;
+  for (int i = 0; i < 300000; ++i) {
+    const auto drawn = source.draw(random);
+    ASSERT_TRUE(drawn);
+    const double f = flux(drawn->direction, drawn->radiance[0]);
+    const bool inside = 0.5 * dot(drawn->direction - frame.z, drawn->direction - frame.z) < drop;
+    asked.add(f / drawn->density);
+    const Dir d = frame.to_world(uniform_cone({random.uniform(), random.uniform()}, drop));
+    const double g = flux(d, source.radiance(d)[0]), density = source.density(d);
+    met.add(g / chance);
+    const double by_asking = f / (drawn->density + (inside ? chance : 0));
+    both.add(by_asking + g / (density + chance));
+    wrong.add(by_asking + g / (1.15 * density + chance));
+  }
+  EXPECT_GT(p_of(both, asked), 1e-4);
+  EXPECT_GT(p_of(both, met), 1e-4);
+  EXPECT_LT(std::min(p_of(wrong, asked), p_of(wrong, met)), 1e-6) << "a density 15 % off must be noticed";
+}
+
 class DistantKinds : public SourceKinds {};  // lamps are held to form factors in lamps_test
 TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
   // Irradiance of a horizontal plane: mean of radiance x cosine / density of the samples, against midpoint quadrature
@@ -177,7 +281,7 @@ TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
   const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.01), Band::rectangular("b", 0.65, 0.01)};
   const SpectralState state = make_state(bands, 0.01);
   const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source(e, row().key, tracer, state.size());
+  const Asked source(e, row().key(), tracer, state.size());
   std::vector<double> by_samples(state.size(), 0.0), by_quadrature(state.size(), 0.0), square(state.size(), 0.0);
   Pcg32 random(4);
   const int n = 200000;
@@ -214,28 +318,29 @@ TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
 }
 
 std::string name_of(const testing::TestParamInfo<size_t>& one) {
-  const SourceRow& row = source_kinds()[one.param];
-  return row.key + (row.kind.empty() ? "" : "_" + row.kind);
+  std::string name = row_of(one.param).name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
 }
 std::vector<size_t> distant() {
   std::vector<size_t> rows;
-  for (size_t i = 0; i < source_kinds().size(); ++i)
-    if (source_kinds()[i].key != "lamps") rows.push_back(i);
+  for (size_t i = 0; i < light_rows().size(); ++i)
+    if (row_of(i).key() != "lamps") rows.push_back(i);
   return rows;
 }
-INSTANTIATE_TEST_SUITE_P(Table, SourceKinds, testing::Range(size_t{0}, source_kinds().size()), name_of);
+INSTANTIATE_TEST_SUITE_P(Table, SourceKinds, testing::Range(size_t{0}, light_rows().size()), name_of);
 INSTANTIATE_TEST_SUITE_P(Table, DistantKinds, testing::ValuesIn(distant()), name_of);
 
-TEST(Sources, ReaderKnowsTheKindsOfTheTable) {
-  for (const SourceRow& row : source_kinds()) {
-    if (row.kind.empty()) continue;
-    const std::string text = row.key == "lamps" ? "lamps: [{kind: none}]\n" : row.key + ": {kind: none}\n";
+TEST(Sources, AnUnknownKindIsAnsweredWithThoseOfTheTable) {
+  for (const LightRow& row : light_rows()) {
+    if (row.kind().empty()) continue;
+    const std::string text = row.key() + (row.list ? ": [{kind: none}]\n" : ": {kind: none}\n");
     EXPECT_THAT(message_of([&] {
                   std::vector<AskedCurve> asked;
                   read_sources(Params::parse_text(text, "x.yaml"), asked);
                 }),
-                testing::HasSubstr(row.kind))
-        << row.key;
+                testing::HasSubstr(row.kind()))
+        << row.name;
   }
 }
 
@@ -250,7 +355,7 @@ TEST(Sky, ShapesThatDifferByWavelengthStayUnbiased) {
     for (size_t r = 0; r < sky.zeniths; ++r)
       for (size_t c = 0; c < sky.azimuths; ++c) sky.table.push_back((c < 4 || c >= 12) == (side == 0) ? 1 : 0);
   SourceSpecs sources;
-  sources.sky = sky;
+  sources.add(sky);
   const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.002), Band::rectangular("b", 0.65, 0.002)};
   const auto run =
       render(scene_of({quad(5, 0, 0)}, {material("m", lambert(0.5))}), sources,

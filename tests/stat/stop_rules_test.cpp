@@ -18,7 +18,7 @@ struct Bias {
 Bias bias_of(const Place& place, Convergence goal, bool neighbours, StopRule rule, uint64_t seed,
              const Budget& budget = {}) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(10, true);
+  sources.add(uniform_sky(10, true));
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(
       std::make_unique<AreaSensor>(place.holes ? -5 : 5, Dir{0, 0, place.holes ? 1.0 : -1.0}, kEdge, goal, neighbours));
@@ -84,8 +84,8 @@ TEST(StopRules, ThePapersRuleIsBiasedLow) {
 StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint32_t n, uint64_t seed,
                     double inflate = 1) {
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)};
-  sources.sky = uniform_sky(10, false);
+  sources.add(SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)});
+  sources.add(uniform_sky(10, false));
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<AreaSensor>(20, Dir{0, 0, -1}, kEdge, Convergence{n, n, 0, 0}, true));
   JobOptions job;

@@ -18,13 +18,13 @@ constexpr uint32_t kPaths = 64;
 
 SourceSpecs sun_and_sky(double half_angle) {
   SourceSpecs s;
-  s.sun = SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)};
-  s.sky = uniform_sky(10, false);
+  s.add(SunSpec{dir_from_angles(0.7, 1), half_angle, Curve::constant(50)});
+  s.add(uniform_sky(10, false));
   return s;
 }
 SourceSpecs full_sky() {
   SourceSpecs s;
-  s.sky = uniform_sky(10, true);
+  s.add(uniform_sky(10, true));
   return s;
 }
 

@@ -24,8 +24,7 @@ class BinSensor : public RaySensor {
 
 inline SourceSpecs sun_of(const Curve& irradiance) {
   SourceSpecs s;
-  s.sun.emplace();
-  s.sun->irradiance = irradiance;
+  s.add(SunSpec{{{0, 0, 1}, 0.00465, irradiance}});
   return s;
 }
 

@@ -12,7 +12,7 @@ namespace {
 TEST(Features, ALambertianSceneAtRestLeavesTheRestAlone) {
   const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
   SourceSpecs sources;
-  sources.sky = test::uniform_sky(1, false);
+  sources.add(test::uniform_sky(1, false));
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>(1), test::one_band(), 4));
   const std::vector<FeatureUse> uses = features_of(*scene, sources, sensors);
@@ -26,8 +26,8 @@ TEST(Features, WhatIsThereIsNamed) {
   scene->materials[0].temperature_k = 300;
   scene->media.emplace_back();
   SourceSpecs sources;
-  sources.moon.emplace();
-  sources.lamps.resize(3);
+  sources.add(MoonSpec{});
+  sources.add(std::vector<LampSpec>(3));
   const std::vector<FeatureUse> uses = features_of(*scene, sources, {});
   auto used = [&](const std::string& name) {
     for (const FeatureUse& f : uses)

@@ -19,7 +19,7 @@ std::shared_ptr<Scene> corner() {
 }
 SourceSpecs sky() {
   SourceSpecs s;
-  s.sky = test::uniform_sky(1, false);
+  s.add(test::uniform_sky(1, false));
   return s;
 }
 

@@ -62,8 +62,8 @@ std::shared_ptr<const Scene> covered() {
 std::vector<CaptureResult> run(StateStore* store, const Budget& budget, uint32_t paths, double target,
                                bool lacks = false) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
-  sources.sun = SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)};
+  sources.add(uniform_sky(1, false));
+  sources.add(SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)});
   JobOptions options;
   options.progress = false;
   options.budget = budget;

@@ -10,6 +10,7 @@
 #include "formats/sqt/sqt.h"
 #include "formats/sqt/sqt_write.h"
 #include "support/message_of.h"
+#include "support/radiometry_kit.h"
 #include "support/sqt_examples.h"
 #include "support/temp_folder.h"
 
@@ -22,6 +23,12 @@ SourceSpecs read(const std::string& text, const std::string& file = "x.yaml") {
   SourceSpecs s = read_sources(root, asked);
   root.reject_unread();
   return s;
+}
+
+// The first of them, for one bin at 0.55 um.
+std::shared_ptr<const Light> baked(const SourceSpecs& s) {
+  const Tracer tracer(test::scene_of({test::quad(1, 0, 0)}, {test::material("m", test::lambert(0))}));
+  return s.lights.at(0)->bake(tracer, make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.01)}, 1));
 }
 
 struct BadCase {
@@ -83,10 +90,10 @@ TEST(SimSources, PanoramaLooksTheWayThePictureDoes) {
   canvas.fill(4, 1, 1, 1, kWhite);
   write_png(folder / "sky.png", canvas, "test");
   const SourceSpecs s = read("sky: {kind: image, file: sky.png, wavelength_um: [0.45, 0.55, 0.65]}", folder / "x.yaml");
-  const Sky sky(*s.sky, make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.01)}, 1));
+  const auto sky = baked(s);
   auto at = [&](double zenith_deg, double compass_deg) {
     std::vector<float> L(1, 0.0f);
-    sky.add(dir_from_angles(zenith_deg * kDegree, azimuth_from_compass_deg(compass_deg)), 1, L);
+    sky->add(dir_from_angles(zenith_deg * kDegree, azimuth_from_compass_deg(compass_deg)), 1, L);
     return L[0];
   };
   EXPECT_EQ(at(67, 202), 255);  // row 1 of 4: 45 to 90 degrees; column 4 of 8: 180 to 225 degrees
@@ -106,10 +113,15 @@ TEST(SimSources, DistributionFromAnSqt) {
   write_file(folder / "lamp.sqt", bytes);
   const SourceSpecs s = read(
       "lamps: [{kind: point, position_m: [0, 0, 3], intensity: 2, distribution: {sqt: lamp.sqt}}]", folder / "x.yaml");
-  ASSERT_TRUE(s.lamps.at(0).table && s.lamps.at(0).table->sqt);
-  for (const double polar : {0.1, 0.8, 1.4, 2.2})
-    EXPECT_NEAR(s.lamps[0].table->sqt->value({0, 0, 1}, dir_from_angles(polar, 1), 0), 1 + std::cos(polar), 0.05)
-        << polar;
+  // Places one metre from the lamp, whose axis points down.
+  const auto lamp = baked(s);
+  for (const double polar : {0.1, 0.8, 1.4, 2.2}) {
+    const LightReceiver at{Vec3{0, 0, 3} + dir_from_angles(kPi - polar, 1), {}, true};
+    const auto sample = lamp->sample(at, {}, 0);
+    ASSERT_TRUE(sample) << polar;
+    EXPECT_NEAR(sample->scale, 1 + std::cos(polar), 0.05) << polar;
+    EXPECT_EQ(sample->spectrum[0], 2);
+  }
   const test::Analytic brdf([](Dir, Dir) { return 0.3; });
   write_file(folder / "brdf.sqt", pack_sqt(test::small_fit(brdf), {"test", "test", "flat", "", "bsdf"}, {}));
   EXPECT_THAT(message_of([&] {

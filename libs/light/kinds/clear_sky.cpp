@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/environment.h"
+#include "light/kinds/rows.h"
+#include "light/kinds/sun.h"
+
 namespace suite {
 
 namespace {
@@ -211,6 +215,72 @@ ClearSky clear_sky(const ClearSkySpec& spec, Dir sun, const Curve& top) {
   for (double& v : sky.table) v /= integral;
   sky.radiance = result.diffuse;
   return result;
+}
+
+namespace {
+
+class ClearSkyLight final : public LightSpec {
+ public:
+  explicit ClearSkyLight(ClearSkySpec spec) : spec_(std::move(spec)) {}
+  std::string key() const override { return "sky"; }
+  std::string needs_sun_up() const override { return "a clear sky"; }
+
+  void check_beside(const SourceSpecs& all) const override {
+    if (!all.sun()) throw Error(spec_.where, "a clear sky needs a sun", "give `sun`");
+    if (all.atmosphere)
+      throw Error(all.atmosphere->where, "a clear sky stands for the atmosphere as well", "drop one of the two");
+    for (const LightSpecPtr& light : all.lights)
+      if (light.get() != this && light->key() == key())
+        throw Error(spec_.where, "a clear sky stands beside another sky", "drop one of the two");
+  }
+
+  void settle(SourceSpecs& all, size_t own, std::vector<std::string>& said) const override {
+    check_beside(all);
+    const FarDisk above = *all.sun()->disk();
+    ClearSky clear = clear_sky(spec_, normalized(above.direction), above.irradiance);
+    said.push_back(strf("clear sky: direct %.1f W/m2 facing the sun, diffuse %.1f W/m2 on the horizontal (0.3 to 4 um)",
+                        clear.direct.integral(0.3, 4), clear.diffuse.integral(0.3, 4)));
+    for (LightSpecPtr& light : all.lights)
+      if (light->is_sun()) light = make_light(SunSpec{{above.direction, above.half_angle, std::move(clear.direct)}});
+    all.lights[own] = make_light(std::move(clear.sky));
+  }
+
+  // Before it is settled nothing is known of its spectrum.
+  bool shines(double, double) const override { return true; }
+  void add_spectra(std::vector<LightSpectra>&) const override { unsettled(); }
+  bool in_scene() const override { return false; }
+  std::vector<std::string> hardly_met(double) const override { return {}; }
+  std::shared_ptr<const Light> bake(const Tracer&, const SpectralState&) const override { unsettled(); }
+
+ private:
+  [[noreturn]] static void unsettled() { throw Bug("a clear sky has not been resolved"); }
+  const ClearSkySpec spec_;
+};
+
+LightSpecPtr read_clear(const Params& p, const LightContext&) {
+  ClearSkySpec c;
+  c.pressure = p.number_in("pressure_pa", 1000, 120000, "Pa", c.pressure);
+  c.water_cm = p.number_in("water_cm", 0, 10, "cm", c.water_cm);
+  c.ozone_cm = p.number_in("ozone_cm", 0, 1, "atm-cm", c.ozone_cm);
+  c.aerosol_depth_500 = p.number_in("aerosol_depth_500", 0, 2, "", c.aerosol_depth_500);
+  c.angstrom = p.number_in("angstrom", -1, 4, "", c.angstrom);
+  c.albedo_400 = p.number_in("albedo_400", 0, 1, "", c.albedo_400);
+  c.asymmetry = p.number_in("asymmetry", 0, 0.95, "", c.asymmetry);
+  c.ground_albedo = p.number_in("ground_albedo", 0, 1, "", c.ground_albedo);
+  c.where = p.where();
+  return make_light(std::move(c));
+}
+
+}  // namespace
+
+LightSpecPtr make_light(ClearSkySpec spec) { return std::make_shared<const ClearSkyLight>(std::move(spec)); }
+
+LightRow sky_clear_row() {
+  return {{"sky clear", "analytic clear sky: Bird & Riordan 1984 irradiances after Perez 1993; needs a sun", "",
+           read_clear},
+          false,
+          {},
+          "sun: {direction: {zenith_deg: 50, azimuth_deg: 180}, collimated: true}\nsky: {kind: clear, water_cm: 2}\n"};
 }
 
 }  // namespace suite

@@ -21,7 +21,10 @@ struct ClearSkySpec {
   double albedo_400 = 0.945;         // single-scattering albedo of the aerosol at 0.4 um
   double asymmetry = 0.65;           // of the aerosol
   double ground_albedo = 0.2;
+  Where where = {};  // in the text
 };
+// Settles into a sky, and the sun above the air into the one at the ground.
+LightSpecPtr make_light(ClearSkySpec spec);
 
 struct ClearSky {
   Curve direct;   // W/(m2 um) on a plane facing the Sun, at the ground

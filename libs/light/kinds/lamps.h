@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "light/light.h"
+#include "light/light_spec.h"
 #include "light/light_tree.h"
-#include "scene/scene.h"
-#include "spectral/state.h"
 #include "sqt/bundle.h"
 #include "trace/tracer.h"
 
@@ -46,6 +44,10 @@ struct LampSpec {
   Curve radiance;           // W/(m2 sr um)
   bool both_sides = false;  // else the front only
 };
+
+// All lamps of an environment become one light.
+LightSpecPtr make_light(LampSpec lamp);
+LightSpecPtr make_light(std::vector<LampSpec> lamps);
 
 // The lamps of a scene baked for a state: one light, of which every lamp in the tree is a member.
 class Lamps final : public Light {

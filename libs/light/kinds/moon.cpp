@@ -2,7 +2,9 @@
 
 #include <cmath>
 
-#include "math/vec.h"
+#include "light/kinds/body.h"
+#include "light/kinds/rows.h"
+#include "light/kinds/solar_spectrum.h"
 
 namespace suite {
 
@@ -78,6 +80,89 @@ Curve moon_irradiance(const MoonGeometry& g, const Curve& sun) {
   for (size_t i = 0; i < sun.wavelength_um().size(); ++i)
     y.push_back(scale * sun.value()[i] * reflectance.at(sun.wavelength_um()[i]));
   return Curve(sun.wavelength_um(), std::move(y), sun.outside());
+}
+
+namespace {
+
+class MoonLight final : public BodySpec {
+ public:
+  explicit MoonLight(MoonSpec spec) : BodySpec(spec.disk), spec_(std::move(spec)) {}
+  std::string key() const override { return "moon"; }
+
+  LightSpecPtr resolved(const LightMoment& at) const override {
+    return spec_.disk.time || spec_.by_phase ? make_light(suite::resolved(spec_, at)) : nullptr;
+  }
+
+  LightSpecPtr standing(double zenith) const override {
+    if (!spec_.disk.time) return nullptr;
+    MoonSpec still = spec_;
+    still.disk.time.reset();
+    still.disk.direction = Dir{0, 0, 1};
+    still.geometry.phase = still.geometry.sun_longitude = 1.5 * zenith;
+    return make_light(std::move(still));
+  }
+
+ private:
+  const MoonSpec spec_;
+};
+
+LightSpecPtr read_moon(const Params& p, const LightContext& context) {
+  MoonSpec moon;
+  read_disk(p, 0.25896, moon.disk);  // at 384 400 km
+  if (const auto irradiance = p.find("irradiance")) {
+    moon.disk.irradiance = context.positive(*irradiance, "irradiance", "W/(m2 um)");
+    moon.by_phase = false;
+  }
+  const auto phase = p.find("phase_deg");
+  if (phase && (!moon.by_phase || moon.disk.time))
+    throw phase->error("a moon by date, or with its own irradiance, has its phase already", "drop one of the two");
+  if (moon.by_phase && !moon.disk.time) {
+    if (!phase)
+      throw p.error("the moon's light is not given", "give phase_deg, irradiance, or a direction by time_utc");
+    moon.geometry.phase = phase->as_number_in(0, 180, "degrees") * kDegree;
+    moon.geometry.sun_longitude = moon.geometry.phase;
+  }
+  return make_light(std::move(moon));
+}
+
+}  // namespace
+
+MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
+  MoonGeometry& g = moon.geometry;
+  if (moon.disk.time) {
+    const SourceTime& time = *moon.disk.time;
+    const SceneFrame frame = frame_of(at.scene, time.where, "a moon by date");
+    const Instant instant = instant_of(time) + at.seconds;
+    const SkyBody body = moon_at(frame, {}, instant, at.dut1), sun = sun_at(frame, {}, instant, at.dut1);
+    moon.disk.direction = body.direction;
+    if (moon.disk.disk_by_time) moon.disk.half_angle = body.angular_radius;
+    // Sun, Moon and observer in one triangle: phase and the Moon's distance from the Sun.
+    const Vec3 to_sun = sun.direction * sun.distance - body.direction * body.distance;
+    g.phase = angle_between(normalized(to_sun), -body.direction);
+    g.sun_distance_au = length(to_sun) / kAstronomicalUnit;
+    g.observer_distance = body.distance;
+    // Waxing: the Sun stands west of the Moon as the hour circle turns. The fit's longitude of the Sun is the signed
+    // phase.
+    const double later = moon_phase_angle(instant + 3600), now = moon_phase_angle(instant);
+    g.sun_longitude = later < now ? g.phase : -g.phase;
+    at.said.push_back(sentence("moon", time, at.seconds, body,
+                               strf("phase angle %.2f degrees, %.0f km", g.phase / kDegree, body.distance * 1e-3)));
+    moon.disk.time.reset();
+  }
+  if (moon.by_phase) {
+    moon.disk.irradiance = moon_irradiance(g, solar_irradiance());
+    moon.by_phase = false;
+  }
+  return moon;
+}
+
+LightSpecPtr make_light(MoonSpec spec) { return std::make_shared<const MoonLight>(std::move(spec)); }
+
+LightRow moon_row() {
+  return {{"moon", "a far disk with the ROLO irradiance of its phase (Kieffer & Stone 2005)", "W/(m2 um)", read_moon},
+          false,
+          "A sample of the Moon at every node, with a visibility ray.",
+          "moon: {direction: {zenith_deg: 60, azimuth_deg: 250}, phase_deg: 30, half_angle_deg: 2}\n"};
 }
 
 }  // namespace suite

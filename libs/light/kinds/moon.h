@@ -25,6 +25,10 @@ struct MoonSpec {
   MoonGeometry geometry;  // filled from the date when disk.time is given
 };
 
+LightSpecPtr make_light(MoonSpec spec);
+// What a moment makes of it: place, size and phase by date, irradiance by phase. Error: a date without an origin.
+MoonSpec resolved(MoonSpec moon, const LightMoment& at);
+
 // Disk reflectance over wavelength. Error: angles that are not finite, phase outside 0..pi.
 Curve moon_reflectance(const MoonGeometry& geometry);
 

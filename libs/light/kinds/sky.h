@@ -6,8 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "light/light.h"
-#include "spectral/state.h"
+#include "light/light_spec.h"
 
 namespace suite {
 
@@ -35,6 +34,8 @@ struct SkySpec {
   // more).
   std::vector<ThermalLayer> layers = {};
 };
+
+LightSpecPtr make_light(SkySpec spec);
 
 // A sky baked for a state. A uniform sky is met by chance only; others are also drawn, from one density for all
 // wavelengths: the mean over the bins of what each of them would draw from. No bin's weight therefore exceeds the

@@ -1,10 +1,69 @@
 #include "light/kinds/sun.h"
 
+#include "light/kinds/body.h"
+#include "light/kinds/rows.h"
+#include "light/kinds/solar_spectrum.h"
 #include "math/warps.h"
 
 namespace suite {
 
-Sun::Sun(const SunSpec& spec, const SpectralState& state)
+namespace {
+
+class SunLight final : public BodySpec {
+ public:
+  explicit SunLight(SunSpec spec) : BodySpec(std::move(spec)) {}
+  std::string key() const override { return "sun"; }
+  bool is_sun() const override { return true; }
+
+  LightSpecPtr resolved(const LightMoment& at) const override {
+    if (!disk_.time) return nullptr;
+    const SourceTime& time = *disk_.time;
+    const SkyBody body =
+        sun_at(frame_of(at.scene, time.where, "a sun by date"), {}, instant_of(time) + at.seconds, at.dut1);
+    SunSpec now = disk_;
+    now.time.reset();
+    now.direction = body.direction;
+    if (now.disk_by_time) now.half_angle = body.angular_radius;
+    const double au = body.distance / kAstronomicalUnit;
+    if (now.at_1_au) now.irradiance = now.irradiance.scaled(1 / (au * au));
+    at.said.push_back(sentence(key(), time, at.seconds, body, strf("%.5f AU", au)));
+    return make_light(std::move(now));
+  }
+
+  LightSpecPtr standing(double zenith) const override {
+    if (!disk_.time) return nullptr;
+    SunSpec still = disk_;
+    still.time.reset();
+    still.direction = dir_from_angles(zenith, 0);
+    return make_light(std::move(still));
+  }
+};
+
+LightSpecPtr read_sun(const Params& p, const LightContext& context) {
+  SunSpec sun;
+  const auto irradiance = p.find("irradiance");
+  if (!irradiance || (irradiance->kind() == Params::Kind::scalar && irradiance->as_text() == "tsis")) {
+    sun.irradiance = solar_irradiance();
+    sun.at_1_au = true;
+  } else {
+    sun.irradiance = context.positive(*irradiance, "irradiance", "W/(m2 um)");
+  }
+  read_disk(p, 0.26655, sun);  // at 1 AU: asin(6.957e8 m / 1.495978707e11 m)
+  return make_light(std::move(sun));
+}
+
+}  // namespace
+
+LightSpecPtr make_light(SunSpec spec) { return std::make_shared<const SunLight>(std::move(spec)); }
+
+LightRow sun_row() {
+  return {{"sun", "a far disk, or collimated; TSIS-1 spectrum unless one is given", "W/(m2 um)", read_sun},
+          false,
+          "A sample of the Sun at every node, with a visibility ray.",
+          "sun: {direction: {zenith_deg: 40, azimuth_deg: 130}, half_angle_deg: 3}\n"};
+}
+
+Sun::Sun(const FarDisk& spec, const SpectralState& state)
     : frame_(Frame::around(normalized(spec.direction))),
       spectrum_(state.sample(spec.irradiance)),
       irradiance_(spectrum_) {

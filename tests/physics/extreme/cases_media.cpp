@@ -23,7 +23,7 @@ double seen(const std::shared_ptr<const Scene>& scene, const SourceSpecs& source
 }
 SourceSpecs field(double radiance, bool full) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(radiance, full);
+  sources.add(uniform_sky(radiance, full));
   return sources;
 }
 const Ray kDown{{0.1, 0.2, 3}, {0, 0, -1}, 0};

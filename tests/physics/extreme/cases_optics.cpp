@@ -85,7 +85,7 @@ double furnace(const ModelRow& row, double zenith) {
   for (const ModelSpec& spec : test::examples_of(row)) {
     const auto scene = scene_of({quad(1, 0, 0)}, {material("m", spec)});
     SourceSpecs sources;
-    sources.sky = uniform_sky(2, true);
+    sources.add(uniform_sky(2, true));
     const Dir out = dir_from_angles(zenith, 0.7);
     const auto run =
         render(scene, sources,

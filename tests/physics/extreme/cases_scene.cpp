@@ -110,7 +110,7 @@ double floor_with(const std::vector<Vec3>& extra_vertices, const std::vector<uin
   for (const Vec3& p : extra_vertices) v.push_back(p);
   for (const uint32_t i : extra) f.push_back(i);
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(0.5, 2), 0, Curve::constant(1000)};
+  sources.add(SunSpec{dir_from_angles(0.5, 2), 0, Curve::constant(1000)});
   const Dir out = dir_from_angles(0.3, 1);
   const auto run = render(scene_of({mesh_of(v, f, 0)}, {material("m", lambert(0.4))}), sources,
                           std::make_unique<RaySensor>(std::vector<Ray>{{Vec3{0.1, 0.3, 0} + out * 9.0, -out, 0},
@@ -124,7 +124,7 @@ double floor_with(const std::vector<Vec3>& extra_vertices, const std::vector<uin
 
 double plane_under_disk(double half_angle, double zenith) {
   SourceSpecs sources;
-  sources.sun = SunSpec{dir_from_angles(zenith, 2), half_angle, Curve::constant(1361)};
+  sources.add(SunSpec{dir_from_angles(zenith, 2), half_angle, Curve::constant(1361)});
   const Dir out = dir_from_angles(0.3, 1);
   const auto run = render(scene_of({quad(5, 0, 0)}, {material("m", lambert(0.37))}), sources,
                           std::make_unique<RaySensor>(std::vector<Ray>{{out * 9.0, -out, 0}}, one_band(), 4096));
