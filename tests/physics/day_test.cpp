@@ -155,11 +155,11 @@ TEST(Day, MomentsOfOneSecondShareTheirLights) {
   resolve_sources(still, *at);
   EXPECT_EQ(SourcesInTime(still, *at).on_grid(1234.56), 0);
   // What the grid costs, as moments.h says.
-  const Dir exact = in_time.at(0.4999).sun->direction;
-  const double apart = angle_between(exact, Dir(in_time.at(in_time.on_grid(0.4999)).sun->direction));
+  const Dir exact = in_time.at(0.4999).sun()->disk()->direction;
+  const double apart = angle_between(exact, Dir(in_time.at(in_time.on_grid(0.4999)).sun()->disk()->direction));
   EXPECT_LT(apart, 7.6 / 3600 * kDegree);
   EXPECT_GT(apart, 4 / 3600.0 * kDegree) << "nothing was tested";
-  EXPECT_LT(apart, 0.0081 * in_time.at(0).sun->half_angle);
+  EXPECT_LT(apart, 0.0081 * in_time.at(0).sun()->disk()->half_angle);
 }
 
 TEST(Day, KitsGoWithTheirLastCapture) {
