@@ -22,7 +22,6 @@
 #include "optics/models.h"
 #include "output.h"
 #include "preview.h"
-#include "transport/truth/truth.h"
 #include "scene/combine.h"
 #include "scheduler/bins.h"
 #include "scheduler/features.h"
@@ -30,6 +29,7 @@
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
+#include "transport/truth/truth.h"
 
 namespace suite {
 
@@ -236,6 +236,17 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   }
 }
 
+JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
+  JobOptions options;
+  options.pipeline = sim.pipeline;
+  options.periodic = sim.periodic;
+  options.budget = budget_of(o);
+  options.kit_bytes = kit_bytes_of(o);
+  options.pipeline.stop = stop_rule_of(o);
+  options.pipeline.method = method_of(o);
+  return options;
+}
+
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o) {
@@ -260,13 +271,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
-  JobOptions options;
-  options.pipeline = sim.pipeline;
-  options.periodic = sim.periodic;
-  options.budget = budget_of(o);
-  options.kit_bytes = kit_bytes_of(o);
-  options.pipeline.stop = stop_rule_of(o);
-  options.pipeline.method = method_of(o);
+  JobOptions options = job_options(sim, o);
   if (o.dry_run) return dry_run(sim, options);
   check_memory(sim, options);
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "transport/pipeline.h"
 #include "scheduler/moments.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <memory>
 
-#include "transport/pipeline.h"
 #include "scheduler/kit_cache.h"
 #include "scheduler/moments.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

@@ -5,9 +5,9 @@
 
 #include "estimate/budget.h"
 #include "estimate/tails.h"
-#include "transport/truth/truth.h"
 #include "scheduler/scheduler.h"
 #include "scheduler/shortfall.h"
+#include "transport/truth/truth.h"
 
 namespace suite {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "estimate/budget.h"
-#include "transport/pipeline.h"
 #include "scheduler/doubts.h"
 #include "scheduler/kits.h"
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
 #include "sensor/quality.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "math/stats.h"
-#include "transport/pipeline.h"
 #include "sensor/quality.h"
+#include "transport/pipeline.h"
 
 namespace suite {
 

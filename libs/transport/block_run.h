@@ -14,8 +14,8 @@ inline constexpr uint32_t kTogether = 8, kWaveWidth = 64;
 class BlockRun {
  public:
   BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id,
-           const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots,
-           RunStatistics& statistics, Pipeline::Workspace& workspace);
+           const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics,
+           Pipeline::Workspace& workspace);
   // Every problem takes its samples in order; a few of one problem run together, those of the next beside them.
   void run();
 

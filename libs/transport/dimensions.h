@@ -1,5 +1,5 @@
-// Which numbers of a sample stream (math/sampling.h) a path uses for what: one table, so that no two decisions of a path
-// ever share a number.
+// Which numbers of a sample stream (math/sampling.h) a path uses for what: one table, so that no two decisions of a
+// path ever share a number.
 //
 // Stratified blocks of four numbers are spent on the first nodes of a path; later nodes, and choices that must not take
 // stratification away from others (roulette, the knot), use hashed numbers.
@@ -16,16 +16,16 @@ struct Blocks {
   uint32_t first, count;
   constexpr uint32_t end() const { return first + count; }
 };
-inline constexpr uint32_t kNodes = 64;       // nodes of a path with stratified numbers
-inline constexpr uint32_t kFlights = 16;     // flights through media with such
-inline constexpr uint32_t kOwnLights = 8;    // lights with blocks of their own
-inline constexpr uint32_t kPerFlight = 5;    // a flight's own block, two of its scattering, two of lights
-inline constexpr Blocks kSensor{0, 1};       // the ray
+inline constexpr uint32_t kNodes = 64;         // nodes of a path with stratified numbers
+inline constexpr uint32_t kFlights = 16;       // flights through media with such
+inline constexpr uint32_t kOwnLights = 8;      // lights with blocks of their own
+inline constexpr uint32_t kPerFlight = 5;      // a flight's own block, two of its scattering, two of lights
+inline constexpr Blocks kSensor{0, 1};         // the ray
 inline constexpr Blocks kScatter{1, kNodes};   // continuation (two numbers), first light (two)
 inline constexpr Blocks kSecond{128, kNodes};  // lobe (the first), second light (the last two)
 inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than four numbers
-inline constexpr Blocks kLight{512, kNodes * kOwnLights};
-inline constexpr Blocks kFlight{1024, kPerFlight * kFlights};
+inline constexpr Blocks kLight{512, kNodes* kOwnLights};
+inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
 
 constexpr bool disjoint() {
   constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight};
@@ -63,7 +63,9 @@ constexpr Use own_light(uint32_t i) { return {2 + i}; }
 inline std::array<double, 4> at_surface(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
   const uint32_t own = use.which - 2;
   if (n < kNodes && (use.which < 2 || own < kOwnLights)) {
-    const uint32_t first = use.which == 0 ? kScatter.first : use.which == 1 ? kSecond.first : kLight.first + own * kNodes;
+    const uint32_t first = use.which == 0   ? kScatter.first
+                           : use.which == 1 ? kSecond.first
+                                            : kLight.first + own * kNodes;
     return stream.draw(sample, first + n);
   }
   if (use.which < 2) return hashed(stream, sample, use.which == 0 ? Hashed::scatter : Hashed::second, 0, n);

@@ -7,9 +7,9 @@
 //   answer   what was visible shines, shared with continuations (shares.h)
 //   go on    draws the continuation, plays roulette, ends paths
 // A template over what surfaces can be (Surfaces: surfaces_any.h, surfaces_matte.h), what fills space (Space:
-// space_nothing.h, media/space_field.h), the algebra of throughputs (throughput.h) and the estimator (estimators/), made
-// for each combination that occurs in kernels.cpp. Definitions: kernel_*.h.
-// Based on: Goodenough & Brown, section IV; Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
+// space_nothing.h, media/space_field.h), the algebra of throughputs (throughput.h) and the estimator (estimators/),
+// made for each combination that occurs in kernels.cpp. Definitions: kernel_*.h. Based on: Goodenough & Brown, section
+// IV; Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
 #pragma once
 #include <optional>
 #include <vector>
@@ -51,7 +51,7 @@ class PathKernel final : public PathTracing {
     uint16_t index;
     LightNature nature;
     dimensions::Use use;
-    int first_number;  // of those of `use` that it takes
+    int first_number;                 // of those of `use` that it takes
     std::optional<LightSample> only;  // the only sample there is of a collimated light
   };
   std::span<const NodeAt> nodes() const { return nodes_; }

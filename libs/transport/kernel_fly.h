@@ -53,8 +53,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
     if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
     asked_.push_back(asked);
   }
-  std::stable_sort(asked_.begin(), asked_.end(),
-                   [](const Asked& a, const Asked& b) { return Estimator::parallel(a.nature) > Estimator::parallel(b.nature); });
+  std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) {
+    return Estimator::parallel(a.nature) > Estimator::parallel(b.nature);
+  });
   uint32_t own = 0;
   bool scatter = true, second = true;
   for (Asked& asked : asked_) {
@@ -62,7 +63,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
     const bool two = asked.nature.numbers <= 2;
     const bool with_scatter = two && std::exchange(scatter, scatter && !two);
     const bool with_second = two && !with_scatter && std::exchange(second, false);
-    asked.use = with_scatter ? dimensions::kOfScatter : with_second ? dimensions::kOfSecond : dimensions::own_light(own++);
+    asked.use = with_scatter  ? dimensions::kOfScatter
+                : with_second ? dimensions::kOfSecond
+                              : dimensions::own_light(own++);
     asked.first_number = with_scatter || with_second ? 2 : 0;
   }
 }
@@ -218,10 +221,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p,
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p, uint32_t slot) {
   Path& path = paths_[p];
-  const auto met =
-      environment_.earth
-          ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
-          : std::nullopt;
+  const auto met = environment_.earth
+                       ? environment_.earth->meet(path.origin, path.direction, std::numeric_limits<double>::infinity())
+                       : std::nullopt;
   if (!met) {
     escape(p);
     return false;
@@ -245,7 +247,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
 // The first node of a path that starts at a receiver.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::receive(uint32_t p) {
-  if constexpr (requires(Surfaces& s) { s.receive(p, hits_[0], receivers_[p]); }) {
+  if constexpr (requires(Surfaces & s) { s.receive(p, hits_[0], receivers_[p]); }) {
     Path& path = paths_[p];
     const auto slot = static_cast<uint32_t>(active_.size());
     active_.push_back(p);
@@ -279,8 +281,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);
     if (options_.explicit_sources && path.last_density > 0 && met->density > 0)
-      c.scale *= static_cast<float>(
-          Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
+      c.scale *= static_cast<float>(Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
     c.radiance = met->spectrum;
     if (!c.radiance) c.radiance = memory.data();
     if (c.scale != 0) contribute();
@@ -298,14 +299,15 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, 
     distance = surface_.tracer().periodic() ? path.length - last.length : length(hit.position - last.at.position);
   const double cosine = -dot(path.direction, hit.normal);
   for (const Asked& light : glowing_) {
-    const auto met = light.light->met_surface(last.at, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
+    const auto met =
+        light.light->met_surface(last.at, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
     if (!met) continue;
     Contribution& c = contribution(p, light.index);
     c.order -= 1;  // not scattered by what shines
     c.scale = static_cast<float>(met->scale);
     if (shared && met->density > 0)
-      c.scale *= static_cast<float>(Estimator::by_chance(
-          light.nature, path.before * last.draws * met->density / path.last_density));
+      c.scale *= static_cast<float>(
+          Estimator::by_chance(light.nature, path.before * last.draws * met->density / path.last_density));
     c.radiance = met->spectrum;
     if (c.scale != 0) contribute();
   }

@@ -65,9 +65,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
   }
   // Several samples are strata of one choice.
   const bool delta = !(sample.density > 0);
-  questions_[sight_rays_.size()] = {static_cast<uint32_t>(&node - nodes_.data()), light.index, light.nature.disk,
-                                    light.nature.wide, sample.direction, delta ? 0 : sample.density * draws,
-                                    static_cast<float>(delta ? sample.scale / draws : sample.scale), sample.spectrum};
+  questions_[sight_rays_.size()] = {static_cast<uint32_t>(&node - nodes_.data()),
+                                    light.index,
+                                    light.nature.disk,
+                                    light.nature.wide,
+                                    sample.direction,
+                                    delta ? 0 : sample.density * draws,
+                                    static_cast<float>(delta ? sample.scale / draws : sample.scale),
+                                    sample.spectrum};
   sight_rays_.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
 
@@ -120,8 +125,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   const double distance = sight_rays_.distance()[i];
   double reach[kMaxKnots];
   std::fill_n(reach, knots(), 1.0);
-  const bool dim =
-      space_.dims(sight_rays_.rays()[i], distance, i, transmission_, std::span(reach, knots()));
+  const bool dim = space_.dims(sight_rays_.rays()[i], distance, i, transmission_, std::span(reach, knots()));
   double denominator = 1, missed = std::numeric_limits<double>::infinity();
   const double by_chance = q.density > 0 || !arrives ? chance(node, q.direction, {reach, knots()}) : 0;
   if (q.density > 0) denominator = arrives ? Estimator::asked(q.density, by_chance, q.disk) : q.density;

@@ -42,8 +42,7 @@ Pipeline::~Pipeline() = default;
 
 // What shines on a capture: the environment, or its own suns.
 KernelContext Pipeline::context(const Capture& capture) const {
-  if (capture.bin_by != Capture::BinBy::sun)
-    return {surface_, optics_, environment_, options_, truth_.wanted()};
+  if (capture.bin_by != Capture::BinBy::sun) return {surface_, optics_, environment_, options_, truth_.wanted()};
   if (!suns_) {
     suns_ = std::make_unique<Environment>();
     SunSpec spec;

@@ -3,8 +3,8 @@
 #include <span>
 
 #include "math/sampling.h"
-#include "transport/lane.h"
 #include "sensor/sensor.h"
+#include "transport/lane.h"
 
 namespace suite {
 

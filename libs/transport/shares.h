@@ -22,7 +22,8 @@
 namespace suite {
 
 // What a contribution is divided by that a path got in one of two ways, an explicit sample of a source or a
-// continuation that met it: own is the density of the way it went, other that of the other one. disk: LightNature::disk.
+// continuation that met it: own is the density of the way it went, other that of the other one. disk:
+// LightNature::disk.
 inline double shared_density(double own, double other, bool disk) {
   return disk ? own + other * (other / own) : own + other;
 }

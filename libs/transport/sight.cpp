@@ -5,7 +5,7 @@ namespace suite {
 bool PlainSight::look(size_t begin, size_t end, bool coherent, TraceRequest& request) const {
   if (begin == end) return false;
   const size_t n = end - begin;
-  request = {TraceRequest::Kind::occluded,          rays_->rays().subspan(begin, n),    coherent, {},
+  request = {TraceRequest::Kind::occluded,        rays_->rays().subspan(begin, n),   coherent, {},
              rays_->distance().subspan(begin, n), rays_->blocked().subspan(begin, n)};
   return true;
 }

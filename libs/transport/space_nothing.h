@@ -1,5 +1,5 @@
-// What fills space: nothing, or air alone in closed form. Two of the answers that the path kernel is made for; the third
-// is media/space_field.h.
+// What fills space: nothing, or air alone in closed form. Two of the answers that the path kernel is made for; the
+// third is media/space_field.h.
 #pragma once
 #include <memory>
 #include <vector>
@@ -40,9 +40,9 @@ struct SpaceContext {
 
 class NothingSpace {
  public:
-  static constexpr bool kScatters = false;   // paths are scattered between surfaces
-  static constexpr bool kFills = false;      // flights do anything at all
-  static constexpr uint32_t kDense = 0;      // spectra that fly() needs
+  static constexpr bool kScatters = false;  // paths are scattered between surfaces
+  static constexpr bool kFills = false;     // flights do anything at all
+  static constexpr uint32_t kDense = 0;     // spectra that fly() needs
   using Sight = PlainSight;
   explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
 

@@ -78,8 +78,8 @@ void AnySurfaces::densities(uint32_t p, Dir out, Dir in, std::span<float> densit
   at.baked->model->pdf(at.frame.to_local(out), at.frame.to_local(in), density);
 }
 
-bool AnySurfaces::sample(size_t, uint32_t p, const Hit&, Dir out, Vec2 u, double lobe_u, int knot, std::span<float> dense,
-                         Continuation& on) const {
+bool AnySurfaces::sample(size_t, uint32_t p, const Hit&, Dir out, Vec2 u, double lobe_u, int knot,
+                         std::span<float> dense, Continuation& on) const {
   const Interaction& at = *at_[p];
   const ScatterModel& model = *at.baked->model;
   const Dir to = at.frame.to_local(out);

@@ -13,9 +13,9 @@ namespace suite {
 
 // Where a path goes on from a node.
 struct Continuation {
-  Dir in;              // ENU
+  Dir in;  // ENU
   bool dirac = false;
-  Factor weight;       // w, not yet divided by the density
+  Factor weight;  // w, not yet divided by the density
   float density[kMaxKnots];
 };
 

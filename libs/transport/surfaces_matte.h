@@ -1,5 +1,5 @@
-// Surfaces of states in which everything that a path can meet is an opaque Lambert surface at no temperature that shows:
-// fields, canopies of opaque leaves, cities in the reflective range. The same sample points and decisions as
+// Surfaces of states in which everything that a path can meet is an opaque Lambert surface at no temperature that
+// shows: fields, canopies of opaque leaves, cities in the reflective range. The same sample points and decisions as
 // surfaces_any.h at the same nodes, without models to be called, frames to be made, or knots; directions of a stage are
 // drawn together.
 #pragma once
@@ -15,7 +15,8 @@ class MatteSurfaces {
  public:
   static constexpr int kKnots = 1;
   static constexpr uint32_t kDense = 0;
-  // Whether a state shows no others: only opaque Lambert materials without varying maps or blackbody radiance, one knot.
+  // Whether a state shows no others: only opaque Lambert materials without varying maps or blackbody radiance, one
+  // knot.
   static bool serve(const Surface& surface, const Optics& optics);
 
   MatteSurfaces(const Surface& surface, const Optics& optics, size_t width, bool keep_first);

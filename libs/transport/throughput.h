@@ -1,6 +1,6 @@
 // The throughputs of paths and the light that they have gathered, as spectra: the algebra that the path kernel computes
-// in. A path scatters, is attenuated and turns (its frame of reference; nothing to do for spectra), and shines when light
-// arrives.
+// in. A path scatters, is attenuated and turns (its frame of reference; nothing to do for spectra), and shines when
+// light arrives.
 //
 // Spectra are not multiplied when it happens. A path keeps a short chain of steps, numbers times spectra that stand
 // elsewhere, and folds it when the chain is full or the path ends: one pass over the wavelengths for many events, no
@@ -53,9 +53,7 @@ class SpectralThroughputs {
     settle(p);
     chains_[p].dense = 0;
   }
-  std::span<float> take(uint32_t p) {
-    return {&dense_[(size_t{p} * kDense + chains_[p].dense++) * stride_], bins_};
-  }
+  std::span<float> take(uint32_t p) { return {&dense_[(size_t{p} * kDense + chains_[p].dense++) * stride_], bins_}; }
   // The last one taken was not needed.
   void give_back(uint32_t p) { --chains_[p].dense; }
 

@@ -7,8 +7,8 @@
 // The light is direct only (the spheres do not see each other), which is what a path has at each of its nodes. Three
 // estimators: the continuation alone; with a sample of the sun's disk (the paper's next-event estimation: the sky is
 // met by the continuation); and with one of the tabulated sky too (the renderer's default). They share as the renderer
-// does (transport/shares.h): the sun by the power heuristic, the sky by the balance heuristic; the cosine variant has the
-// same, with its own density. The error is the RMSE of the picture of both spheres, and of each alone.
+// does (transport/shares.h): the sun by the power heuristic, the sky by the balance heuristic; the cosine variant has
+// the same, with its own density. The error is the RMSE of the picture of both spheres, and of each alone.
 //
 // Next-event estimation off: hardly any sample meets the sun (one in 30,000 of the cosine's), and a plain mean of
 // squares would be decided by a few of them: the second moment of independent samples is integrated, over directions

@@ -31,9 +31,10 @@ void expect_steady(const Arrivals& arrivals, const std::shared_ptr<const Scene>&
 // Two walls that meet in a corner: one facing the sensor, and the floor.
 TEST(Arrivals, CornerOfTwoWalls) {
   const double rho = 0.5;
-  const auto scene = scene_of({mesh_of({{5, -20, -1}, {5, 20, -1}, {5, 20, 20}, {5, -20, 20}}, {0, 2, 1, 0, 3, 2}, 0),
-                               mesh_of({{-20, -20, -1}, {5, -20, -1}, {5, 20, -1}, {-20, 20, -1}}, {0, 1, 2, 0, 2, 3}, 0)},
-                              {material("wall", lambert(rho))});
+  const auto scene =
+      scene_of({mesh_of({{5, -20, -1}, {5, 20, -1}, {5, 20, 20}, {5, -20, 20}}, {0, 2, 1, 0, 3, 2}, 0),
+                mesh_of({{-20, -20, -1}, {5, -20, -1}, {5, 20, -1}, {-20, 20, -1}}, {0, 1, 2, 0, 2, 3}, 0)},
+               {material("wall", lambert(rho))});
   const Vec3 lamp{2, 3, 1};
   const SourceSpecs sources = lamp_at(lamp);
   const Ray ray{{0, 0, 0}, {1, 0, 0}, 0};

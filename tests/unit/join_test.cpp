@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "math/sampling.h"
-#include "transport/pipeline.h"
 #include "support/radiometry_kit.h"
+#include "transport/pipeline.h"
 
 namespace suite::test {
 namespace {

@@ -17,8 +17,7 @@
 extern "C" {
 #endif
 
-/* Raised when a plug-in built with an older header cannot work any more. Fields that came later say since when; a
- * plug-in that was built without them goes on working. */
+/* Raised when plug-ins of older headers cannot work any more. Those built without fields that say "since" go on. */
 #define SUITE_SENSOR_ABI 1u
 /* Counts what "since 1.x" says below; since 1.4. */
 #define SUITE_SENSOR_MINOR 4u

@@ -1,8 +1,8 @@
 // The paper's own estimator, for comparison: one explicit light a node out of sun, moon and all lamps, divided by its
-// probability (the paper leaves that open: here all have the same, and no lamp is left out for being far); what is asked
-// explicitly does not count when a continuation meets it; skies are met by continuations only; directions are drawn at
-// the reference wavelength; no roulette, paths end at max_nodes; independent random numbers (Pipeline). Not for media.
-// Its rule of stopping is StopRule::change.
+// probability (the paper leaves that open: here all have the same, and no lamp is left out for being far); what is
+// asked explicitly does not count when a continuation meets it; skies are met by continuations only; directions are
+// drawn at the reference wavelength; no roulette, paths end at max_nodes; independent random numbers (Pipeline). Not
+// for media. Its rule of stopping is StopRule::change.
 //
 // Based on: Goodenough & Brown, sections III-C-2 and IV-A as written.
 #pragma once

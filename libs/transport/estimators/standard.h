@@ -61,7 +61,8 @@ struct StandardEstimator {
     for (int k = 0; k < draws; ++k) {
       const std::array<double, 4> v =
           draws == 1 ? u : std::array<double, 4>{(k + u[0]) / draws, turned(u[1], k), turned(u[2], k), turned(u[3], k)};
-      if (const auto sample = light.light->sample(at, v, kernel.time(node))) kernel.propose(node, light, *sample, draws);
+      if (const auto sample = light.light->sample(at, v, kernel.time(node)))
+        kernel.propose(node, light, *sample, draws);
     }
   }
 };

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "transport/media/medium_stack.h"
 #include "surface/surface.h"
+#include "transport/media/medium_stack.h"
 
 namespace suite {
 

@@ -16,10 +16,10 @@
 #pragma once
 #include <span>
 
-#include "transport/media/live_path.h"
-#include "transport/media/flight_air.h"
-#include "transport/media/field.h"
 #include "surface/optics.h"
+#include "transport/media/field.h"
+#include "transport/media/flight_air.h"
+#include "transport/media/live_path.h"
 
 namespace suite {
 
@@ -32,10 +32,10 @@ class Flights {
   // How far a flight gets, and what it makes of the path behind it.
   struct Result {
     bool scattered = false;
-    double distance = 0;    // m from the origin of the flight
-    double scale = 1;       // the path's weight is multiplied by scale and, if `dense`, by `through`
-    bool dense = false;     // `through` has been filled
-    bool emits = false;     // `emitted` has been filled
+    double distance = 0;  // m from the origin of the flight
+    double scale = 1;     // the path's weight is multiplied by scale and, if `dense`, by `through`
+    bool dense = false;   // `through` has been filled
+    bool emits = false;   // `emitted` has been filled
   };
   // Flies path `live` from its origin along its direction to at most `length` in `background`. through: receives what
   // the way does to every bin (without the scattering coefficient of the bin where it is scattered); emitted: the
@@ -73,7 +73,7 @@ class Flights {
   std::vector<float> tau_, emission_;  // per bin, scratch
   double run_begin_ = 0;               // m
   FlightAir air_;
-  Result result_;                      // of the flight under way
+  Result result_;  // of the flight under way
 };
 
 }  // namespace suite

@@ -16,10 +16,10 @@
 #include <span>
 #include <vector>
 
-#include "transport/media/live_path.h"
 #include "light/atmosphere.h"
-#include "transport/media/field.h"
 #include "surface/optics.h"
+#include "transport/media/field.h"
+#include "transport/media/live_path.h"
 
 namespace suite {
 

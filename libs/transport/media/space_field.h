@@ -1,9 +1,9 @@
 // Space that media fill: flights, scattering events between surfaces, index-matched boundaries on the way, and the air
 // along it. One of the answers to "what fills space" that the path kernel is made for.
 //
-// With v the sum over the contents of density x scattering x phase function and q_k = v_k / (scattering coefficient) the
-// density of directions at knot k, a scattering event is to the kernel what a surface is: v for w, q for its density.
-// Flights, and what reaches a light of the continuations that are drawn towards it, are in media/flight.h.
+// With v the sum over the contents of density x scattering x phase function and q_k = v_k / (scattering coefficient)
+// the density of directions at knot k, a scattering event is to the kernel what a surface is: v for w, q for its
+// density. Flights, and what reaches a light of the continuations that are drawn towards it, are in media/flight.h.
 #pragma once
 #include <vector>
 
@@ -24,7 +24,8 @@ class FieldSpace {
   // Puts a new path into the bodies around its origin.
   void start(uint32_t p, const LivePath& live);
   Vec3 ray_from(uint32_t p, const LivePath& live) const { return ways_[p].gap > 0 ? ways_[p].from : live.origin; }
-  // One flight of path p towards `hit`, which `ray` found, over `length` m at most. through, emitted: memory for spectra.
+  // One flight of path p towards `hit`, which `ray` found, over `length` m at most. through, emitted: memory for
+  // spectra.
   Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
@@ -52,8 +53,8 @@ class FieldSpace {
   TraceStatistics take_statistics();
 
  private:
-  struct Way {   // of the next ray of a path
-    Vec3 from;   // where it begins
+  struct Way {       // of the next ray of a path
+    Vec3 from;       // where it begins
     double gap = 0;  // m from the path's origin to there; 0 = at it
   };
   struct ScatterPlace {

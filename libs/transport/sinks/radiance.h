@@ -1,5 +1,5 @@
-// Sums contributions to radiance: all of it, what was scattered or emitted once, and, kept apart, the same of light that
-// is known to be missed. Of many suns each has sums of its own.
+// Sums contributions to radiance: all of it, what was scattered or emitted once, and, kept apart, the same of light
+// that is known to be missed. Of many suns each has sums of its own.
 #pragma once
 #include <limits>
 #include <vector>
@@ -30,9 +30,9 @@ class RadianceSink final : public Sink<SpectralThroughputs> {
       const size_t group = groups_ == 1 ? 0 : c.light;
       const bool lost = !c.arrived();
       if (lost) missed_[c.path] = std::min(missed_[c.path], double{c.missed});
-      throughputs.shine(c.path, c.factor, c.scale, c.radiance, static_cast<uint16_t>(target(group, false, lost)),
-                        single_ && c.order <= 1 ? static_cast<uint16_t>(target(group, true, lost))
-                                                : SpectralThroughputs::kNone);
+      throughputs.shine(
+          c.path, c.factor, c.scale, c.radiance, static_cast<uint16_t>(target(group, false, lost)),
+          single_ && c.order <= 1 ? static_cast<uint16_t>(target(group, true, lost)) : SpectralThroughputs::kNone);
     }
   }
 

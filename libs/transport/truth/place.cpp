@@ -86,8 +86,7 @@ void add_place_rows(std::vector<TruthRow>& table) {
   table.push_back(
       {"time", "s", "mean time of the sample rays", [](const TruthContext& c) {
          return simple(
-             c, 1, {"time [s]"},
-             [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.time; },
+             c, 1, {"time [s]"}, [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.time; },
              [](const TruthContext&, const double* sum, const TruthCounts& n, double* v) { v[0] = sum[0] / n.paths; });
        }});
   table.push_back({"range", "m", "mean distance from the sensor to the first hits", [](const TruthContext& c) {
@@ -98,6 +97,9 @@ void add_place_rows(std::vector<TruthRow>& table) {
                          },
                          mean_of_one);
                    }});
+}
+
+void add_angle_rows(std::vector<TruthRow>& table) {
   table.push_back({"normal", "", "mean normal of the first hits on the side looked at, unit length, ENU",
                    [](const TruthContext& c) {
                      return simple(

@@ -9,6 +9,7 @@ std::span<const TruthRow> truth_rows() {
   static const std::vector<TruthRow> table = [] {
     std::vector<TruthRow> rows;
     add_place_rows(rows);
+    add_angle_rows(rows);
     add_matter_rows(rows);
     add_account_rows(rows);
     return rows;

@@ -83,7 +83,8 @@ class TruthPlan {
 };
 
 // The rows of the table, by what they are about.
-void add_place_rows(std::vector<TruthRow>& table);   // place.cpp: location, range, angles, time
+void add_place_rows(std::vector<TruthRow>& table);   // place.cpp: location, range, time
+void add_angle_rows(std::vector<TruthRow>& table);   // place.cpp: normals and angles
 void add_matter_rows(std::vector<TruthRow>& table);  // matter.cpp: materials, instances, tags, temperature, reflectance
 void add_account_rows(std::vector<TruthRow>& table);  // account.cpp: counts of paths and nodes, visibility, state
 
