@@ -214,7 +214,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::enter_node(uint32_t p,
   ++path.surfaces;
   if (!first || !keep_first_) return;
   records_[p].met = !records_[p].scattered_first;
-  firsts_[p] = {hit, -path.direction, path.length, false, &surfaces_.interaction(p)};
+  firsts_[p] = {hit.object, -path.direction, path.length, false, &surfaces_.interaction(p)};
 }
 
 // A path that missed the scene meets the Earth under it, if there is one; false when the path ends.

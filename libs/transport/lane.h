@@ -59,10 +59,10 @@ struct PathRecord {
 
 // The first surface that a path met; kept where truth is asked for.
 struct FirstMeeting {
-  Hit hit;              // object kNone: the Earth under the scene
-  Dir out;              // back along the ray, ENU
-  double distance = 0;  // m from the sensor, all segments
-  bool sunlit = false;  // the explicit sample of the sun arrived
+  uint32_t object = kNone;  // index into Tracer::objects(); kNone: the Earth under the scene
+  Dir out;                  // back along the ray, ENU
+  double distance = 0;      // m from the sensor, all segments
+  bool sunlit = false;      // the explicit sample of the sun arrived
   const Interaction* at = nullptr;
 };
 

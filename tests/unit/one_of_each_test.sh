@@ -20,8 +20,8 @@ places "roulette"            1 'std::clamp\(brightness, kLeast, 1\.0\)' libs
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
 places "questions to lights" 1 '(light|light->)(\.light)?->sample\(' libs/transport
-places "lights met outside"  1 '\.met_outside\(' libs/transport
-places "surfaces that shine" 1 '\.met_surface\(' libs/transport
+places "lights met outside"  1 '(\.|->)met_outside\(' libs/transport
+places "surfaces that shine" 1 '(\.|->)met_surface\(' libs/transport
 places "explicit light"      1 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport

@@ -62,17 +62,17 @@ struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
 
 enum class What { material, instance, tag };
 uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
-  if (!node.hit.hit() && what != What::material) return kNone;  // the Earth is no instance and has no tag
+  if (node.object == kNone && what != What::material) return kNone;  // the Earth is no instance and has no tag
   switch (what) {
     case What::material:
       return node.at->material;
     case What::instance:
-      if (!node.hit.hit()) return kNone;  // the Earth under the scene
-      return c.tracer.objects()[node.hit.object].instance;
+      if (node.object == kNone) return kNone;  // the Earth under the scene
+      return c.tracer.objects()[node.object].instance;
     case What::tag:
       break;
   }
-  return node.hit.hit() ? c.tracer.objects()[node.hit.object].tag : kNone;
+  return node.object != kNone ? c.tracer.objects()[node.object].tag : kNone;
 }
 
 struct Majority final : TruthCollector {

@@ -16,7 +16,7 @@ std::unique_ptr<const TruthCollector> simple(const TruthContext& c, size_t slots
 
 void add_position(const TruthContext&, const TruthSample& s, double* sum) {
   if (!s.first) return;
-  const Vec3& p = s.first->hit.position;
+  const Vec3& p = s.first->at->position;
   sum[0] += p.x, sum[1] += p.y, sum[2] += p.z;
 }
 
@@ -38,7 +38,7 @@ struct EarthPlace final : TruthCollector {
   }
   void add(const TruthSample& s, double* sum) const override {
     if (s.first)
-      sum[0] += s.first->hit.position.x, sum[1] += s.first->hit.position.y, sum[2] += s.first->hit.position.z;
+      sum[0] += s.first->at->position.x, sum[1] += s.first->at->position.y, sum[2] += s.first->at->position.z;
   }
   void finish(const double* sum, const TruthCounts& n, double* v) const override {
     if (!(n.hits > 0)) return;
