@@ -14,7 +14,7 @@ constexpr double kIntensity = 100;
 
 SourceSpecs lamp_at(Vec3 place) {
   SourceSpecs sources;
-  sources.lamps = {point_lamp({place}, kIntensity)};
+  sources.add(point_lamp({place}, kIntensity));
   return sources;
 }
 

@@ -1,4 +1,6 @@
 // What a simulation says it uses and leaves alone.
+#include "light/kinds/lamps.h"
+#include "light/kinds/moon.h"
 #include "scheduler/features.h"
 
 #include <gmock/gmock.h>

@@ -38,8 +38,8 @@ class Strip final : public RaySensor {
 struct Kit {
   explicit Kit(bool covered) : scene(make(covered)) {
     SourceSpecs specs;
-    specs.sun = SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)};
-    specs.sky = uniform_sky(1, false);
+    specs.add(SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)});
+    specs.add(uniform_sky(1, false));
     environment = bake_environment(specs, tracer, false, optics.state());
     sensor.rejects = covered;
     options.max_nodes = 3;

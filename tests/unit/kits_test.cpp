@@ -127,7 +127,7 @@ struct Swept {
 };
 Swept sweep(size_t states, size_t kit_bytes) {
   SourceSpecs sources;
-  sources.sky = uniform_sky(1, false);
+  sources.add(uniform_sky(1, false));
   JobOptions job;
   job.progress = false;
   job.kit_bytes = kit_bytes;
