@@ -22,7 +22,6 @@
 #include "optics/models.h"
 #include "output.h"
 #include "preview.h"
-#include "transport/truth/truth.h"
 #include "scene/combine.h"
 #include "scheduler/bins.h"
 #include "scheduler/features.h"
@@ -30,6 +29,7 @@
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
+#include "transport/truth/truth.h"
 
 namespace suite {
 

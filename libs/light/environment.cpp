@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace suite {
 
 void SourceSpecs::add(std::vector<LightSpecPtr> more) {

@@ -45,7 +45,7 @@ struct Capture {
   // part of the radiance that came in from there along paths that left the scene (the bins add up to the radiance from
   // above).
   // sun: bin i is the radiance under a collimated sun of unit spectral irradiance towards suns[i] and nothing else; all
-  // bins share their paths (only for scenes without media, air and period-breaking sources; see many_suns.h).
+  // bins share their paths (only for scenes without media, air and period-breaking sources; see transport/sinks/radiance.h).
   enum class BinBy : uint8_t { none, time, escape, sun } bin_by = BinBy::none;
   uint32_t bins = 1, escape_rings = 0;
   std::vector<Dir> suns;

@@ -1,5 +1,5 @@
 // What generality costs a scene that needs none of it: the terrain (Lambert, collimated sun, uniform sky, one band)
-// through the pipeline's general kernel, through the one it chooses for such a scene (matte_kernel.h), and through a
+// through the pipeline's general kernel, through the one it chooses for such a scene (transport/surfaces_matte.h), and through a
 // loop written by hand for nothing else: the same estimator on the same sample points through the same tracer, but no
 // records of paths, no materials, no spectra, no truth. They alternate in one process; their images must agree. Usage:
 // pruning_bench [edge = 192] [paths = 16] [rounds = 20]

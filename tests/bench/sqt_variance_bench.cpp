@@ -7,7 +7,7 @@
 // The light is direct only (the spheres do not see each other), which is what a path has at each of its nodes. Three
 // estimators: the continuation alone; with a sample of the sun's disk (the paper's next-event estimation: the sky is
 // met by the continuation); and with one of the tabulated sky too (the renderer's default). They share as the renderer
-// does (path_generator.h): the sun by the power heuristic, the sky by the balance heuristic; the cosine variant has the
+// does (transport/shares.h): the sun by the power heuristic, the sky by the balance heuristic; the cosine variant has the
 // same, with its own density. The error is the RMSE of the picture of both spheres, and of each alone.
 //
 // Next-event estimation off: hardly any sample meets the sun (one in 30,000 of the cosine's), and a plain mean of
@@ -34,6 +34,7 @@
 #include "math/warps.h"
 #include "sqt_fit/fit.h"
 #include "sqt_fit/scattered.h"
+#include "transport/dimensions.h"
 #include "transport/shares.h"
 
 namespace suite {
@@ -77,7 +78,7 @@ Lighting make_light(const SpectralState& state, double sun_azimuth) {
   return {Sun(sun, state), Sky(sky, state)};
 }
 
-// The numbers of one path: independent, or the renderer's points in the renderer's dimensions (path_generator.h).
+// The numbers of one path: independent, or the renderer's points in the renderer's dimensions (transport/dimensions.h).
 struct Numbers {
   Vec2 turn, sun, sky;
   double lobe;
@@ -87,7 +88,7 @@ Numbers independent(Pcg32& random) {
   return {two(), two(), two(), random.uniform()};
 }
 Numbers scrambled(const SampleStream& stream, uint32_t n) {
-  const auto a = stream.draw(n, 1), b = stream.draw(n, kLobeBlock);
+  const auto a = stream.draw(n, dimensions::kScatter.first), b = stream.draw(n, dimensions::kSecond.first);
   return {{a[0], a[1]}, {a[2], a[3]}, {b[2], b[3]}, b[0]};
 }
 

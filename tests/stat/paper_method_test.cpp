@@ -75,7 +75,7 @@ TEST(PaperMethod, AsksOneSourceANode) {
     const RunStatistics s = run(scene, sources, method, 64, 64, 1, 1).report.statistics;
     return static_cast<double>(s.trace.rays) / static_cast<double>(s.paths);
   };
-  EXPECT_EQ(rays_per_path(Method::paper), 2);                  // the sensor's and one
+  EXPECT_EQ(rays_per_path(Method::paper), 2);                               // the sensor's and one
   EXPECT_EQ(rays_per_path(Method::standard), 2 + LightNature::kMostDraws);  // the sensor's, the sun's, and lamps
 }
 

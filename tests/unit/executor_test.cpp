@@ -67,8 +67,8 @@ struct Ran {
 };
 Ran run(uint32_t lines, uint32_t columns, Convergence goal, Executor* executor = nullptr, bool meet = false) {
   SourceSpecs sources;
-  sources.add(uniform_sky(1, false));
   sources.add(SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)});
+  sources.add(uniform_sky(1, false));
   JobOptions job;
   job.progress = false;
   job.pipeline.max_nodes = 3;

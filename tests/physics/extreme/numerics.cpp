@@ -3,15 +3,15 @@
 #include <cmath>
 
 #include "math/warps.h"
-#include "transport/pipeline.h"
 #include "spectral/planck.h"
+#include "transport/pipeline.h"
 
 namespace suite::extreme {
 
 namespace {
 
 double gather(double value, uint64_t n) {
-  Accumulators sums(1, 1, 4);
+  Accumulators sums({1, 1, 4});
   double* sum = sums.sums(0, 0);
   for (uint64_t i = 0; i < n; ++i) *sum += value;
   return *sum / static_cast<double>(n);
