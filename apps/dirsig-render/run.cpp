@@ -35,11 +35,6 @@ namespace suite {
 
 namespace {
 
-int list_sources() {
-  std::fputs(light_rows().list().c_str(), stdout);
-  return 0;
-}
-
 int list_truth() {
   for (const TruthRow& row : truth_rows())
     std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [",
@@ -204,7 +199,7 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
 // What was asked instead of a picture; nothing when one is wanted.
 std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
-  if (o.list_sources) return list_sources();
+  if (o.list_sources) return print(light_rows().list());
   if (o.list_truth) return list_truth();
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));

@@ -4,6 +4,13 @@
 
 namespace suite {
 
+SceneFrame frame_of(const Scene& scene, const Where& where, const char* what) {
+  if (!scene.origin.given)
+    throw Error(where, std::string(what) + " needs a scene with a geodetic origin",
+                "give the scene an origin, or directions as {zenith_deg, azimuth_deg}");
+  return SceneFrame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
+}
+
 namespace {
 Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 #include "motion/scene_frame.h"
+#include "scene/scene.h"
 
 namespace suite {
 
@@ -19,6 +20,9 @@ struct EarthSpec {
   Where where;
 };
 
+// The frame of a scene for what needs to know where it is on the Earth. what: for the error, "a sun by date". Error at
+// `where` when the scene has no geodetic origin.
+SceneFrame frame_of(const Scene& scene, const Where& where, const char* what);
 class Earth {
  public:
   // height: above WGS84, m; material: index into Scene::materials.

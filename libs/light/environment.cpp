@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/kinds/body.h"
-
 namespace suite {
 
 void SourceSpecs::add(std::vector<LightSpecPtr> more) {
@@ -20,8 +18,10 @@ LightSpecPtr SourceSpecs::sun() const {
   return found == lights.end() ? nullptr : *found;
 }
 
-bool SourceSpecs::dated() const {
-  return std::any_of(lights.begin(), lights.end(), [](auto& light) { return light->date() != nullptr; });
+const SourceTime* SourceSpecs::date() const {
+  for (const LightSpecPtr& light : lights)
+    if (light->date()) return light->date();
+  return nullptr;
 }
 
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds) {

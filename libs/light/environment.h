@@ -8,11 +8,6 @@
 
 #include "light/atmosphere.h"
 #include "light/earth.h"
-#include "light/kinds/clear_sky.h"
-#include "light/kinds/lamps.h"
-#include "light/kinds/moon.h"
-#include "light/kinds/sky.h"
-#include "light/kinds/sun.h"
 #include "light/light_spec.h"
 
 namespace suite {
@@ -26,7 +21,7 @@ struct SourceSpecs {
 
   // Adds lights; those that can be one with others become so (LightSpec::joined).
   void add(std::vector<LightSpecPtr> more);
-  // What a kind is made of: SunSpec, SkySpec, LampSpec, ...
+  // What one kind is made of, from the header of the kind, which has a make_light for it.
   template <class Spec>
   void add(Spec spec) {
     add(std::vector<LightSpecPtr>{make_light(std::move(spec))});
@@ -34,8 +29,10 @@ struct SourceSpecs {
   // The first sun; null = none.
   LightSpecPtr sun() const;
   bool any() const { return !lights.empty() || atmosphere; }
-  // Something follows from a date, so that it is another one at every moment.
-  bool dated() const;
+  // Of the first light that follows from one; null = none does. Dates are all that of second 0.
+  const SourceTime* date() const;
+  // Something is another one at every moment.
+  bool dated() const { return date() != nullptr; }
 };
 
 inline constexpr size_t kNoLight = static_cast<size_t>(-1);

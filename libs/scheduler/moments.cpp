@@ -13,9 +13,7 @@ double moment_of(const Capture& capture) { return 0.5 * (capture.window.begin + 
 
 double SourcesInTime::on_grid(double moment) const {
   if (!dated()) return 0;
-  const auto dated =
-      std::find_if(written_.lights.begin(), written_.lights.end(), [](const auto& l) { return l->date(); });
-  const Instant zero = instant_from_utc(parse_iso8601((*dated)->date()->utc)), then = zero + moment;
+  const Instant zero = instant_from_utc(parse_iso8601(written_.date()->utc)), then = zero + moment;
   const auto steps = [](double seconds) { return std::floor(seconds / kMomentQuantum); };
   // Whole steps first: one moment of the grid is one number.
   const double whole = static_cast<double>(then.day - zero.day) * (86400 / kMomentQuantum) +

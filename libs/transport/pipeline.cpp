@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include "light/kinds/sun.h"
 #include "transport/block_run.h"
 #include "transport/workspace.h"
 

@@ -18,6 +18,8 @@
 #include <ctime>
 
 #include "base/parallel.h"
+#include "light/kinds/clear_sky.h"
+#include "light/kinds/lamps.h"
 #include "light/kinds/solar_spectrum.h"
 #include "math/sampling.h"
 #include "math/stats.h"

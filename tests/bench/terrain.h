@@ -7,6 +7,9 @@
 #include <ctime>
 #include <memory>
 
+#include "light/kinds/lamps.h"
+#include "light/kinds/sky.h"
+#include "light/kinds/sun.h"
 #include "math/sampling.h"
 #include "scene/scene.h"
 #include "scheduler/scheduler.h"

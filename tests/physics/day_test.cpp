@@ -6,6 +6,9 @@
 
 #include <cmath>
 
+#include "light/kinds/clear_sky.h"
+#include "light/kinds/lamps.h"
+#include "light/kinds/moon.h"
 #include "motion/ephemeris.h"
 #include "scheduler/kits.h"
 #include "support/message_of.h"
@@ -175,6 +178,26 @@ TEST(Day, KitsGoWithTheirLastCapture) {
     kits.done(7);
   }
   EXPECT_EQ(kits.held(), 0u);
+}
+
+TEST(Day, OnlyWhatAMomentChangesIsBakedAgain) {
+  const auto at = scene();
+  const Tracer tracer(at);
+  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.01)}, 0.01);
+  const SourceSpecs s = sources(kMorning, false);  // sun, moon, clear sky, lamp
+  SourcesInTime in_time(s, *at);
+  const Environment first = bake_environment(in_time.at(0), tracer, false, state);
+  Environment later = first;
+  rebake_changed(later, in_time.at(3600), tracer, state);
+  const Environment fresh = bake_environment(in_time.at(3600), tracer, false, state);
+  ASSERT_EQ(later.lights.size(), 4u);
+  for (size_t i = 0; i < 3; ++i) EXPECT_NE(later.lights[i], first.lights[i]) << i;
+  EXPECT_EQ(later.lights[3], first.lights[3]);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(later.lights[i]->beam()->direction, fresh.lights[i]->beam()->direction);
+    EXPECT_EQ(later.lights[i]->beam()->irradiance[0], fresh.lights[i]->beam()->irradiance[0]);
+    EXPECT_NE(later.lights[i]->beam()->irradiance[0], first.lights[i]->beam()->irradiance[0]);
+  }
 }
 
 TEST(Day, Dut1TurnsTheSky) {

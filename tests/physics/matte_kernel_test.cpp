@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "light/kinds/moon.h"
 #include "math/sampling.h"
 #include "support/lamps_kit.h"
 #include "support/radiometry_kit.h"

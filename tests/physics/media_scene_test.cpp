@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "light/kinds/lamps.h"
+#include "light/kinds/moon.h"
 #include "math/sampling.h"
 #include "motion/track.h"
 #include "optics/model_function.h"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "light/kinds/lamps.h"
 #include "support/media_kit.h"
 #include "support/platform_kit.h"
 

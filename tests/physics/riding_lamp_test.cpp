@@ -78,6 +78,40 @@ TEST(RidingLamp, TurnsWithWhatCarriesIt) {
     }
 }
 
+// Looks at the origin at times spread evenly over its window.
+class Exposure final : public RaySensor {
+ public:
+  Exposure(TimeSpan window, uint32_t paths)
+      : RaySensor({{{0, 0, 1}, {0, 0, -1}, 0}}, one_band(), paths), window_(window) {}
+  SensorRay ray(const RayRequest& request) const override {
+    Ray ray = rays_[0];
+    ray.time = window_.begin + request.u[0] * (window_.end - window_.begin);
+    return {ray, 1};
+  }
+
+ private:
+  TimeSpan window_;
+};
+
+TEST(RidingLamp, AnExposureSeesTheMeanOfItsWindow) {
+  // The integral of (h^2 + x^2)^(-3/2) is x / (h^2 sqrt(h^2 + x^2)).
+  const auto passed = [](double t) {
+    const double x = kSpeed * t;
+    return kIntensity / (kSpeed * kHeight) * x / std::sqrt(kHeight * kHeight + x * x);
+  };
+  const SourceSpecs lamp = lit_by(point_lamp({{0, 0, 0}}, kIntensity), passing());
+  for (const TimeSpan window : {TimeSpan{-1, 1}, TimeSpan{0, 4}, TimeSpan{2, 2.5}, TimeSpan{0.7, 0.7}}) {
+    const Rendered run = render(floor(), lamp, std::make_unique<Exposure>(window, 1 << 12));
+    const double mean = window.end > window.begin
+                            ? (passed(window.end) - passed(window.begin)) / (window.end - window.begin)
+                            : irradiance(window.begin),
+                 expected = mean * kReflectance / kPi;
+    EXPECT_NEAR(run.result.radiance[0], expected, 4 * run.result.standard_error[0] + 1e-6 * expected) << window.begin;
+    EXPECT_LT(run.result.standard_error[0], 0.02 * expected);
+    EXPECT_GT(std::fabs(irradiance(0) * kReflectance / kPi - expected), 0.02 * expected) << "a lamp at rest would do";
+  }
+}
+
 TEST(RidingLamp, OnlyPointsAndSpotsRide) {
   const Tracer tracer(floor());
   const SpectralState state = make_state(one_band(), 1);

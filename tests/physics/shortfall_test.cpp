@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "light/kinds/lamps.h"
 #include "math/sampling.h"
 #include "tests/support/media_kit.h"
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "light/kinds/lamps.h"
 #include "math/stats.h"
 #include "tests/support/radiometry_kit.h"
 

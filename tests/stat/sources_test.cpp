@@ -32,31 +32,6 @@ std::shared_ptr<Scene> lamp_scene() {
 
 const LightRow& row_of(size_t number) { return *(light_rows().begin() + static_cast<ptrdiff_t>(number)); }
 
-class SourceKinds : public testing::TestWithParam<size_t> {
- protected:
-  const LightRow& row() const { return row_of(GetParam()); }
-  // The example's sources, resolved.
-  SourceSpecs specs(const Scene& scene) {
-    Canvas picture(16, 8);
-    for (int y = 0; y < 8; ++y)
-      for (int x = 0; x < 16; ++x)
-        picture.set(x, y,
-                    {static_cast<uint8_t>(10 + 13 * x), static_cast<uint8_t>(250 - 30 * y),
-                     static_cast<uint8_t>((x * y * 7) % 256)});
-    write_png(folder_ / "sky.png", picture, "test");
-    std::string text = row().example;
-    if (const size_t at = text.find("file: sky.png"); at != std::string::npos)
-      text.insert(at, "wavelength_um: [0.45, 0.55, 0.65], ");
-    const Params root = Params::parse_text(text, folder_ / "example.yaml");
-    std::vector<AskedCurve> asked;
-    SourceSpecs s = read_sources(root, asked);
-    root.reject_unread();
-    resolve_sources(s, scene);
-    return s;
-  }
-  TempFolder folder_;
-};
-
 struct Draw {
   Dir direction;
   double density;
@@ -115,15 +90,53 @@ class Asked {
   size_t bins_;
 };
 
+class SourceKinds : public testing::TestWithParam<size_t> {
+ protected:
+  const LightRow& row() const { return row_of(GetParam()); }
+  // The example's sources, resolved.
+  SourceSpecs specs(const Scene& scene) {
+    Canvas picture(16, 8);
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 16; ++x)
+        picture.set(x, y,
+                    {static_cast<uint8_t>(10 + 13 * x), static_cast<uint8_t>(250 - 30 * y),
+                     static_cast<uint8_t>((x * y * 7) % 256)});
+    write_png(folder_ / "sky.png", picture, "test");
+    std::string text = row().example;
+    if (const size_t at = text.find("file: sky.png"); at != std::string::npos)
+      text.insert(at, "wavelength_um: [0.45, 0.55, 0.65], ");
+    const Params root = Params::parse_text(text, folder_ / "example.yaml");
+    std::vector<AskedCurve> asked;
+    SourceSpecs s = read_sources(root, asked);
+    root.reject_unread();
+    resolve_sources(s, scene);
+    return s;
+  }
+  // The light of the row, baked for narrow bands over the lamp, and asked from the origin.
+  struct Stage {
+    SpectralState state;
+    Tracer tracer;
+    Environment environment;
+    Asked source;
+    Stage(SourceKinds& test, const std::vector<double>& centers_um)
+        : state(make_state(narrow(centers_um), 0.01)),
+          tracer(lamp_scene()),
+          environment(bake_environment(test.specs(tracer.scene()), tracer, false, state)),
+          source(environment, test.row().key(), tracer, state.size()) {}
+  };
+
+ private:
+  static std::vector<Band> narrow(const std::vector<double>& centers_um) {
+    std::vector<Band> bands;
+    for (const double c : centers_um) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
+    return bands;
+  }
+  TempFolder folder_;
+};
+
 TEST_P(SourceKinds, SamplesFollowTheDensity) {
-  const auto scene = lamp_scene();
-  const SourceSpecs s = specs(*scene);
-  const Tracer tracer(scene);
-  std::vector<Band> bands;
-  for (const double c : {0.45, 0.55, 0.65}) bands.push_back(Band::rectangular("b" + std::to_string(c), c, 0.01));
-  const SpectralState state = make_state(bands, 0.01);
-  const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source(e, row().key(), tracer, state.size());
+  const Stage stage(*this, {0.45, 0.55, 0.65});
+  const Asked& source = stage.source;
   const auto first = source.draw({0.5, 0.5, 0.5, 0.5});
   ASSERT_TRUE(first);
   if (first->density == 0) {  // a point or a collimated beam: one direction, nothing to distribute
@@ -176,12 +189,8 @@ TEST_P(SourceKinds, SamplesFollowTheDensity) {
 }
 
 TEST_P(SourceKinds, MembersIncludeTheirProbability) {
-  const auto scene = lamp_scene();
-  const SourceSpecs s = specs(*scene);
-  const Tracer tracer(scene);
-  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
-  const Environment e = bake_environment(s, tracer, false, state);
-  const Light& light = Asked(e, row().key(), tracer, state.size()).light();
+  const Stage stage(*this, {0.55});
+  const Light& light = stage.source.light();
   if (light.nature().wide) {
     EXPECT_EQ(light.members(), 0u);
     return;
@@ -199,12 +208,8 @@ TEST_P(SourceKinds, MembersIncludeTheirProbability) {
 }
 
 TEST_P(SourceKinds, TimeIsThatOfTheRay) {
-  const auto scene = lamp_scene();
-  const SourceSpecs s = specs(*scene);
-  const Tracer tracer(scene);
-  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
-  const Environment e = bake_environment(s, tracer, false, state);
-  const Light& light = Asked(e, row().key(), tracer, state.size()).light();
+  const Stage stage(*this, {0.55});
+  const Light& light = stage.source.light();
   ASSERT_FALSE(light.nature().moves);  // what moves: riding_lamp_test
   const LightReceiver at{{0, 0, 0}, {}, true};
   const auto now = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 0), later = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 1e4);
@@ -226,12 +231,8 @@ double p_of(const Mean& a, const Mean& b) {
 }
 
 TEST_P(SourceKinds, AskingAndMeetingByChanceAreComplements) {
-  const auto scene = lamp_scene();
-  const SourceSpecs s = specs(*scene);
-  const Tracer tracer(scene);
-  const SpectralState state = make_state(std::vector<Band>{Band::rectangular("a", 0.55, 0.01)}, 0.01);
-  const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source(e, row().key(), tracer, state.size());
+  const Stage stage(*this, {0.55});
+  const Asked& source = stage.source;
   Pcg32 random(23);
   if (source.light().nature().delta) {
     for (int i = 0; i < 1000; ++i) {
@@ -275,13 +276,9 @@ class DistantKinds : public SourceKinds {};  // lamps are held to form factors i
 TEST_P(DistantKinds, SamplesAddUpToTheIrradiance) {
   // Irradiance of a horizontal plane: mean of radiance x cosine / density of the samples, against midpoint quadrature
   // of the radiance over the hemisphere.
-  const auto scene = lamp_scene();
-  const SourceSpecs s = specs(*scene);
-  const Tracer tracer(scene);
-  const std::vector<Band> bands{Band::rectangular("a", 0.45, 0.01), Band::rectangular("b", 0.65, 0.01)};
-  const SpectralState state = make_state(bands, 0.01);
-  const Environment e = bake_environment(s, tracer, false, state);
-  const Asked source(e, row().key(), tracer, state.size());
+  const Stage stage(*this, {0.45, 0.65});
+  const SpectralState& state = stage.state;
+  const Asked& source = stage.source;
   std::vector<double> by_samples(state.size(), 0.0), by_quadrature(state.size(), 0.0), square(state.size(), 0.0);
   Pcg32 random(4);
   const int n = 200000;

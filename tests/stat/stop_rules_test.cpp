@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "light/kinds/sun.h"
 #include "math/stats.h"
 #include "study/compare.h"
 #include "tests/support/area_kit.h"

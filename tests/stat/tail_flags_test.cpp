@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "light/kinds/sun.h"
 #include "math/stats.h"
 #include "sensor/quality.h"
 #include "tests/support/area_kit.h"

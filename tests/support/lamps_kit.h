@@ -1,5 +1,6 @@
 // Lamps for tests.
 #pragma once
+#include "light/kinds/lamps.h"
 #include "tests/support/radiometry_kit.h"
 
 namespace suite::test {

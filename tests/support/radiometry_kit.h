@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "light/kinds/sky.h"
+#include "light/kinds/sun.h"
 #include "optics/models.h"
 #include "scene/scene.h"
 #include "scheduler/scheduler.h"

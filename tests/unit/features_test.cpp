@@ -1,5 +1,7 @@
 // What a simulation says it uses and leaves alone.
 #include "scheduler/features.h"
+#include "light/kinds/lamps.h"
+#include "light/kinds/moon.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

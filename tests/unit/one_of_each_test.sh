@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # one_of_each_test.sh SOURCES
 # The decisions of transport stand once: where paths end by chance, what contributions share, where lights are asked,
-# which numbers are drawn, and where the tracer is called. Prints the list.
+# which numbers are drawn, and where the tracer is called. Kinds of lights are named by their own files, by the table that
+# collects their rows, and by the suns that a capture brings itself. Prints the list.
 set -u
 cd "$1" || exit 2
 failed=0
@@ -26,6 +27,8 @@ places "explicit light"      1 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 places "calls of the tracer" 4 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
+places "kinds of lights"      3 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
+  libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # The list would notice a second one: this test's own text has one of each pattern more.
 extra=$(grep -cE 'std::clamp\(brightness, kLeast, 1\.0\)' <<<'  return std::clamp(brightness, kLeast, 1.0);')
 [ "$extra" -eq 1 ] || { echo "the patterns find nothing"; failed=1; }

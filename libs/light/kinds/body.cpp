@@ -29,13 +29,6 @@ void read_disk(const Params& p, double usual_half_angle_deg, SunSpec& disk) {
   disk.disk_by_time = disk.time && !collimated && !half;
 }
 
-SceneFrame frame_of(const Scene& scene, const Where& where, const char* what) {
-  if (!scene.origin.given)
-    throw Error(where, std::string(what) + " needs a scene with a geodetic origin",
-                "give the scene an origin, or directions as {zenith_deg, azimuth_deg}");
-  return SceneFrame({scene.origin.latitude_deg, scene.origin.longitude_deg, scene.origin.ellipsoid_height_m});
-}
-
 Instant instant_of(const SourceTime& time) {
   try {
     return instant_from_utc(parse_iso8601(time.utc));

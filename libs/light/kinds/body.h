@@ -2,19 +2,16 @@
 // Moon are such; others can be.
 #pragma once
 #include "base/params.h"
+#include "light/earth.h"
 #include "light/kinds/sun.h"
 #include "light/light_spec.h"
 #include "motion/ephemeris.h"
-#include "motion/scene_frame.h"
 
 namespace suite {
 
 // `direction` {zenith_deg, azimuth_deg} or {time_utc}, and the disk: half_angle_deg, collimated.
 void read_disk(const Params& p, double usual_half_angle_deg, SunSpec& disk);
 
-// The frame of a scene for what needs to know where it is on the Earth. what: for the error, "a sun by date". Error at
-// `where` when the scene has no geodetic origin.
-SceneFrame frame_of(const Scene& scene, const Where& where, const char* what);
 // Error at the date when it is none.
 Instant instant_of(const SourceTime& time);
 // "sun at 2026-..: 30.000 degrees above the horizon, MORE".
