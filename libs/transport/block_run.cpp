@@ -28,11 +28,19 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
   for (uint32_t i = 0; i < block.problems(); ++i) {
     next_.push_back(sums.next(slot_of(i), block.scrambles));
     end_.push_back(to[problem_of(i)]);
-    keys_.push_back(SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i)));
+    const uint64_t key = SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i));
+    keys_.push_back(key);
+    whole_.push_back(block.scrambles == kAllScrambles);
+    for (uint32_t s = 0; s < kMostScrambles; ++s) {
+      streams_.emplace_back(key, s);
+      if (static_cast<int>(s) < sums.scrambles())
+        whole_[i] &= sums.taken(slot_of(i), static_cast<int>(s)) == dealt(next_[i], s);
+    }
   }
 }
 
 bool BlockRun::wants(size_t i, uint32_t sample) const {
+  if (whole_[i]) return true;
   const Deal d = deal(sample);
   return (block_.scrambles >> d.scramble & 1) && d.index >= sums_.taken(slot_of(i), static_cast<int>(d.scramble));
 }
@@ -89,8 +97,8 @@ void BlockRun::start(uint32_t p) {
   const size_t bins = pipeline_.state_.size();
   // Independent numbers: every sample is the first of a sequence of its own.
   const bool independent = pipeline_.options_.method == Method::paper;
-  const SampleStream stream =
-      independent ? SampleStream(hash_of(keys_[place], sample), 0) : SampleStream(keys_[place], scramble);
+  const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0)
+                                          : streams_[size_t{place} * kMostScrambles + scramble];
   const uint32_t number = independent ? 0 : index;
   float* const weights = &workspace_.weights[p * bins];
   const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {weights, bins});

@@ -41,11 +41,13 @@ class BlockRun {
   const Slots slots_;
   RunStatistics& statistics_;
   Pipeline::Workspace& workspace_;
-  const bool watched_;                // a rule looks at every sample
-  const bool plain_;                  // one sum a band
-  const float scale_;                 // that all samples of the capture have: the number of bins of time
-  std::vector<uint32_t> next_, end_;  // samples of each problem
-  std::vector<uint64_t> keys_;        // of its sample streams
+  const bool watched_;                 // a rule looks at every sample
+  const bool plain_;                   // one sum a band
+  const float scale_;                  // that all samples of the capture have: the number of bins of time
+  std::vector<uint32_t> next_, end_;   // samples of each problem
+  std::vector<uint8_t> whole_;         // it wants all samples from next_ on
+  std::vector<uint64_t> keys_;         // of its sample streams
+  std::vector<SampleStream> streams_;  // [problem][scramble]
 };
 
 }  // namespace suite
