@@ -152,7 +152,7 @@ constexpr Broken kBroken[] = {
     {"epoch: 2026-06-21T10:30:00Z", "epoch: 2026-06-31T10:30:00Z", "yaml:2:8", "2026-06 has no day 31"},
     {"columns: 10\n                rows: 8\n                pitch_um: 5",
      "columns: 100000\n                rows: 40000\n                pitch_um: 0.001", "yaml",
-     "the largest capture takes 1.65e+03 GB, and this machine has "},
+     "the largest capture takes 1.63e+03 GB, and this machine has "},
 };
 
 class PlatformInput : public testing::Test {
