@@ -48,6 +48,7 @@ class Layered final : public Atmosphere {
       : heights_(s.heights), offset_(s.scene_height), bins_(state.size()), beams_(std::move(beams)) {
     check(s);
     layers_ = heights_.size() - 1;
+    for (const double h : heights_) bounds_.push_back(h - offset_);
     const size_t n = layers_ * bins_;
     extinction_.assign(n, 0), rayleigh_.assign(n, 0), aerosol_.assign(n, 0), source_.assign(n, 0),
         above_.assign((layers_ + 1) * bins_, 0);
@@ -92,7 +93,32 @@ class Layered final : public Atmosphere {
     });
   }
 
+  std::span<const double> bounds() const override { return bounds_; }
+  Layer layer(size_t l) const override { return {{&extinction_[l * bins_], bins_}, {&source_[l * bins_], bins_}}; }
+  size_t beams() const override { return beams_.size(); }
+  void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
+    const Beam& beam = beams_[b];
+    const double cosine = dot(beam.direction, d);
+    std::fill(along.scattered.begin(), along.scattered.end(), 0.0f);
+    if (phase_) phase_->eval(std::clamp(cosine, -1.0, 1.0), along.scattered);
+    const float air = rayleigh_phase(cosine);
+    const auto rise = static_cast<float>(bounds_[l + 1] - from.z), slant = static_cast<float>(1 / beam.direction.z),
+               fall = static_cast<float>(-d.z / beam.direction.z);
+    const float *k = &extinction_[l * bins_], *r = &rayleigh_[l * bins_], *a = &aerosol_[l * bins_],
+                *above = &above_[(l + 1) * bins_];
+    for (size_t i = 0; i < bins_; ++i) {
+      along.scattered[i] = beam.irradiance[i] * (r[i] * air + a[i] * along.scattered[i]);
+      along.depth[i] = (above[i] + k[i] * rise) * slant;
+      along.slope[i] = k[i] * fall;
+    }
+  }
+
  private:
+  // 1/sr, of molecules.
+  static float rayleigh_phase(double cosine) {
+    constexpr double depolarisation = 0.0279, gamma = depolarisation / (2 - depolarisation);
+    return static_cast<float>(3 / (16 * kPi * (1 + 2 * gamma)) * (1 + 3 * gamma + (1 - gamma) * cosine * cosine));
+  }
   static void check(const AtmosphereSpec& s) {
     const size_t layers = s.heights.size() < 2 ? 0 : s.heights.size() - 1;
     if (layers < 1 || layers > 200)
@@ -160,9 +186,8 @@ class Layered final : public Atmosphere {
   // Calls visit(layer, height at the near end, length) for the pieces of a segment, from `from` on.
   template <class Visit>
   void walk(Vec3 from, Dir d, double distance, Visit visit) const {
-    constexpr double longest = 1e9;  // a horizontal ray leaves a flat layer nowhere
     double z = from.z + offset_, s = 0;
-    const double end = std::min(distance, longest);
+    const double end = std::min(distance, kLongestInAir);
     if (z >= heights_.back()) {
       if (!(d.z < 0)) return;
       s = (z - heights_.back()) / -d.z;
@@ -191,23 +216,19 @@ class Layered final : public Atmosphere {
   // depth along the piece, the integral of exp(-t - x s / l) over it is l (exp(-t) - exp(-t - x)) / x.
   void scatter(size_t layer, double z, double l, double mu, const Beam& beam, double cosine,
                std::span<const float> phase, std::span<const float> T, std::span<float> S) const {
-    constexpr double depolarisation = 0.0279, gamma = depolarisation / (2 - depolarisation);
-    const auto air =
-        static_cast<float>(3 / (16 * kPi * (1 + 2 * gamma)) * (1 + 3 * gamma + (1 - gamma) * cosine * cosine));
+    const float air = rayleigh_phase(cosine);
     const auto rise = static_cast<float>(heights_[layer + 1] - z), slant = static_cast<float>(1 / beam.direction.z),
                length = static_cast<float>(l);
     const auto growth = static_cast<float>(l * (1 - mu / beam.direction.z));
     const float *k = &extinction_[layer * bins_], *r = &rayleigh_[layer * bins_], *a = &aerosol_[layer * bins_],
                 *above = &above_[(layer + 1) * bins_];
     for (size_t i = 0; i < bins_; ++i) {
-      const float t = (above[i] + k[i] * rise) * slant, x = k[i] * growth, near = std::exp(-t);
-      const float mean =
-          std::fabs(x) < 2e-2f ? near * (1 - x * (0.5f - x * (1 / 6.0f))) : (near - std::exp(-t - x)) / x;
+      const float mean = mean_falling((above[i] + k[i] * rise) * slant, k[i] * growth);
       S[i] += T[i] * beam.irradiance[i] * (r[i] * air + a[i] * phase[i]) * length * mean;
     }
   }
 
-  std::vector<double> heights_;
+  std::vector<double> heights_, bounds_;  // above sea level; in the scene
   double offset_;
   size_t bins_, layers_ = 0;
   std::vector<Beam> beams_;

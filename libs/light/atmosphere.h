@@ -1,5 +1,6 @@
-// What the air does to light between two points: transmittance and path radiance. One interface, so that atmospheres
-// computed by other programs can stand in for the layered one here.
+// What the air does to light between two points: transmittance and path radiance; and the same air as layers, for walks
+// through air and media together. One interface, so that atmospheres computed by other programs can stand in for the
+// layered one here.
 //
 // The layered atmosphere assumes: plane-parallel homogeneous layers; sunlight and moonlight scattered once on the way
 // (no multiple scattering, nothing scattered from the ground); the beam to the scattering points is not shadowed by the
@@ -9,6 +10,7 @@
 // the profile of the U.S. Standard Atmosphere 1976; single scattering and emission of a layer, e.g. K.-N. Liou, "An
 // introduction to atmospheric radiation", 2002, equations 3.4.9 and 4.2.9.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,7 +56,34 @@ class Atmosphere {
   virtual void transmittance(Vec3 from, Dir direction, double distance, std::span<float> T) const = 0;
   // The same, and the radiance S that the air of the segment sends back to `from`, W/(m2 sr um).
   virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
+
+  // Heights that bound the layers, z in the scene, m, ascending: layer l lies between bounds l and l + 1. The lowest
+  // one goes on below the first bound; above the last bound, or without bounds, there is no air.
+  virtual std::span<const double> bounds() const = 0;
+  // Per bin.
+  struct Layer {
+    std::span<const float> extinction;  // 1/m
+    std::span<const float> source;      // what it emits over its extinction, W/(m2 sr um)
+  };
+  virtual Layer layer(size_t layer) const = 0;
+  // Light from above that the layers scatter once.
+  virtual size_t beams() const = 0;
+  // One of them along a ray that goes from a point in a layer in a unit direction. Per bin.
+  struct BeamAlong {
+    std::span<float> scattered;  // what the layer would send back to `from` if nothing dimmed it, W/(m3 sr um)
+    std::span<float> depth;      // optical depth of the beam where it comes to `from`
+    std::span<float> slope;      // growth of that along the ray within the layer, 1/m
+  };
+  virtual void beam(size_t beam, size_t layer, Vec3 from, Dir direction, BeamAlong along) const = 0;
 };
+
+// The longest way through air, m: a level ray leaves a flat layer nowhere.
+inline constexpr double kLongestInAir = 1e9;
+// Mean of exp(-t - x s) over s in 0..1.
+inline float mean_falling(float t, float x) {
+  const float near = std::exp(-t);
+  return std::fabs(x) < 2e-2f ? near * (1 - x * (0.5f - x * (1 / 6.0f))) : (near - std::exp(-t - x)) / x;
+}
 
 // The beams' spectra must live as long. Error: heights not ascending, more than 200 layers, lists of the wrong length,
 // negative depths, albedo above 1.

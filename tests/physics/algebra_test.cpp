@@ -79,6 +79,11 @@ class Air final : public Atmosphere {
     transmittance(from, direction, distance, T);
     S[0] = 1;
   }
+  // No walk goes through it.
+  std::span<const double> bounds() const override { return {}; }
+  Layer layer(size_t) const override { return {}; }
+  size_t beams() const override { return 0; }
+  void beam(size_t, size_t, Vec3, Dir, BeamAlong) const override {}
 };
 
 TEST(Algebra, ThroughputsAreMultipliedInTheOrderOfThePath) {

@@ -85,7 +85,9 @@ float VolumeField::blackbody(size_t bin, double kelvin) const {
 }
 
 void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background,
-                      double time) {
+                      double time, std::span<const double> bounds) {
+  bounds_ = bounds;
+  layer_ = kNone, zone_end_ = kForever;
   cursors_.clear();
   background_ = background;
   begin_ = end_ = 0;
@@ -93,6 +95,9 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
   field_ = &field;
   origin_ = origin, direction_ = direction;
   time_ = time;
+  if (!bounds.empty())
+    enter_zone(std::max(static_cast<size_t>(std::upper_bound(bounds.begin(), bounds.end(), origin.z) - bounds.begin()),
+                        size_t{1}));
   if (!field.periodic()) {
     piece_end_ = length;
     add_cursors(origin, 0, length);
@@ -114,6 +119,16 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
   const Periodic& p = *field.periodic();
   cell_[0] = std::floor((at.x - p.low.x) / p.size.x);
   cell_[1] = std::floor((at.y - p.low.y) / p.size.y);
+}
+
+// The layer below bound `zone`, or what lies above the last one.
+void FieldWalk::enter_zone(size_t zone) {
+  zone_ = zone;
+  const bool above = zone == bounds_.size();
+  layer_ = above ? kNone : static_cast<uint32_t>(zone - 1);
+  zone_end_ = kForever;
+  if (direction_.z > 0 && !above) zone_end_ = (bounds_[zone] - origin_.z) / direction_.z;
+  if (direction_.z < 0 && zone > 1) zone_end_ = (bounds_[zone - 1] - origin_.z) / direction_.z;
 }
 
 // The next piece of a ray through a periodic scene: what lies before and behind the grids, or the way through one cell.
@@ -232,9 +247,10 @@ bool FieldWalk::next() {
     begin_ = end_;
     if (!(begin_ < length_)) return false;
     while (begin_ >= piece_end_) next_piece();
+    while (begin_ >= zone_end_) enter_zone(direction_.z > 0 ? zone_ + 1 : zone_ - 1);
     contents_.clear();
     if (background_ != kNone) contents_.push_back({background_, 1, 0});
-    end_ = piece_end_;
+    end_ = std::min(piece_end_, zone_end_);
     for (Cursor& c : cursors_) {
       if (c.enter == kForever) continue;
       if (begin_ < c.enter) {
@@ -250,7 +266,7 @@ bool FieldWalk::next() {
       contents_.push_back({g.media[g.kind.empty() ? 0 : g.kind[c.index]], g.density[c.index],
                            g.temperature.empty() ? 0 : g.temperature[c.index]});
     }
-    if (!contents_.empty()) return true;
+    if (!contents_.empty() || layer_ != kNone) return true;
   }
 }
 

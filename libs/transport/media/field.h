@@ -1,5 +1,5 @@
-// What fills space along a ray: the medium that holds there and the voxel grids on top of it, as stretches of constant
-// contents. Everything in double.
+// What fills space along a ray: the medium that holds there, the voxel grids on top of it and the layers of the air, as
+// stretches of constant contents. Everything in double.
 //
 // In a periodic scene the grids repeat themselves with it: the walk goes from cell to cell of the scene, each of which
 // holds what sticks out of the others, too. Grids that move stand where the ray's time finds them.
@@ -11,6 +11,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "motion/track.h"
@@ -81,10 +82,12 @@ inline constexpr double kEndless = 1e30;  // m, for an infinite way: finite when
 class FieldWalk {
  public:
   // From origin along a unit direction to `length` (infinity allowed). background: medium without cells, or kNone.
-  // time: s, of the ray.
-  void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background, double time);
+  // time: s, of the ray. bounds: heights of layers (Atmosphere::bounds), which must live as long; none = no air.
+  void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background, double time,
+             std::span<const double> bounds = {});
   // The next stretch that holds anything; false at the end.
   bool next();
+  uint32_t layer() const { return layer_; }  // of the air; kNone = outside
   double begin() const { return begin_; }
   double end() const { return end_; }
   const std::vector<Constituent>& contents() const { return contents_; }
@@ -103,6 +106,7 @@ class FieldWalk {
   };
   void add_cursors(Vec3 origin, double begin, double end);
   void next_piece();
+  void enter_zone(size_t zone);
   static bool clip(Cursor& c, double begin, double end);
   static double plane(const Cursor& c, int axis, int at);
   static void enter(Cursor& c);
@@ -120,6 +124,11 @@ class FieldWalk {
   double grids_begin_ = 0, grids_end_ = 0;  // of the ray between the heights that have grids
   double cell_[2] = {};                     // of the periodic scene, whole numbers
   uint32_t cells_ = 0;
+  // Zone n lies between bounds n - 1 and n; the first one goes on below.
+  std::span<const double> bounds_;
+  size_t zone_ = 0;
+  double zone_end_ = 0;
+  uint32_t layer_ = kNone;
 };
 
 }  // namespace suite

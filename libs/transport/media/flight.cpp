@@ -5,6 +5,10 @@
 
 namespace suite {
 
+namespace {
+constexpr double kNear = 0.01;  // depth of scattering
+}  // namespace
+
 Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability,
                  const Atmosphere* air)
     : field_(field),
@@ -13,9 +17,12 @@ Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const
       bins_of_knots_(optics.state().knots),
       probability_(knot_probability.begin(), knot_probability.end()),
       depth_(media_.size()),
+      air_(air, optics.state().size()),
       tau_(optics.state().size()),
       emission_(optics.state().size()),
-      air_(air, field, optics, knot_probability) {
+      sent_(optics.state().size()),
+      place_(optics.state().size()),
+      knots_(probability_.size()) {
   for (const BakedMedium& m : media_) {
     any_emission_ = any_emission_ || !m.blackbody.empty();
     absorbs_.push_back(std::any_of(m.absorption.begin(), m.absorption.end(), [](float a) { return a > 0; }));
@@ -33,24 +40,19 @@ bool Flights::emits(const Constituent& c) const {
   return absorbs_[c.medium] && (c.kelvin > 0 || !media_[c.medium].blackbody.empty());
 }
 
-void Flights::pass_run() {
-  for (const Constituent& c : run_) depth_[c.medium] += c.density;
-  run_.clear();
-}
-
-Flights::Result Flights::fly(LivePath& live, double length, uint32_t background, Vec3 u, std::span<float> through,
+Flights::Result Flights::fly(LivePath& live, double length, uint32_t background, Vec2 u, std::span<float> through,
                              std::span<float> emitted) {
   const size_t own = bins_of_knots_[static_cast<size_t>(live.knot)];
   std::fill(depth_.begin(), depth_.end(), 0.0);
   run_.clear();
   result_ = {false, length};
   if (air_.any()) {
-    air_.begin(live);
-    std::fill(through.begin(), through.end(), 1.0f);
-    result_.dense = true;
+    air_.begin();
+    stretch_.clear();
+    run_layer_ = kNone;
   }
   double left = -std::log1p(-u.x);
-  walk_.start(field_, live.origin, live.direction, length, background, live.time);
+  walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.bounds());
   while (!result_.scattered && walk_.next()) {
     const std::vector<Constituent>& contents = walk_.contents();
     double way = walk_.end() - walk_.begin(), rate = 0;
@@ -62,78 +64,127 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
       left -= rate * way;
     }
     way = std::min(way, kEndless);
-    // Stretches of one medium at one temperature make one run: emission needs only the mass passed.
-    const bool same = run_.size() == 1 && contents.size() == 1 && run_[0] == contents[0];
-    if (!same) {
+    if (!same_run()) {
       end_run(live, u.y, emitted);
-      for (const Constituent& c : contents) run_.push_back({c.medium, 0, c.kelvin});
-      run_begin_ = walk_.begin();
+      begin_run(live);
     }
     for (size_t c = 0; c < contents.size(); ++c) run_[c].density += contents[c].density * way;
+    run_length_ += way;
   }
   end_run(live, u.y, emitted);
   if (air_.any()) {
-    clear_emitted(emitted);
-    air_.finish(result_.distance, depth_, background, live.time, u.z, through, emitted);
+    air_.transmittance(through);
+    result_.dense = true;
   }
   weigh(live, through);
   return result_;
 }
 
-void Flights::clear_emitted(std::span<float> emitted) {
-  if (!result_.emits) std::fill(emitted.begin(), emitted.end(), 0.0f);
-  result_.emits = true;
+// Stretches of one medium at one temperature make one run: its emission needs only the mass passed. In a layer of the
+// air, which shines, too, densities must be alike.
+bool Flights::same_run() const {
+  const std::vector<Constituent>& contents = walk_.contents();
+  if (!air_.any()) return run_.size() == 1 && contents.size() == 1 && run_[0] == contents[0];
+  return walk_.layer() == run_layer_ &&
+         std::equal(contents.begin(), contents.end(), stretch_.begin(), stretch_.end(),
+                    [](const Constituent& a, const Constituent& b) { return a == b && a.density == b.density; });
+}
+
+void Flights::begin_run(const LivePath& live) {
+  for (const Constituent& c : walk_.contents()) run_.push_back({c.medium, 0, c.kelvin});
+  run_length_ = 0;
+  if (!air_.any()) return;
+  stretch_ = walk_.contents();
+  run_layer_ = walk_.layer();
+  air_.enter(run_layer_, live.origin + live.direction * walk_.begin(), live.direction);
+}
+
+bool Flights::run_shines() const {
+  if (run_layer_ != kNone || (air_.any() && !run_.empty())) return run_length_ > 0;
+  return any_emission_ && std::any_of(run_.begin(), run_.end(), [&](const Constituent& c) { return emits(c); });
 }
 
 void Flights::end_run(const LivePath& live, double u, std::span<float> emitted) {
-  if (any_emission_ && std::any_of(run_.begin(), run_.end(), [&](const Constituent& c) { return emits(c); })) {
-    clear_emitted(emitted);
+  if (run_shines()) {
+    if (!result_.emits) std::fill(emitted.begin(), emitted.end(), 0.0f);
+    result_.emits = true;
     emit(live, u, emitted);
   }
-  pass_run();
+  for (const Constituent& c : run_) depth_[c.medium] += c.density;
+  run_.clear();
 }
 
-// What the run emits towards the start of the flight.
+// What the run sends towards the start of the flight.
 void Flights::emit(const LivePath& live, double u, std::span<float> emitted) {
-  const size_t n = emitted.size();
-  // Optical depth of absorption in the run, and the source function that goes with it.
+  const bool spectral = optics_.spectral_flights();
+  media_emission();
+  if (spectral) set_places(live, u);
+  if (air_.any())
+    air_.pass(run_length_, tau_, emission_, u, sent_, mean_.most > 0 ? std::span(place_) : std::span<double>{});
+  else
+    emit_media(u);
+  for (size_t i = 0; i < emitted.size(); ++i)
+    if (sent_[i] > 0) emitted[i] += static_cast<float>(sent_[i] * (spectral ? ratio(i, place_[i]) : 1));
+}
+
+void Flights::emit_media(double u) {
+  for (size_t i = 0; i < sent_.size(); ++i) {
+    sent_[i] = 0;
+    if (!(emission_[i] > 0)) continue;
+    const double tau = tau_[i], reached = -std::expm1(-tau);
+    double absorbed = 0;
+    for (size_t m = 0; m < depth_.size(); ++m) absorbed += depth_[m] * double{media_[m].absorption[i]};
+    sent_[i] = std::exp(-absorbed) * reached / tau * emission_[i];
+    if (optics_.spectral_flights()) place_[i] = place_in_fall(u, tau);
+  }
+}
+
+// Depth of absorption of the media in the run, and what they emit in it if nothing weakens that.
+void Flights::media_emission() {
   std::fill(tau_.begin(), tau_.end(), 0.0f);
   std::fill(emission_.begin(), emission_.end(), 0.0f);
   for (const Constituent& c : run_) {
+    if (!absorbs_[c.medium]) continue;
     const BakedMedium& m = media_[c.medium];
     const float amount = static_cast<float>(c.density);
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i < tau_.size(); ++i) {
       const float tau = amount * m.absorption[i];
       tau_[i] += tau;
       emission_[i] += tau * field_.source(m, c.kelvin, i);
     }
   }
-  const std::span<const float> dimmed = air_.any() ? air_.reference(run_begin_) : std::span<const float>{};
-  const size_t knots = bins_of_knots_.size();
-  double before[kMaxKnots] = {}, within[kMaxKnots] = {};
-  if (optics_.spectral_flights())
-    for (size_t k = 0; k < knots; ++k) {
-      before[k] = scattering_depth(bins_of_knots_[k]);
-      within[k] = 0;
-      for (const Constituent& c : run_) within[k] += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
-    }
-  for (size_t i = 0; i < n; ++i) {
-    if (!(emission_[i] > 0)) continue;
-    const double tau = tau_[i], reached = -std::expm1(-tau);
-    double absorbed = 0;
-    for (size_t m = 0; m < depth_.size(); ++m) absorbed += depth_[m] * double{media_[m].absorption[i]};
-    double ratio = 1;
-    if (optics_.spectral_flights()) {
-      const double share = std::min(1.0, -std::log1p(-u * reached) / tau);  // of the run, up to the place that emits
-      double scattered = scattering_depth(i), mixture = 0;
-      for (const Constituent& c : run_) scattered += share * c.density * double{media_[c.medium].scattering[i]};
-      for (size_t k = 0; k < knots; ++k)
-        mixture += probability_[k] * live.relative[k] * std::exp(scattered - before[k] - share * within[k]);
-      ratio = 1 / mixture;
-    }
-    if (!dimmed.empty()) ratio *= dimmed[i];
-    emitted[i] += static_cast<float>(std::exp(-absorbed) * reached / tau * emission_[i] * ratio);
+}
+
+// Prepares ratio() for the run, for places not far from a share of its length.
+void Flights::set_places(const LivePath& live, double share) {
+  mean_ = {};
+  for (size_t k = 0; k < knots_.size(); ++k) {
+    knots_[k] = {probability_[k] * live.relative[k], scattering_depth(bins_of_knots_[k]), 0};
+    for (const Constituent& c : run_)
+      knots_[k].within += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
   }
+  if (!air_.any()) return;
+  mean_.place = share;
+  mean_.offset = knots_[0].before;
+  for (const Knot& k : knots_) mean_.offset = std::min(mean_.offset, k.before);
+  for (const Knot& k : knots_) {
+    const double part = k.share * std::exp(mean_.offset - k.before - share * k.within);
+    mean_.sum += part, mean_.slope += part * k.within, mean_.bend += part * k.within * k.within;
+    mean_.most = std::max(mean_.most, k.within);
+  }
+}
+
+// R of a bin at a place in the run. share: of its length.
+double Flights::ratio(size_t bin, double share) const {
+  double scattered = scattering_depth(bin), mixture = 0;
+  for (const Constituent& c : run_) scattered += share * c.density * double{media_[c.medium].scattering[bin]};
+  // In air runs are many and short; the mixture of all knots is then known well enough from one place: its series there
+  // is true to some 1e-7.
+  const double off = share - mean_.place;
+  if (air_.any() && std::fabs(off) * mean_.most < kNear)
+    return std::exp(mean_.offset - scattered) / (mean_.sum - off * (mean_.slope - 0.5 * off * mean_.bend));
+  for (const Knot& k : knots_) mixture += k.share * std::exp(scattered - k.before - share * k.within);
+  return 1 / mixture;
 }
 
 // Weighs the path for the way in depth_: r_k, the spectrum, the densities that later sources share.

@@ -1,5 +1,5 @@
-// One flight of a path through media: how far it gets before it is scattered, what the way does to every wavelength,
-// and what the media on the way emit.
+// One flight of a path through media and the layers of the air: how far it gets before it is scattered, what the way
+// does to every wavelength, and what shines on the way.
 //
 // Only scattering ends a flight; absorption weakens it. With s_k(x) the scattering coefficient at knot k, t_k(t) its
 // integral over the way and a(t) that of absorption, a flight drawn at knot h has the density
@@ -10,15 +10,16 @@
 // contents
 //   (1 - exp(-da_i)) J_i / a_i exp(-a_i(begin)) R_i,   R_i = exp(-t_i) / sum P_k r_k exp(-t_k),
 // with R taken at a place drawn from the stretch's own emission; R = 1, and nothing is left to chance, where scattering
-// does not depend on wavelength. An isothermal medium so returns B(T) without noise.
+// does not depend on wavelength. An isothermal medium so returns B(T) without noise. The air only weakens flights,
+// exactly for every bin, and shines (air_light.h); it has no part in t and R.
 // Based on: B. Miller, I. Georgiev, W. Jarosz, "A null-scattering path integral formulation of light transport", ACM
 // TOG 38(4), 2019 (spectral weights; null collisions are not needed where optical depths are sums); Wilkie et al. 2014.
 #pragma once
 #include <span>
 
 #include "surface/optics.h"
+#include "transport/media/air_light.h"
 #include "transport/media/field.h"
-#include "transport/media/flight_air.h"
 #include "transport/media/live_path.h"
 
 namespace suite {
@@ -39,8 +40,8 @@ class Flights {
   };
   // Flies path `live` from its origin along its direction to at most `length` in `background`. through: receives what
   // the way does to every bin (without the scattering coefficient of the bin where it is scattered); emitted: the
-  // emission of the way as seen from its start. u: numbers in [0, 1) for the way, for emission and for the air.
-  Result fly(LivePath& live, double length, uint32_t background, Vec3 u, std::span<float> through,
+  // light of the way as seen from its start. u: numbers in [0, 1) for the way and for what shines on it.
+  Result fly(LivePath& live, double length, uint32_t background, Vec2 u, std::span<float> through,
              std::span<float> emitted);
   // Where the last flight was scattered.
   const std::vector<Constituent>& contents() const { return walk_.contents(); }
@@ -51,10 +52,15 @@ class Flights {
   bool transmittance(std::span<const double> depth, std::span<float> transmission) const;
 
  private:
-  void emit(const LivePath& live, double u, std::span<float> emitted);
-  void clear_emitted(std::span<float> emitted);
+  bool same_run() const;
+  void begin_run(const LivePath& live);
   void end_run(const LivePath& live, double u, std::span<float> emitted);
-  void pass_run();
+  bool run_shines() const;
+  void emit(const LivePath& live, double u, std::span<float> emitted);
+  void media_emission();
+  void emit_media(double u);
+  void set_places(const LivePath& live, double share);
+  double ratio(size_t bin, double share) const;
   double scattering_depth(size_t bin) const;
   void weigh(LivePath& live, std::span<float> through);
   double join_knots(LivePath& live, bool scattered, double own_rate);
@@ -68,11 +74,26 @@ class Flights {
   bool any_emission_ = false;
   std::vector<uint8_t> absorbs_;  // per medium
   FieldWalk walk_;
-  std::vector<double> depth_;          // per medium: density integrated so far
-  std::vector<Constituent> run_;       // stretches alike in a row; density holds the integral
-  std::vector<float> tau_, emission_;  // per bin, scratch
-  double run_begin_ = 0;               // m
-  FlightAir air_;
+  std::vector<double> depth_;  // per medium: density integrated so far
+  AirLight air_;
+  // Stretches alike in a row.
+  std::vector<Constituent> run_;      // density holds the integral
+  std::vector<Constituent> stretch_;  // the first of them, where there is air
+  uint32_t run_layer_ = kNone;
+  double run_length_ = 0;  // m
+  // Scratch, per bin: depth and emission of the media in the run; what shines in it, and where from, 0..1.
+  std::vector<float> tau_, emission_;
+  std::vector<double> sent_, place_;
+  struct Knot {
+    double share;           // P_k r_k
+    double before, within;  // depth of scattering up to the run and in it
+  };
+  std::vector<Knot> knots_;
+  // exp(-offset) times: sum P_k r_k exp(-t_k) at a place in the run, minus its derivative, and its second derivative.
+  struct Mean {
+    double place = 0, offset = 0, sum = 0, slope = 0, bend = 0;
+    double most = 0;  // depth of scattering in the run at a knot
+  } mean_;
   Result result_;  // of the flight under way
 };
 

@@ -44,7 +44,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
-  const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1], u[3]}, through, emitted);
+  const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
                 flown.dense || flown.scale != 1,
