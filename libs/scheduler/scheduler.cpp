@@ -30,6 +30,8 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 constexpr size_t kBlocksInFlight = 1024;
 constexpr size_t kPrimedInFlight = 16;  // each has working memory of its own
 constexpr double kBytesInFlight = 256 << 20;
+// A capture that may take more paths than this is delivered by itself, as soon as it is done.
+constexpr double kPathsInFlight = 1 << 20;
 
 // One run of all captures: what changes from capture to capture.
 class Job {
@@ -166,12 +168,14 @@ class Job {
     const Clock::time_point begun = Clock::now();
     Batch batch;
     size_t blocks = 0;
-    double bytes = 0;
+    double bytes = 0, paths = 0;
     // Whether more may come depends on nothing that differs between processes or numbers of threads but memory.
     const auto more = [&] {
       return blocks < kBlocksInFlight && bytes < kBytesInFlight && primed_.size() < kPrimedInFlight;
     };
-    while (batch.size() < left.size() && (batch.empty() || more())) {
+    while (batch.size() < left.size()) {
+      paths += most_paths(left[batch.size()]);
+      if (!batch.empty() && (!more() || paths > kPathsInFlight)) break;
       if (options_.budget.seconds > 0 && !cap_ && !batch.empty()) break;  // the first pilot tells what time is worth
       const double before = heap_in_use();
       batch.push_back(take_up(left[batch.size()]));
@@ -193,6 +197,11 @@ class Job {
         deliver(*c), c.reset();
     if (primed_.size() > 1) primed_.erase(primed_.begin(), primed_.end() - 1);
     return left.subspan(batch.size());
+  }
+
+  double most_paths(const Item& item) const {
+    const Goals goals = goals_of(*sensors_[item.sensor], capture_of(item), budget());
+    return static_cast<double>(capture_of(item).problems()) * goals.all.max_paths;
   }
 
   // One round of every capture that is not finished, all of them at once. False when there is nothing more to run.
