@@ -6,6 +6,7 @@
 
 #include "spectral/planck.h"
 #include "tests/support/media_kit.h"
+#include "transport/media/flight.h"
 
 namespace suite::test {
 namespace {
@@ -178,6 +179,113 @@ TEST(AirAndMedia, SunlightScatteredOnceIsTheIntegral) {
     EXPECT_NEAR(got.mean, expected, kSigmas * got.error + 5e-3 * expected) << b;
     EXPECT_LT(got.error, 0.05 * expected);
     EXPECT_GT(clear, 1.5 * expected);  // so that the air matters
+  }
+}
+
+// Three layers of haze.
+AtmosphereSpec low_haze() {
+  AtmosphereSpec a;
+  a.heights = {0, 60, 400, 5000};
+  AtmosphereSpec::Aerosol haze;
+  haze.depth_550 = 2;
+  haze.scale_height = 300;
+  haze.phase = hg(0.6);
+  a.aerosol = haze;
+  return a;
+}
+// A warm fog bank through the lowest bound of the haze.
+double fog_at(Vec3 p) {
+  if (std::fabs(p.y) > 200 || p.z < 20 || p.z > 120 || p.x < 40 || p.x > 240) return 0;
+  return p.x < 90 ? 0.5 : p.x < 140 ? 0 : p.x < 190 ? 2 : 1;
+}
+std::shared_ptr<Scene> fog_bank(bool spectral) {
+  Medium fog = medium(Curve({0.4, 0.7}, {0.002, 0.0005}, Outside::hold),
+                      spectral ? Curve({0.4, 0.7}, {0.02, 0.004}, Outside::hold) : Curve::constant(0.01), hg(0.8));
+  fog.temperature_k = 1500;
+  return scene_with(fog, grid_of({4, 1, 1}, translation({40, -200, 20}) * scaling({50, 400, 100}),
+                                 [](uint32_t i, uint32_t, uint32_t) {
+                                   return fog_at({50 + 50.0 * i, 0, 50});
+                                 }));
+}
+
+// What flights along a ray bring, per bin: light from the way, and what they leave of light from its end.
+struct Brought {
+  std::vector<RunningStats> light, left;
+};
+Brought by_flights(const Scene& scene, const Optics& optics, const Atmosphere& air, const Ray& ray, double length) {
+  const VolumeField field(scene, optics.state());
+  const size_t n = optics.state().size(), knots = optics.state().knots.size();
+  const std::vector<double> probability(knots, 1.0 / static_cast<double>(knots));
+  Flights flights(field, optics, probability, &air);
+  Brought all{std::vector<RunningStats>(n), std::vector<RunningStats>(n)};
+  Pcg32 random(11);
+  std::vector<float> through(n), emitted(n);
+  for (int i = 0; i < 60000; ++i) {
+    std::vector<double> light(n), left(n);
+    for (size_t k = 0; k < knots; ++k) {
+      LivePath live;
+      live.origin = ray.origin, live.direction = ray.direction;
+      std::fill_n(live.relative, knots, 1.0);
+      std::fill_n(live.throughput, knots, 1.0);
+      live.knot = static_cast<int>(k);
+      const double u = random.uniform(), v = random.uniform();
+      const Flights::Result flown = flights.fly(live, length, kNone, {u, v}, through, emitted);
+      for (size_t b = 0; b < n; ++b) {
+        if (flown.emits) light[b] += probability[k] * emitted[b];
+        if (!flown.scattered) left[b] += probability[k] * flown.scale * (flown.dense ? through[b] : 1);
+      }
+    }
+    for (size_t b = 0; b < n; ++b) all.light[b].add(light[b]), all.left[b].add(left[b]);
+  }
+  return all;
+}
+
+TEST(AirAndMedia, AFogBankInSunlitHazeIsTheIntegral) {
+  // Level, up, more steeply than the sun stands, and down from above the air, each through cells of several densities.
+  const Ray rays[] = {{{0, 0, 30}, normalized(Vec3{1, 0.1, 0.02}), 0},
+                      {{0, 0, 10}, normalized(Vec3{1, 0.1, 0.4}), 0},
+                      {{150, 0, -5}, normalized(Vec3{0.15, 0, 1}), 0},
+                      {{-7900, 0, 6000}, normalized(Vec3{8100, 0, -5950}), 0}};
+  for (const bool spectral : {false, true}) {
+    const auto scene = fog_bank(spectral);
+    const Optics optics(*scene, make_state(std::vector<Band>{Band::rectangular("b", 0.55, 0.2)}, 0.05, 0, 2));
+    ASSERT_EQ(optics.spectral_flights(), spectral);
+    const SpectralState& state = optics.state();
+    const BakedMedium& fog = optics.media()[0];
+    const std::vector<float> sun(state.size(), 1800);
+    const auto air = make_layered_atmosphere(low_haze(), state, {{dir_from_angles(0.9, 2), sun.data()}});
+    std::vector<float> T(state.size()), S(state.size());
+    for (const Ray& ray : rays) {
+      const double begin = ray.origin.z > 1000 ? 9000 : 0, length = ray.origin.z > 1000 ? 10400 : 600;
+      // By parts that the atmosphere knows: S grows by T dS, dimmed by the fog up to there.
+      constexpr double kStep = 0.02;
+      air->path(ray.origin, ray.direction, begin, T, S);
+      std::vector<double> light(S.begin(), S.end()), before = light, fog_light(state.size()), depth(state.size());
+      for (double s = begin; s < length - 0.5 * kStep; s += kStep) {
+        const double mass = fog_at(ray.origin + ray.direction * (s + 0.5 * kStep)) * kStep;
+        air->path(ray.origin, ray.direction, s + kStep, T, S);
+        for (size_t b = 0; b < state.size(); ++b) {
+          const double tau = mass * (double{fog.absorption[b]} + fog.scattering[b]);
+          const double dimmed = std::exp(-depth[b] - 0.5 * tau),
+                       own = dimmed * T[b] * mass * double{fog.absorption[b]} * fog.blackbody[b];
+          light[b] += dimmed * (S[b] - before[b]) + own;
+          fog_light[b] += own;
+          depth[b] += tau;
+          before[b] = S[b];
+        }
+      }
+      const Brought got = by_flights(*scene, optics, *air, ray, length);
+      for (size_t b = 0; b < state.size(); ++b) {
+        SCOPED_TRACE(strf("spectral %d, from z = %g, bin %zu", spectral, ray.origin.z, b));
+        const double error = got.light[b].stderr_of_mean(), left = std::exp(-depth[b]) * T[b];
+        const double tolerance = kSigmas * error + 2e-4 * light[b];
+        EXPECT_NEAR(got.light[b].mean(), light[b], tolerance);
+        EXPECT_NEAR(got.left[b].mean(), left, kSigmas * got.left[b].stderr_of_mean() + 2e-5 * left);
+        EXPECT_LT(error, 0.01 * light[b]);
+        // Negative control: air that the fog does not dim would be seen.
+        EXPECT_GT(S[b] + fog_light[b], light[b] + 2 * tolerance);
+      }
+    }
   }
 }
 

@@ -4,11 +4,24 @@
 
 namespace suite {
 
+namespace {
+constexpr float kThin = 2e-2f;  // depths up to which series of three terms hold to the last bits of a float
+
+float exp_thin(float x) { return 1 - x * (1 - x * (0.5f - x * (1 / 6.0f))); }  // exp(-x)
+float mean_thin(float x) { return 1 - x * (0.5f - x * (1 / 6.0f)); }           // (1 - exp(-x)) / x
+}  // namespace
+
+double place_in_fall(double u, double fall) {
+  if (fall < 0) return 1 - place_in_fall(1 - u, -fall);
+  return fall > 0 ? std::min(1.0, -std::log1p(-u * -std::expm1(-fall)) / fall) : u;
+}
+
 AirLight::AirLight(const Atmosphere* air, size_t bins) : air_(air) {
   if (!air) return;
-  left_.resize(bins), passed_.resize(bins);
+  for (auto* v : {&left_, &passed_, &grow_, &keep_, &fall_}) v->resize(bins);
   beams_.resize(air->beams());
-  for (Part& b : beams_) b.scattered.resize(bins), b.depth.resize(bins), b.slope.resize(bins);
+  for (Scattered& b : beams_)
+    for (auto* v : {&b.light, &b.depth, &b.slope, &b.near}) v->resize(bins);
 }
 
 void AirLight::begin() {
@@ -18,55 +31,68 @@ void AirLight::begin() {
 }
 
 void AirLight::enter(uint32_t layer, Vec3 from, Dir direction) {
-  if (layer != kNone && layer != layer_)
-    for (size_t b = 0; b < beams_.size(); ++b)
-      air_->beam(b, layer, from, direction, {beams_[b].scattered, beams_[b].depth, beams_[b].slope});
+  if (layer != kNone && layer != layer_) {
+    air_here_ = air_->layer(layer);
+    for (size_t b = 0; b < beams_.size(); ++b) {
+      Scattered& s = beams_[b];
+      air_->beam(b, layer, from, direction, {s.light, s.depth, s.slope});
+      for (size_t i = 0; i < s.near.size(); ++i) s.near[i] = std::exp(-s.depth[i]);
+    }
+  }
   layer_ = layer;
 }
 
-void AirLight::shine(size_t part, double length, std::span<const float> depth, std::span<const float> emission,
-                     std::span<float> fall, std::span<double> sent) const {
-  const size_t n = sent.size();
+void AirLight::pass(double length, std::span<const float> depth, std::span<const float> emission, double u,
+                    std::span<double> sent, std::span<double> place) {
   const auto way = static_cast<float>(std::min(length, kLongestInAir));
-  if (layer_ == kNone) {  // media alone, above the air
-    for (size_t i = 0; i < n; ++i) {
-      fall[i] = depth[i];
-      sent[i] = part == 0 ? left_[i] * emission[i] * mean_falling(0, fall[i]) : 0;
-    }
-    return;
+  add_warm(way, depth, emission, sent);
+  fall_ = grow_;
+  std::fill(place.begin(), place.end(), u);
+  if (layer_ != kNone)
+    for (Scattered& b : beams_) add_beam(b, way, sent, place);
+  for (size_t i = 0; i < place.size(); ++i) {
+    const double v = place[i], x = fall_[i];
+    place[i] =
+        std::fabs(x) < kThin ? v - 0.5 * x * v * (1 - v) * (1 - x * (1 / 3.0) * (1 - 2 * v)) : place_in_fall(v, x);
   }
-  const Atmosphere::Layer layer = air_->layer(layer_);
-  const float *k = layer.extinction.data(), *source = layer.source.data();
-  if (part == 0) {
-    for (size_t i = 0; i < n; ++i) {
-      const float tau = k[i] * way;
-      fall[i] = depth[i] + tau;
-      sent[i] = left_[i] * (emission[i] + tau * source[i]) * mean_falling(0, fall[i]);
+  for (size_t i = 0; i < left_.size(); ++i) left_[i] *= keep_[i];
+}
+
+void AirLight::add_warm(float way, std::span<const float> depth, std::span<const float> emission,
+                        std::span<double> sent) {
+  for (size_t i = 0; i < sent.size(); ++i) {
+    float x = depth[i], e = emission[i];
+    if (layer_ != kNone) {
+      const float tau = air_here_.extinction[i] * way;
+      passed_[i] += tau;
+      x += tau;
+      e += tau * air_here_.source[i];
     }
-    return;
-  }
-  const Part& b = beams_[part - 1];
-  for (size_t i = 0; i < n; ++i) {
-    fall[i] = depth[i] + (k[i] + b.slope[i]) * way;
-    sent[i] = left_[i] * b.scattered[i] * way * mean_falling(b.depth[i], fall[i]);
+    const bool thin = x < kThin;
+    grow_[i] = x;
+    keep_[i] = thin ? exp_thin(x) : std::exp(-x);
+    sent[i] = left_[i] * e * (thin ? mean_thin(x) : (1 - keep_[i]) / x);
   }
 }
 
-void AirLight::pass(double length, std::span<const float> depth) {
-  const size_t n = left_.size();
-  if (layer_ == kNone) {
-    for (size_t i = 0; i < n; ++i) left_[i] *= std::exp(-depth[i]);
-    return;
+// What a beam adds to the sum; and whether the place lies in this part, drawn anew with what is left of the number.
+void AirLight::add_beam(Scattered& b, float way, std::span<double> sent, std::span<double> left_to_draw) {
+  for (size_t i = 0; i < sent.size(); ++i) {
+    const float rise = b.slope[i] * way, x = grow_[i] + rise, t = b.depth[i];
+    const float mean = std::fabs(x) < kThin ? b.near[i] * mean_thin(x) : (b.near[i] - std::exp(-t - x)) / x;
+    const double part = left_[i] * b.light[i] * way * mean;
+    sent[i] += part;
+    if (!left_to_draw.empty() && part > 0) {
+      const double share = part / sent[i];
+      double& u = left_to_draw[i];
+      const bool here = u < share;
+      u = here ? u / share : (u - share) / (1 - share);
+      if (here) fall_[i] = x;
+    }
+    // From far below the beam's own light the series could never come back.
+    b.depth[i] = t + rise;
+    b.near[i] = std::fabs(rise) < kThin && b.near[i] > 1e-30f ? b.near[i] * exp_thin(rise) : std::exp(-b.depth[i]);
   }
-  const auto way = static_cast<float>(std::min(length, kLongestInAir));
-  const float* k = air_->layer(layer_).extinction.data();
-  for (size_t i = 0; i < n; ++i) {
-    const float tau = k[i] * way;
-    passed_[i] += tau;
-    left_[i] *= std::exp(-depth[i] - tau);
-  }
-  for (Part& b : beams_)
-    for (size_t i = 0; i < n; ++i) b.depth[i] += b.slope[i] * way;
 }
 
 void AirLight::transmittance(std::span<float> T) const {

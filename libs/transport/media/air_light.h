@@ -3,7 +3,7 @@
 //
 // Along a run of constant contents everything that shines falls off exponentially as seen from the start of the flight,
 // by absorption in the media, by extinction in the air and, for light that the air scatters once out of a beam, by the
-// growth of the beam's own depth. So each *part*, which is what is warm or one of the beams, sends the closed form
+// growth of the beam's own depth. So each part, which is what is warm or one of the beams, sends the closed form
 //   T l e exp(-t) (1 - exp(-x)) / x,
 // with T what is left of light from the begin of the run, l its length, e emission a metre, t depth of the beam there
 // (0 for what is warm) and x the growth of all depths along the run. The air neither ends flights nor turns them.
@@ -17,36 +17,44 @@
 
 namespace suite {
 
+// Draws a place in 0..1 with a density that falls as exp(-fall place), or rises where fall < 0. u: in [0, 1).
+double place_in_fall(double u, double fall);
+
 class AirLight {
  public:
-  // air: may be null, then nothing but any(), bounds() and parts() may be asked. Keeps a reference.
+  // air: may be null, then nothing but any() and bounds() may be asked. Keeps a reference.
   AirLight(const Atmosphere* air, size_t bins);
   bool any() const { return air_ != nullptr; }
   std::span<const double> bounds() const { return air_ ? air_->bounds() : std::span<const double>{}; }
-  size_t parts() const { return 1 + beams_.size(); }
 
   void begin();
   // The next run goes on from `from` in a direction, in a layer or, kNone, outside the air.
   void enter(uint32_t layer, Vec3 from, Dir direction);
-  // What a part sends from the run, whose media have these depths of absorption, and emission times length (0 for
-  // beams: what is warm is part 0). fall: x; sent: the closed form. Per bin.
-  void shine(size_t part, double length, std::span<const float> depth, std::span<const float> emission,
-             std::span<float> fall, std::span<double> sent) const;
-  // Leaves the run.
-  void pass(double length, std::span<const float> depth);
+  // Passes the run, whose media have these depths of absorption, and emission times length if nothing weakens it.
+  // sent: the sum of the closed forms. place: unless empty, receives where in the run, 0..1, light is drawn to come
+  // from, in proportion to what it brings. u: number in [0, 1). Per bin.
+  void pass(double length, std::span<const float> depth, std::span<const float> emission, double u,
+            std::span<double> sent, std::span<double> place);
   // exp(-extinction) of the air so far.
   void transmittance(std::span<float> T) const;
 
  private:
-  struct Part {
-    std::vector<float> scattered, depth, slope;  // Atmosphere::BeamAlong
+  struct Scattered {
+    std::vector<float> light, depth, slope;  // Atmosphere::BeamAlong
+    std::vector<float> near;                 // exp(-depth)
   };
+  void add_warm(float way, std::span<const float> depth, std::span<const float> emission, std::span<double> sent);
+  void add_beam(Scattered& beam, float way, std::span<double> sent, std::span<double> left_to_draw);
+
   const Atmosphere* air_;
   uint32_t layer_ = kNone;
-  Vec3 from_;                  // where the run begins
-  std::vector<Part> beams_;    // at the begin of the run
-  std::vector<float> left_;    // T
-  std::vector<float> passed_;  // extinction of the air so far
+  Atmosphere::Layer air_here_;
+  std::vector<Scattered> beams_;  // at the begin of the run
+  std::vector<float> left_;       // T
+  std::vector<float> passed_;     // extinction of the air so far
+  std::vector<float> grow_;       // growth of depth along the run, and
+  std::vector<float> keep_;       // exp(-that)
+  std::vector<float> fall_;       // x of the part that a place is drawn from
 };
 
 }  // namespace suite

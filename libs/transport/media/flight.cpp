@@ -6,11 +6,7 @@
 namespace suite {
 
 namespace {
-// Draws a place in 0..1 with a density that falls as exp(-fall place); rises where fall < 0.
-double place_in_fall(double u, double fall) {
-  if (fall < 0) return 1 - place_in_fall(1 - u, -fall);
-  return fall > 0 ? std::min(1.0, -std::log1p(-u * -std::expm1(-fall)) / fall) : u;
-}
+constexpr double kNear = 0.01;  // depth of scattering
 }  // namespace
 
 Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const double> knot_probability,
@@ -24,8 +20,8 @@ Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const
       air_(air, optics.state().size()),
       tau_(optics.state().size()),
       emission_(optics.state().size()),
-      fall_(optics.state().size()),
       sent_(optics.state().size()),
+      place_(optics.state().size()),
       knots_(probability_.size()) {
   for (const BakedMedium& m : media_) {
     any_emission_ = any_emission_ || !m.blackbody.empty();
@@ -120,25 +116,27 @@ void Flights::end_run(const LivePath& live, double u, std::span<float> emitted) 
 
 // What the run sends towards the start of the flight.
 void Flights::emit(const LivePath& live, double u, std::span<float> emitted) {
+  const bool spectral = optics_.spectral_flights();
   media_emission();
-  if (optics_.spectral_flights()) set_places(live);
-  if (air_.any()) {
-    for (size_t part = 0; part < air_.parts(); ++part) {
-      air_.shine(part, run_length_, tau_, emission_, fall_, sent_);
-      add(u, fall_, emitted);
-    }
-    air_.pass(run_length_, tau_);
-    return;
-  }
-  for (size_t i = 0; i < emitted.size(); ++i) {
+  if (spectral) set_places(live, u);
+  if (air_.any())
+    air_.pass(run_length_, tau_, emission_, u, sent_, mean_.most > 0 ? std::span(place_) : std::span<double>{});
+  else
+    emit_media(u);
+  for (size_t i = 0; i < emitted.size(); ++i)
+    if (sent_[i] > 0) emitted[i] += static_cast<float>(sent_[i] * (spectral ? ratio(i, place_[i]) : 1));
+}
+
+void Flights::emit_media(double u) {
+  for (size_t i = 0; i < sent_.size(); ++i) {
     sent_[i] = 0;
     if (!(emission_[i] > 0)) continue;
     const double tau = tau_[i], reached = -std::expm1(-tau);
     double absorbed = 0;
     for (size_t m = 0; m < depth_.size(); ++m) absorbed += depth_[m] * double{media_[m].absorption[i]};
     sent_[i] = std::exp(-absorbed) * reached / tau * emission_[i];
+    if (optics_.spectral_flights()) place_[i] = place_in_fall(u, tau);
   }
-  add(u, tau_, emitted);
 }
 
 // Depth of absorption of the media in the run, and what they emit in it if nothing weakens that.
@@ -157,12 +155,22 @@ void Flights::media_emission() {
   }
 }
 
-// Prepares ratio() for the run.
-void Flights::set_places(const LivePath& live) {
+// Prepares ratio() for the run, for places not far from a share of its length.
+void Flights::set_places(const LivePath& live, double share) {
+  mean_ = {};
   for (size_t k = 0; k < knots_.size(); ++k) {
     knots_[k] = {probability_[k] * live.relative[k], scattering_depth(bins_of_knots_[k]), 0};
     for (const Constituent& c : run_)
       knots_[k].within += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
+  }
+  if (!air_.any()) return;
+  mean_.place = share;
+  mean_.offset = knots_[0].before;
+  for (const Knot& k : knots_) mean_.offset = std::min(mean_.offset, k.before);
+  for (const Knot& k : knots_) {
+    const double part = k.share * std::exp(mean_.offset - k.before - share * k.within);
+    mean_.sum += part, mean_.slope += part * k.within, mean_.bend += part * k.within * k.within;
+    mean_.most = std::max(mean_.most, k.within);
   }
 }
 
@@ -170,17 +178,13 @@ void Flights::set_places(const LivePath& live) {
 double Flights::ratio(size_t bin, double share) const {
   double scattered = scattering_depth(bin), mixture = 0;
   for (const Constituent& c : run_) scattered += share * c.density * double{media_[c.medium].scattering[bin]};
+  // In air runs are many and short; the mixture of all knots is then known well enough from one place: its series there
+  // is true to some 1e-7.
+  const double off = share - mean_.place;
+  if (air_.any() && std::fabs(off) * mean_.most < kNear)
+    return std::exp(mean_.offset - scattered) / (mean_.sum - off * (mean_.slope - 0.5 * off * mean_.bend));
   for (const Knot& k : knots_) mixture += k.share * std::exp(scattered - k.before - share * k.within);
   return 1 / mixture;
-}
-
-// Adds what shines along the run and falls off in it: sent_ times R where it is drawn to come from.
-void Flights::add(double u, std::span<const float> fall, std::span<float> emitted) const {
-  const bool spectral = optics_.spectral_flights();
-  for (size_t i = 0; i < emitted.size(); ++i) {
-    if (!(sent_[i] > 0)) continue;
-    emitted[i] += static_cast<float>(sent_[i] * (spectral ? ratio(i, place_in_fall(u, fall[i])) : 1));
-  }
 }
 
 // Weighs the path for the way in depth_: r_k, the spectrum, the densities that later sources share.

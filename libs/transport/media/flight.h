@@ -58,9 +58,9 @@ class Flights {
   bool run_shines() const;
   void emit(const LivePath& live, double u, std::span<float> emitted);
   void media_emission();
-  void set_places(const LivePath& live);
+  void emit_media(double u);
+  void set_places(const LivePath& live, double share);
   double ratio(size_t bin, double share) const;
-  void add(double u, std::span<const float> fall, std::span<float> emitted) const;
   double scattering_depth(size_t bin) const;
   void weigh(LivePath& live, std::span<float> through);
   double join_knots(LivePath& live, bool scattered, double own_rate);
@@ -81,14 +81,19 @@ class Flights {
   std::vector<Constituent> stretch_;  // the first of them, where there is air
   uint32_t run_layer_ = kNone;
   double run_length_ = 0;  // m
-  // Scratch, per bin: of the media in the run; of what shines in it.
-  std::vector<float> tau_, emission_, fall_;
-  std::vector<double> sent_;
+  // Scratch, per bin: depth and emission of the media in the run; what shines in it, and where from, 0..1.
+  std::vector<float> tau_, emission_;
+  std::vector<double> sent_, place_;
   struct Knot {
     double share;           // P_k r_k
     double before, within;  // depth of scattering up to the run and in it
   };
   std::vector<Knot> knots_;
+  // exp(-offset) times: sum P_k r_k exp(-t_k) at a place in the run, minus its derivative, and its second derivative.
+  struct Mean {
+    double place = 0, offset = 0, sum = 0, slope = 0, bend = 0;
+    double most = 0;  // depth of scattering in the run at a knot
+  } mean_;
   Result result_;  // of the flight under way
 };
 
