@@ -201,7 +201,7 @@ double fog_at(Vec3 p) {
 std::shared_ptr<Scene> fog_bank(bool spectral) {
   Medium fog = medium(Curve({0.4, 0.7}, {0.002, 0.0005}, Outside::hold),
                       spectral ? Curve({0.4, 0.7}, {0.02, 0.004}, Outside::hold) : Curve::constant(0.01), hg(0.8));
-  fog.temperature_k = 1700;
+  fog.temperature_k = 1500;
   return scene_with(fog, grid_of({4, 1, 1}, translation({40, -200, 20}) * scaling({50, 400, 100}),
                                  [](uint32_t i, uint32_t, uint32_t) {
                                    return fog_at({50 + 50.0 * i, 0, 50});
@@ -220,7 +220,7 @@ Brought by_flights(const Scene& scene, const Optics& optics, const Atmosphere& a
   Brought all{std::vector<RunningStats>(n), std::vector<RunningStats>(n)};
   Pcg32 random(11);
   std::vector<float> through(n), emitted(n);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 60000; ++i) {
     std::vector<double> light(n), left(n);
     for (size_t k = 0; k < knots; ++k) {
       LivePath live;
@@ -283,7 +283,7 @@ TEST(AirAndMedia, AFogBankInSunlitHazeIsTheIntegral) {
         EXPECT_NEAR(got.left[b].mean(), left, kSigmas * got.left[b].stderr_of_mean() + 2e-5 * left);
         EXPECT_LT(error, 0.01 * light[b]);
         // Negative control: air that the fog does not dim would be seen.
-        EXPECT_GT(S[b] + fog_light[b], light[b] + 3 * tolerance);
+        EXPECT_GT(S[b] + fog_light[b], light[b] + 2 * tolerance);
       }
     }
   }
