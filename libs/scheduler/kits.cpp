@@ -36,7 +36,7 @@ Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const 
   kit.optics = cache_.get<Optics>({Kind::optics, state}, [&] {
     ++optics_bakes_;
     return std::make_shared<const Optics>(scene_, spectral, shown_materials(scene_, *tracer, sources_.written()),
-                                          LoadsAt{}, window_);
+                                          heating_, window_);
   });
   const auto lit = lights(state, *kit.optics, tracer, sources_.on_grid(moment_of(capture)));
   kit.environment = {lit, &lit->environment};

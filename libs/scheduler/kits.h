@@ -26,9 +26,16 @@ struct Kit {
 
 class Kits {
  public:
-  // Keeps references. window: of all captures, for temperatures that are solved once. budget: bytes.
-  Kits(const Scene& scene, const SourceSpecs& sources, bool periodic, TimeSpan window, size_t budget = kDefaultKitBytes)
-      : scene_(scene), sources_(sources, scene), periodic_(periodic), window_(window), cache_(budget) {}
+  // Keeps references. window: of all captures, for temperatures that are solved once. budget: bytes. heating: of the
+  // surfaces that ask for it.
+  Kits(const Scene& scene, const SourceSpecs& sources, bool periodic, TimeSpan window, size_t budget = kDefaultKitBytes,
+       Heating heating = {})
+      : scene_(scene),
+        sources_(sources, scene),
+        periodic_(periodic),
+        window_(window),
+        heating_(std::move(heating)),
+        cache_(budget) {}
   // One more capture will ask for the state of this number.
   void expect(size_t state) { ++users_[state]; }
   // The kit of a capture of a sensor; state: the number of its spectral state, equal for states of equal value. Lights
@@ -55,6 +62,7 @@ class Kits {
   SourcesInTime sources_;
   bool periodic_;
   TimeSpan window_;
+  Heating heating_;
   KitCache cache_;
   std::map<size_t, size_t> users_;  // captures that are still to come, by state
   size_t optics_bakes_ = 0, light_bakes_ = 0;

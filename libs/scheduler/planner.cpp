@@ -73,6 +73,17 @@ class CapturePlanner::Saver {
   std::vector<Row> rows_, waiting_;
 };
 
+void shorten_pilots(Goals& goals) {
+  auto shorten = [](Convergence& goal) {
+    if (goal.relative_error == 0) goal.min_paths = std::min(kDefaultPilot, goal.max_paths);
+  };
+  shorten(goals.all);
+  for (Convergence& goal : goals.own) {
+    shorten(goal);
+    goals.all.min_paths = std::min(goals.all.min_paths, goal.min_paths);
+  }
+}
+
 std::vector<uint32_t> plan_of(const Capture& capture, const Goals& goals, std::span<const double> needs) {
   if (!needs.empty()) return paths_for(needs, goals);
   std::vector<uint32_t> paths(capture.problems());

@@ -21,6 +21,9 @@ namespace suite {
 // Paths of each problem that a capture is computed to. needs: of its pilot, empty without one.
 std::vector<uint32_t> plan_of(const Capture& capture, const Goals& goals, std::span<const double> needs);
 
+// With a time budget, fixed counts too begin with a pilot.
+void shorten_pilots(Goals& goals);
+
 // What the captures of a job share that are saved while they run: one at a time, and not more often than every few
 // seconds, because a save waits for the disk.
 struct Saving {

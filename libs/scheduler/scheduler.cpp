@@ -39,33 +39,34 @@ class Job {
   Job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
       std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options)
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {
-    for (const auto& sensor : sensors) report_.shortfalls.push_back({sensor->name(), {}});
+    for (const Sensors all : {sensors_, options.prepasses})
+      for (const auto& sensor : all) {
+        report_.shortfalls.push_back({sensor->name(), {}});
+        report_.quality.push_back({sensor->name(), {}});
+      }
+    outcomes_.resize(report_.quality.size());
   }
 
   JobReport run() {
-    const std::vector<Item> items =
-        in_cheapest_order(items_of(sensors_, !scene_->tracks.empty()), sources_.dated(), report_.state_changes);
-    for (const Item& item : items) {
-      const TimeWindow& w = capture_of(item).window;
-      check_temperatures(*scene_, w.begin, w.end);
-      window_ = &item == items.data() ? TimeSpan{w.begin, w.end}
-                                      : TimeSpan{std::min(window_.begin, w.begin), std::max(window_.end, w.end)};
-    }
+    const std::vector<Item> seen = items_from(sensors_, 0, 0),
+                            before = items_from(options_.prepasses, sensors_.size(), seen.size());
+    std::vector<Item> items = seen;
+    items.insert(items.end(), before.begin(), before.end());
+    for (const Item& item : items)
+      check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
-    kits_ = std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window_, options_.kit_bytes);
-    for (const Item& item : items) kits_->expect(item.state.spectral);
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     doubt_before();
     if (options_.store) options_.store->begin(shapes(items));
     if (options_.store && options_.begun) options_.begun(stored_work(items));
     report_.captures_asked = items.size();
-    for (const Item& item : items) total_problems_ += static_cast<double>(capture_of(item).problems());
+    for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
-    for (const auto& sensor : sensors_) report_.quality.push_back({sensor->name(), {}});
     saving_.store = options_.store;
-    for (std::span<const Item> left = items; !left.empty() && !report_.stopped;) left = run_batch(left);
+    if (!before.empty()) run_all(before, {{}, true});
+    if (!seen.empty() && !report_.stopped) run_all(seen, {options_.loads ? options_.loads() : LoadsAt{}});
     if (progress_) progress_->finish();
     if (!report_.stopped) doubt_after();
     finish();
@@ -73,17 +74,50 @@ class Job {
   }
 
  private:
-  const Capture& capture_of(const Item& item) const {
-    return sensors_[item.sensor]->tasks()[item.task].captures[item.capture];
+  // The captures of some sensors in the order in which they run, numbered from what is given.
+  std::vector<Item> items_from(Sensors sensors, size_t sensor, size_t id) {
+    size_t changes = 0;
+    std::vector<Item> items = in_cheapest_order(items_of(sensors, !scene_->tracks.empty()), sources_.dated(), changes);
+    report_.state_changes += changes;
+    for (Item& i : items) i.sensor += sensor, i.id += id;
+    return items;
   }
 
-  // The budget, with a time budget turned into a maximum of paths as soon as that is known.
-  Budget budget() const {
+  // Runs captures with kits of their own.
+  void run_all(std::span<const Item> items, const Heating& heating) {
+    TimeSpan window;
+    for (const Item& item : items) {
+      const TimeWindow& w = capture_of(item).window;
+      window = &item == items.data() ? TimeSpan{w.begin, w.end}
+                                     : TimeSpan{std::min(window.begin, w.begin), std::max(window.end, w.end)};
+    }
+    primed_.clear();
+    kits_ =
+        std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window, options_.kit_bytes, heating);
+    for (const Item& item : items) kits_->expect(item.state.spectral);
+    for (std::span<const Item> left = items; !left.empty() && !report_.stopped;) left = run_batch(left);
+    report_.optics_bakes += kits_->optics_bakes(), report_.light_bakes += kits_->light_bakes();
+  }
+
+  bool early(const Item& item) const { return item.sensor >= sensors_.size(); }  // of a pre-pass
+  Sensor& sensor_of(const Item& item) const {
+    return early(item) ? *options_.prepasses[item.sensor - sensors_.size()] : *sensors_[item.sensor];
+  }
+  const Capture& capture_of(const Item& item) const {
+    return sensor_of(item).tasks()[item.task].captures[item.capture];
+  }
+
+  // The budget, with a time budget turned into a maximum of paths as soon as that is known; none for pre-passes.
+  Budget budget_of(const Item& item) const {
+    if (early(item)) return {};
     Budget b = options_.budget;
     if (b.seconds <= 0) return b;
     b.max_paths = cap_ ? cap_ : b.max_paths.value_or(kDefaultMost);
     return b;
   }
+
+  // Whether the pilot of a capture has to tell what time is worth.
+  bool unknown_cap(const Item& item) const { return options_.budget.seconds > 0 && !cap_ && !early(item); }
 
   // Makes the tracer of a capture's time window the current one; true when it had to be built.
   bool tracer_of(const Capture& capture) {
@@ -95,7 +129,6 @@ class Job {
 
   // Each sensor is doubted once: what was said before rendering explains what comes out.
   void doubt_before() {
-    outcomes_.resize(sensors_.size());
     if (!options_.doubt || !tracer_) return;
     const auto say = [&](const std::vector<Doubt>& doubts) {
       for (const Doubt& d : doubts)
@@ -116,7 +149,7 @@ class Job {
     std::vector<CaptureShape> all(items.size());
     std::map<std::pair<size_t, size_t>, size_t> slots;  // of truth, by sensor and state
     for (const Item& item : items) {
-      const Sensor& sensor = *sensors_[item.sensor];
+      const Sensor& sensor = sensor_of(item);
       const Capture& capture = capture_of(item);
       const auto [known, fresh] = slots.try_emplace({item.sensor, capture.state}, 0);
       if (fresh) {
@@ -129,7 +162,7 @@ class Job {
       }
       all[item.id] = {capture.columns, capture.rows,
                       sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
-                      scrambles_for(goals_of(sensor, capture, budget()).all.max_paths), known->second};
+                      scrambles_for(goals_of(sensor, capture, budget_of(item)).all.max_paths), known->second};
     }
     return all;
   }
@@ -143,8 +176,8 @@ class Job {
       std::vector<double> needs;
       options_.store->load_paths(item.id, paths, needs);
       const Capture& capture = capture_of(item);
-      const Goals goals = goals_of(*sensors_[item.sensor], capture, budget());
-      const bool piloted = goals.all.relative_error > 0 || (options_.budget.seconds > 0 && !cap_);
+      const Goals goals = goals_of(sensor_of(item), capture, budget_of(item));
+      const bool piloted = goals.all.relative_error > 0 || unknown_cap(item);
       const std::vector<uint32_t> plan = plan_of(capture, goals, piloted ? needs : std::vector<double>{});
       work.finished += (!piloted || !needs.empty()) && std::equal(paths.begin(), paths.end(), plan.begin(),
                                                                   [](uint32_t a, uint32_t b) { return a >= b; });
@@ -153,9 +186,9 @@ class Job {
     return work;
   }
 
-  void warn_of_lost_light(const Sensor& sensor, const Capture& capture, const Kit& kit) {
+  void warn_of_lost_light(const Item& item, const Kit& kit) {
     if (!options_.warn) return;
-    const uint32_t paths = goals_of(sensor, capture, budget()).all.max_paths;
+    const uint32_t paths = goals_of(sensor_of(item), capture_of(item), budget_of(item)).all.max_paths;
     for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline, paths))
       if (told_.insert(s).second) options_.warn(s);
   }
@@ -174,11 +207,12 @@ class Job {
       return blocks < kBlocksInFlight && bytes < kBytesInFlight && primed_.size() < kPrimedInFlight;
     };
     while (batch.size() < left.size()) {
-      paths += most_paths(left[batch.size()]);
-      if (!batch.empty() && (!more() || paths > kPathsInFlight)) break;
-      if (options_.budget.seconds > 0 && !cap_ && !batch.empty()) break;  // the first pilot tells what time is worth
+      const Item& item = left[batch.size()];
+      paths += most_paths(item);
+      // Where time is the budget, the first pilot tells what it is worth.
+      if (!batch.empty() && (!more() || paths > kPathsInFlight || unknown_cap(item))) break;
       const double before = heap_in_use();
-      batch.push_back(take_up(left[batch.size()]));
+      batch.push_back(take_up(item));
       bytes += std::max(0.0, heap_in_use() - before);
       blocks += blocks_of(batch.back()->work.capture).size();
     }
@@ -200,8 +234,8 @@ class Job {
   }
 
   double most_paths(const Item& item) const {
-    const Goals goals = goals_of(*sensors_[item.sensor], capture_of(item), budget());
-    return static_cast<double>(capture_of(item).problems()) * goals.all.max_paths;
+    return static_cast<double>(capture_of(item).problems()) *
+           goals_of(sensor_of(item), capture_of(item), budget_of(item)).all.max_paths;
   }
 
   // One round of every capture that is not finished, all of them at once. False when there is nothing more to run.
@@ -230,7 +264,7 @@ class Job {
   }
 
   std::shared_ptr<const Primed> prime(const Item& item, CaptureLog& log) {
-    const Sensor& sensor = *sensors_[item.sensor];
+    const Sensor& sensor = sensor_of(item);
     const Capture& capture = capture_of(item);
     log.new_tracer = tracer_of(capture);
     const size_t bakes = kits_->optics_bakes();
@@ -238,7 +272,7 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
-    warn_of_lost_light(sensor, capture, kit);
+    warn_of_lost_light(item, kit);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;
     primed_.push_back(
@@ -247,22 +281,22 @@ class Job {
   }
 
   std::unique_ptr<InFlight> take_up(const Item& item) {
-    const Sensor& sensor = *sensors_[item.sensor];
+    Sensor& sensor = sensor_of(item);
     const Capture& capture = capture_of(item);
     CaptureLog log;
     std::shared_ptr<const Primed> primed = prime(item, log);
     if (options_.store && !cap_) cap_ = options_.store->cap();
-    auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(sensor, capture, budget()),
-                                        judged_bands(capture, primed->kit));
+    auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(sensor, capture, budget_of(item)),
+                                        judged_bands(item, primed->kit));
     c->log = std::move(log);
-    if (options_.budget.seconds > 0 && !cap_) {
+    if (unknown_cap(item)) {
       c->work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
         fix_cap(w, needs, paths, seconds);
       };
       shorten_pilots(c->work.goals);
     }
     c->plan(saving_);
-    sensors_[item.sensor]->begin(capture);
+    sensor.begin(capture);
     return c;
   }
 
@@ -294,35 +328,25 @@ class Job {
     report_.log.push_back(std::move(log));
     const Clock::time_point handed = Clock::now();
     kits_->done(item.state.spectral);
-    sensors_[item.sensor]->accept(std::move(result));
+    sensor_of(item).accept(std::move(result));
     report_.deliver_seconds += seconds_since(handed);
   }
 
   // The bands that decide, and how much stricter than theirs the strictest target is.
-  std::vector<JudgedBand> judged_bands(const Capture& capture, const Kit& kit) const {
+  std::vector<JudgedBand> judged_bands(const Item& item, const Kit& kit) const {
+    const Capture& capture = capture_of(item);
     const std::vector<double>& targets = capture.band_targets;
-    if (targets.empty() && !options_.budget.all_bands) return {{kit.bands->reference}};
+    const bool all_bands = budget_of(item).all_bands;
+    if (targets.empty() && !all_bands) return {{kit.bands->reference}};
     std::vector<JudgedBand> judged;
     for (size_t b = 0; b < kit.bands->projection.bands(); ++b) {
       const double target = b < targets.size() ? targets[b] : 0;
-      if (options_.budget.all_bands)
+      if (all_bands)
         judged.push_back({b});
       else if (target > 0)
         judged.push_back({b, std::pow(capture.convergence.relative_error / target, 2)});
     }
     return judged;
-  }
-
-  // With a time budget, fixed counts too begin with a pilot.
-  static void shorten_pilots(Goals& goals) {
-    auto shorten = [](Convergence& goal) {
-      if (goal.relative_error == 0) goal.min_paths = std::min(kDefaultPilot, goal.max_paths);
-    };
-    shorten(goals.all);
-    for (Convergence& goal : goals.own) {
-      shorten(goal);
-      goals.all.min_paths = std::min(goals.all.min_paths, goal.min_paths);
-    }
   }
 
   // Turns the time that is left into a maximum of paths, the same for all captures, so that the run can be repeated.
@@ -338,7 +362,6 @@ class Job {
   }
 
   void finish() {
-    report_.optics_bakes = kits_->optics_bakes(), report_.light_bakes = kits_->light_bakes();
     report_.share_in_embree = report_.statistics.cycles ? static_cast<double>(report_.statistics.trace.cycles) /
                                                               static_cast<double>(report_.statistics.cycles)
                                                         : 0;
@@ -355,7 +378,6 @@ class Job {
   std::unique_ptr<TracerCache> tracers_;
   std::shared_ptr<const Tracer> tracer_;  // of the capture that runs
   std::unique_ptr<Progress> progress_;
-  TimeSpan window_;  // of all captures
   std::unique_ptr<Kits> kits_;
   std::vector<std::shared_ptr<const Primed>> primed_;  // of the captures in flight, and the one before
   LocalExecutor local_;

@@ -27,6 +27,13 @@ struct StoredWork {
 class Executor;  // executor.h
 
 struct JobOptions {
+  // Sensors that run before the others, all of them to what they ask for themselves, whatever the budget; their
+  // captures are numbered after those of the others, whose results they do not change but through `loads`. While they
+  // run, surfaces that wait for loads do not glow. prepass.h has one.
+  std::span<const std::unique_ptr<Sensor>> prepasses = {};
+  // Asked once, when the pre-passes have accepted their results and before materials are baked for the sensors: what
+  // heats surfaces whose temperature models ask for it. Empty = nothing does.
+  std::function<LoadsAt()> loads = {};
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;
@@ -63,6 +70,7 @@ struct WorstProblem {
   double relative_error = 0;
 };
 
+// Pre-passes count as sensors, after the others.
 struct JobReport {
   RunStatistics statistics;
   size_t captures = 0, problems = 0;  // that were finished and delivered
@@ -101,9 +109,9 @@ JobOrder order_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves =
 // Bytes that the accumulators and the result of the largest capture take.
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 
-// Runs every capture of every sensor. sources: as written; what follows from dates is resolved for each capture, in the
-// middle of its window (moments.h). Deterministic: the same bytes for any number of threads, for any order, and for a
-// run that was interrupted and continued from its store.
+// Runs every capture of every pre-pass, then of every sensor. sources: as written; what follows from dates is resolved
+// for each capture, in the middle of its window (moments.h). Deterministic: the same bytes for any number of threads,
+// for any order, and for a run that was interrupted and continued from its store.
 JobReport run_job(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources,
                   std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options);
 

@@ -15,6 +15,9 @@ namespace suite {
 struct MapPlace {
   Vec3 position;  // m, ENU
   Vec2 uv;
+  // As HeatedPlace has them, for temperatures that differ from part to part; left unknown where only maps are asked.
+  Dir normal = {};
+  uint32_t instance = kNone, triangle = kNone;
 };
 
 // Pixel coordinates of a place; may lie outside the raster.

@@ -147,7 +147,8 @@ void add_reflection(const BakedMaterial& m, const SpectralState& state, const Ma
 double kelvin_of(const MaterialMaps& maps, const MapPlace& place, double time) {
   if (maps.temperature)
     if (const auto mapped = value_at(*maps.temperature, place)) return *mapped;
-  return maps.field ? maps.field->kelvin(place.position, time) : maps.constant_k;
+  if (!maps.field) return maps.constant_k;
+  return maps.field->kelvin({place.position, place.normal, place.instance, place.triangle}, time);
 }
 
 // Blackbody radiance of a material; returns its temperature, 0 when it does not emit.

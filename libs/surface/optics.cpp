@@ -42,6 +42,11 @@ std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, c
   return field_of(std::move(model), loads);
 }
 
+// Whether what the model asks for is still to be found.
+bool waits(const TemperatureSpec& spec, const Heating& heating) {
+  return heating.pending && spec.loads.empty() && make_temperature_model(spec)->needs_loads();
+}
+
 // Every curve of the family that the map uses, in place of one of the model's.
 std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& map, const ModelSpec& model,
                                                              const SpectralState& state) {
@@ -60,14 +65,14 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 
 }  // namespace
 
-Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const LoadsAt& loads,
+Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const Heating& heating,
                TimeSpan window)
     : state_(std::move(state)), window_(window) {
   if (uses_media(scene)) bake_media(scene);
-  bake_all(scene, used, loads);
+  bake_all(scene, used, heating);
   if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
-    bake_all(scene, used, loads);
+    bake_all(scene, used, heating);
     if (!media_.empty()) bake_media(scene);
   }
 }
@@ -110,14 +115,14 @@ void Optics::bake_media(const Scene& scene) {
   if (state_.knots.size() != before) bake_them();
 }
 
-void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads) {
+void Optics::bake_all(const Scene& scene, const std::vector<bool>& used, const Heating& heating) {
   materials_.clear();
   materials_.resize(scene.materials.size());
   const auto wanted = [&](size_t i) { return used.empty() || used[i]; };
   for (size_t i = 0; i < materials_.size(); ++i) {
     if (!wanted(i) || scene.materials[i].surface.model.empty()) continue;  // empty: a name that a map decides
     try {
-      bake_one(scene, i, loads);
+      bake_one(scene, i, heating);
     } catch (const Error& e) {
       throw Error(e.where(), "material '" + scene.materials[i].id + "': " + e.message(), e.hint(), e.code());
     }
@@ -181,7 +186,7 @@ bool bake_maps(const Scene& scene, size_t index, const SpectralState& state, Mat
 }
 }  // namespace
 
-void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
+void Optics::bake_one(const Scene& scene, size_t index, const Heating& heating) {
   const Material& m = scene.materials[index];
   BakedMaterial& baked = materials_[index];
   baked.owned = bake(m.surface, state_);
@@ -198,7 +203,7 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
   bool any = bake_maps(scene, index, state_, *maps);
   const TemperatureSpec* spec = nullptr;
   for (const TemperatureBinding& t : scene.temperatures)
-    if (t.material == index && !t.spec.model.empty()) spec = &t.spec, any = true;
+    if (t.material == index && !t.spec.model.empty() && !waits(t.spec, heating)) spec = &t.spec, any = true;
   if (!any) return;
   maps->constant_k = m.temperature_k;
   if (maps->temperature || spec) {
@@ -209,7 +214,7 @@ void Optics::bake_one(const Scene& scene, size_t index, const LoadsAt& loads) {
       low = solved->coldest(), high = solved->hottest();
       maps->field = std::move(solved);
     } else if (spec) {
-      maps->field = field_for(*spec, loads);
+      maps->field = field_for(*spec, heating.loads);
       range_of(*spec, low, high);
     }
     maps->blackbody = table_for(maps->temperature, low, high, m.temperature_k, state_);

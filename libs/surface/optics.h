@@ -21,13 +21,19 @@ struct BakedMaterial {
   std::unique_ptr<const ScatterModel> owned;  // what `model` points to, unless it is an Interaction's
 };
 
+// What is known of surfaces whose temperature models ask for loads and bring none of their own.
+struct Heating {
+  LoadsAt loads = {};    // what heats them; empty = nothing says so
+  bool pending = false;  // it is yet to be found: until then they do not glow
+};
+
 class Optics {
  public:
-  // Bakes the materials for which used[i] is true (all when empty). loads: what heats the surface of a material, for
-  // temperature models that ask and bring no loads of their own; a model that asks without either is an Error. Models
-  // that do are solved here once, for the times of the window. Error naming the material when one cannot be baked.
-  // Keeps a reference to the scene.
-  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const LoadsAt& loads = {},
+  // Bakes the materials for which used[i] is true (all when empty). A temperature model that asks for loads where there
+  // are none is an Error unless they are pending. Models that bring their own are solved here once, for the times of
+  // the window; the others are asked at hits, with position, normal, instance and triangle. Error naming the material
+  // when one cannot be baked. Keeps a reference to the scene.
+  Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const Heating& heating = {},
          TimeSpan window = {});
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
@@ -42,8 +48,8 @@ class Optics {
   const SpectralState& state() const { return state_; }
 
  private:
-  void bake_all(const Scene& scene, const std::vector<bool>& used, const LoadsAt& loads);
-  void bake_one(const Scene& scene, size_t index, const LoadsAt& loads);
+  void bake_all(const Scene& scene, const std::vector<bool>& used, const Heating& heating);
+  void bake_one(const Scene& scene, size_t index, const Heating& heating);
   bool one_shape() const;
   void bake_media(const Scene& scene);
   SpectralState state_;

@@ -31,6 +31,7 @@ void Surface::interact(const Hit& hit, Dir out, Interaction& at, double time) co
   at.frame = material && material->needs_tangent ? Frame::with_tangent(n, tangents.dpdu) : Frame::around(n);
   at.baked = material;
   if (!maps || !maps->varies()) return;
+  place.normal = hit.normal, place.instance = object.instance, place.triangle = hit.triangle;
   if (!at.own) at.own = std::make_unique<Interaction::Own>();
   at.baked =
       material_here(*material, optics_.state(), place, time, at.frame.to_local(out), at.own->memory, at.own->made);

@@ -59,7 +59,7 @@ class ModelField final : public TemperatureField {
       : model_(std::move(model)), loads_(std::move(loads)) {
     SUITE_CHECK(model_ && (loads_ || !model_->needs_loads()));
   }
-  double kelvin(Vec3 place, double time) const override {
+  double kelvin(const HeatedPlace& place, double time) const override {
     double kelvin = 0;
     model_->kelvin({&time, 1}, model_->needs_loads() ? loads_(place) : Loads{}, {&kelvin, 1});
     return kelvin;
@@ -106,7 +106,7 @@ SolvedField::SolvedField(const TemperatureSpec& spec, double begin, double end) 
   coldest_ = *low, hottest_ = *high;
 }
 
-double SolvedField::kelvin(Vec3, double time) const {
+double SolvedField::kelvin(const HeatedPlace&, double time) const {
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
   if (after == times_.begin()) return kelvins_.front();
   if (after == times_.end()) return kelvins_.back();

@@ -1,6 +1,7 @@
 // Kelvin at a place and time: what the renderer asks. Models are described by a TemperatureSpec, made from the one
 // table in models.h, and immutable afterwards; what they need from above (loads) is passed in as a function.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -37,16 +38,26 @@ class TemperatureModel {
   virtual bool needs_loads() const { return false; }
 };
 
+// A point of a surface whose temperature is asked for.
+struct HeatedPlace {
+  Vec3 position;    // scene ENU, m
+  Dir normal = {};  // geometric, unit, of the front side; zero where it is not known
+  // Number of the flattened instance and of the triangle in its mesh (0 of an exact surface); kNoPart where they are
+  // not known.
+  static constexpr uint32_t kNoPart = UINT32_MAX;
+  uint32_t instance = kNoPart, triangle = kNoPart;
+};
+
 // Temperatures over a scene.
 class TemperatureField {
  public:
   virtual ~TemperatureField() = default;
-  virtual double kelvin(Vec3 place, double time) const = 0;  // scene ENU, m; s
+  virtual double kelvin(const HeatedPlace& place, double time) const = 0;  // s
 };
 
 // A model over a scene whose loads differ from place to place. Every question is answered anew: a slab is simulated for
 // it, so passes that need many answers of one place should ask the model for all times at once.
-using LoadsAt = std::function<Loads(Vec3 place)>;
+using LoadsAt = std::function<Loads(const HeatedPlace& place)>;
 std::unique_ptr<const TemperatureField> field_of(std::shared_ptr<const TemperatureModel> model, LoadsAt loads);
 
 // The loads of a spec's own table; an empty function when it has none. Error: a bad table (see LoadTable).
@@ -59,7 +70,7 @@ class SolvedField final : public TemperatureField {
   // begin <= end, s. Error: as TemperatureModel::kelvin.
   SolvedField(const TemperatureSpec& spec, double begin, double end);
   // Times outside the span see its nearer end.
-  double kelvin(Vec3 place, double time) const override;
+  double kelvin(const HeatedPlace& place, double time) const override;
   double coldest() const { return coldest_; }
   double hottest() const { return hottest_; }
 

@@ -239,9 +239,9 @@ TEST(Loads, TablesInterpolateRepeatAndRefuse) {
 TEST(TemperatureField, AsksTheModelWithTheLoadsOfThePlace) {
   const std::shared_ptr<const TemperatureModel> slab =
       make_temperature_model(temperature_models().find("slab").examples()[0]);
-  const auto field = field_of(slab, [](Vec3 p) { return cave(p.x > 0 ? 300 : 270); });
-  EXPECT_NEAR(field->kelvin({1, 0, 0}, 1000), 300, 0.1);
-  EXPECT_NEAR(field->kelvin({-1, 0, 0}, 1000), 270, 0.1);
+  const auto field = field_of(slab, [](const HeatedPlace& p) { return cave(p.position.x > 0 ? 300 : 270); });
+  EXPECT_NEAR(field->kelvin({{1, 0, 0}}, 1000), 300, 0.1);
+  EXPECT_NEAR(field->kelvin({{-1, 0, 0}}, 1000), 270, 0.1);
   const auto uniform = field_of(make_temperature_model({"constant", {{"kelvin", 301}}, {}, {}, false, {}}), {});
   EXPECT_EQ(uniform->kelvin({}, 5), 301);
 }
