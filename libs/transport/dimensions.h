@@ -69,7 +69,7 @@ inline std::array<double, 4> at_surface(const SampleStream& stream, uint32_t sam
     return stream.draw(sample, first + n);
   }
   if (use.which < 2) return hashed(stream, sample, use.which == 0 ? Hashed::scatter : Hashed::second, 0, n);
-  return hashed(stream, sample, Hashed::light, own % 256, n);
+  return hashed(stream, sample, Hashed::light, own % 128, n);  // the other half is that of scatterings
 }
 
 // Numbers of the n-th flight, and of the scattering that ends it.

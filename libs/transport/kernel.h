@@ -111,6 +111,7 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool go_on(size_t i);
   SUITE_INLINE bool draw(size_t i, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
+  bool fail(uint32_t p);
   SUITE_INLINE double survives(uint32_t p, double brightest, bool dirac);
   SUITE_INLINE bool cut(uint32_t p, bool event);
   SUITE_INLINE void leave(size_t i, const Continuation& on);
@@ -125,7 +126,7 @@ class PathKernel final : public PathTracing {
   size_t knots_;
   std::vector<size_t> knot_bins_;
   size_t bins_;
-  double probability_[kMaxKnots];
+  std::array<double, kMaxKnots> probability_;  // P_k
   const bool keep_first_;
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;

@@ -1,5 +1,8 @@
 // Definitions of kernel.h: continuations, roulette, and how paths end.
 #pragma once
+#include <cmath>
+#include <limits>
+
 #include "transport/kernel.h"
 
 namespace suite {
@@ -26,10 +29,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   Continuation on;
   if (!draw(i, on)) return false;
   const double own = on.density[path.knot];
-  if (!(own > 0)) return false;
+  if (own <= 0) return false;
   double brightest = 0;
   const double shares = weigh(p, on, own, brightest);
-  if (!(brightest > 0) && bins_ == 1) return false;  // nothing more can arrive
+  if (std::isnan(own) || std::isnan(brightest)) return fail(p);
+  if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
   const double alive = survives(p, brightest, on.dirac);
   if (alive == 0 || cut(p, nodes_[i].event)) return false;
   path.before = 1 / shares;
@@ -60,9 +64,19 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, co
   }
   for (size_t k = 0; k < knots(); ++k) {
     path.relative[k] /= shares, path.throughput[k] /= shares;
-    brightest = std::max(brightest, path.throughput[k]);
+    if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
+    if (std::isnan(brightest)) return shares;
   }
   return shares;
+}
+
+// A path that cannot go on because a model gave what is no number: its sample is rejected and counted.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fail(uint32_t p) {
+  contribution(p, kFromMatter).scale = std::numeric_limits<float>::quiet_NaN();
+  contribute();
+  hand_over();
+  return false;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

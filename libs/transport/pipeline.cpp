@@ -36,43 +36,57 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
   check(options_);
   if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
-  choice_ = choose_kernel({surface_, optics_, environment_, options_, truth_.wanted()});
+  choice_ = choose_kernel(context(environment_));
 }
 
 Pipeline::~Pipeline() = default;
 
-// What shines on a capture: the environment, or its own suns.
-KernelContext Pipeline::context(const Capture& capture) const {
-  if (capture.bin_by != Capture::BinBy::sun) return {surface_, optics_, environment_, options_, truth_.wanted()};
-  if (!suns_) {
-    suns_ = std::make_unique<Environment>();
-    SunSpec spec;
-    spec.half_angle = 0;
-    spec.irradiance = Curve::constant(1);
-    for (const Dir& towards : capture.suns) {
-      spec.direction = towards;
-      suns_->lights.push_back(std::make_shared<Sun>(spec, state_));
-    }
+namespace {
+
+// What shines on a capture under many suns: they, and nothing else.
+std::unique_ptr<const Environment> suns_of(const Capture& capture, const SpectralState& state) {
+  if (capture.bin_by != Capture::BinBy::sun) return nullptr;
+  auto suns = std::make_unique<Environment>();
+  SunSpec spec;
+  spec.half_angle = 0;
+  spec.irradiance = Curve::constant(1);
+  for (const Dir& towards : capture.suns) {
+    spec.direction = towards;
+    suns->lights.push_back(std::make_shared<Sun>(spec, state));
   }
-  return {surface_, optics_, *suns_, options_, truth_.wanted()};
+  return suns;
+}
+
+}  // namespace
+
+KernelContext Pipeline::context(const Environment& environment) const {
+  return {surface_, optics_, environment, options_, truth_.wanted()};
 }
 
 bool Pipeline::may_miss(const Capture& capture) const {
-  const std::lock_guard lock(mutex_);
-  return may_lose(context(capture));
+  const auto suns = suns_of(capture, state_);
+  return may_lose(context(suns ? *suns : environment_));
 }
 
-Pipeline::Workspace::Workspace(const KernelChoice& c, const KernelContext& x, size_t w, size_t g, bool s, bool lost)
-    : context(x),
-      choice(c),
+Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Environment> own, const Capture& capture,
+                               size_t w, size_t g, bool s, bool lost)
+    : environment(std::move(own)),
+      suns(capture.suns),
+      context(x),
       width(w),
       groups(g),
       single(s),
       sink(w, g, s, lost),
       throughputs(w, x.optics.state().size(), sink.targets()),
-      kernel(make_kernel(choice, context, width, throughputs, sink)),
+      kernel(make_kernel(choose_kernel(context), context, width, throughputs, sink)),
       kernels(width),
       weights(width * x.optics.state().size()) {}
+
+bool Pipeline::Workspace::serves(const Capture& capture, bool single_too) const {
+  const auto same = [](const Dir& a, const Dir& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  return single == single_too && (environment != nullptr) == (capture.bin_by == Capture::BinBy::sun) &&
+         (!environment || std::equal(suns.begin(), suns.end(), capture.suns.begin(), capture.suns.end(), same));
+}
 
 PathTracing& Pipeline::Workspace::kernel_of(const SensorRay& ray) {
   if (ray.receiver == SensorRay::Receiver::none) return *kernel;
@@ -84,20 +98,23 @@ PathTracing& Pipeline::Workspace::kernel_of(const SensorRay& ray) {
 }
 
 std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(const Sensor& sensor, const Capture& capture) const {
-  const size_t groups = capture.bin_by == Capture::BinBy::sun ? capture.suns.size() : 1;
   const bool single = sensor.channels().size() > 1;
-  const std::lock_guard lock(mutex_);
-  if (!idle_.empty()) {
-    std::unique_ptr<Workspace> found = std::move(idle_.back());
-    idle_.pop_back();
-    if (found->groups == groups && found->single == single) return found;
-    idle_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      std::unique_ptr<Workspace> found = std::move(idle_.back());
+      idle_.pop_back();
+      if (found->serves(capture, single)) return found;
+      idle_.clear();
+    }
   }
-  const KernelContext from = context(capture);
+  auto suns = suns_of(capture, state_);
+  const KernelContext from = context(suns ? *suns : environment_);
   const bool lost = may_lose(from);
+  const size_t groups = suns ? capture.suns.size() : 1;
   const size_t targets = RadianceSink(1, groups, single, lost).targets();
   const size_t width = std::clamp<size_t>(kMostFloats / (targets * state_.size()), 1, kWaveWidth);
-  return std::make_unique<Workspace>(choose_kernel(from), from, width, groups, single, lost);
+  return std::make_unique<Workspace>(from, std::move(suns), capture, width, groups, single, lost);
 }
 
 void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,

@@ -34,7 +34,7 @@ class Pipeline {
  private:
   friend class BlockRun;
   struct Workspace;
-  KernelContext context(const Capture& capture) const;
+  KernelContext context(const Environment& environment) const;
   std::unique_ptr<Workspace> borrow(const Sensor& sensor, const Capture& capture) const;
 
   const Surface& surface_;
@@ -47,10 +47,9 @@ class Pipeline {
   PipelineOptions options_;
   KernelChoice choice_;
   // Working memory goes from block to block; as many as threads have been at work at once. All that are idle were made
-  // for one layout of sums.
+  // for captures alike.
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
-  mutable std::unique_ptr<Environment> suns_;  // of a capture under many suns
 };
 
 }  // namespace suite

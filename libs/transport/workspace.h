@@ -14,14 +14,18 @@ struct WaveLane {
 };
 
 struct Pipeline::Workspace {
-  // width: paths that run together.
-  Workspace(const KernelChoice& choice, const KernelContext& context, size_t width, size_t groups, bool single,
-            bool lost);
+  // own: the capture's own lights, null where the pipeline's environment shines; context: over what shines. width:
+  // paths that run together; groups, single, lost: of RadianceSink.
+  Workspace(const KernelContext& context, std::unique_ptr<const Environment> own, const Capture& capture, size_t width,
+            size_t groups, bool single, bool lost);
+  // Whether it is what would be made for a capture; single: of two channels.
+  bool serves(const Capture& capture, bool single) const;
   // The kernel that serves a ray: what was chosen for the state, or, for rays that start at receivers, a general one.
   PathTracing& kernel_of(const SensorRay& ray);
 
+  std::unique_ptr<const Environment> environment;
+  std::vector<Dir> suns;
   KernelContext context;
-  KernelChoice choice;
   size_t width, groups;
   bool single;
   RadianceSink sink;

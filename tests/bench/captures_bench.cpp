@@ -6,20 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 
 #include "base/memory.h"
 #include "motion/track.h"
+#include "tests/bench/cpu_clock.h"
 #include "tests/bench/terrain.h"
 
 namespace suite {
 namespace {
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // Frames of 48 x 48 pixels, one every second.
 class Frames final : public Sensor {
@@ -48,7 +42,7 @@ class Frames final : public Sensor {
         1};
   }
   void accept(CaptureResult&&) override {
-    const double now = cpu_seconds();
+    const double now = bench::cpu_seconds();
     seconds.push_back(now - last_);
     last_ = now;
     heap.push_back(heap_in_use());
@@ -59,7 +53,7 @@ class Frames final : public Sensor {
   std::vector<Band> bands_;
   SpectralState state_;
   std::vector<Task> tasks_;
-  double last_ = cpu_seconds();
+  double last_ = bench::cpu_seconds();
 };
 
 struct Line {

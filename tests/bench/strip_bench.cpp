@@ -3,19 +3,13 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 
 #include "base/parallel.h"
+#include "tests/bench/cpu_clock.h"
 #include "tests/bench/terrain.h"
 
 namespace suite {
 namespace {
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 class Strip final : public Sensor {
  public:
@@ -58,13 +52,13 @@ void run(const char* name, const std::shared_ptr<const Scene>& scene, int lines,
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<Strip>(lines, columns, paths, target));
   const auto begun = std::chrono::steady_clock::now();
-  const double cpu = cpu_seconds();
+  const double cpu = bench::cpu_seconds();
   const JobReport report = run_job(scene, bench::terrain_sources(), sensors, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   std::printf(
       "%s: %d captures of %u, %.2e paths, %.3f s (%.3f s to build), %.3f s CPU, %.1f %% of %d threads, sum %.17g\n",
       name, lines, columns, static_cast<double>(report.statistics.paths), seconds, report.build_seconds,
-      cpu_seconds() - cpu, 100 * (cpu_seconds() - cpu) / seconds / threads(), threads(),
+      bench::cpu_seconds() - cpu, 100 * (bench::cpu_seconds() - cpu) / seconds / threads(), threads(),
       static_cast<const Strip&>(*sensors[0]).sum);
 }
 

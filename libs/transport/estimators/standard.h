@@ -12,10 +12,10 @@ namespace suite {
 
 struct StandardEstimator {
   // P_k: the reference keeps at least half of the paths.
-  static int knot_probabilities(std::span<double> P) {
-    for (size_t k = 0; k < P.size(); ++k)
-      P[k] = P.size() == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(P.size() - 1);
-    return 0;
+  static std::array<double, kMaxKnots> knot_probabilities(size_t knots) {
+    std::array<double, kMaxKnots> P{};
+    for (size_t k = 0; k < knots; ++k) P[k] = knots == 1 ? 1.0 : k == 0 ? 0.5 : 0.5 / static_cast<double>(knots - 1);
+    return P;
   }
   static int draw_knot(double u, int knots) {
     return u < 0.5 ? 0 : 1 + std::min(knots - 2, static_cast<int>((u - 0.5) * 2 * (knots - 1)));
