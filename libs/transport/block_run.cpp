@@ -26,9 +26,10 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
       plain_(workspace.sink.targets() == 1 && capture.bin_by == Capture::BinBy::none),
       scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
   for (uint32_t i = 0; i < block.problems(); ++i) {
+    problems_.push_back(problem_at(capture, block, i));
     next_.push_back(sums.next(slot_of(i), block.scrambles));
-    end_.push_back(to[problem_of(i)]);
-    const uint64_t key = SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i));
+    end_.push_back(to[problems_[i]]);
+    const uint64_t key = SampleStream::problem_key(pipeline.options_.seed, capture_id, problems_[i]);
     keys_.push_back(key);
     whole_.push_back(block.scrambles == kAllScrambles);
     for (uint32_t s = 0; s < kMostScrambles; ++s) {
@@ -101,7 +102,7 @@ void BlockRun::start(uint32_t p) {
                                           : streams_[size_t{place} * kMostScrambles + scramble];
   const uint32_t number = independent ? 0 : index;
   float* const weights = &workspace_.weights[p * bins];
-  const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {weights, bins});
+  const SensorRay ray = ask_ray(sensor_, capture_, problems_[place], stream, number, {weights, bins});
   workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
   workspace_.sink.begin(p);
   PathTracing& kernel = workspace_.kernel_of(ray);

@@ -20,8 +20,7 @@ class BlockRun {
   void run();
 
  private:
-  size_t problem_of(size_t i) const { return problem_at(capture_, block_, i); }
-  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
+  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problems_[i]; }
   bool wants(size_t i, uint32_t sample) const;
   double reference_sum(size_t slot) const;
   void run_wave();
@@ -44,6 +43,7 @@ class BlockRun {
   const bool watched_;                 // a rule looks at every sample
   const bool plain_;                   // one sum a band
   const float scale_;                  // that all samples of the capture have: the number of bins of time
+  std::vector<size_t> problems_;       // by place in the block
   std::vector<uint32_t> next_, end_;   // samples of each problem
   std::vector<uint8_t> whole_;         // it wants all samples from next_ on
   std::vector<uint64_t> keys_;         // of its sample streams
