@@ -86,7 +86,7 @@ inline bool MatteSurfaces::meet(uint32_t p, const Hit& hit, Dir out, double time
 }
 
 inline bool MatteSurfaces::sample(size_t i, uint32_t p, const Hit& hit, Dir out, Vec2, double, int, std::span<float>,
-                           Continuation& on) const {
+                                  Continuation& on) const {
   const Place& place = places_[p];
   const double side = dot(out, place.shading);
   Dir in{x_[i], y_[i], z_[i]};

@@ -1,5 +1,7 @@
 #include "transport/throughput.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <cstring>
 #include <new>
@@ -10,30 +12,45 @@ namespace {
 
 constexpr size_t kVector = 8;
 
-// W vectors of N neighbouring bins, in registers while all steps of a chain pass.
-template <size_t N, int W>
+// Neighbouring bins that are computed together: one, or eight.
+struct One {
+  static constexpr size_t kBins = 1;
+  float x;
+  static One all(float v) { return {v}; }
+  static One at(const float* p) { return {*p}; }
+  void to(float* p) const { *p = x; }
+};
+struct Eight {
+  static constexpr size_t kBins = kVector;
+  __m256 x;
+  static Eight all(float v) { return {_mm256_set1_ps(v)}; }
+  static Eight at(const float* p) { return {_mm256_loadu_ps(p)}; }
+  void to(float* p) const { _mm256_storeu_ps(p, x); }
+};
+
+// W of them, in registers while all steps of a chain pass.
+template <class V, size_t W>
 struct Bins {
-  using V = float __attribute__((vector_size(sizeof(float) * N), aligned(alignof(float)), may_alias));
-  V x[W];
-  static Bins all(float v) {
+  V v[W];
+  static Bins all(float x) {
     Bins b;
-    for (int w = 0; w < W; ++w) b.x[w] = v + V{};
+    for (V& v : b.v) v = V::all(x);
     return b;
   }
   static Bins at(const float* p) {
     Bins b;
-    for (int w = 0; w < W; ++w) b.x[w] = *reinterpret_cast<const V*>(p + static_cast<size_t>(w) * N);
+    for (size_t w = 0; w < W; ++w) b.v[w] = V::at(p + w * V::kBins);
     return b;
   }
   void to(float* p) const {
-    for (int w = 0; w < W; ++w) *reinterpret_cast<V*>(p + static_cast<size_t>(w) * N) = x[w];
+    for (size_t w = 0; w < W; ++w) v[w].to(p + w * V::kBins);
   }
   friend Bins operator*(Bins a, const Bins& b) {
-    for (int w = 0; w < W; ++w) a.x[w] *= b.x[w];
+    for (size_t w = 0; w < W; ++w) a.v[w].x *= b.v[w].x;
     return a;
   }
   friend Bins operator+(Bins a, const Bins& b) {
-    for (int w = 0; w < W; ++w) a.x[w] += b.x[w];
+    for (size_t w = 0; w < W; ++w) a.v[w].x += b.v[w].x;
     return a;
   }
 };
@@ -58,7 +75,8 @@ SpectralThroughputs::SpectralThroughputs(size_t width, size_t bins, size_t targe
 
 // Bins k and after of a chain. Steps to one target after the other add up in registers.
 template <class Bins>
-void SpectralThroughputs::fold_bins(const Chain& c, const Step* steps, size_t k, float* memory_T, float* memory_L) const {
+void SpectralThroughputs::fold_bins(const Chain& c, const Step* steps, size_t k, float* memory_T,
+                                    float* memory_L) const {
   const auto target = [=, this](size_t t) { return memory_L + t * stride_ + k; };
   Bins T = c.folded ? Bins::at(memory_T + k) : Bins::all(1), L = c.folded ? Bins::at(target(0)) : Bins::all(0);
   if (!c.folded)
@@ -91,9 +109,9 @@ void SpectralThroughputs::fold(uint32_t p) {
   float* const T = &throughput_[size_t{p} * stride_];
   float* const L = &light_[size_t{p} * targets_ * stride_];
   size_t k = 0;
-  for (; k + 4 * kVector <= bins_; k += 4 * kVector) fold_bins<Bins<kVector, 4>>(c, steps, k, T, L);
-  for (; k + kVector <= bins_; k += kVector) fold_bins<Bins<kVector, 1>>(c, steps, k, T, L);
-  for (; k < bins_; ++k) fold_bins<Bins<1, 1>>(c, steps, k, T, L);
+  for (; k + 4 * kVector <= bins_; k += 4 * kVector) fold_bins<Bins<Eight, 4>>(c, steps, k, T, L);
+  for (; k + kVector <= bins_; k += kVector) fold_bins<Bins<Eight, 1>>(c, steps, k, T, L);
+  for (; k < bins_; ++k) fold_bins<Bins<One, 1>>(c, steps, k, T, L);
   c.folded = true;
   c.steps = 0;
 }
