@@ -141,6 +141,7 @@ class Elsewhere final : public Executor {
         Accumulators::Shape shape = round->shape;
         shape.problems = block.problems();
         Accumulators whole(shape);
+        RunStatistics took;
         for (const Scrambles part : {0xaa, 0x11, 0x44}) {
           Accumulators sums(shape);
           for (size_t i = 0; round->from && i < block.problems(); ++i)
@@ -148,11 +149,12 @@ class Elsewhere final : public Executor {
           Block mine = block;
           mine.scrambles = part;
           round->pipeline->run(*round->sensor, *round->capture, round->stream, mine, round->to, sums, Slots::by_place,
-                               round->statistics);
+                               took);
           whole.join(sums);
           ++parts;
         }
-        round->take(block, whole);
+        round->take(block, whole, took);
+        round->statistics.merge(took);
       }
     return true;
   }
