@@ -87,6 +87,8 @@ constexpr Row kRows[] = {
     {"SP410", info, "motions are not laid onto the curved Earth",
      "their positions count in the scene's tangent frame; geodetic, UTM and ECEF places are right anywhere"},
     {"SP411", error, "copies are too many", "all levels of groups together unfold into at most 2^28 placements"},
+    {"SP412", error, "a lifetime ends before it begins, or a schedule is described wrongly",
+     "'appears' before 'disappears'; rows of a schedule in the order of their times"},
     {"SP501", error, "a map is described wrongly", ""},
     {"SP502", error, "a map holds a class that has no material", "list a material for it"},
     {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
