@@ -3,7 +3,7 @@
 //
 // Method: ln of the bin's mean radiance is tabulated over ln T and interpolated by Lagrange cubics, relative error
 // below 1e-5 from 0.3 to 1000 um and 1 to 1e5 K where the radiance is above 1e-40
-// (tests/unit/blackbody_table_test.cpp).
+// (tests/unit/surface/map_lookup_test.cpp).
 #pragma once
 #include <span>
 #include <vector>

@@ -3,7 +3,7 @@
 //
 // Method: Gauss-Legendre over every piece of the response, tabulated over ln T in steps of 1/64; between the rows 1/T
 // is a cubic of the radiance's logarithm with the exact slopes. Temperatures come back within 1e-8 of themselves
-// (tests/unit/thermometer_test.cpp).
+// (tests/unit/spectral/thermometer_test.cpp).
 #pragma once
 #include <vector>
 

@@ -97,10 +97,24 @@ endfunction()
 # What the leak sanitizer must not count: leaks of libraries that are not ours.
 set(SUITE_LEAKS "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/fuzz/leaks_of_libraries.txt:print_suppressions=0")
 
-# suite_test(<name> LABEL label SOURCES ... USES ... VENDOR ...): a GoogleTest executable, one ctest entry per executable.
-function(suite_test name)
-  cmake_parse_arguments(A "" "LABEL;TIMEOUT" "SOURCES;USES;VENDOR" ${ARGN})
-  add_executable(${name} ${A_SOURCES})
+# The name of a test from its place: "optics/ward" in tests/unit is unit_optics_ward, of tests/unit/optics/ward_test.cpp.
+# <library> is a folder of libs, format_<folder> of formats, or a folder of apps with _ for -.
+function(_suite_test_name place name label)
+  get_filename_component(folder ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  if(NOT place MATCHES "^[a-z0-9_]+/[a-z0-9_]+$")
+    message(FATAL_ERROR "tests/${folder}: '${place}' is not <library>/<subject>")
+  endif()
+  string(REPLACE "/" "_" flat ${place})
+  set(${name} ${folder}_${flat} PARENT_SCOPE)
+  set(${label} ${folder} PARENT_SCOPE)
+endfunction()
+
+# suite_test(<library>/<subject> USES ... VENDOR ... TIMEOUT s): the GoogleTest executable of <library>/<subject>_test.cpp
+# beside the CMakeLists; its label is the folder's name, one ctest entry per executable.
+function(suite_test place)
+  cmake_parse_arguments(A "" "TIMEOUT" "USES;VENDOR" ${ARGN})
+  _suite_test_name(${place} name label)
+  add_executable(${name} ${place}_test.cpp)
   target_link_libraries(${name} PRIVATE suite_flags test_support ${A_USES} ${A_VENDOR} GTest::gtest GTest::gmock GTest::gtest_main)
   # Tests are half of all that is compiled, and what they spend their time in are the libraries: -O1 halves their share.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -110,13 +124,14 @@ function(suite_test name)
   if(NOT A_TIMEOUT)
     set(A_TIMEOUT 1500)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${A_LABEL}" TIMEOUT ${A_TIMEOUT} ENVIRONMENT "${SUITE_LEAKS}")
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${A_TIMEOUT} ENVIRONMENT "${SUITE_LEAKS}")
 endfunction()
 
-# suite_fuzz(<name> SOURCES ... USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
+# suite_fuzz(<library>/<subject> USES ... VENDOR ...): seeded mutations over a reader: some 20 000 (seconds) in the default
 # run, and a campaign of 30 s per input under the label `long`.
-function(suite_fuzz name)
-  suite_test(${name} LABEL fuzz ${ARGN})
+function(suite_fuzz place)
+  suite_test(${place} ${ARGN})
+  _suite_test_name(${place} name label)
   add_test(NAME ${name}_long COMMAND ${name})
   set_tests_properties(${name}_long PROPERTIES LABELS "long" TIMEOUT 1500 ENVIRONMENT "SUITE_FUZZ_SECONDS=30;${SUITE_LEAKS}")
 endfunction()

@@ -5,7 +5,7 @@
 // light from a direction meets.
 // Neglected: the second lobe's own shape, and that facets met one after the other depend on each other. Against exact
 // walks up to 0.061 of the light leaves in wrong directions (aluminium, roughness 0.6 by 0.15; mostly below 0.02), and
-// totals agree within 0.006 (tests/physics/rough_energy_test.cpp prints both).
+// totals agree within 0.006 (tests/physics/optics/rough_energy_test.cpp prints both).
 // Based on: B. Walter et al. 2007, equation 20; E. Heitz 2014 (height-correlated shadowing), 2018 (visible normals);
 // C. Kulla & A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH course, 2017 (second lobe); E.
 // Heitz et al. 2016 (what it stands for: the walks of ggx_tables.h).

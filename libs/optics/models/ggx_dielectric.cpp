@@ -7,7 +7,7 @@
 // Neglected: the second lobe's own shape. Against exact walks, at indices 1.02 to 2.4, the share of the light that
 // leaves in wrong directions is below 0.04 from above for roughness up to 0.3 and angles up to 63 deg, below 0.14 for
 // roughness up to 0.3 anywhere, and up to 0.31 at roughness 1 (index 1.33, 85 deg). The reflected share agrees within
-// 0.01 from index 1.33 on, within 0.032 at 1.02 (tests/physics/rough_energy_test.cpp prints both).
+// 0.01 from index 1.33 on, within 0.032 at 1.02 (tests/physics/optics/rough_energy_test.cpp prints both).
 //
 // Based on: B. Walter, S. Marschner, H. Li, K. Torrance, "Microfacet models for refraction through rough surfaces",
 // EGSR 2007, equations 16, 17, 20, 21; E. Heitz 2018 (visible normals); E. Heitz et al. 2016 (shadowing of
