@@ -47,6 +47,6 @@ void for_each_row(std::string_view text, const std::string& file_name, std::span
                   const std::function<void(const TableRow&)>& visit);
 
 // The path of a file that a node names. Error when there is none.
-std::string track_file(const Params& file, const MotionContext& context);
+std::string motion_file(const Params& file, const MotionContext& context);
 
 }  // namespace suite

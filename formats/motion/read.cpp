@@ -1,5 +1,6 @@
 #include "base/files.h"
 #include "formats/motion/fields.h"
+#include "formats/motion/track_files.h"
 
 namespace suite {
 
@@ -65,9 +66,27 @@ PoseFields fields_of(const Params& node) {
 
 TrackPtr make_track(const Params& node, const MotionContext& context, int depth);
 
+// A table of timed poses, or one thing of a file of tracks.
+TrackPtr track_of_file(const Params& file, const Params& node, const MotionContext& context) {
+  const std::string path = motion_file(file, context), text = read_text(path);
+  const TrackFileRow* row = track_file_of(text);
+  if (!row) return keyframe_track(parse_pose_keys(text, path, context));
+  const std::string id = node.text("object");
+  std::vector<std::string> known;
+  std::vector<MovingThing> mine;
+  for (MovingThing& thing : row->make(text, path, track_file_options(node, context))) {
+    known.push_back(thing.id);
+    if (thing.id == id) mine.push_back(std::move(thing));
+  }
+  if (mine.empty()) throw node.at("object").error("nothing of the id '" + id + "' moves there", name_hint(id, known));
+  if (mine.size() > 1)
+    throw node.at("object").error("'" + id + "' is not there all the time between its first record and its last",
+                                  "let the scene text's 'traffic' place it");
+  return keyframe_track(std::move(mine.front().keys));
+}
+
 TrackPtr make_keyframes(const Params& node, const MotionContext& context) {
-  if (const auto file = node.find("file"))
-    return located(*file, [&] { return keyframe_track(read_pose_keys(track_file(*file, context), context)); });
+  if (const auto file = node.find("file")) return located(*file, [&] { return track_of_file(*file, node, context); });
   std::vector<PoseKey> keys;
   for (const Params& item : node.at("keys").items()) {
     const double time = time_from(item, context);
@@ -124,7 +143,7 @@ TrackPtr make_orbit(const Params& node, const MotionContext& context) {
   SUITE_CHECK(context.satellites != nullptr);
   const Params tle = node.at("tle");
   return located(node, [&] {
-    const OrbitElements elements = context.satellites(track_file(tle, context), node.text("satellite"));
+    const OrbitElements elements = context.satellites(motion_file(tle, context), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
     return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
@@ -182,7 +201,7 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
 
 }  // namespace
 
-std::string track_file(const Params& file, const MotionContext& context) {
+std::string motion_file(const Params& file, const MotionContext& context) {
   if (context.resolve) return context.resolve(file);
   const std::string path = file.as_path();
   if (!file_exists(path))

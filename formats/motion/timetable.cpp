@@ -39,7 +39,7 @@ TimedTable timetable_from(const Params& node, const MotionContext& context, std:
   const bool map = node.kind() == Params::Kind::map;
   if (map) made.when.period = node.number_in("period_s", 1e-6, 1e12, "s", 0);
   if (const auto file = map ? node.find("file") : std::nullopt) {
-    const std::string path = track_file(*file, context);
+    const std::string path = motion_file(*file, context);
     std::vector<const char*> names{"time_s", "utc"};
     names.insert(names.end(), columns.begin(), columns.end());
     for_each_row(read_text(path), path, names, [&](const TableRow& row) {

@@ -104,7 +104,11 @@ void Reader::read_group(const std::string& name, const Params& p) {
   for (const Params& row : p.items())
     item("SP001", row, [&] {
       const bool before = std::exchange(draft_.failed_placements, true);
-      draft_.groups[slot].placements.push_back(read_placement(row, slot == 0));
+      std::vector<DraftPlacement>& placements = draft_.groups[slot].placements;
+      if (row.has("traffic"))
+        read_traffic(row, slot == 0, placements);
+      else
+        placements.push_back(read_placement(row, slot == 0));
       draft_.failed_placements = before;
     });
 }

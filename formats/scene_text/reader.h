@@ -56,6 +56,9 @@ class Reader {
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p, bool world);
+  // traffic.cpp
+  DraftPlacement read_vehicle(const Params& p);
+  void read_traffic(const Params& p, bool world, std::vector<DraftPlacement>& to);
   MotionContext motion_context(bool world);
   std::optional<DraftSchedule> read_schedule(const Params& p, const MotionContext& context);
   // maps.cpp

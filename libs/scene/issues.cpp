@@ -89,6 +89,8 @@ constexpr Row kRows[] = {
     {"SP411", error, "copies are too many", "all levels of groups together unfold into at most 2^28 placements"},
     {"SP412", error, "a lifetime ends before it begins, or a schedule is described wrongly",
      "'appears' before 'disappears'; rows of a schedule in the order of their times"},
+    {"SP413", error, "traffic of a type that nothing stands for",
+     "give each type an object under 'types', or a 'default'"},
     {"SP501", error, "a map is described wrongly", ""},
     {"SP502", error, "a map holds a class that has no material", "list a material for it"},
     {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
