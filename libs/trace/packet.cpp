@@ -150,8 +150,14 @@ void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>&
   }
 }
 
+bool PacketTracer::absent(uint32_t object, const Ray& ray) const {
+  const uint32_t node = world_.flat.objects[object].node;
+  return node != kNone && moving_->nodes[node].partly && !moving_->there(object, ray.time);
+}
+
 void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
   const Ray& ray = rays_[0];
+  if (absent(object, ray)) return;
   const TracedObject& o = world_.flat.objects[object];
   const Affine3 to_world = o.node == kNone ? *o.place : moving_->to_world(o, ray.time);
   for (auto found = world_.meet(ray, object, to_world, 0, 0, reach_[0]); found;
@@ -267,6 +273,7 @@ void PacketTracer::place_exact(double scale, const Ray& ray, uint32_t object, co
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
   const TracedObject& o = world_.flat.objects[object];
   const Ray& ray = rays_[r];
+  if (absent(object, ray)) return;
   const auto found =
       world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
   if (!found) return;

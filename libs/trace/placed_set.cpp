@@ -58,6 +58,7 @@ bool go_in(const Inward<T>& inward, const Box3& box, const Ray& ray, double near
 // An object as the ray sees it at its time.
 bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray& ray, double near, double far,
            LocalRay& out) {
+  if (set.partly && !set.moving->there(set.objects[prim], ray.time)) return false;
   if (!set.inverse.empty()) {
     const PlacedSet::Inverse& inverse = set.inverse[prim];
     return go_in(Inward<float>{inverse.base, inverse.linear}, mesh.room, ray, near, far, out);
@@ -71,6 +72,7 @@ bool go_in(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Ray
 // Where the unrounded ray meets an exact surface, from the packet's start on.
 std::optional<LocalHit> meet(const PlacedSet& set, uint32_t object, const Ray& ray, double advance, double near,
                              double far) {
+  if (set.partly && !set.moving->there(object, ray.time)) return std::nullopt;
   const TracedObject& o = set.world->flat.objects[object];
   return set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
 }

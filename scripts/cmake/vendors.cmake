@@ -55,6 +55,9 @@ else()
   message(STATUS "OpenVDB was not found: .vdb files will be refused")
 endif()
 
+find_package(pugixml REQUIRED)
+suite_vendor(pugixml pugixml::pugixml)
+
 find_package(tinyobjloader REQUIRED)
 suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced coordinates need double
 
