@@ -37,13 +37,6 @@ namespace suite {
 
 namespace {
 
-int list_truth() {
-  for (const TruthRow& row : truth_rows())
-    std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [",
-                row.unit.c_str(), row.unit.empty() ? "" : "]");
-  return 0;
-}
-
 // A table of kinds.
 int print(const std::string& list) {
   std::fputs(list.c_str(), stdout);
@@ -211,7 +204,7 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
-  if (o.list_truth) return list_truth();
+  if (o.list_truth) return print(truth_rows().list());
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));
   return std::nullopt;
@@ -238,7 +231,7 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
-    for (const std::string& truth : sensor->truth()) find_truth(truth);
+    for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
     choose_bins_of(*sensor, scene, standing);
   }
 }
