@@ -54,22 +54,22 @@ double BlockRun::reference_sum(size_t slot) const {
 
 void BlockRun::run() {
   const auto width = static_cast<uint32_t>(next_.size());
-  const auto paths = static_cast<uint32_t>(workspace_.width);
-  const uint32_t first = *std::min_element(next_.begin(), next_.end()),
-                 last = *std::max_element(end_.begin(), end_.end());
-  // A rule that looks at every sample must not be given many at a time. Else problems of a block take their samples
-  // before the next ones do: sums of many bands then stay in the cache.
-  const uint32_t together = watched_ ? 1 : std::max(std::min(kTogether, paths), paths / width),
-                 beside = watched_ ? width : std::max(1u, paths / kTogether);
-  for (uint32_t begin = 0; begin < width; begin += beside)
-    for (uint32_t group = first; group < last; group += together)
-      for (uint32_t i = begin; i < std::min(begin + beside, width); ++i)
-        for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
-          if (!wants(i, sample)) continue;
-          workspace_.lanes.push_back({i, sample});
-          if (workspace_.lanes.size() == paths) run_wave();
-        }
+  if (watched_) {  // a rule that looks at every sample must not be given many at a time
+    const uint32_t first = *std::min_element(next_.begin(), next_.end()),
+                   last = *std::max_element(end_.begin(), end_.end());
+    for (uint32_t sample = first; sample < last; ++sample)
+      for (uint32_t i = 0; i < width; ++i) put(i, sample);
+  } else {
+    for (uint32_t i = 0; i < width; ++i)
+      for (uint32_t sample = next_[i]; sample < end_[i]; ++sample) put(i, sample);
+  }
   if (!workspace_.lanes.empty()) run_wave();
+}
+
+void BlockRun::put(uint32_t i, uint32_t sample) {
+  if (sample < next_[i] || sample >= end_[i] || !wants(i, sample)) return;
+  workspace_.lanes.push_back({i, sample});
+  if (workspace_.lanes.size() == workspace_.width) run_wave();
 }
 
 void BlockRun::run_wave() {
