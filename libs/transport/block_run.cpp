@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "transport/dimensions.h"
 #include "transport/sensor_samples.h"
 #include "transport/serve.h"
 #include "transport/workspace.h"
@@ -75,6 +76,7 @@ void BlockRun::put(uint32_t i, uint32_t sample) {
 void BlockRun::run_wave() {
   const auto paths = static_cast<uint32_t>(workspace_.lanes.size());
   const uint64_t asked = __rdtsc();
+  draw(paths);
   for (uint32_t p = 0; p < paths; ++p) start(p);
   const uint64_t started = __rdtsc();
   const Tracer& tracer = pipeline_.surface_.tracer();
@@ -91,18 +93,32 @@ void BlockRun::run_wave() {
   workspace_.lanes.clear();
 }
 
+// The stream of a lane's sample, and its number there.
+std::pair<SampleStream, uint32_t> BlockRun::stream_of(const WaveLane& lane) const {
+  const auto [scramble, index] = deal(lane.sample);
+  // Independent numbers: every sample is the first of a sequence of its own.
+  if (pipeline_.options_.method == Method::paper) return {SampleStream(hash_of(keys_[lane.place], lane.sample), 0), 0};
+  return {streams_[size_t{lane.place} * kMostScrambles + scramble], index};
+}
+
+// The sensor's numbers of the first lanes.
+void BlockRun::draw(uint32_t paths) {
+  workspace_.points.clear();
+  for (uint32_t p = 0; p < paths; ++p) {
+    const auto [stream, number] = stream_of(workspace_.lanes[p]);
+    workspace_.points.push_back(stream.point(number, dimensions::kSensor.first, workspace_.numbers[p]));
+  }
+  SampleStream::draw(workspace_.points);
+}
+
 // Asks the sensor for the ray of a sample and starts its path.
 void BlockRun::start(uint32_t p) {
-  const auto [place, sample] = workspace_.lanes[p];
-  const auto [scramble, index] = deal(sample);
+  const WaveLane& lane = workspace_.lanes[p];
+  const auto [stream, number] = stream_of(lane);
   const size_t bins = pipeline_.state_.size();
-  // Independent numbers: every sample is the first of a sequence of its own.
-  const bool independent = pipeline_.options_.method == Method::paper;
-  const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0)
-                                          : streams_[size_t{place} * kMostScrambles + scramble];
-  const uint32_t number = independent ? 0 : index;
   float* const weights = &workspace_.weights[p * bins];
-  const SensorRay ray = ask_ray(sensor_, capture_, problems_[place], stream, number, {weights, bins});
+  const SensorRay ray =
+      ask_ray(sensor_, capture_, problems_[lane.place], workspace_.numbers[p], stream, number, {weights, bins});
   workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
   workspace_.sink.begin(p);
   PathTracing& kernel = workspace_.kernel_of(ray);

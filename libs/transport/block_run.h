@@ -1,9 +1,11 @@
 // The problems of one block while they run.
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "transport/pipeline.h"
+#include "transport/workspace.h"
 
 namespace suite {
 
@@ -24,6 +26,8 @@ class BlockRun {
   double reference_sum(size_t slot) const;
   void put(uint32_t i, uint32_t sample);
   void run_wave();
+  std::pair<SampleStream, uint32_t> stream_of(const WaveLane& lane) const;
+  void draw(uint32_t paths);
   void start(uint32_t p);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
