@@ -1,10 +1,8 @@
 #include "transport/throughput.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
-#include <cstring>
 #include <new>
+#include <utility>
 
 namespace suite {
 
@@ -12,48 +10,39 @@ namespace {
 
 constexpr size_t kVector = 8;
 
-// Neighbouring bins that are computed together: one, or eight.
-struct One {
-  static constexpr size_t kBins = 1;
-  float x;
-  static One all(float v) { return {v}; }
-  static One at(const float* p) { return {*p}; }
-  void to(float* p) const { *p = x; }
-};
-struct Eight {
-  static constexpr size_t kBins = kVector;
-  __m256 x;
-  static Eight all(float v) { return {_mm256_set1_ps(v)}; }
-  static Eight at(const float* p) { return {_mm256_loadu_ps(p)}; }
-  void to(float* p) const { _mm256_storeu_ps(p, x); }
-};
+// Calls work with what gives the values of a spectrum, or with ones where there is none.
+template <class Work>
+void with(const float* spectrum, const Work& work) {
+  if (spectrum)
+    work([spectrum](size_t k) { return spectrum[k]; });
+  else
+    work([](size_t) { return 1.0f; });
+}
 
-// W of them, in registers while all steps of a chain pass.
-template <class V, size_t W>
-struct Bins {
-  V v[W];
-  static Bins all(float x) {
-    Bins b;
-    for (V& v : b.v) v = V::all(x);
-    return b;
-  }
-  static Bins at(const float* p) {
-    Bins b;
-    for (size_t w = 0; w < W; ++w) b.v[w] = V::at(p + w * V::kBins);
-    return b;
-  }
-  void to(float* p) const {
-    for (size_t w = 0; w < W; ++w) v[w].to(p + w * V::kBins);
-  }
-  friend Bins operator*(Bins a, const Bins& b) {
-    for (size_t w = 0; w < W; ++w) a.v[w].x *= b.v[w].x;
-    return a;
-  }
-  friend Bins operator+(Bins a, const Bins& b) {
-    for (size_t w = 0; w < W; ++w) a.v[w].x += b.v[w].x;
-    return a;
-  }
-};
+// T <- scale a T; ones: T is not yet anything, and counts as ones.
+void turn_by(float* __restrict T, bool ones, float scale, const float* __restrict spectrum, size_t n) {
+  if (!ones && !spectrum && scale == 1) return;
+  with(spectrum, [=](auto a) {
+    if (ones)
+      for (size_t k = 0; k < n; ++k) T[k] = scale * a(k);
+    else
+      for (size_t k = 0; k < n; ++k) T[k] *= scale * a(k);
+  });
+}
+
+// L <- L + scale a b T; none: L is not yet anything, and counts as 0. T: null = ones.
+void add(float* __restrict L, bool none, float scale, const float* a, const float* b, const float* T, size_t n) {
+  with(a, [=](auto A) {
+    with(b, [=](auto B) {
+      with(T, [=](auto t) {
+        if (none)
+          for (size_t k = 0; k < n; ++k) L[k] = scale * A(k) * B(k) * t(k);
+        else
+          for (size_t k = 0; k < n; ++k) L[k] += scale * A(k) * B(k) * t(k);
+      });
+    });
+  });
+}
 
 }  // namespace
 
@@ -73,45 +62,23 @@ SpectralThroughputs::SpectralThroughputs(size_t width, size_t bins, size_t targe
       throughput_(spectra(width * stride_)),
       light_(spectra(width * targets * stride_)) {}
 
-// Bins k and after of a chain. Steps to one target after the other add up in registers.
-template <class Bins>
-void SpectralThroughputs::fold_bins(const Chain& c, const Step* steps, size_t k, float* memory_T,
-                                    float* memory_L) const {
-  const auto target = [=, this](size_t t) { return memory_L + t * stride_ + k; };
-  Bins T = c.folded ? Bins::at(memory_T + k) : Bins::all(1), L = c.folded ? Bins::at(target(0)) : Bins::all(0);
-  if (!c.folded)
-    for (size_t t = 1; t < targets_; ++t) L.to(target(t));
-  size_t gathers = 0;  // the target that L is of
-  for (const Step* s = steps; s != steps + c.steps; ++s) {
-    Bins x = Bins::all(s->scale);
-    if (s->a) x = x * Bins::at(s->a + k);
-    if (s->b) x = x * Bins::at(s->b + k);
-    if (s->target == kTurn) {
-      T = T * x;
-      continue;
-    }
-    x = x * T;
-    for (const uint16_t t : {s->target, s->second}) {
-      if (t == kNone) break;
-      if (t != gathers) {
-        L.to(target(gathers));
-        L = Bins::at(target(t)), gathers = t;
-      }
-      L = L + x;
-    }
-  }
-  T.to(memory_T + k), L.to(target(gathers));
-}
-
+// What is not yet anything is written by the first step that makes it something.
 void SpectralThroughputs::fold(uint32_t p) {
   Chain& c = chains_[p];
-  const Step* const steps = &step(p, 0);
   float* const T = &throughput_[size_t{p} * stride_];
   float* const L = &light_[size_t{p} * targets_ * stride_];
-  size_t k = 0;
-  for (; k + 4 * kVector <= bins_; k += 4 * kVector) fold_bins<Bins<Eight, 4>>(c, steps, k, T, L);
-  for (; k + kVector <= bins_; k += kVector) fold_bins<Bins<Eight, 1>>(c, steps, k, T, L);
-  for (; k < bins_; ++k) fold_bins<Bins<One, 1>>(c, steps, k, T, L);
+  bool ones = !c.folded, none = !c.folded && targets_ == 1;
+  if (!c.folded && !none) std::fill_n(L, targets_ * stride_, 0.0f);
+  for (const Step *s = &step(p, 0), *const end = s + c.steps; s != end; ++s) {
+    if (s->target == kTurn) {
+      turn_by(T, std::exchange(ones, false), s->scale, s->a, bins_);
+      continue;
+    }
+    add(L + s->target * stride_, std::exchange(none, false), s->scale, s->a, s->b, ones ? nullptr : T, bins_);
+    if (s->second != kNone) add(L + s->second * stride_, false, s->scale, s->a, s->b, ones ? nullptr : T, bins_);
+  }
+  if (ones) std::fill_n(T, bins_, 1.0f);
+  if (none) std::fill_n(L, bins_, 0.0f);
   c.folded = true;
   c.steps = 0;
 }
