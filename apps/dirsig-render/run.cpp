@@ -31,6 +31,7 @@
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
+#include "together.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -243,6 +244,19 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   }
 }
 
+// What a rank does that does not lead: the same job, of which nothing stays here.
+int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options) {
+  start_sensors(sim, options, "");
+  options.progress = false;
+  const StopInGoodOrder signals;
+  options.stop = [] { return stop_signal() != 0; };
+  try {
+    return run_job(scene, sim.sources, sim.sensors, options).stopped ? 128 + stop_signal() : 0;
+  } catch (const Error& e) {
+    throw located(e, *scene, sim);
+  }
+}
+
 JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -257,11 +271,12 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
 
 }  // namespace
 
-int run_render(const Cli& cli, const RenderOptions& o) {
+int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (const auto code = answer(o)) return *code;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   check_usage(cli, o);
+  if (ranks) check_ranks_usage(cli, o);
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
@@ -295,8 +310,14 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   const Facts facts(sim, scene);
   check_wishes(sim, facts);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
-  const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
+  if (ranks) check_alike(*ranks, identity_of(sim, options));
+  const std::unique_ptr<StateStore> store = ranks && !ranks->leads() ? nullptr : open_store(o, o.output, sim, options);
   options.store = store.get();
+  if (ranks) {
+    tell_budget(*ranks, options.budget);
+    options.executor = &ranks->executor();
+    if (!ranks->leads()) return follow(scene, sim, options);
+  }
   make_folder(o.output);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
