@@ -36,6 +36,7 @@ Together::Together() {
 }
 
 int Together::run(const std::function<int()>& body) {
+  begun_ = true;
   try {
     if (refused_) std::rethrow_exception(refused_);
     const int code = body();
@@ -50,7 +51,16 @@ int Together::run(const std::function<int()>& body) {
   }
 }
 
-int Together::conclude(int code) { return ranks_ ? ranks_->conclude(code) : code; }
+int Together::conclude(int code) {
+  if (!ranks_) return code;
+  // Others may understand their command lines and wait.
+  if (code != 0 && !begun_ && ranks_->fail() && !ranks_->leads()) {
+    set_silent(false);
+    warn(strf("rank %d on host %s was started with options that cannot be: ", ranks_->rank(), ranks_->host().c_str()) +
+         command_line());
+  }
+  return ranks_->conclude(code);
+}
 
 void check_ranks_usage(const Cli& cli, const RenderOptions& o) {
   for (const char* option : {"--part", "--plan", "--merge", "--study"})
@@ -71,9 +81,10 @@ void check_alike(Ranks& ranks, const StateIdentity& identity) {
     std::getline(here, host), std::getline(first, first_host);
     while (std::getline(here, a) && std::getline(first, b))
       if (a != b)
-        throw Error(strf("ranks differ: rank %zu on host %s has ", rank, host.c_str()) + a.substr(0, 100) +
-                        ", rank 0 on host " + first_host + " has " + b.substr(0, 100),
-                    "give all ranks the same command, program and files; results of unlike processors may not be mixed");
+        throw Error(
+            strf("ranks differ: rank %zu on host %s has ", rank, host.c_str()) + a.substr(0, 100) +
+                ", rank 0 on host " + first_host + " has " + b.substr(0, 100),
+            "give all ranks the same command, program and files; results of unlike processors may not be mixed");
   }
 }
 

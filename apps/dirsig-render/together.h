@@ -1,5 +1,5 @@
-// Runs on several ranks (libs/cluster): one of them speaks, what they run must be the same, and all of them end when one
-// fails.
+// Runs on several ranks (libs/cluster): one of them speaks, what they run must be the same, and all of them end when
+// one fails.
 #pragma once
 #include <exception>
 #include <functional>
@@ -24,6 +24,7 @@ class Together {
  private:
   std::unique_ptr<Ranks> ranks_;
   std::exception_ptr refused_;
+  bool begun_ = false;
 };
 
 // Refuses options that are for one process (UsageError).

@@ -13,7 +13,7 @@ namespace {
 std::atomic<bool> g_quiet{false}, g_silent{false};
 
 bool heard() { return !g_quiet && !g_silent; }
-}
+}  // namespace
 
 void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
 void Progress::set_silent(bool silent) { g_silent = silent; }

@@ -33,7 +33,6 @@ class Link {
   // Waits for all ranks; the largest of their numbers. EndedElsewhere: one of them has failed.
   int meet(int number = 0);
   bool fail();  // as in ranks.h
-  bool ended() const { return ended_; }
   void broadcast(std::vector<std::byte>& bytes);
 
   // A number on rank 0 that all ranks may fetch and change, from any thread, without rank 0 having to answer.
@@ -49,7 +48,6 @@ class Link {
   MPI_Comm comm_;
   MPI_Win window_ = MPI_WIN_NULL;
   int rank_ = 0, size_ = 1;
-  bool ended_ = false;
   std::mutex mutex_;  // of the window
 };
 

@@ -28,8 +28,8 @@ class Costs {
   std::unordered_map<const Capture*, std::vector<float>> known_;  // [block]; 0 = not known
 };
 
-// The pieces of all rounds, dearest first (equal ones in the order of the rounds). Blocks that are so dear that `threads`
-// threads could not finish together are cut by scrambles.
+// The pieces of all rounds, dearest first (equal ones in the order of the rounds). Blocks that are so dear that
+// `threads` threads could not finish together are cut by scrambles.
 std::vector<Piece> pieces_of(std::span<const Round> rounds, const Costs& costs, size_t threads);
 
 }  // namespace suite::cluster

@@ -1,4 +1,5 @@
-// The processes that mpirun (or srun, mpiexec) started together to run one job: ranks 0 to n - 1, of which rank 0 leads.
+// The processes that mpirun (or srun, mpiexec) started together to run one job: ranks 0 to n - 1, of which rank 0
+// leads.
 //
 // All calls but rank(), size() and host() are made by all ranks in the same order. Where a rank has failed, the others
 // learn it in their next call, which throws EndedElsewhere there, so that none waits for what will never come.

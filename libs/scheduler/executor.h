@@ -36,8 +36,8 @@ class Executor {
   virtual bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) = 0;
 
   // Several processes may run one job together, each with the loop of scheduler.h and kits of its own. One of them
-  // leads: it keeps all sums, decides the rounds, delivers and stores; the others are told the rounds, and what they run
-  // is taken where it leads. All of them make the same calls in the same order.
+  // leads: it keeps all sums, decides the rounds, delivers and stores; the others are told the rounds, and what they
+  // run is taken where it leads. All of them make the same calls in the same order.
   virtual int processes() const { return 1; }
   virtual bool leads() const { return true; }
   // Replaces the bytes by those of the process that leads.

@@ -59,16 +59,15 @@ class Job {
     doubt_before();
     if (options_.share) mine_ = blocks_of_share(sensors_, *options_.share);
     if (options_.store) begin_store(items);
-    tell_cap();
+    std::vector<ToldRound> none;
+    exchange(executor(), none, cap_);
     report_.captures_asked = items.size();
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
     saving_.store = options_.store;
-    if (!before.empty()) {
-      run_all(before, {{}, true});
-      report_.stopped = executor().any(report_.stopped);
-    }
+    if (!before.empty()) run_all(before, {{}, true});
+    report_.stopped = executor().any(report_.stopped);
     if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped)
       run_all(some, {options_.loads ? options_.loads() : LoadsAt{}});
     if (progress_) progress_->finish();
@@ -108,11 +107,6 @@ class Job {
   // Of a job that several processes run together, pre-passes are run by each: all need what comes of them.
   bool together(const Item& item) { return !early(item) && executor().processes() > 1; }
   bool follows(const Item& item) { return together(item) && !executor().leads(); }
-
-  void tell_cap() {
-    std::vector<ToldRound> none;
-    if (executor().processes() > 1) exchange(executor(), none, cap_);
-  }
 
   bool early(const Item& item) const { return item.sensor >= sensors_.size(); }  // of a pre-pass
   Sensor& sensor_of(const Item& item) const {
@@ -218,8 +212,7 @@ class Job {
       const Item& item = left[batch.size()];
       paths += most_paths(item);
       // Where time is the budget, the first pilot tells what it is worth.
-      if (!batch.empty() &&
-          (!more() || paths > kPathsInFlight * static_cast<double>(processes) || unknown_cap(item)))
+      if (!batch.empty() && (!more() || paths > kPathsInFlight * static_cast<double>(processes) || unknown_cap(item)))
         break;
       batch.push_back(take_up(item));
       bytes += batch.back()->bytes();
