@@ -38,13 +38,6 @@ namespace suite {
 
 namespace {
 
-int list_truth() {
-  for (const TruthRow& row : truth_rows())
-    std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [",
-                row.unit.c_str(), row.unit.empty() ? "" : "]");
-  return 0;
-}
-
 // A table of kinds.
 int print(const std::string& list) {
   std::fputs(list.c_str(), stdout);
@@ -181,6 +174,11 @@ void tell(const JobReport& r) {
     for (const std::string& sentence : sentences(s.sensor, s.shortfall)) warn(sentence);
 }
 
+void tell(const JobReport& r, const JobOptions& options, const std::string& folder) {
+  if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
+  tell(r);
+}
+
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
 JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options,
                      const std::string& folder, const size_t& delivered) {
@@ -212,7 +210,7 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
-  if (o.list_truth) return list_truth();
+  if (o.list_truth) return print(truth_rows().list());
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));
   return std::nullopt;
@@ -239,9 +237,22 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
-    for (const std::string& truth : sensor->truth()) find_truth(truth);
+    for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
     choose_bins_of(*sensor, scene, standing);
   }
+}
+
+// The state of the run, where it is kept; ranks that are not alike are refused, and all are told the budget.
+std::unique_ptr<StateStore> join_or_open(const RenderOptions& o, const Simulation& sim, JobOptions& options,
+                                         Ranks* ranks) {
+  if (ranks) check_alike(*ranks, identity_of(sim, options));
+  std::unique_ptr<StateStore> store;
+  if (!ranks || ranks->leads()) store = open_store(o, o.output, sim, options);
+  options.store = store.get();
+  if (!ranks) return store;
+  tell_budget(*ranks, options.budget);
+  options.executor = &ranks->executor();
+  return store;
 }
 
 // What a rank does that does not lead: the same job, of which nothing stays here.
@@ -310,14 +321,8 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const Facts facts(sim, scene);
   check_wishes(sim, facts);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
-  if (ranks) check_alike(*ranks, identity_of(sim, options));
-  const std::unique_ptr<StateStore> store = ranks && !ranks->leads() ? nullptr : open_store(o, o.output, sim, options);
-  options.store = store.get();
-  if (ranks) {
-    tell_budget(*ranks, options.budget);
-    options.executor = &ranks->executor();
-    if (!ranks->leads()) return follow(scene, sim, options);
-  }
+  const std::unique_ptr<StateStore> store = join_or_open(o, sim, options, ranks);
+  if (ranks && !ranks->leads()) return follow(scene, sim, options);
   make_folder(o.output);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
@@ -327,10 +332,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   options.warn = warn;
   start_sensors(sim, options, part ? "" : o.output);
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
-  if (options.share && (part || report.captures_waiting))
-    tell_share(report, *options.share, o.output);
-  else
-    tell(report);
+  tell(report, options, o.output);
   for (const auto& reads : later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, *writer);

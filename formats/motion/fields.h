@@ -38,8 +38,15 @@ struct TableRow {
   std::vector<int> columns;  // where each cell starts
   std::optional<size_t> find(const char* name) const;
   double number(size_t column) const;  // Error, located, when it is none
+  // Seconds of simulation time, from the column time_s or utc. Error unless there is one of them.
+  double time(const MotionContext& context) const;
 };
+// A finite number, written with or without a sign; nothing when the text is none.
+std::optional<double> number_of(std::string_view text);
 void for_each_row(std::string_view text, const std::string& file_name, std::span<const char* const> known_names,
                   const std::function<void(const TableRow&)>& visit);
+
+// The path of a file that a node names. Error when there is none.
+std::string motion_file(const Params& file, const MotionContext& context);
 
 }  // namespace suite

@@ -2,6 +2,7 @@
 // grammar; every key and column wears its unit.
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "base/params.h"
 #include "motion/jitter.h"
+#include "motion/timetable.h"
 #include "motion/track.h"
 
 namespace suite {
@@ -24,6 +26,8 @@ struct MotionContext {
   std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
   // The path of a file that a node names; null: relative to the text.
   std::function<std::string(const Params&)> resolve = nullptr;
+  // What moves may be absent outside the times that its track covers (key `outside`).
+  bool may_end = false;
 };
 
 // The track a node describes. Marks what it reads; the caller rejects unread keys. Error, located: see FORMAT.md.
@@ -36,6 +40,27 @@ Pose pose_from(const Params& node, const MotionContext& context);
 Jitter jitter_from(const Params& node, uint64_t seed);
 // Seconds of simulation time from `time_s` or `utc` of a node.
 double time_from(const Params& node, const MotionContext& context);
+
+// Seconds of simulation time from one value: a number of them, or a date in UTC.
+double time_value(const Params& value, const MotionContext& context);
+
+// A control table: what holds from which time on. `columns` are what its rows may say beside their time.
+struct TimedCell {
+  std::string text;
+  Where where;
+  bool truth() const;  // Error, located, unless it is true or false
+  double number_in(double low, double high, const char* unit) const;
+};
+struct TimedRow {
+  Where where;
+  std::map<std::string, TimedCell> cells;  // by column; those that were given
+};
+struct TimedTable {
+  Timetable when;
+  std::vector<TimedRow> rows;
+};
+// From a list of rows, or from a map of `rows` or `file` (a table) and `period_s`.
+TimedTable timetable_from(const Params& node, const MotionContext& context, std::span<const char* const> columns);
 
 // Timed poses from a table, in scene ENU.
 std::vector<PoseKey> read_pose_keys(const std::string& path, const MotionContext& context);

@@ -1,5 +1,6 @@
 #include "base/files.h"
 #include "formats/motion/fields.h"
+#include "formats/motion/track_files.h"
 
 namespace suite {
 
@@ -65,17 +66,27 @@ PoseFields fields_of(const Params& node) {
 
 TrackPtr make_track(const Params& node, const MotionContext& context, int depth);
 
-std::string path_of(const Params& file, const MotionContext& context) {
-  if (context.resolve) return context.resolve(file);
-  const std::string path = file.as_path();
-  if (!file_exists(path))
-    throw file.error("there is no file '" + path + "'", "relative names start at this file's folder");
-  return path;
+// A table of timed poses, or one thing of a file of tracks.
+TrackPtr track_of_file(const Params& file, const Params& node, const MotionContext& context) {
+  const std::string path = motion_file(file, context), text = read_text(path);
+  const TrackFileRow* row = track_file_of(text);
+  if (!row) return keyframe_track(parse_pose_keys(text, path, context));
+  const std::string id = node.text("object");
+  std::vector<std::string> known;
+  std::vector<MovingThing> mine;
+  for (MovingThing& thing : row->make(text, path, track_file_options(node, context))) {
+    known.push_back(thing.id);
+    if (thing.id == id) mine.push_back(std::move(thing));
+  }
+  if (mine.empty()) throw node.at("object").error("nothing of the id '" + id + "' moves there", name_hint(id, known));
+  if (mine.size() > 1)
+    throw node.at("object").error("'" + id + "' is not there all the time between its first record and its last",
+                                  "let the scene text's 'traffic' place it");
+  return keyframe_track(std::move(mine.front().keys));
 }
 
 TrackPtr make_keyframes(const Params& node, const MotionContext& context) {
-  if (const auto file = node.find("file"))
-    return located(*file, [&] { return keyframe_track(read_pose_keys(path_of(*file, context), context)); });
+  if (const auto file = node.find("file")) return located(*file, [&] { return track_of_file(*file, node, context); });
   std::vector<PoseKey> keys;
   for (const Params& item : node.at("keys").items()) {
     const double time = time_from(item, context);
@@ -132,7 +143,7 @@ TrackPtr make_orbit(const Params& node, const MotionContext& context) {
   SUITE_CHECK(context.satellites != nullptr);
   const Params tle = node.at("tle");
   return located(node, [&] {
-    const OrbitElements elements = context.satellites(path_of(tle, context), node.text("satellite"));
+    const OrbitElements elements = context.satellites(motion_file(tle, context), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
     return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
@@ -180,7 +191,7 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
       break;
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
-      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites, context.resolve};
+      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites, context.resolve, false};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }
@@ -190,16 +201,41 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
 
 }  // namespace
 
-TrackPtr track_from(const Params& node, const MotionContext& context) { return make_track(node, context, 0); }
+std::string motion_file(const Params& file, const MotionContext& context) {
+  if (context.resolve) return context.resolve(file);
+  const std::string path = file.as_path();
+  if (!file_exists(path))
+    throw file.error("there is no file '" + path + "'", "relative names start at this file's folder");
+  return path;
+}
+
+TrackPtr track_from(const Params& node, const MotionContext& context) {
+  TrackPtr track = make_track(node, context, 0);
+  const auto outside = node.find("outside");
+  if (!outside || outside->as_choice({"error", "absent"}) == 0) return track;
+  if (!context.may_end) throw outside->error("only placements of a scene can be absent", "leave out 'outside'");
+  return ending_track(std::move(track));
+}
 Vec3 position_from(const Params& node, const MotionContext& context) { return fields_of(node).position(context); }
 Pose pose_from(const Params& node, const MotionContext& context) { return fields_of(node).pose(context); }
+
+namespace {
+double date_from(const Params& utc, const MotionContext& context) {
+  if (!context.clock)
+    throw utc.error("a time in UTC needs the date of the simulation",
+                    "use seconds, or give the text an epoch: 2026-06-21T10:30:00Z");
+  return located(utc, [&] { return context.clock->seconds(parse_iso8601(utc.as_text())); });
+}
+}  // namespace
 
 double time_from(const Params& node, const MotionContext& context) {
   const auto seconds = node.find("time_s"), utc = node.find("utc");
   if (seconds.has_value() == utc.has_value()) throw node.error("a time is needed once", "time_s or utc");
-  if (seconds) return seconds->as_number();
-  if (!context.clock) throw utc->error("a time in UTC needs the date of the simulation", "use time_s");
-  return located(*utc, [&] { return context.clock->seconds(parse_iso8601(utc->as_text())); });
+  return seconds ? seconds->as_number() : date_from(*utc, context);
+}
+
+double time_value(const Params& p, const MotionContext& context) {
+  return p.as_text().find_first_of(":T") == std::string::npos ? p.as_number() : date_from(p, context);
 }
 
 }  // namespace suite

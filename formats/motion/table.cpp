@@ -64,17 +64,32 @@ std::optional<size_t> TableRow::find(const char* name) const {
   return std::nullopt;
 }
 
-double TableRow::number(size_t column) const {
-  std::string_view cell = cells[column];
-  if (!cell.empty() && cell[0] == '+') cell.remove_prefix(1);
+std::optional<double> number_of(std::string_view text) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   double value = 0;
-  const auto [stop, status] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (cell.empty() || status != std::errc() || stop != cell.data() + cell.size() || !std::isfinite(value)) {
-    Where at = where;
-    at.column = columns[column];
-    throw Error(at, (*names)[column] + " is no number: '" + std::string(cells[column]) + "'", "write a finite number");
-  }
+  const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || status != std::errc() || stop != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
   return value;
+}
+
+double TableRow::number(size_t column) const {
+  if (const auto value = number_of(cells[column])) return *value;
+  Where at = where;
+  at.column = columns[column];
+  throw Error(at, (*names)[column] + " is no number: '" + std::string(cells[column]) + "'", "write a finite number");
+}
+
+double TableRow::time(const MotionContext& context) const {
+  const auto seconds = find("time_s"), utc = find("utc");
+  if (seconds.has_value() == utc.has_value()) throw Error(where, "a table needs one column of times", "time_s or utc");
+  if (seconds) return number(*seconds);
+  if (!context.clock) throw Error(where, "times in UTC need the date of the simulation", "use time_s");
+  try {
+    return context.clock->seconds(parse_iso8601(cells[*utc]));
+  } catch (const Error& e) {
+    throw Error(where, e.message(), e.hint());
+  }
 }
 
 void for_each_row(std::string_view text, const std::string& file_name, std::span<const char* const> known_names,
@@ -128,20 +143,7 @@ std::vector<PoseKey> parse_pose_keys(std::string_view text, const std::string& f
     fields.error = [&](std::string what, std::string hint) {
       return Error(row.where, std::move(what), std::move(hint));
     };
-    const auto seconds = row.find("time_s"), utc = row.find("utc");
-    if (seconds.has_value() == utc.has_value())
-      throw fields.error("a table of poses needs one column of times", "time_s or utc");
-    double time = 0;
-    if (seconds) {
-      time = row.number(*seconds);
-    } else {
-      if (!context.clock) throw fields.error("times in UTC need the date of the simulation", "use time_s");
-      try {
-        time = context.clock->seconds(parse_iso8601(row.cells[*utc]));
-      } catch (const Error& e) {
-        throw fields.error(e.message(), e.hint());
-      }
-    }
+    const double time = row.time(context);
     if (!keys.empty() && !(time > keys.back().time))
       throw fields.error("the times do not ascend", "each row later than the one before");
     keys.push_back({time, fields.pose(context)});

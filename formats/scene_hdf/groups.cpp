@@ -45,7 +45,7 @@ void read_table(h5::Reader& r, Scene& s, Loading&, GroupTable) {
     for (uint64_t q = 0; q < placements[g]; ++q, ++at) {
       if (what[at] > static_cast<uint8_t>(TargetKind::primitive)) r.fail("a placement is of an unknown kind");
       group.placements.push_back({transform_of(&transform[12 * at]), static_cast<TargetKind>(what[at]), target[at],
-                                  override_[at], tag[at], track[at]});
+                                  override_[at], tag[at], track[at], kNone});
     }
     s.groups.push_back(std::move(group));
   }

@@ -102,6 +102,7 @@ std::vector<Curve> read_curves(h5::Reader& r, const std::string& table);
 SUITE_OWN_WAY(GroupTable);
 SUITE_OWN_WAY(TagTable);
 SUITE_OWN_WAY(TrackTable);
+SUITE_OWN_WAY(ScheduleTable);
 SUITE_OWN_WAY(MaterialTable);
 SUITE_OWN_WAY(PropertyMapTable);
 SUITE_OWN_WAY(MediumTable);  // and which of them is ambient, and those behind and in front of materials

@@ -92,6 +92,7 @@ std::vector<bool> meshes_with_uvs(const Scene& s, Loading& loading) {
   for (const Group& g : s.groups)
     for (const Placement& p : g.placements)
       all = all || (p.material_override < asks.size() && asks[p.material_override]);
+  for (const Schedule& one : s.schedules) all = all || any_of(one.material);
   std::vector<bool> with(s.meshes.size(), all);
   for (size_t k = 0; k < s.meshes.size(); ++k)
     for (const Part& p : s.meshes[k].parts)

@@ -172,7 +172,8 @@ void Reader::read_grid(const std::string& name, const Params& p) {
 
 void Reader::read_volume(const Params& p) {
   DraftVolume v{p.where(), reference(p.at("place")), find_transform(p).value_or(Affine3{}), nullptr, {}};
-  if (const auto motion = p.find("motion")) v.motion = read_motion(*motion, true), v.motion_where = motion->where();
+  if (const auto motion = p.find("motion"))
+    v.motion = track_from(*motion, motion_context(true)), v.motion_where = motion->where();
   draft_.volumes.push_back(std::move(v));
 }
 

@@ -34,7 +34,7 @@ ScatterRule read_scatter(const Params& p) {
 }  // namespace
 
 // Geodetic places mean something in `world` only: groups do not know where they will stand.
-std::shared_ptr<const Track> Reader::read_motion(const Params& p, bool world) {
+MotionContext Reader::motion_context(bool world) {
   MotionContext context;
   if (world && draft_.origin.given)
     context.frame.emplace(
@@ -44,7 +44,30 @@ std::shared_ptr<const Track> Reader::read_motion(const Params& p, bool world) {
     return read_tle_of(path, satellite).elements;
   };
   context.resolve = [this](const Params& file) { return input(file); };
-  return track_from(p, context);
+  return context;
+}
+
+// A lifetime and a control table; nothing when neither is given.
+std::optional<DraftSchedule> Reader::read_schedule(const Params& p, const MotionContext& context) {
+  const auto appears = p.find("appears"), disappears = p.find("disappears"), table = p.find("schedule");
+  if (!appears && !disappears && !table) return std::nullopt;
+  DraftSchedule made;
+  if (appears) made.life.begin = time_value(*appears, context);
+  if (disappears) made.life.end = time_value(*disappears, context);
+  if (!(made.life.begin < made.life.end))
+    throw disappears->error(strf("it disappears at %.9g s and appears at %.9g s", made.life.end, made.life.begin),
+                            "a lifetime ends after it begins", "SP412");
+  if (!table) return made;
+  constexpr const char* kColumns[] = {"there", "material"};
+  const TimedTable rows = timetable_from(*table, context, kColumns);
+  made.when = rows.when;
+  for (const TimedRow& row : rows.rows) {
+    DraftSchedule::Row& to = made.rows.emplace_back();
+    if (const auto there = row.cells.find("there"); there != row.cells.end()) to.there = there->second.truth();
+    if (const auto m = row.cells.find("material"); m != row.cells.end())
+      to.material = {m->second.text, m->second.where};
+  }
+  return made;
 }
 
 DraftPlacement Reader::read_placement(const Params& p, bool world) {
@@ -64,9 +87,12 @@ DraftPlacement Reader::read_placement(const Params& p, bool world) {
     made.scatter = read_scatter(*v);
   }
   if (const auto v = p.find("motion")) {
-    made.motion = read_motion(*v, world);
+    MotionContext context = motion_context(world);
+    context.may_end = true;
+    made.motion = track_from(*v, context);
     made.motion_where = v->where();
   }
+  made.schedule = read_schedule(p, motion_context(world));
   if (const auto t = find_transform(p)) made.to_parent = *t;
   return made;
 }
@@ -78,7 +104,11 @@ void Reader::read_group(const std::string& name, const Params& p) {
   for (const Params& row : p.items())
     item("SP001", row, [&] {
       const bool before = std::exchange(draft_.failed_placements, true);
-      draft_.groups[slot].placements.push_back(read_placement(row, slot == 0));
+      std::vector<DraftPlacement>& placements = draft_.groups[slot].placements;
+      if (row.has("traffic"))
+        read_traffic(row, slot == 0, placements);
+      else
+        placements.push_back(read_placement(row, slot == 0));
       draft_.failed_placements = before;
     });
 }

@@ -7,6 +7,7 @@
 #include "base/params.h"
 #include "base/tracked_inputs.h"
 #include "formats/curve/curve.h"
+#include "formats/motion/motion.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/voxel/voxel.h"
 #include "motion/scene_frame.h"
@@ -55,7 +56,11 @@ class Reader {
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p, bool world);
-  std::shared_ptr<const Track> read_motion(const Params& p, bool world);
+  // traffic.cpp
+  DraftPlacement read_vehicle(const Params& p);
+  void read_traffic(const Params& p, bool world, std::vector<DraftPlacement>& to);
+  MotionContext motion_context(bool world);
+  std::optional<DraftSchedule> read_schedule(const Params& p, const MotionContext& context);
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);

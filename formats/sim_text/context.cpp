@@ -72,17 +72,7 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   context.jitter = [](const Params& p, uint64_t seed) { return jitter_from(p, seed); };
   context.image = read_grey;
   context.frame = [motion] { return motion().frame; };
-  context.time = [shared](const Params& p) {
-    const std::string text = p.as_text();
-    if (text.find_first_of(":T") == std::string::npos) return p.as_number();
-    if (!shared->motion.clock)
-      throw p.error("a date needs the simulation's `epoch`", "give seconds, or epoch: 2026-06-21T10:30:00Z");
-    try {
-      return shared->motion.clock->seconds(parse_iso8601(text));
-    } catch (const Error& e) {
-      throw p.error(e.message(), e.hint());
-    }
-  };
+  context.time = [shared](const Params& p) { return time_value(p, shared->motion); };
   context.utc = [shared](double t) {
     return shared->motion.clock ? to_iso8601(shared->motion.clock->utc(t), 6) : std::string();
   };

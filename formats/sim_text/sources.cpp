@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "formats/curve/curve.h"
+#include "formats/motion/motion.h"
 #include "formats/raster/raster.h"
 #include "formats/sqt/sqt.h"
 #include "optics/phase_function.h"
@@ -64,6 +65,34 @@ ModelSpec read_phase(const Params& p) {
   }
   check_phase(spec, p.where());
   return spec;
+}
+
+// The date of second 0, which may stand with the lights that are being read.
+std::optional<Clock> clock_of(const Params& root) {
+  auto date = root.find("epoch");
+  for (const char* body : {"sun", "moon"})
+    if (const auto light = date ? std::nullopt : root.find(body))
+      if (const auto direction = light->find("direction")) date = direction->find("time_utc");
+  if (!date) return std::nullopt;
+  try {
+    return Clock(parse_iso8601(date->as_text()));
+  } catch (const Error& e) {
+    throw date->error(e.message(), e.hint());
+  }
+}
+
+std::shared_ptr<const LampSchedule> read_lamp_schedule(const Params& p, const MotionContext& context) {
+  constexpr const char* kColumns[] = {"on", "scale"};
+  const TimedTable table = timetable_from(p, context, kColumns);
+  auto made = std::make_shared<LampSchedule>();
+  made->when = table.when;
+  for (const TimedRow& row : table.rows) {
+    const auto on = row.cells.find("on"), scale = row.cells.find("scale");
+    const bool dark = on != row.cells.end() && !on->second.truth();
+    if (dark && scale != row.cells.end()) throw Error(row.where, "a lamp that is off has a scale", "leave it out");
+    made->scale.push_back(dark ? 0 : scale != row.cells.end() ? scale->second.number_in(0, 1e12, "(of the light)") : 1);
+  }
+  return made;
 }
 
 AtmosphereSpec read_atmosphere(const Params& p, const LightContext& context) {
@@ -140,7 +169,10 @@ void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& 
 
 SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
   SourceSpecs s;
-  LightContext context{read_curve_value, read_image, read_intensity, &asked};
+  MotionContext motion;
+  motion.clock = clock_of(root);
+  LightContext context{read_curve_value, read_image, read_intensity,
+                       [&](const Params& p) { return read_lamp_schedule(p, motion); }, &asked};
   for (const LightRow* key : light_keys()) {
     const auto value = root.find(key->key());
     if (!value) continue;

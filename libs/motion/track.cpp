@@ -188,53 +188,6 @@ class Spin final : public Track {
   SpinMotion m_;
 };
 
-class Composed final : public Track {
- public:
-  Composed(TrackPtr outer, TrackPtr inner) : outer_(std::move(outer)), inner_(std::move(inner)) {
-    SUITE_CHECK(outer_ && inner_);
-  }
-  Pose at(double t) const override { return outer_->at(t) * inner_->at(t); }
-  TimeSpan covered() const override {
-    const TimeSpan a = outer_->covered(), b = inner_->covered();
-    return {std::fmax(a.begin, b.begin), std::fmin(a.end, b.end)};
-  }
-  std::vector<double> kinks(TimeSpan span) const override {
-    std::vector<double> times = outer_->kinks(span), more = inner_->kinks(span), all;
-    std::merge(times.begin(), times.end(), more.begin(), more.end(), std::back_inserter(all));
-    return all;
-  }
-
-  TrackRecord record() const override {
-    return {TrackRecord::Kind::composed, {}, {}, {outer_->record(), inner_->record()}};
-  }
-
- private:
-  TrackPtr outer_, inner_;
-};
-
-class Delayed final : public Track {
- public:
-  Delayed(TrackPtr track, double seconds) : track_(std::move(track)), later_(seconds) {
-    SUITE_CHECK(track_ != nullptr);
-    need_finite(std::isfinite(seconds), "delay");
-  }
-  Pose at(double t) const override { return track_->at(t - later_); }
-  Vec3 velocity(double t) const override { return track_->velocity(t - later_); }
-  TimeSpan covered() const override {
-    const TimeSpan c = track_->covered();
-    return {c.begin + later_, c.end + later_};
-  }
-  std::vector<double> kinks(TimeSpan span) const override {
-    std::vector<double> times = track_->kinks({span.begin - later_, span.end - later_});
-    for (double& t : times) t += later_;
-    return times;
-  }
-
- private:
-  TrackPtr track_;
-  double later_;
-};
-
 class Orbit final : public Track {
  public:
   Orbit(std::shared_ptr<const Sgp4> orbit, const SceneFrame& frame, const Clock& clock, double dut1)
@@ -383,10 +336,6 @@ TrackPtr keyframe_track(std::vector<PoseKey> keys) { return std::make_shared<Key
 TrackPtr straight_track(const StraightMotion& motion) { return std::make_shared<Straight>(motion); }
 TrackPtr circle_track(const CircleMotion& motion) { return std::make_shared<Circle>(motion); }
 TrackPtr spin_track(const SpinMotion& motion) { return std::make_shared<Spin>(motion); }
-TrackPtr composed_track(TrackPtr outer, TrackPtr inner) {
-  return std::make_shared<Composed>(std::move(outer), std::move(inner));
-}
-TrackPtr delayed_track(TrackPtr track, double seconds) { return std::make_shared<Delayed>(std::move(track), seconds); }
 TrackPtr orbit_track(std::shared_ptr<const Sgp4> orbit, const SceneFrame& frame, const Clock& clock, double dut1) {
   return std::make_shared<Orbit>(std::move(orbit), frame, clock, dut1);
 }

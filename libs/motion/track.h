@@ -28,6 +28,8 @@ class Track {
   // differences over +-2 ms (relative error (w h)^4/30 at angular rate w), one-sided at the ends of the covered time.
   virtual Vec3 velocity(double t) const;
   virtual TimeSpan covered() const;  // all times by default
+  // Whether what it carries is not there outside covered(); else nobody may ask for such times.
+  virtual bool absent_outside() const { return false; }
   // Times inside the span where the motion has a kink (keyframes), ascending; none by default.
   virtual std::vector<double> kinks(TimeSpan span) const;
   // As plain data (track_record.h). Error for a kind that cannot be stored.
@@ -101,6 +103,9 @@ TrackPtr composed_track(TrackPtr outer, TrackPtr inner);
 
 // The same motion, `seconds` later: at t where `track` is at t - seconds. Cannot be stored.
 TrackPtr delayed_track(TrackPtr track, double seconds);
+
+// The same motion, of something that is not there outside the times that it covers.
+TrackPtr ending_track(TrackPtr track);
 
 // A satellite: position from SGP4, in the scene's frame; clock and dut1 (s) tie simulation time to UTC. Orientation:
 // z away from the Earth's ellipsoid, y along the velocity over the rotating Earth as nearly as that allows.

@@ -139,6 +139,7 @@ TrackPtr make(const TrackRecord& r, int depth) {
   const size_t parts = r.parts.size();
   const bool right = r.kind == Kind::composed  ? parts == 2
                      : r.kind == Kind::pointed ? parts == 1 || parts == 2
+                     : r.kind == Kind::ending  ? parts == 1
                                                : parts == 0;
   if (!right) throw Error("a stored motion has the wrong number of parts");
   Numbers n(r);
@@ -167,6 +168,9 @@ TrackPtr make(const TrackRecord& r, int depth) {
       break;
     case Kind::pointed:
       made = make_pointed(n, r, depth);
+      break;
+    case Kind::ending:
+      made = ending_track(make(r.parts[0], depth + 1));
       break;
     default:
       throw Error("a stored motion is of an unknown kind");

@@ -8,11 +8,12 @@
 namespace suite {
 
 struct TrackRecord {
-  enum class Kind : uint8_t { fixed, keyframes, straight, circle, spin, composed, orbit, pointed };
+  enum class Kind : uint8_t { fixed, keyframes, straight, circle, spin, composed, orbit, pointed, ending };
   Kind kind = Kind::fixed;
-  std::vector<double> numbers;     // SI; track_record.cpp says which
-  std::string text;                // orbit: the satellite
-  std::vector<TrackRecord> parts;  // composed: outer, inner; pointed: the place, then the target if there is one
+  std::vector<double> numbers;  // SI; track_record.cpp says which
+  std::string text;             // orbit: the satellite
+  std::vector<TrackRecord>
+      parts;  // composed: outer, inner; pointed: the place, then the target if there is one; ending: what ends
 };
 
 // The track that a record describes. Error: too few or too many numbers or parts, more than 64 levels, or what the

@@ -8,6 +8,7 @@
 #include "scene/curvature.h"
 #include "scene/endless_media.h"
 #include "scene/origin_check.h"
+#include "scene/presence.h"
 #include "scene/unfolded.h"
 
 namespace suite {
@@ -272,6 +273,7 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
         {strf("'%s' (line %d of the scene's text)", p.target.name.c_str(), p.motion_where.line), p.motion});
     motion_where_.push_back(p.motion_where);
   }
+  if (p.schedule) made.schedule = schedule(*p.schedule, p.target.name, p.where);
   made.kind = what->kind;
   for (const Affine3& t : all) {
     made.to_parent = t;
@@ -282,25 +284,50 @@ void Baker::place(const DraftPlacement& p, Group& group, bool world) {
   }
 }
 
-// The declared time, which every motion must cover; undeclared, the time that all have in common (for those that never
-// begin or end: second 0).
+uint32_t Baker::schedule(const DraftSchedule& draft, const std::string& target, const Where& where) {
+  Schedule made;
+  made.name = strf("'%s' (line %d of the scene's text)", target.c_str(), where.line);
+  made.life = draft.life;
+  made.when = draft.when;
+  for (const DraftSchedule::Row& row : draft.rows) {
+    made.there.push_back(row.there);
+    made.material.push_back(row.material.given() ? material_id(row.material) : kNone);
+  }
+  scene_.schedules.push_back(std::move(made));
+  return static_cast<uint32_t>(scene_.schedules.size() - 1);
+}
+
+// The declared time, which every motion must cover while what moves is there; undeclared, the time that all have in
+// common (for those that never begin or end: second 0, and all that comes and goes).
 TimeSpan Baker::time_window() {
-  TimeSpan common{-INFINITY, INFINITY};
+  std::vector<uint32_t> schedule_of(scene_.tracks.size(), kNone);
+  for (const Group& g : scene_.groups)
+    for (const Placement& p : g.placements)
+      if (p.track != kNone) schedule_of[p.track] = p.schedule;
+  TimeSpan common{-INFINITY, INFINITY}, passing{0, 0};
   for (size_t k = 0; k < scene_.tracks.size(); ++k) {
-    const TimeSpan c = scene_.tracks[k].track->covered();
-    common = {std::max(common.begin, c.begin), std::min(common.end, c.end)};
-    if (draft_.times && !(c.contains(draft_.times->begin) && c.contains(draft_.times->end)))
+    const SceneTrack& t = scene_.tracks[k];
+    const TimeSpan c = t.track->covered();
+    if (t.track->absent_outside()) {
+      passing = {std::min(passing.begin, c.begin), std::max(passing.end, c.end)};
+      continue;
+    }
+    const TimeSpan asked = draft_.times ? TimeSpan{draft_.times->begin, draft_.times->end} : TimeSpan{-kEver, kEver};
+    const Presence there = presence(scene_, kNone, schedule_of[k], {}, asked);
+    const auto misses = [&](double time) { return std::isfinite(time) && !c.contains(time); };
+    if ((draft_.times || schedule_of[k] != kNone) && there.any && (misses(there.hull.begin) || misses(there.hull.end)))
       add("SP407", motion_where_[k],
-          strf("the motion of %s is known from %.9g to %.9g s, 'times_s' is %.9g to %.9g s",
-               scene_.tracks[k].name.c_str(), c.begin, c.end, draft_.times->begin, draft_.times->end));
-    else if (!(common.begin <= common.end))
-      return add("SP407", motion_where_[k],
-                 "the motion of " + scene_.tracks[k].name + " has no time in common with the others"),
+          strf("the motion of %s is known from %.9g to %.9g s, %s is %.9g to %.9g s", t.name.c_str(), c.begin, c.end,
+               there.all && draft_.times ? "'times_s'" : "its life", there.hull.begin, there.hull.end));
+    if (schedule_of[k] != kNone) continue;  // needed while it is there, which need not be when others are
+    common = {std::max(common.begin, c.begin), std::min(common.end, c.end)};
+    if (!draft_.times && !(common.begin <= common.end))
+      return add("SP407", motion_where_[k], "the motion of " + t.name + " has no time in common with the others"),
              TimeSpan{};
   }
   if (draft_.times) return {draft_.times->begin, draft_.times->end};
-  if (!std::isfinite(common.begin)) common.begin = std::min(0.0, common.end);
-  if (!std::isfinite(common.end)) common.end = std::max(0.0, common.begin);
+  if (!std::isfinite(common.begin)) common.begin = std::min(passing.begin, common.end);
+  if (!std::isfinite(common.end)) common.end = std::max(passing.end, common.begin);
   return common;
 }
 

@@ -61,6 +61,7 @@ class Baker {
   std::string terrains() const;
   bool put_on(const DraftPlacement& p, bool world, std::vector<Affine3>& all);
   void place(const DraftPlacement& p, Group& group, bool world);
+  uint32_t schedule(const DraftSchedule& draft, const std::string& target, const Where& where);
   TimeSpan time_window();
   void unused();
   void tell_endless_media();

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "motion/track.h"
+#include "scene/presence.h"
 #include "scene/primitives.h"
 
 namespace suite {
@@ -60,7 +61,8 @@ Box3 scene_bounds(const Scene& s, double begin, double end) {
                         : p.kind == TargetKind::group ? groups[p.target]
                                                       : primitives[p.target];
       const Box3 placed = transformed(box, p.to_parent);
-      groups[g].grow(p.track == kNone ? placed : swept(placed, *s.tracks[p.track].track, {begin, end}));
+      const Presence there = presence(s, p.track, p.schedule, {}, {begin, end});
+      if (there.any) groups[g].grow(p.track == kNone ? placed : swept(placed, *s.tracks[p.track].track, there.hull));
     }
   Box3 all = groups.empty() ? Box3{} : groups.front();
   for (const Volume& v : s.volumes) {

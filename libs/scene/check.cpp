@@ -108,6 +108,13 @@ void TrackTable::check(const Scene&, const SceneTrack& t, size_t, const SceneFau
   if (!t.track) fault("the motion of " + t.name + " is not there");
 }
 
+void ScheduleTable::check(const Scene&, const Schedule& s, size_t, const SceneFault& fault) {
+  if (!(s.life.begin < s.life.end)) fault(title(s, 0) + ": it ends before it begins");
+  if (const std::string why = s.when.fault(); !why.empty()) fault(title(s, 0) + ": " + why);
+  if (s.there.size() != s.when.times.size() || s.material.size() != s.when.times.size())
+    fault(title(s, 0) + ": times and what holds from then on disagree");
+}
+
 void ClassMapTable::check(const Scene&, const ClassMap& m, size_t, const SceneFault& fault) {
   if (m.classes.size() != size_t{m.width} * m.height || m.classes.empty())
     fault("class map '" + m.name + "': size and data disagree");

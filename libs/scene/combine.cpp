@@ -45,6 +45,16 @@ SceneFrame frame_of(const GeodeticOrigin& o) {
   return SceneFrame({o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m});
 }
 
+// Everything that happens in a scene, so many seconds later.
+void delay(Scene& scene, double seconds) {
+  if (seconds == 0) return;
+  for (SceneTrack& t : scene.tracks) t.track = delayed_track(t.track, seconds);
+  for (Schedule& s : scene.schedules) {
+    s.life = {s.life.begin + seconds, s.life.end + seconds};
+    s.when.delay(seconds);
+  }
+}
+
 class Combiner {
  public:
   explicit Combiner(std::vector<ScenePart> parts) : parts_(std::move(parts)) {}
@@ -69,10 +79,10 @@ class Combiner {
     drapes(part, root.to_parent);
     names(part, first);
     Scene& s = part.scene;
-    const double later = time_shift(s);
-    for (SceneTrack& t : s.tracks) {
-      if (later != 0) t.track = delayed_track(t.track, later);
-      if (!first) t.name += " in " + part.name;
+    delay(s, time_shift(s));
+    if (!first) {
+      for (SceneTrack& t : s.tracks) t.name += " in " + part.name;
+      for (Schedule& t : s.schedules) t.name += " in " + part.name;
     }
     indices(s);
     if (part.motion) {
@@ -211,11 +221,8 @@ class Combiner {
 Scene combine_scenes(std::vector<ScenePart> parts) { return Combiner(std::move(parts)).run(); }
 
 void set_epoch(Scene& scene, const std::string& epoch) {
-  if (!scene.epoch.empty()) {
-    const double later = instant_from_utc(parse_iso8601(scene.epoch)) - instant_from_utc(parse_iso8601(epoch));
-    for (SceneTrack& t : scene.tracks)
-      if (later != 0) t.track = delayed_track(t.track, later);
-  }
+  if (!scene.epoch.empty())
+    delay(scene, instant_from_utc(parse_iso8601(scene.epoch)) - instant_from_utc(parse_iso8601(epoch)));
   scene.epoch = epoch;
 }
 

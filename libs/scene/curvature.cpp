@@ -98,6 +98,10 @@ class Curver {
     } else if (box.empty() || rigid_error(box, anchor) <= tolerance_) {
       p.to_parent = turned(p.to_parent, anchor);
       push(p);
+    } else if (p.kind == TargetKind::group && p.schedule != kNone) {
+      // What comes and goes does so as a whole.
+      p.to_parent = rigid(p.to_parent, box, "group '" + scene_.groups[p.target].name + "', which comes and goes,");
+      push(p);
     } else if (p.kind == TargetKind::group) {
       parts_of(p);
     } else {
@@ -115,18 +119,19 @@ class Curver {
       Placement part = scene_.groups[p.target].placements[k];
       if (p.material_override != kNone) part.material_override = p.material_override;
       if (part.tag == kNone) part.tag = p.tag;
-      if (part.track == kNone) {
+      if (part.track == kNone && part.schedule == kNone) {
         part.to_parent = p.to_parent * part.to_parent;
         lay(part);
         continue;
       }
-      // What moves does so in the frame of its group, which is turned as a whole.
-      ++done_.moving;
+      // What moves or changes does so in the frame of its group, which is turned as a whole.
+      if (part.track != kNone) ++done_.moving;
       Placement alone;
+      alone.material_override = p.material_override;
       alone.kind = TargetKind::group;
       alone.target = static_cast<uint32_t>(scene_.groups.size());
       alone.to_parent = turned(p.to_parent, p.to_parent.b);
-      done_.rigid.push_back("moving part of group '" + scene_.groups[p.target].name + "'");
+      done_.rigid.push_back("moving or changing part of group '" + scene_.groups[p.target].name + "'");
       scene_.groups.push_back({scene_.groups[p.target].name, {part}});
       group_box_.push_back({});
       push(alone);

@@ -77,6 +77,17 @@ struct DraftGeometry {
   bool failed = false;  // could not be read, which has been filed: only the name is sure
 };
 
+// When a placement is there and what it is made of.
+struct DraftSchedule {
+  struct Row {
+    bool there = true;
+    Reference material;  // none: what the placement says
+  };
+  TimeSpan life{-kEver, kEver};
+  Timetable when;
+  std::vector<Row> rows;
+};
+
 struct DraftPlacement {
   Where where;
   Reference target, material, tag, on;  // on: the terrain whose surface z counts from
@@ -86,6 +97,7 @@ struct DraftPlacement {
   std::optional<ScatterRule> scatter;   // over the surface `on`
   std::shared_ptr<const Track> motion;  // null: at rest
   Where motion_where;
+  std::optional<DraftSchedule> schedule;  // none: always there
 };
 
 struct DraftGroup {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "motion/timetable.h"
 #include "optics/medium.h"
 #include "optics/model_spec.h"
 #include "thermal/temperature.h"
@@ -23,6 +25,7 @@ struct FlatPlane;  // scene/curvature.h
 struct Mesh;
 
 inline constexpr uint32_t kNone = 0xffffffffu;
+inline constexpr double kEver = std::numeric_limits<double>::infinity();  // s
 
 // Faces of one `usemtl`/`g` run: a range of triangles with one material.
 struct Part {
@@ -78,8 +81,18 @@ struct Placement {
   TargetKind kind = TargetKind::mesh;
   uint32_t target = 0;  // index into meshes, groups or primitives
   uint32_t material_override = kNone;
-  uint32_t tag = kNone;    // index into Scene::tags, for truth
-  uint32_t track = kNone;  // index into Scene::tracks; kNone = at rest
+  uint32_t tag = kNone;       // index into Scene::tags, for truth
+  uint32_t track = kNone;     // index into Scene::tracks; kNone = at rest
+  uint32_t schedule = kNone;  // index into Scene::schedules; kNone = always there and of one material
+};
+
+// When a placement is there, and what it is made of. Times count from the scene's epoch.
+struct Schedule {
+  std::string name;                // for messages
+  TimeSpan life{-kEver, kEver};    // s: there from `begin` until just before `end`
+  Timetable when;                  // before its first row: there, of its own materials
+  std::vector<uint8_t> there;      // per row: within its life
+  std::vector<uint32_t> material;  // per row: replaces all of the target's materials; kNone = what the placement says
 };
 
 // How something moves, in the frame of the group that places it (the root: ENU). Time counts from the scene's epoch.
@@ -205,7 +218,8 @@ struct Scene {
   std::vector<TemperatureBinding> temperatures;  // at most one a material
   std::vector<std::string> tags;
   std::vector<SceneTrack> tracks;
-  std::string epoch;  // UTC (ISO 8601) of second 0 of the tracks; empty when none was given
+  std::vector<Schedule> schedules;
+  std::string epoch;  // UTC (ISO 8601) of second 0 of tracks and schedules; empty when none was given
   std::vector<DataFile> files;
   Box3 bounds;  // ENU
 };
@@ -221,7 +235,8 @@ void check_scene(const Scene& scene, const std::string& file);
 
 // Extent of everything placed, ENU, from the corners of each target's own box (so rotated targets give a box that may
 // be somewhat large); infinite primitives count as nothing. What moves counts with all places it has in the span (s),
-// found by sampling: its box may be up to 1 % of its size short. Error: a track that does not cover the span.
+// found by sampling: its box may be up to 1 % of its size short. What is not there does not count. Error: a track that
+// does not cover the span.
 Box3 scene_bounds(const Scene& scene, double begin = 0, double end = 0);
 
 // Extent of one mesh in its local frame, origin included; empty without vertices.
@@ -229,8 +244,11 @@ Box3 mesh_box(const Mesh& mesh);
 // The box around a transformed box; empty stays empty.
 Box3 transformed(const Box3& box, const Affine3& map);
 
-// Error naming the track and the span unless every track that a placement uses covers [begin, end], s.
+// Error naming the track and the span unless every track that a placement uses covers [begin, end], s, as far as the
+// placement is there.
 void check_motion(const Scene& scene, double begin, double end, const Where& where);
+// Whether there is anything that moves, or comes, goes or changes: time windows then differ.
+bool changes_in_time(const Scene& scene);
 // A time (s) to look at a scene whose motions need not cover second 0: 0 if all do, else where the last one begins.
 double time_of_all(const Scene& scene);
 

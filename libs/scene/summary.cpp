@@ -109,7 +109,8 @@ std::string coverage_text(const Scene& s) {
       out += strf("  temperatures of '%s': %g to %g s%s\n", s.materials[t.material].id.c_str(), t.spec.times.front(),
                   t.spec.times.back(), t.spec.repeat ? ", repeated" : "");
   for (const SceneTrack& t : s.tracks)
-    if (const TimeSpan c = t.track->covered(); std::isfinite(c.begin) || std::isfinite(c.end))
+    if (const TimeSpan c = t.track->covered();
+        !t.track->absent_outside() && (std::isfinite(c.begin) || std::isfinite(c.end)))
       out += strf("  motion of %s: %g to %g s\n", t.name.c_str(), c.begin, c.end);
   return out.empty() ? "" : "limited to\n" + out;
 }

@@ -73,6 +73,15 @@ struct TrackTable {
   static void check(const Scene& scene, const SceneTrack& t, size_t k, const SceneFault& fault);
 };
 
+struct ScheduleTable {
+  static constexpr const char *name = "schedules", *one = "schedule", *feature = "schedules";
+  static constexpr auto rows = &Scene::schedules;
+  static std::string title(const Schedule& s, size_t) { return "schedule of " + s.name; }
+  template <class Row, class Visit>
+  static void indices(Row& s, const Visit& v);
+  static void check(const Scene& scene, const Schedule& s, size_t k, const SceneFault& fault);
+};
+
 struct MaterialTable {
   static constexpr const char *name = "materials", *one = "material";
   static constexpr auto rows = &Scene::materials;
@@ -218,7 +227,7 @@ template <class F>
 void for_each_table(const F& f) {
   f(MeshTable{}), f(PrimitiveTable{}), f(GroupTable{}), f(TagTable{}), f(TrackTable{}), f(MaterialTable{});
   f(ClassMapTable{}), f(MapBindingTable{}), f(FileTable{}), f(PropertyMapTable{}), f(PropertyBindingTable{});
-  f(MediumTable{}), f(GridTable{}), f(VolumeTable{}), f(TemperatureTable{});
+  f(MediumTable{}), f(GridTable{}), f(VolumeTable{}), f(TemperatureTable{}), f(ScheduleTable{});
 }
 
 template <class Row, class Visit>
@@ -238,7 +247,12 @@ void GroupTable::indices(Row& g, const Visit& v) {
     v.template may<MaterialTable>(p.material_override);
     v.template may<TagTable>(p.tag);
     v.template may<TrackTable>(p.track);
+    v.template may<ScheduleTable>(p.schedule);
   }
+}
+template <class Row, class Visit>
+void ScheduleTable::indices(Row& s, const Visit& v) {
+  for (auto& id : s.material) v.template may<MaterialTable>(id);
 }
 template <class Row, class Visit>
 void MaterialTable::indices(Row& m, const Visit& v) {

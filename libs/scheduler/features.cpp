@@ -19,6 +19,9 @@ std::vector<Feature> all_features() {
        "Participating media: fog, clouds, water, plumes. Without any, paths go straight from surface to surface; one "
        "null pointer is asked for a stage of a block of paths."},
       {"motion", "Things that move. Without any, all time windows share one set of acceleration structures."},
+      {"schedules",
+       "Things that come, go or change their material at times. Windows through which they do not share what "
+       "is built."},
       {"SQT",
        "Materials of measured or fitted scattering. Their trees are decoded when a material that geometry shows has "
        "one."},
@@ -71,6 +74,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
   for (const std::string& t : truth) names += (names.empty() ? "" : ", ") + t;
   std::vector<FeatureUse> all{count("media", scene.media.size(), "in the scene", "none in the scene"),
                               count("motion", scene.tracks.size(), "motions", "nothing moves"),
+                              count("schedules", scene.schedules.size(), "in the scene", "nothing comes and goes"),
                               count("SQT", fitted, "materials", "no material is a fit"),
                               count("class maps", scene.class_maps.size(), "in the scene", "none in the scene"),
                               count("property maps", scene.property_maps.size(), "in the scene", "none in the scene"),

@@ -81,7 +81,7 @@ class Job {
   // The captures of some sensors in the order in which they run, numbered from what is given.
   std::vector<Item> items_from(Sensors sensors, size_t sensor, size_t id) {
     size_t changes = 0;
-    std::vector<Item> items = in_cheapest_order(items_of(sensors, !scene_->tracks.empty()), sources_.dated(), changes);
+    std::vector<Item> items = in_cheapest_order(items_of(sensors, changes_in_time(*scene_)), sources_.dated(), changes);
     report_.state_changes += changes;
     for (Item& i : items) i.sensor += sensor, i.id += id;
     return items;

@@ -122,8 +122,29 @@ RTCScene World::mesh_scene(uint32_t mesh) const {
 
 Affine3 World::pose(uint32_t node, double time) const {
   const MovingNode& n = flat.nodes[node];
-  const Affine3 here = n.before * scene->tracks[n.track].track->at(time).affine();
+  const Affine3 here = n.track == kNone ? n.before : n.before * scene->tracks[n.track].track->at(time).affine();
   return n.parent == kNone ? here : pose(n.parent, time) * here;
+}
+
+Presence World::presence_of(uint32_t node, TimeSpan window) const {
+  Presence all{true, true, window};
+  for (uint32_t n = node; n != kNone && all.any; n = flat.nodes[n].parent) {
+    const MovingNode& m = flat.nodes[n];
+    const Presence own = presence(*scene, m.track, m.schedule, m.made, window);
+    all.hull = {std::max(all.hull.begin, own.hull.begin), std::min(all.hull.end, own.hull.end)};
+    all.all = all.all && own.all;
+    all.any = own.any && all.hull.begin <= all.hull.end;
+  }
+  return all;
+}
+
+bool World::there(uint32_t node, double time) const {
+  for (uint32_t n = node; n != kNone; n = flat.nodes[n].parent) {
+    const MovingNode& m = flat.nodes[n];
+    const std::optional<uint32_t> made = made_at(*scene, m.track, m.schedule, time);
+    if (!made || *made != m.made) return false;
+  }
+  return true;
 }
 
 Box3 World::local_box(const TracedObject& o) const {
@@ -234,7 +255,8 @@ void World::repeat_at_sides() {
   const Periodic& cell = *periodic;
   if (!(cell.size.x > 0 && cell.size.y > 0)) throw Error("the cell of a periodic scene needs a positive size");
   if (flat.fixed != flat.objects.size())
-    throw Error("a periodic scene cannot hold anything that moves", "drop the motion, or the periodic cell");
+    throw Error("a periodic scene cannot hold anything that moves, comes or goes",
+                "drop the motion or the schedule, or the periodic cell");
   const size_t count = flat.objects.size();
   for (size_t i = 0; i < count; ++i) {
     const TracedObject o = flat.objects[i];

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/presence.h"
 #include "trace/flatten.h"
 #include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
@@ -104,6 +105,7 @@ struct PlacedSet {
   };
   const World* world = nullptr;
   const MovingPart* moving = nullptr;  // null: all at rest
+  bool partly = false;                 // all are there for a part of the window only
   Vec3 origin;                         // of the tile
   unsigned times = 1;                  // boxes of an object, equally spaced over the window
   std::vector<uint32_t> objects;       // indices into Tracer::objects()
@@ -170,7 +172,9 @@ struct World {
   std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
                                double t_max) const;
   RTCScene mesh_scene(uint32_t mesh) const;        // built on the first call
-  Affine3 pose(uint32_t node, double time) const;  // exact
+  Affine3 pose(uint32_t node, double time) const;  // exact; while it is there
+  Presence presence_of(uint32_t node, TimeSpan window) const;
+  bool there(uint32_t node, double time) const;
   Affine3 to_world(const TracedObject& o, double time) const {
     return o.node == kNone ? *o.place : pose(o.node, time) * *o.place;
   }
@@ -194,10 +198,13 @@ struct MovingPart {
   struct Keys {
     std::vector<Stretch> stretches;
     std::vector<Affine3> poses;
-    double radius = 0;  // of what moves with the node, m
-    double bound = 0;   // m, between keys; 0 for an instant, which is exact
+    double radius = 0;    // of what moves with the node, m
+    double bound = 0;     // m, between keys; 0 for an instant, which is exact
+    bool used = false;    // something hangs on the node itself
+    bool partly = false;  // it is there for a part of the window only
     Affine3 at(double time) const;
-    bool at_rest() const { return poses.size() <= 1; }  // none: nothing hangs on the node itself
+    bool absent() const { return poses.empty(); }  // or nothing hangs on the node itself
+    bool at_rest() const { return poses.size() <= 1; }
   };
   const World& world;
   TimeSpan window;
@@ -209,6 +216,9 @@ struct MovingPart {
   float fraction(double time) const;  // of the window, 0 to 1
   // As rays see it: linear between keys.
   Affine3 to_world(const TracedObject& o, double time) const { return nodes[o.node].at(time) * *o.place; }
+  // Whether an object that is there for a part of the window is there at a time.
+  bool there(uint32_t object, double time) const;
+  // Of a node that something hangs on.
   static Keys keys_of(const World& world, TimeSpan window, uint32_t node, double radius);
 
  private:
@@ -249,8 +259,17 @@ class PacketTracer {
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
+  void load(const Tile& tile, const Packet& packet, uint32_t i, RTCRay& q) const;  // lane i alone
   void send(const Tile& tile, const Packet& packet, TraceContext& context, RTCRayHit8& rays);
   TraceContext context(const Packet& packet) const;
+  struct MetIds {  // of Embree
+    unsigned geometry, instance, primitive;
+  };
+  // Rays that do not run alongside each other soon part among instances: a query for eight takes longer there than
+  // eight for one. On surfaces that are one mesh it does not.
+  bool one_by_one(const Tile& tile) const { return !coherent_ && !tile.sets.empty(); }
+  void nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& context);
+  void note(const Tile& tile, const Packet& packet, uint32_t i, float far, const MetIds& met, float u, float v);
   // What a ray met in a tile; object kNone: nothing.
   struct Found {
     const Tile* tile;
@@ -263,6 +282,8 @@ class PacketTracer {
   void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
   void place_exact(double scale, const Ray& ray, uint32_t object, const Affine3& to_world, const LocalHit& found,
                    Hit& hit) const;
+
+  bool absent(uint32_t object, const Ray& ray) const;
 
   const World& world_;
   const MovingPart* moving_;

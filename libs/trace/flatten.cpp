@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/memory.h"
+#include "scene/presence.h"
 #include "scene/unfolded.h"
 
 namespace suite {
@@ -24,23 +25,34 @@ struct Walk {
 
   void group(uint32_t index, const Inherited& above) {
     for (const Placement& p : scene.groups[index].placements) {
-      Inherited here = above;
-      if (p.track != kNone) {
+      if (p.track == kNone && p.schedule == kNone) {
+        placed(p, above, p.material_override);
+        continue;
+      }
+      // One thing, whatever it is made of: the same numbers of instances.
+      const uint32_t first = instances;
+      for (const uint32_t made : made_of(scene, p.schedule)) {
+        instances = first;
+        Inherited here = above;
         here.node = static_cast<uint32_t>(out.nodes.size());
-        out.nodes.push_back({above.node, above.to_node, p.track});
+        out.nodes.push_back({above.node, above.to_node, p.track, p.schedule, made});
         here.to_node = {};
         here.same = true;
+        placed(p, here, made == kNone ? p.material_override : made);
       }
-      // The outermost override wins: whoever places a thing decides what it is made of.
-      if (here.material == kNone) here.material = p.material_override;
-      if (p.tag != kNone) here.tag = p.tag;
-      if (p.kind == TargetKind::group) {
-        here.to_node = here.to_node * p.to_parent;
-        here.same = false;
-        group(p.target, here);
-      } else {
-        object(p, here);
-      }
+    }
+  }
+
+  void placed(const Placement& p, Inherited here, uint32_t material) {
+    // The outermost override wins: whoever places a thing decides what it is made of.
+    if (here.material == kNone) here.material = material;
+    if (p.tag != kNone) here.tag = p.tag;
+    if (p.kind == TargetKind::group) {
+      here.to_node = here.to_node * p.to_parent;
+      here.same = false;
+      group(p.target, here);
+    } else {
+      object(p, here);
     }
   }
 

@@ -7,15 +7,18 @@
 
 namespace suite {
 
-// A frame that moves: its axes -> the track's pose -> `before` -> the parent frame (kNone: ENU).
+// A frame that moves, or that is there at times only: its axes -> the track's pose -> `before` -> the parent frame
+// (kNone: ENU). What changes its material hangs on one node for each that it has.
 struct MovingNode {
   uint32_t parent = kNone;  // a node with a smaller number
   Affine3 before;
-  uint32_t track = kNone;  // index into Scene::tracks
+  uint32_t track = kNone;     // index into Scene::tracks; kNone = at rest
+  uint32_t schedule = kNone;  // index into Scene::schedules; kNone = always there
+  uint32_t made = kNone;      // there while the schedule says so, and names this material (kNone: none)
 };
 
 struct Flattened {
-  std::vector<TracedObject> objects;  // those at rest first, then the moving ones
+  std::vector<TracedObject> objects;  // those always at rest first, then those on nodes
   std::vector<MovingNode> nodes;
   size_t fixed = 0;              // objects at rest
   std::deque<Affine3> composed;  // transforms that stand nowhere in the scene itself; objects point into it

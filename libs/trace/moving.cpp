@@ -37,15 +37,26 @@ float MovingPart::fraction(double time) const {
              : 0.0f;
 }
 
-MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan window, uint32_t node, double radius) {
+bool MovingPart::there(uint32_t object, double time) const {
+  return world.there(world.flat.objects[object].node, std::clamp(time, window.begin, window.end));
+}
+
+MovingPart::Keys MovingPart::keys_of(const World& world, TimeSpan whole, uint32_t node, double radius) {
   Keys keys;
   keys.radius = radius;
+  keys.used = true;
+  // Poses are known while it is there; before and after, rays do not meet it wherever it is.
+  const Presence present = world.presence_of(node, whole);
+  if (!present.any) return keys;
+  keys.partly = !present.all;
+  const TimeSpan window = present.hull;
   // Double cannot place far things better than this.
   const double bound = motion_bound(radius) + 1e-13 * length(world.pose(node, window.begin).b);
   if (window.end > window.begin) keys.bound = bound;
   std::vector<double> times{window.begin};
   for (uint32_t n = node; n != kNone; n = world.flat.nodes[n].parent)
-    for (const double t : world.scene->tracks[world.flat.nodes[n].track].track->kinks(window)) times.push_back(t);
+    if (const uint32_t track = world.flat.nodes[n].track; track != kNone)
+      for (const double t : world.scene->tracks[track].track->kinks(window)) times.push_back(t);
   times.push_back(window.end);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -132,13 +143,14 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   std::vector<Box3> whole(count);
   parallel_for(0, count, 64, [&](size_t b, size_t e) {
     for (size_t i = b; i < e; ++i) {
-      if (own[i].empty()) continue;
+      if (own[i].empty() || nodes[w.flat.objects[first + i].node].absent()) continue;
       over[i] = boxes_over(nodes[w.flat.objects[first + i].node], window, own[i]);
       for (const Box3& box : over[i]) whole[i].grow(box);
     }
   });
   std::vector<uint32_t> members;
   for (uint32_t i = 0; i < count; ++i) {
+    if (nodes[w.flat.objects[first + i].node].absent()) continue;
     bounds.grow(whole[i]);
     if (over[i].empty())
       unbounded.push_back(static_cast<uint32_t>(first) + i);
@@ -152,25 +164,26 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   tiles.close(world);
 }
 
-// One set for what rests in this window, and one for each number of times.
+// One set for what rests in this window, and one for each number of times; others for what is there only partly.
 void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<const std::vector<Box3>> boxes) {
-  std::map<size_t, std::unique_ptr<PlacedSet>> sets;
+  std::map<std::pair<bool, size_t>, std::unique_ptr<PlacedSet>> sets;
   for (const uint32_t i : members) {
     const uint32_t object = static_cast<uint32_t>(world.flat.fixed) + i;
-    const bool rests = nodes[world.flat.objects[object].node].at_rest();
-    std::unique_ptr<PlacedSet>& set = sets[rests ? 0 : boxes[i].size()];
+    const Keys& keys = nodes[world.flat.objects[object].node];
+    std::unique_ptr<PlacedSet>& set = sets[{keys.partly, keys.at_rest() ? 0 : boxes[i].size()}];
     if (!set) {
       set = std::make_unique<PlacedSet>();
       set->world = &world;
       set->moving = this;
+      set->partly = keys.partly;
       set->origin = tile.origin;
       set->times = static_cast<unsigned>(boxes[i].size());
     }
     set->objects.push_back(object);
     set->boxes.insert(set->boxes.end(), boxes[i].begin(), boxes[i].end());
   }
-  for (auto& [times, set] : sets) {
-    if (times == 0) set->fill_inverse();
+  for (auto& [kind, set] : sets) {
+    if (kind.second == 0) set->fill_inverse();
     tile.sets.push_back(std::move(set));
   }
 }

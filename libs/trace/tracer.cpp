@@ -45,6 +45,7 @@ Tracer::~Tracer() = default;
 const Scene& Tracer::scene() const { return *world_->scene; }
 std::span<const TracedObject> Tracer::objects() const { return world_->flat.objects; }
 const std::optional<Periodic>& Tracer::periodic() const { return world_->periodic; }
+std::optional<TimeSpan> Tracer::window() const { return moving_ ? std::optional(moving_->window) : std::nullopt; }
 size_t Tracer::triangles() const { return world_->triangles; }
 size_t Tracer::tiles() const { return world_->tiles.tiles.size() + (moving_ ? moving_->tiles.tiles.size() : 0); }
 size_t Tracer::tiles_built() const {

@@ -6,7 +6,9 @@
 // wherever it stands and however it moves. Hits are rebuilt in double from barycentrics.
 //
 // What moves has exact poses at the keys of its window and linear ones between them, keys as close as motion_bound
-// asks; hits are rebuilt with the exact pose (screw motion) at the time of the ray.
+// asks; hits are rebuilt with the exact pose (screw motion) at the time of the ray. What is not there all through a
+// window is left out of it, and what comes, goes or changes its material within it is met by the rays of those times
+// only.
 //
 // Based on: Goodenough & Brown, section III-A-1 (Embree, instancing of any depth); I. Wald et al., "Embree: a kernel
 // framework for efficient CPU ray tracing", 2014. Debian's Embree has one instance level, so nested placements are
@@ -31,9 +33,10 @@ struct TracedObject {
   uint32_t mesh = kNone;       // index into Scene::meshes, or kNone
   uint32_t primitive = kNone;  // index into Scene::primitives, or kNone
   uint32_t material_override = kNone;
-  uint32_t tag = kNone;       // nearest tag on the way down from the root
-  uint32_t instance = kNone;  // number of the flattened instance, in the order of the hierarchy
-  uint32_t node = kNone;      // the moving frame it belongs to; kNone = at rest
+  uint32_t tag = kNone;  // nearest tag on the way down from the root
+  uint32_t instance =
+      kNone;              // number of the flattened instance, in the order of the hierarchy; one for all its materials
+  uint32_t node = kNone;  // the frame it belongs to that moves, comes or goes; kNone = always at rest
 };
 
 struct Hit {
@@ -73,7 +76,8 @@ class Tracer {
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Surfaces without bounds are not repeated but met by the whole ray.
-  // Error: a motion that does not cover the window; moving things, or a plane that is not level, in a periodic scene.
+  // Error: a motion that does not cover the window while what moves is there; things that move, come or go, or a plane
+  // that is not level, in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
                   TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr);
   ~Tracer();
@@ -103,6 +107,8 @@ class Tracer {
   Affine3 to_world(const TracedObject& object, double time) const;
   Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
   const std::optional<Periodic>& periodic() const;
+  // The window; nothing when all is always at rest, whatever the time.
+  std::optional<TimeSpan> window() const;
   bool has_holes() const { return has_holes_; }   // a filter decides about some surface, by Ray::draw
   const Box3& bounds() const { return bounds_; }  // ENU, all places that moving things have in the window
   size_t triangles() const;                       // instanced ones counted each time
@@ -127,7 +133,8 @@ class Tracer {
 };
 
 // Hands out the tracer of a time window. What is at rest is built once; windows in which everything that could move
-// stays in the same place share one tracer; of the others the last few are kept. Not for several threads at once.
+// stays in the same place, and all that comes and goes is there or not throughout, share one tracer; of the others the
+// last few are kept. Not for several threads at once.
 class TracerCache {
  public:
   explicit TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,

@@ -13,9 +13,10 @@ struct TracerCache::Kept {
 namespace {
 constexpr size_t kKept = 4;
 
-// Nothing moves within the window: one pose each.
+// Nothing moves, comes or goes within the window: one pose each, or none.
 bool at_rest(const MovingPart& part) {
-  return std::all_of(part.nodes.begin(), part.nodes.end(), [](const MovingPart::Keys& k) { return k.at_rest(); });
+  return std::all_of(part.nodes.begin(), part.nodes.end(),
+                     [](const MovingPart::Keys& k) { return k.at_rest() && !k.partly; });
 }
 }  // namespace
 
@@ -34,17 +35,19 @@ std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
   for (size_t k = 0; k < kept_.size(); ++k) {
     const Kept& kept = *kept_[k];
     if (!moves || (kept.window.begin == window.begin && kept.window.end == window.end)) return recent(k);
-    // Two windows are alike when everything rests in both, in the same places.
+    // Two windows are alike when everything rests in both, in the same places, and the same things are absent.
     const MovingPart& part = *kept.tracer->moving_;
     if (!at_rest(part)) continue;
     bool same = true;
     for (uint32_t n = 0; n < part.nodes.size() && same; ++n) {
       const MovingPart::Keys& there = part.nodes[n];
-      if (there.poses.empty()) continue;
-      if (!(world_->pose(n, window.begin) == there.poses.front()))
+      if (!there.used) continue;
+      const Presence now = world_->presence_of(n, window);
+      if (now.any != now.all || now.any == there.absent())
         same = false;
-      else
-        same = MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
+      else if (now.any)
+        same = world_->pose(n, window.begin) == there.poses.front() &&
+               MovingPart::keys_of(*world_, window, n, there.radius).at_rest();
     }
     if (same) return recent(k);
   }

@@ -64,6 +64,9 @@ else()
   message(STATUS "MPI was not found: runs on several machines go by parts (--part)")
 endif()
 
+find_package(pugixml REQUIRED)
+suite_vendor(pugixml pugixml::pugixml)
+
 find_package(tinyobjloader REQUIRED)
 suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced coordinates need double
 

@@ -32,6 +32,7 @@ class RaySensor : public Sensor {
   CaptureResult result;
 
  protected:
+  void look_during(TimeWindow window) { tasks_[0].captures[0].window = window; }
   std::vector<Ray> rays_;
 
  private:

@@ -10,11 +10,12 @@ namespace suite {
 struct LampShape {
   enum class Kind : uint8_t { point, triangle, parallelogram, disk, sphere } kind = Kind::point;
   bool both_sides = false;
-  uint32_t spec = 0;  // whose lamp it is
-  float step = 0;     // how far before the surface visibility rays end, m
-  Vec3 origin, a, b;  // corner and edges; centre and half axes of a disk; centre and (radius, 0, 0)
-  double area = 0;    // m2
-  Dir normal;         // flat ones, front side
+  uint32_t spec = 0;         // whose lamp it is
+  float step = 0;            // how far before the surface visibility rays end, m
+  uint32_t carrier = kNone;  // of a point that rides: origin is in its axes
+  Vec3 origin, a, b;         // corner and edges; centre and half axes of a disk; centre and (radius, 0, 0)
+  double area = 0;           // m2
+  Dir normal;                // flat ones, front side
 };
 
 // The shape of an exact surface placed by `place`; nothing for kinds that are met by chance only.

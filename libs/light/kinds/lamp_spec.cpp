@@ -53,6 +53,7 @@ LampSpec named_lamp(LampSpec::Kind kind, const Params& p, const LightContext& co
   lamp.where = p.where();
   lamp.name = p.text("name", strf("lamp %zu", context.number));
   lamp.kind = kind;
+  if (const auto schedule = p.find("schedule")) lamp.schedule = context.schedule(*schedule);
   return lamp;
 }
 
@@ -85,6 +86,7 @@ std::shared_ptr<const IntensityTable> read_distribution(const Params& p, const L
 // Places, axis and intensity of points of either kind, and the cone of spots.
 LightSpecPtr read_points(LampSpec::Kind kind, const Params& p, const LightContext& context) {
   LampSpec lamp = named_lamp(kind, p, context);
+  lamp.ride = p.text("ride", "");
   const auto one = p.find("position_m");
   const auto many = p.find("positions_m");
   if (!one == !many) throw p.error("a lamp has either position_m or positions_m");

@@ -5,7 +5,9 @@
 #include <limits>
 #include <unordered_map>
 
+#include "light/kinds/lamp_carriers.h"
 #include "light/kinds/lamp_images.h"
+#include "light/kinds/lamp_intensity.h"
 #include "light/kinds/lamp_shapes.h"
 
 namespace suite {
@@ -19,17 +21,20 @@ struct Lamps::Core {
   // Per object: the shapes of its triangles, kNone = does not glow or is not in the tree; one entry for exact surfaces.
   std::unordered_map<uint32_t, std::vector<uint32_t>> shape_of_triangle;
   std::vector<const float*> front, back;  // per material
+  std::vector<uint32_t> spec_of_material;
   // Of a scene that repeats itself. Copies of an object at the sides of the cell are images of the first one.
   std::optional<Periodic> cell;
   std::unique_ptr<LampImages> images;
   std::unordered_map<uint32_t, std::pair<uint32_t, Vec3>> copy_of;  // per object: the first one, and the way to it
+  LampCarriers carriers;                                            // of lamps that ride
 
   // While the lamps are gathered.
   std::vector<LightBounds> bounds;
   std::vector<LightProfile> profiles;
-  std::vector<uint32_t> spec_of_material;
 
-  void add_points(uint32_t spec);
+  explicit Core(const Scene& scene) : carriers(scene) {}
+  void add_points(uint32_t spec, const Tracer& tracer);
+  void add_riding(uint32_t spec, LampShape shape, const LightBounds& still, const Tracer& tracer);
   void add_material(uint32_t spec, const Scene& scene);
   void add_surfaces(const Tracer& tracer);
   uint32_t add(const LampShape& shape, LightBounds b);
@@ -45,57 +50,6 @@ double mean_of(const std::vector<float>& v) {
   double sum = 0;
   for (const float x : v) sum += static_cast<double>(x);
   return sum / static_cast<double>(v.size());
-}
-
-// Relative intensity of a point lamp into a direction of its frame.
-double relative_intensity(const LampSpec& s, Dir local) {
-  double value = 1;
-  if (s.kind == LampSpec::Kind::spot) {
-    const double cos_inner = std::cos(s.inner), cos_outer = std::cos(s.outer);
-    if (local.z <= cos_outer && s.outer < kPi) return 0;
-    if (local.z < cos_inner) {
-      const double t = (local.z - cos_outer) / (cos_inner - cos_outer);
-      value = t * t * (3 - 2 * t);
-    }
-  }
-  if (!s.table) return value;
-  const IntensityTable& t = *s.table;
-  if (t.sqt) {
-    double sum = 0;
-    for (size_t c = 0; c < t.sqt->channels(); ++c) sum += t.sqt->value({0, 0, 1}, local, c);
-    return value * sum / static_cast<double>(t.sqt->channels());
-  }
-  const double row = polar_angle(local) / kPi * static_cast<double>(t.polars - 1);
-  double phi = azimuth(local) / (2 * kPi);
-  phi -= std::floor(phi);
-  const double column = phi * static_cast<double>(t.azimuths);
-  const size_t r = std::min(t.polars - 2, static_cast<size_t>(row)),
-               c = std::min(t.azimuths - 1, static_cast<size_t>(column)), n = (c + 1) % t.azimuths;
-  const double fr = row - static_cast<double>(r), fc = column - static_cast<double>(c);
-  auto at = [&](size_t i, size_t j) { return t.value[i * t.azimuths + j]; };
-  return value *
-         ((1 - fr) * ((1 - fc) * at(r, c) + fc * at(r, n)) + fr * ((1 - fc) * at(r + 1, c) + fc * at(r + 1, n)));
-}
-
-// The profile of a point lamp: means over 32 azimuths and 9 places within each step, its edges included. A table may
-// have light between these, so none of its steps counts as dark.
-LightProfile profile_of(const LampSpec& s) {
-  LightProfile profile{};
-  for (int step = 0; step < 32; ++step) {
-    double sum = 0;
-    for (int k = 0; k <= 8; ++k) {
-      const double z = std::clamp(-1 + (step + k / 8.0) / 16, -1.0, 1.0), r = std::sqrt(std::max(0.0, 1 - z * z));
-      for (int a = 0; a < 32; ++a) {
-        const double phi = 2 * kPi * (a + 0.5) / 32;
-        sum += relative_intensity(s, {r * std::cos(phi), r * std::sin(phi), z});
-      }
-    }
-    profile[static_cast<size_t>(step)] = static_cast<float>(sum / (9 * 32));
-  }
-  // A spot's rim may lie between two places as well.
-  const float least = 1e-3f * *std::max_element(profile.begin(), profile.end());
-  for (float& p : profile) p = std::max(p, least);
-  return profile;
 }
 
 void check(const LampSpec& s) {
@@ -130,14 +84,14 @@ Lamps::~Lamps() = default;
 size_t Lamps::size() const { return core_->shapes.size(); }
 
 uint32_t Lamps::Core::add(const LampShape& shape, LightBounds b) {
-  b.power *= mean_of(spectra[shape.spec]);
+  b.power *= mean_of(spectra[shape.spec]) * brightest(specs[shape.spec]);
   if (!(b.power > 0)) return kNone;
   shapes.push_back(shape);
   bounds.push_back(b);
   return static_cast<uint32_t>(shapes.size() - 1);
 }
 
-void Lamps::Core::add_points(uint32_t spec) {
+void Lamps::Core::add_points(uint32_t spec, const Tracer& tracer) {
   const LampSpec& s = specs[spec];
   // All their light leaves within the cone, or wherever the table has any.
   double widest = s.kind == LampSpec::Kind::spot ? s.outer : kPi;
@@ -153,6 +107,7 @@ void Lamps::Core::add_points(uint32_t spec) {
   if (index == static_cast<int>(profiles.size())) profiles.push_back(profile);
   LampShape shape;
   shape.spec = spec;
+  if (!s.ride.empty()) return add_riding(spec, shape, {{}, {}, widest, 0.01, kPi, false, index}, tracer);
   for (Vec3 p : s.positions) {
     if (cell) {
       p.x -= std::floor((p.x - cell->low.x) / cell->size.x) * cell->size.x;
@@ -160,6 +115,28 @@ void Lamps::Core::add_points(uint32_t spec) {
     }
     shape.origin = p;
     add(shape, {{p, p}, frames[spec].z, widest, 0.01, kPi, false, index});
+  }
+}
+
+// One lamp on each placement, bounded by all places that it has in the tracer's window.
+void Lamps::Core::add_riding(uint32_t spec, LampShape shape, const LightBounds& still, const Tracer& tracer) {
+  constexpr double kStraight = 0.02;  // rad; what turns further has no one profile
+  const LampSpec& s = specs[spec];
+  const auto fail = [&](const char* what) { throw Error(s.where, "lamp '" + s.name + "': " + what); };
+  if (cell) fail("a lamp rides through a scene that repeats itself");
+  for (const uint32_t carrier : carriers.find(s.ride, s.where)) {
+    if (carriers.changes(carrier) && !tracer.window()) fail("it rides on what moves and places nothing");
+    shape.carrier = carrier;
+    for (const Vec3 p : s.positions) {
+      shape.origin = p * carriers.scale(carrier);
+      const auto sweep = carriers.over(carrier, shape.origin, frames[spec].z, tracer.window().value_or(TimeSpan{}));
+      if (!sweep) continue;
+      LightBounds b = still;
+      b.box = sweep->box, b.axis = sweep->axis;
+      b.cone = std::min(kPi, still.cone + sweep->turn);
+      if (sweep->turn > kStraight) b.profile = -1;
+      add(shape, b);
+    }
   }
 }
 
@@ -245,7 +222,8 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
   }
 }
 
-Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state) : core_(new Core) {
+Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state)
+    : core_(new Core(tracer.scene())) {
   Core& core = *core_;
   const size_t materials = tracer.scene().materials.size();
   core.specs.assign(specs.begin(), specs.end());
@@ -263,8 +241,9 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
     if (surface)
       core.add_material(i, tracer.scene());
     else
-      core.add_points(i);
+      core.add_points(i, tracer);
     surfaces = surfaces || surface;
+    nature_.moves = nature_.moves || !s.ride.empty() || s.schedule;
   }
   if (surfaces) core.add_surfaces(tracer);
   if (core.cell && !core.bounds.empty()) {
@@ -281,10 +260,12 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
 }
 
 std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
-                                           double distance, double cosine, double) const {
+                                           double distance, double cosine, double time) const {
   const float* const spectrum = glow(material, cosine > 0);
   if (!spectrum) return std::nullopt;
-  return LightMet{1, spectrum, density(from, hit, direction, distance, cosine)};
+  const double dimmed = dimming(core_->specs[core_->spec_of_material[material]], time);
+  if (!(dimmed > 0)) return std::nullopt;
+  return LightMet{dimmed, spectrum, density(from, hit, direction, distance, cosine)};
 }
 
 const float* Lamps::glow(uint32_t material, bool front) const {
@@ -292,40 +273,45 @@ const float* Lamps::glow(uint32_t material, bool front) const {
   return front ? core_->front[material] : core_->back[material];
 }
 
-std::optional<LightSample> Lamps::sample(const LightReceiver& at, const std::array<double, 4>& u, double) const {
+std::optional<LightSample> Lamps::sample(const LightReceiver& at, const std::array<double, 4>& u, double time) const {
   if (!core_->tree) return std::nullopt;
   LightReceiver from = at;
   LampImages::Image drawn{{}, 1};
   if (core_->images) drawn = core_->images->draw(at.position, u[3]), from.position = at.position - drawn.shift;
   const auto chosen = core_->tree->sample(from, u[0]);
   if (!chosen) return std::nullopt;
-  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, {u[1], u[2]});
+  auto lamp = sample_here(chosen->light, chosen->probability * drawn.probability, from.position, {u[1], u[2]}, time);
   if (lamp) lamp->end += drawn.shift;
   return lamp;
 }
 
 std::optional<LightSample> Lamps::sample_member(size_t member, double probability, const LightReceiver& at,
-                                                const std::array<double, 4>& u, double) const {
+                                                const std::array<double, 4>& u, double time) const {
   LampImages::Image drawn{{}, 1};
   if (core_->images) drawn = core_->images->draw(at.position, u[3]);
   auto sample = sample_here(static_cast<uint32_t>(member), probability * drawn.probability, at.position - drawn.shift,
-                            {u[1], u[2]});
+                            {u[1], u[2]}, time);
   if (sample) sample->end += drawn.shift;
   return sample;
 }
 
 // As seen from a place beside the lamp itself, not an image of it.
-std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const {
+std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u, double time) const {
   const LampShape& s = core_->shapes[lamp];
+  const double dimmed = dimming(core_->specs[s.spec], time);
+  if (!(dimmed > 0)) return std::nullopt;
   LightSample r;
   r.spectrum = core_->spectra[s.spec].data();
   if (s.kind == Kind::point) {
-    const Vec3 to = s.origin - from;
+    std::optional<Pose> carrier;
+    if (s.carrier != kNone && !(carrier = core_->carriers.at(s.carrier, time))) return std::nullopt;
+    r.end = carrier ? carrier->point(s.origin) : s.origin;
+    const Vec3 to = r.end - from;
     r.distance = length(to);
     if (!(r.distance > 0)) return std::nullopt;
     r.direction = to / r.distance;
-    r.end = s.origin;
-    r.scale = relative_intensity(core_->specs[s.spec], core_->frames[s.spec].to_local(-r.direction)) /
+    const Dir sent = carrier ? rotate(carrier->rotation.conjugate(), -r.direction) : -r.direction;
+    r.scale = dimmed * relative_intensity(core_->specs[s.spec], core_->frames[s.spec].to_local(sent)) /
               (r.distance * r.distance * probability);
     if (!(r.scale > 0)) return std::nullopt;
     return r;
@@ -335,7 +321,7 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   r.direction = point->direction;
   r.distance = point->distance;
   r.density = point->density * probability;
-  r.scale = 1;
+  r.scale = dimmed;
   r.end = point->position + point->normal * double{point->cosine > 0 ? s.step : -s.step};
   return r;
 }

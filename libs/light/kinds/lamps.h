@@ -1,6 +1,9 @@
 // Lamps in the scene: points, spots and lamps with a tabulated distribution of intensity, and surfaces that glow. One
 // of them is drawn at every node of a path, by a light tree; surfaces may also be met by chance.
 //
+// What rides on a placement (headlights) goes where it goes, is as large as it, and shines while it is there. A
+// schedule switches and dims lamps in time; rays find them as they are at their time.
+//
 // Assumes: points are seen by nothing but the explicit sample; glowing surfaces glow equally in all directions of their
 // side. Glowing triangles, disks, boxes, bounded planes and spheres are drawn; other exact surfaces that glow are met
 // by chance only. In a scene that repeats itself every lamp stands in every cell: an image of the cell is drawn first
@@ -12,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "light/lamp_schedule.h"
 #include "light/light_spec.h"
 #include "light/light_tree.h"
 #include "sqt/bundle.h"
@@ -32,8 +36,10 @@ struct LampSpec {
   enum class Kind { point, spot, surface } kind = Kind::point;
   std::string name;
   Where where;
+  std::shared_ptr<const LampSchedule> schedule;  // null: always as it is
   // point, spot
-  std::vector<Vec3> positions;  // m, ENU: one lamp each
+  std::string ride;             // what it rides on, by tag or by the name of what is placed; empty = nothing
+  std::vector<Vec3> positions;  // m, ENU, or in the axes of what it rides on: one lamp each, on each placement
   Dir axis{0, 0, -1};           // where the middle of the light goes
   Curve intensity;              // W/(sr um), times the distribution
   double inner = kPi,
@@ -53,7 +59,8 @@ LightSpecPtr make_light(std::vector<LampSpec> lamps);
 class Lamps final : public Light {
  public:
   // Error: unknown or mapped material, negative spectra, cones that are not 0 <= inner <= outer <= pi, empty or
-  // negative tables.
+  // negative tables; a lamp that rides on what the scene does not place, or what LampCarriers refuses, or in a scene
+  // that repeats itself.
   Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state);
   ~Lamps();
   // u: the choice of the lamp, two for the place on it, and one for the choice among its images, unused where the scene
@@ -76,7 +83,7 @@ class Lamps final : public Light {
   size_t size() const;  // lamps in the tree, of one cell
 
  private:
-  std::optional<LightSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u) const;
+  std::optional<LightSample> sample_here(uint32_t lamp, double probability, Vec3 from, Vec2 u, double time) const;
   struct Core;
   std::unique_ptr<Core> core_;
 };

@@ -210,7 +210,7 @@ TEST_P(SourceKinds, MembersIncludeTheirProbability) {
 TEST_P(SourceKinds, TimeIsThatOfTheRay) {
   const Stage stage(*this, {0.55});
   const Light& light = stage.source.light();
-  ASSERT_FALSE(light.nature().moves);  // what moves: physics_light_riding_lamp
+  ASSERT_FALSE(light.nature().moves);  // what moves: physics_light_lamps_in_time
   const LightReceiver at{{0, 0, 0}, {}, true};
   const auto now = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 0), later = light.sample(at, {0.3, 0.6, 0.2, 0.7}, 1e4);
   ASSERT_TRUE(now && later);
