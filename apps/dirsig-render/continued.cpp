@@ -24,6 +24,8 @@ std::string hash_of_bins(const Simulation& sim) {
   return sha256(all);
 }
 
+}  // namespace
+
 StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
   // The program itself is the build: another compiler or another line of code gives other last bits.
   std::string scenes;
@@ -35,8 +37,6 @@ StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
           {"build", hash_of_file("/proc/self/exe")},
           {"engine", Tracer::engine()}};
 }
-
-}  // namespace
 
 std::string hash_of_text(const Simulation& sim) {
   std::string hash = hash_of_file(sim.path);

@@ -7,6 +7,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "base/parallel.h"
+#include "scheduler/executor.h"
 #include "trace/tracer.h"
 
 namespace suite {
@@ -77,6 +78,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("version", kVersion);
   j.set("ray_tracer", Tracer::engine());
   j.set("threads", threads());
+  if (options.executor) j.set("ranks", options.executor->processes());
   j.set("seed", options.pipeline.seed);
   if (options.share && options.share->runs()) j.set("part", options.share->text());
   j.set("paths_kept", r.paths_kept);

@@ -31,6 +31,7 @@
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
+#include "together.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -173,6 +174,11 @@ void tell(const JobReport& r) {
     for (const std::string& sentence : sentences(s.sensor, s.shortfall)) warn(sentence);
 }
 
+void tell(const JobReport& r, const JobOptions& options, const std::string& folder) {
+  if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
+  tell(r);
+}
+
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
 JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options,
                      const std::string& folder, const size_t& delivered) {
@@ -236,6 +242,32 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   }
 }
 
+// The state of the run, where it is kept; ranks that are not alike are refused, and all are told the budget.
+std::unique_ptr<StateStore> join_or_open(const RenderOptions& o, const Simulation& sim, JobOptions& options,
+                                         Ranks* ranks) {
+  if (ranks) check_alike(*ranks, identity_of(sim, options));
+  std::unique_ptr<StateStore> store;
+  if (!ranks || ranks->leads()) store = open_store(o, o.output, sim, options);
+  options.store = store.get();
+  if (!ranks) return store;
+  tell_budget(*ranks, options.budget);
+  options.executor = &ranks->executor();
+  return store;
+}
+
+// What a rank does that does not lead: the same job, of which nothing stays here.
+int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options) {
+  start_sensors(sim, options, "");
+  options.progress = false;
+  const StopInGoodOrder signals;
+  options.stop = [] { return stop_signal() != 0; };
+  try {
+    return run_job(scene, sim.sources, sim.sensors, options).stopped ? 128 + stop_signal() : 0;
+  } catch (const Error& e) {
+    throw located(e, *scene, sim);
+  }
+}
+
 JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -250,11 +282,12 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
 
 }  // namespace
 
-int run_render(const Cli& cli, const RenderOptions& o) {
+int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (const auto code = answer(o)) return *code;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
   check_usage(cli, o);
+  if (ranks) check_ranks_usage(cli, o);
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
@@ -288,8 +321,8 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   const Facts facts(sim, scene);
   check_wishes(sim, facts);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
-  const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
-  options.store = store.get();
+  const std::unique_ptr<StateStore> store = join_or_open(o, sim, options, ranks);
+  if (ranks && !ranks->leads()) return follow(scene, sim, options);
   make_folder(o.output);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
@@ -299,10 +332,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   options.warn = warn;
   start_sensors(sim, options, part ? "" : o.output);
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
-  if (options.share && (part || report.captures_waiting))
-    tell_share(report, *options.share, o.output);
-  else
-    tell(report);
+  tell(report, options, o.output);
   for (const auto& reads : later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, *writer);

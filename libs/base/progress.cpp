@@ -10,10 +10,13 @@
 namespace suite {
 
 namespace {
-std::atomic<bool> g_quiet{false};
-}
+std::atomic<bool> g_quiet{false}, g_silent{false};
+
+bool heard() { return !g_quiet && !g_silent; }
+}  // namespace
 
 void Progress::set_quiet(bool quiet) { g_quiet = quiet; }
+void Progress::set_silent(bool silent) { g_silent = silent; }
 
 Progress::Progress(std::string label, double total, std::string unit)
     : label_(std::move(label)),
@@ -31,7 +34,7 @@ double Progress::seconds() const {
 
 void Progress::add(double amount) {
   done_.fetch_add(amount);
-  if (g_quiet) return;
+  if (!heard()) return;
   if (const std::unique_lock lock(mutex_, std::try_to_lock); lock.owns_lock()) draw(false);
 }
 
@@ -39,7 +42,7 @@ void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (finished_) return;
   finished_ = true;
-  if (!g_quiet) draw(true);
+  if (heard()) draw(true);
 }
 
 void Progress::draw(bool last) {

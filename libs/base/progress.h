@@ -16,6 +16,7 @@ class Progress {
   void finish();            // idempotent; prints the closing line with total time and mean rate
   double seconds() const;   // since construction
   static void set_quiet(bool quiet);
+  static void set_silent(bool silent);  // the same, whatever --quiet says
 
  private:
   void draw(bool last);

@@ -59,6 +59,11 @@ bool Cli::given(const std::string& name) const { return impl_->app.count(name) >
 namespace {
 
 std::string g_command_line;
+bool g_silent = false;
+
+void say(const std::string& text) {
+  if (!g_silent) std::fputs(text.c_str(), stderr);
+}
 
 std::shared_ptr<spdlog::logger> logger() {
   static const auto log = [] {
@@ -92,8 +97,7 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
     message = given.rfind('-', 0) == 0 ? "unknown option '" + given + "'" : "unexpected argument '" + given + "'";
     if (const std::string near = nearest_name(given, known); !near.empty()) message += "; did you mean '" + near + "'?";
   }
-  std::fprintf(stderr, "%s: usage: %s\n%s: see '%s --help'\n", info.name.c_str(), printable_lines(message).c_str(),
-               info.name.c_str(), info.name.c_str());
+  say(info.name + ": usage: " + printable_lines(message) + "\n" + info.name + ": see '" + info.name + " --help'\n");
   return 2;
 }
 
@@ -101,8 +105,16 @@ int usage_error(const AppInfo& info, CLI::App& app, const std::string& text, con
 
 const std::string& command_line() { return g_command_line; }
 
-void note(const std::string& text) { logger()->info("{}", printable_lines(text)); }
-void warn(const std::string& text) { logger()->warn("warning: {}", printable_lines(text)); }
+void note(const std::string& text) {
+  if (!g_silent) logger()->info("{}", printable_lines(text));
+}
+void warn(const std::string& text) {
+  if (!g_silent) logger()->warn("warning: {}", printable_lines(text));
+}
+void set_silent(bool silent) {
+  g_silent = silent;
+  Progress::set_silent(silent);
+}
 
 int run_app(const AppInfo& info, int argc, const char* const* argv, const std::function<void(Cli&)>& declare,
             const std::function<int(Cli&)>& run) {
@@ -112,8 +124,7 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   track_inputs();
   remember_command_line(info.name, argc, argv);
   if (!__builtin_cpu_supports("avx2")) {
-    std::fprintf(stderr, "%s: error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n",
-                 info.name.c_str());
+    say(info.name + ": error: this build needs a processor with AVX2; build with -DSUITE_ARCH=x86-64\n");
     return 1;
   }
   Cli cli(info.name, info.description);
@@ -130,7 +141,7 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
     if (!info.footer.empty()) app.footer(info.footer);
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
-    return app.exit(e);
+    return g_silent ? e.get_exit_code() : app.exit(e);
   } catch (const CLI::ExtrasError&) {
     return usage_error(info, app, "", app.remaining());
   } catch (const CLI::ParseError& e) {
@@ -144,14 +155,14 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   } catch (const UsageError& e) {
     return usage_error(info, app, e.what(), {});
   } catch (const Error& e) {
-    std::fprintf(stderr, "%s\n", e.what());
+    say(std::string(e.what()) + "\n");
     return 1;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "%s: error: out of memory\n", info.name.c_str());
+    say(info.name + ": error: out of memory\n");
     return 1;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: bug: %s\nplease report it with this command line: %s\n", info.name.c_str(),
-                 printable_lines(e.what()).c_str(), printable(g_command_line).c_str());
+    say(info.name + ": bug: " + printable_lines(e.what()) +
+        "\nplease report it with this command line: " + printable(g_command_line) + "\n");
     return 3;
   }
 }

@@ -69,5 +69,8 @@ const std::string& command_line();
 // Diagnostics to standard error: note = progress of the work (silenced by --quiet), warn = "warning: ...".
 void note(const std::string& text);
 void warn(const std::string& text);
+// From then on the program says nothing at all, or speaks again: of processes that run one job together only one is to
+// be heard. It does not undo --quiet.
+void set_silent(bool silent);
 
 }  // namespace suite

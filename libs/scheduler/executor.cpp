@@ -7,21 +7,6 @@
 
 namespace suite {
 
-std::unique_ptr<Accumulators> LocalExecutor::borrow(const Round& round) {
-  Accumulators::Shape shape = round.shape;
-  shape.problems = kBlockEdge * kBlockEdge;
-  const std::lock_guard lock(mutex_);
-  for (auto& sums : idle_)
-    if (sums && sums->shape() == shape) {
-      std::swap(sums, idle_.back());
-      std::unique_ptr<Accumulators> found = std::move(idle_.back());
-      idle_.pop_back();
-      found->clear();
-      return found;
-    }
-  return std::make_unique<Accumulators>(shape);
-}
-
 bool LocalExecutor::run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) {
   struct Piece {
     Round* round;
@@ -38,19 +23,19 @@ bool LocalExecutor::run(std::span<Round> rounds, const std::function<bool()>& st
     }
     Round& round = *pieces[piece].round;
     const Block& block = *pieces[piece].block;
-    std::unique_ptr<Accumulators> sums = borrow(round);
+    std::unique_ptr<Accumulators> sums = sums_.borrow(round.shape);
     if (round.from)
       for (size_t i = 0; i < block.problems(); ++i)
         sums->join_problem(i, *round.from, problem_at(*round.capture, block, i));
     RunStatistics mine;
     round.pipeline->run(*round.sensor, *round.capture, round.stream, block, round.to, *sums, Slots::by_place, mine);
     round.take(block, *sums, mine);
+    sums_.give_back(std::move(sums));
     const std::lock_guard lock(mutex_);
     round.statistics.merge(mine);
     if (progress) progress->add(static_cast<double>(mine.paths));
-    idle_.push_back(std::move(sums));
   });
-  idle_.clear();
+  sums_.clear();
   return !stopped;
 }
 

@@ -1,12 +1,13 @@
 // Running, apart from deciding: whoever is given blocks of captures and counts returns their partial sums.
 #pragma once
+#include <cstddef>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
 
 #include "base/progress.h"
+#include "scheduler/block_sums.h"
 #include "transport/pipeline.h"
 
 namespace suite {
@@ -33,6 +34,16 @@ class Executor {
   // Runs all blocks of all rounds, whichever capture they belong to, so that none waits for another. stop: asked before
   // each block, empty = never; false when it ended the run, with what was finished taken. progress: may be null.
   virtual bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) = 0;
+
+  // Several processes may run one job together, each with the loop of scheduler.h and kits of its own. One of them
+  // leads: it keeps all sums, decides the rounds, delivers and stores; the others are told the rounds, and what they
+  // run is taken where it leads. All of them make the same calls in the same order.
+  virtual int processes() const { return 1; }
+  virtual bool leads() const { return true; }
+  // Replaces the bytes by those of the process that leads.
+  virtual void tell(std::vector<std::byte>&) {}
+  // Whether any process says so.
+  virtual bool any(bool mine) { return mine; }
 };
 
 // The threads of this process.
@@ -41,9 +52,22 @@ class LocalExecutor final : public Executor {
   bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) override;
 
  private:
-  std::unique_ptr<Accumulators> borrow(const Round& round);
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Accumulators>> idle_;  // of a block; as many as threads have been at work at once
+  BlockSums sums_;
 };
+
+// A round as the process that leads tells it to the others of a job.
+struct ToldRound {
+  uint32_t capture = 0;  // its place among those in flight
+  uint64_t stream = 0;
+  Accumulators::Shape shape;
+  std::vector<uint32_t> blocks;  // their numbers
+  std::vector<uint32_t> to;
+};
+ToldRound told_of(uint32_t capture, const Round& round);
+// The round as those run it who are told: nobody takes its sums there. Refers to what is told, which must outlive it.
+Round round_of(const ToldRound& told, const Pipeline& pipeline, const Sensor& sensor, const Capture& capture);
+// Tells the rounds that come next, or is told them; and a number.
+void exchange(Executor& executor, std::vector<ToldRound>& rounds, uint32_t& number);
 
 }  // namespace suite

@@ -29,23 +29,39 @@ struct InFlight {
                    primed->kit.bands->reference, primed->truth, work.goals);
     planner.emplace(work, *result, saving);
   }
+  // Bytes that its sums and its result take, at most: a function of what is asked for alone.
+  double bytes() const {
+    const auto n = static_cast<double>(work.capture.problems()), values = static_cast<double>(work.values);
+    const Accumulators::Shape row{1, work.values, scrambles_for(work.goals.all.max_paths), work.truth_slots, false};
+    return n * (static_cast<double>(row.bytes()) + 24 * values + 200);
+  }
   const Item& item;
   const std::shared_ptr<const Primed> primed;
   CaptureWork work;
   std::optional<ResultBuilder> result;
-  std::optional<CapturePlanner> planner;
+  std::optional<CapturePlanner> planner;  // nothing where another process of the job leads
   CaptureLog log;
 };
 
 using Batch = std::vector<std::unique_ptr<InFlight>>;
 
+// Rounds as they were told; refers to what was told.
+inline std::vector<Round> rounds_of(std::span<const ToldRound> told, const Batch& batch) {
+  std::vector<Round> rounds;
+  for (const ToldRound& t : told) {
+    const CaptureWork& work = batch.at(t.capture)->work;
+    rounds.push_back(round_of(t, work.pipeline, work.sensor, work.capture));
+  }
+  return rounds;
+}
+
 // The seconds of a batch, shared out by what its captures took.
 inline void share_seconds(const Batch& batch, double seconds) {
   double cycles = 0;
-  for (const auto& c : batch) cycles += static_cast<double>(c->planner->statistics().cycles);
+  const auto of = [](const InFlight& c) { return c.planner ? static_cast<double>(c.planner->statistics().cycles) : 0; };
+  for (const auto& c : batch) cycles += of(*c);
   for (const auto& c : batch) {
-    const double share = cycles > 0 ? static_cast<double>(c->planner->statistics().cycles) / cycles
-                                    : 1 / static_cast<double>(batch.size());
+    const double share = cycles > 0 ? of(*c) / cycles : 1 / static_cast<double>(batch.size());
     c->log.seconds = share * seconds;
   }
 }

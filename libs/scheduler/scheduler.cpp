@@ -6,7 +6,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/memory.h"
 #include "base/progress.h"
 #include "estimate/plan.h"
 #include "scheduler/in_flight.h"
@@ -60,12 +59,15 @@ class Job {
     doubt_before();
     if (options_.share) mine_ = blocks_of_share(sensors_, *options_.share);
     if (options_.store) begin_store(items);
+    std::vector<ToldRound> none;
+    exchange(executor(), none, cap_);
     report_.captures_asked = items.size();
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
     saving_.store = options_.store;
     if (!before.empty()) run_all(before, {{}, true});
+    report_.stopped = executor().any(report_.stopped);
     if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped)
       run_all(some, {options_.loads ? options_.loads() : LoadsAt{}});
     if (progress_) progress_->finish();
@@ -100,6 +102,11 @@ class Job {
     for (std::span<const Item> left = items; !left.empty() && !report_.stopped;) left = run_batch(left);
     report_.optics_bakes += kits_->optics_bakes(), report_.light_bakes += kits_->light_bakes();
   }
+
+  Executor& executor() { return options_.executor ? *options_.executor : local_; }
+  // Of a job that several processes run together, pre-passes are run by each: all need what comes of them.
+  bool together(const Item& item) { return !early(item) && executor().processes() > 1; }
+  bool follows(const Item& item) { return together(item) && !executor().leads(); }
 
   bool early(const Item& item) const { return item.sensor >= sensors_.size(); }  // of a pre-pass
   Sensor& sensor_of(const Item& item) const {
@@ -194,32 +201,34 @@ class Job {
   std::span<const Item> run_batch(std::span<const Item> left) {
     const Clock::time_point begun = Clock::now();
     Batch batch;
+    // What may be in flight depends on nothing that differs between the processes of a job.
+    const size_t processes = together(left.front()) ? static_cast<size_t>(executor().processes()) : 1;
     size_t blocks = 0;
     double bytes = 0, paths = 0;
-    // Whether more may come depends on nothing that differs between processes or numbers of threads but memory.
     const auto more = [&] {
-      return blocks < kBlocksInFlight && bytes < kBytesInFlight && primed_.size() < kPrimedInFlight;
+      return blocks < kBlocksInFlight * processes && bytes < kBytesInFlight && primed_.size() < kPrimedInFlight;
     };
     while (batch.size() < left.size()) {
       const Item& item = left[batch.size()];
       paths += most_paths(item);
       // Where time is the budget, the first pilot tells what it is worth.
-      if (!batch.empty() && (!more() || paths > kPathsInFlight || unknown_cap(item))) break;
-      const double before = heap_in_use();
+      if (!batch.empty() && (!more() || paths > kPathsInFlight * static_cast<double>(processes) || unknown_cap(item)))
+        break;
       batch.push_back(take_up(item));
-      bytes += std::max(0.0, heap_in_use() - before);
+      bytes += batch.back()->bytes();
       blocks += blocks_of(batch.back()->work.capture).size();
     }
     try {
       while (run_rounds(batch)) {
       }
     } catch (...) {
-      for (const auto& c : batch) c->planner->save();
+      for (const auto& c : batch)
+        if (c->planner) c->planner->save();
       throw;
     }
     share_seconds(batch, seconds_since(begun));
     for (auto& c : batch)
-      if (!report_.stopped && c->planner->whole() && has_results(c->item))
+      if (!report_.stopped && c->planner && c->planner->whole() && has_results(c->item))
         deliver(*c), c.reset();
       else
         leave(*c);
@@ -235,11 +244,21 @@ class Job {
   bool run_rounds(const Batch& batch) {
     std::vector<Round> rounds;
     std::vector<CapturePlanner*> of;
-    for (const auto& c : batch)
-      if (auto round = c->planner->next()) rounds.push_back(std::move(*round)), of.push_back(&*c->planner);
+    std::vector<ToldRound> told;
+    const bool shared = together(batch.front()->item);
+    for (uint32_t c = 0; c < batch.size(); ++c) {
+      if (!batch[c]->planner) continue;
+      std::optional<Round> round = batch[c]->planner->next();
+      if (!round) continue;
+      if (shared) told.push_back(told_of(c, *round));
+      rounds.push_back(std::move(*round)), of.push_back(&*batch[c]->planner);
+    }
+    if (shared) exchange(executor(), told, cap_);
+    if (follows(batch.front()->item)) rounds = rounds_of(told, batch);
     if (rounds.empty()) return false;
-    report_.stopped = !(options_.executor ? *options_.executor : local_).run(rounds, options_.stop, progress_.get());
-    for (size_t i = 0; i < rounds.size(); ++i) of[i]->ran(rounds[i]);
+    const bool here = executor().processes() > 1 && !shared;
+    report_.stopped = !(here ? local_ : executor()).run(rounds, options_.stop, progress_.get());
+    for (size_t i = 0; i < of.size(); ++i) of[i]->ran(rounds[i]);
     if (report_.stopped)
       for (CapturePlanner* p : of) p->save();
     return !report_.stopped;
@@ -277,19 +296,20 @@ class Job {
       };
       shorten_pilots(c->work.goals);
     }
-    c->plan(saving_);
+    if (!follows(item)) c->plan(saving_);
     sensor.begin(capture);
     return c;
   }
 
   // Counts a capture that has no result here.
   void leave(InFlight& c) {
-    report_.statistics.merge(c.planner->statistics());
+    if (c.planner) report_.statistics.merge(c.planner->statistics());
     if (report_.stopped) return;
+    kits_->done(c.item.state.spectral);
+    if (!c.planner) return;
     report_.captures_waiting += !c.planner->whole();
     report_.pilots_waiting += c.planner->waits_for_pilot();
     report_.paths_waiting += c.planner->waits_for();
-    kits_->done(c.item.state.spectral);
   }
 
   void deliver(InFlight& c) {

@@ -55,6 +55,15 @@ else()
   message(STATUS "OpenVDB was not found: .vdb files will be refused")
 endif()
 
+# Optional: runs on several machines. Of C++ only the C calls are used.
+set(MPI_CXX_SKIP_MPICXX ON)
+find_package(MPI COMPONENTS CXX)
+if(MPI_CXX_FOUND)
+  suite_vendor(mpi MPI::MPI_CXX)
+else()
+  message(STATUS "MPI was not found: runs on several machines go by parts (--part)")
+endif()
+
 find_package(pugixml REQUIRED)
 suite_vendor(pugixml pugixml::pugixml)
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "base/error.h"
+#include "support/driving_car.h"
 #include "support/programs_kit.h"
 
 namespace suite {
@@ -17,44 +17,12 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kScene = R"(scene: 1
-times_s: [0, 10]
-materials: {grey: {model: lambert, reflectance: 0.4}, red: {model: lambert, reflectance: 0.8}}
-objects:
-  ground: {plane: {width: 60, depth: 60}, material: grey}
-  car: {box: {x0: -2, y0: -2, z0: 0, x1: 2, y1: 2, z1: 3}, material: red}
-world:
-  - {place: ground}
-  - place: car
-    motion: {kind: keyframes, keys: [{time_s: 0, position_m: [-9, 0, 0]}, {time_s: 10, position_m: [9, 0, 0]}]}
-)";
-
-std::string camera(const std::string& name, int columns, int rows, double time_s, const std::string& paths) {
-  return strf("  - {kind: frame_camera, name: %s, columns: %d, rows: %d, time_s: %g, paths: %s,\n", name.c_str(),
-              columns, rows, time_s, paths.c_str()) +
-         "     pitch_um: 10, focal_length_mm: 2, position_m: [0, 0, 100], look_at_m: [0, 0, 0], up: [0, 1, 0],\n"
-         "     bands: [{name: b, center_um: 0.55, fwhm_um: 0.01}, {name: c, center_um: 0.65, fwhm_um: 0.01}]}\n";
-}
-
-// The text of a file without what differs between two commands that do the same: the command itself and the clock.
-std::vector<std::string> same_in_all_runs(const std::string& path) {
-  static const std::regex differs("^suite .*dirsig-render|command|paths_kept|seconds|peak_bytes|share_in_");
-  std::vector<std::string> lines;
-  std::istringstream text(read_text(path));
-  for (std::string line; std::getline(text, line);)
-    if (!std::regex_search(line, differs)) lines.push_back(line);
-  return lines;
-}
-
 class Parts : public ProgramsTest<Parts> {
  protected:
   static void SetUpTestSuite() {
     make_folder();
-    prepare(kScene);
-    const std::string world =
-        "scene: scene.h5\nmax_nodes: 3\nsun: {direction: {zenith_deg: 40, azimuth_deg: 100}, irradiance: 3}\n"
-        "sky: {radiance: 0.3}\nsensors:\n";
-    const std::string fixed = camera("a", 40, 27, 2, "32") + camera("small", 5, 3, 8, "16"),
+    prepare(kDrivingCar);
+    const std::string world = kDay, fixed = camera("a", 40, 27, 2, "32") + camera("small", 5, 3, 8, "16"),
                       target = camera("t", 33, 20, 7, "{min: 8, max: 600, relative_error: 0.01}");
     write_file(*folder_ / "fixed.yaml", std::string_view(world + fixed));
     write_file(*folder_ / "sim.yaml", std::string_view(world + fixed + target));
@@ -75,20 +43,8 @@ class Parts : public ProgramsTest<Parts> {
     EXPECT_EQ(r.code, 0) << arguments << "\n" << r.err;
     return r.out;
   }
-  // Each file of `one` stands in `other`, the same.
   static void expect_same_folders(const std::string& one, const std::string& other) {
-    size_t images = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(*folder_ / one)) {
-      const std::string name = entry.path().filename().string(), there = *folder_ / (other + "/" + name);
-      ASSERT_TRUE(file_exists(there)) << there;
-      if (name.ends_with(".png")) continue;  // holds the command; its pixels are those of the image
-      if (name.ends_with(".hdr") || name.ends_with(".json"))
-        EXPECT_EQ(same_in_all_runs(entry.path()), same_in_all_runs(there)) << name;
-      else
-        EXPECT_EQ(read_bytes(entry.path()), read_bytes(there)) << name;
-      images += name.ends_with(".img");
-    }
-    EXPECT_GE(images, 10u);
+    suite::expect_same_folders(*folder_ / one, *folder_ / other, 10);
   }
   static void refused(const std::string& arguments, int code, const std::string& message) {
     const auto before = listing();
