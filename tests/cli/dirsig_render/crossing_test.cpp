@@ -205,7 +205,7 @@ TEST_F(Crossing, IntervalsAtNightHoldALongRun) {
     EXPECT_EQ(r.code, 0) << r.err;
     return image_of(*folder_ / (std::string(name) + "/mast"));
   };
-  const StudyImage reference = picture("long", 2048, 99);
+  const StudyImage reference = picture("long", 1024, 99);
   StudyImage short_run = picture("short", 64, 3);
   for (const Comparison& c : compare(short_run, reference)) {
     std::printf("%s: coverage %.1f %% of %zu, %zu flagged, bias %+.2f +- %.2f\n", c.series.c_str(), 100 * c.coverage,
