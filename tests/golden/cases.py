@@ -42,7 +42,7 @@ BALLS = {"gloss": "ward:diffuse=0.15,specular=0.25,roughness=0.25", "soil": "rpv
 CASES: Dict[str, Case] = {
     "calibration_range": Case("sample_scenes/calibration_range", camera(0, 32, 18, 148),
                               ("sqt-fit satin_purple_rgb.bsdf -o satin.sqt -q --order 4", PREP), brighter=0.02),
-    "crossing_day": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "day.yaml", brighter=0.02),
+    "crossing_day": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "day.yaml", brighter=0.04),
     "crossing_night": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "night.yaml", paths=64, edges=HEAVY, brighter=0.6, spot=3),
     "map_gallery": Case("sample_scenes/map_gallery", {**camera(0, 26, 18, 500), **camera(1, 26, 18, 500)}),
     "night_street": Case("sample_scenes/night_street", prepare=("python3 make_scene.py . 32 18", PREP),
