@@ -12,8 +12,9 @@ namespace suite {
 // SHA-256 of the simulation's text and of the settings that replace some of it.
 std::string hash_of_text(const Simulation& simulation);
 
-// Makes, opens or extends FOLDER/result.state.h5 as --state, --resume and --more say; null without any of them. Sets
-// the budget of `options` to the one that the run has. UsageError for options that contradict each other.
+// Makes, opens or extends FOLDER/result.state.h5 as --state, --resume and --more say, and --part, --plan and --merge;
+// null without any of them. Sets the budget of `options` to the one that the run has, and the share to that of a part
+// that goes on. UsageError for options that contradict each other.
 std::unique_ptr<StateStore> open_store(const RenderOptions& o, const std::string& folder, const Simulation& simulation,
                                        JobOptions& options);
 

@@ -97,19 +97,21 @@ void check_room(const std::string& folder, const Simulation& sim) {
 
 }  // namespace
 
-void check_folder(const std::string& folder, const Simulation& sim) {
+void check_folder(const std::string& folder, const Simulation& sim, bool pictures) {
   check_names(sim);
   check_inputs(folder, sim);
-  check_room(folder, sim);
+  if (pictures) check_room(folder, sim);
 }
 
-std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state) {
-  std::string text = strf("%zu of %zu captures are complete", finished, captures);
+std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options) {
+  const bool part = options.share && options.share->runs();
+  std::string text =
+      part ? options.share->text() + " is not finished" : strf("%zu of %zu captures are complete", finished, captures);
   if (finished) text += " in " + folder;
-  return text + (state ? "; " + in_folder(folder, "result.state.h5") +
-                             " holds the finished captures and strips of 8 lines: the same command with --resume in "
-                             "place of --state and its budget goes on from there"
-                       : "; without --state the rest is lost");
+  return text + (options.store ? "; " + in_folder(folder, "result.state.h5") +
+                                     " holds the finished captures and blocks of 8 x 8 pixels: the same command with "
+                                     "--resume in place of --state and its budget goes on from there"
+                               : "; without --state the rest is lost");
 }
 
 Error located(const Error& fault, const Scene& scene, const Simulation& sim) {

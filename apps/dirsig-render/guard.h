@@ -9,10 +9,11 @@ namespace suite {
 
 // Refuses, before anything is rendered, a folder in which results of these sensors would replace inputs of the run
 // (UsageError), or that has no room for their images, and sensors whose files would have the same names (Error).
-void check_folder(const std::string& folder, const Simulation& simulation);
+// pictures: there will be some (a part of a run has none).
+void check_folder(const std::string& folder, const Simulation& simulation, bool pictures);
 
-// One sentence: how many captures are whole in the folder, and how the run goes on. state: --state keeps one.
-std::string what_is_left(const std::string& folder, size_t finished, size_t captures, bool state);
+// One sentence: how many of the captures are whole in the folder, and how the run goes on.
+std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options);
 
 // A fault without a place, as the simulation's: at the sensor one of whose bands reaches beyond a curve of the material
 // or medium that the fault is about, else of the text as a whole.

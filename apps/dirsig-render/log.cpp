@@ -78,6 +78,9 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("ray_tracer", Tracer::engine());
   j.set("threads", threads());
   j.set("seed", options.pipeline.seed);
+  if (options.share && options.share->runs()) j.set("part", options.share->text());
+  j.set("paths_kept", r.paths_kept);
+  j.set("captures_waiting", r.captures_waiting);
   j.set("seconds", r.seconds);
   j.set("build_seconds", r.build_seconds);
   j.set("deliver_seconds", r.deliver_seconds);

@@ -25,11 +25,28 @@ AppInfo render_info() {
           "  dirsig-render sim.yaml --time 10min               as many as there is time for\n"
           "  dirsig-render sim.yaml --paths 64 --state         ... and later, the same bits as with 128 at once:\n"
           "  dirsig-render sim.yaml --more 64\n"
+          "  dirsig-render sim.yaml -o p2 --part 2/8 --state   one part of eight, and when all are there:\n"
+          "  dirsig-render sim.yaml -o out --merge p1 p2 p3 p4 p5 p6 p7 p8\n"
           "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 "
           "our bug."};
 }
+
+namespace {
+
+void declare_parts(Cli& cli, RenderOptions& o) {
+  cli.option("--part", o.part,
+             "run only part K of N of the job, here or elsewhere, into a state of its own (with --state); no pictures",
+             "K/N");
+  cli.list("--merge", o.merge,
+           "join the states of all parts, in these folders, and write what one run would have written; where targets "
+           "want a second round, the plan for it",
+           "FOLDER...");
+  cli.option("--plan", o.plan, "second round: run the part of the plan that --merge left in this folder", "FOLDER");
+}
+
+}  // namespace
 
 void declare_render(Cli& cli, RenderOptions& o) {
   cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
@@ -64,6 +81,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
   cli.option("--more", o.more,
              "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
+  declare_parts(cli, o);
   cli.option("--study", o.study,
              "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes "
              "on from them",

@@ -21,6 +21,7 @@
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
+#include "parts.h"
 #include "preview.h"
 #include "scene/combine.h"
 #include "scheduler/bins.h"
@@ -35,13 +36,6 @@
 namespace suite {
 
 namespace {
-
-int list_truth() {
-  for (const TruthRow& row : truth_rows())
-    std::printf("%-18s %s%s%s%s\n", row.name.c_str(), row.summary.c_str(), row.unit.empty() ? "" : " [",
-                row.unit.c_str(), row.unit.empty() ? "" : "]");
-  return 0;
-}
 
 // A table of kinds.
 int print(const std::string& list) {
@@ -129,6 +123,11 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
   std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n",
               order.state_changes, human_count(forecast_paths(sim.sensors, options)).c_str(),
               human_bytes(forecast_bytes(sim.sensors, options)).c_str());
+  if (!options.share) return 0;
+  size_t blocks = 0, mine = 0;
+  for (const std::vector<uint8_t>& capture : blocks_of_share(sim.sensors, *options.share))
+    for (const uint8_t m : capture) ++blocks, mine += m;
+  std::printf("%s runs %zu of %zu blocks of pixels, these paths\n", options.share->text().c_str(), mine, blocks);
   return 0;
 }
 
@@ -192,16 +191,20 @@ JobReport run_safely(const std::shared_ptr<const Scene>& scene, const Simulation
     for (const auto& sensor : sim.sensors)
       for (const Task& task : sensor->tasks()) captures += task.captures.size();
     throw Error(e.where(), e.message(),
-                (e.hint().empty() ? "" : e.hint() + "; ") +
-                    what_is_left(folder, delivered, captures, options.store != nullptr));
+                (e.hint().empty() ? "" : e.hint() + "; ") + what_is_left(folder, delivered, captures, options));
   }
+}
+
+void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
+  for (const auto& sensor : sim.sensors)
+    for (const TextFile& log : sensor->logs()) writer.write_text(log);
 }
 
 // What was asked instead of a picture; nothing when one is wanted.
 std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
-  if (o.list_truth) return list_truth();
+  if (o.list_truth) return print(truth_rows().list());
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));
   return std::nullopt;
@@ -212,6 +215,7 @@ void check_usage(const Cli& cli, const RenderOptions& o) {
     throw UsageError("--more wants a number from 0 to 2^30");
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
+  check_parts_usage(cli, o);
   if (!o.study.empty() && (cli.given("--paths") || cli.given("--time") || cli.given("--target-error") || o.state ||
                            o.resume || cli.given("--more")))
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
@@ -227,7 +231,7 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
-    for (const std::string& truth : sensor->truth()) find_truth(truth);
+    for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
     choose_bins_of(*sensor, scene, standing);
   }
 }
@@ -237,6 +241,7 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   options.pipeline = sim.pipeline;
   options.periodic = sim.periodic;
   options.budget = budget_of(o);
+  options.share = share_of(o);
   options.kit_bytes = kit_bytes_of(o);
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
@@ -257,6 +262,7 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   StudyImage* study = nullptr;  // where captures go while a study runs
   callbacks.deliver = [&](const Delivery& delivery) {
     if (study) return append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    if (!writer) return;  // only the speed is measured
     writer->take(delivery);
     ++delivered;
   };
@@ -281,23 +287,27 @@ int run_render(const Cli& cli, const RenderOptions& o) {
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   const Facts facts(sim, scene);
   check_wishes(sim, facts);
-  make_folder(o.output);
-  check_folder(o.output, sim);
-  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes), facts);
-  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
+  if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
   const std::unique_ptr<StateStore> store = open_store(o, o.output, sim, options);
   options.store = store.get();
+  make_folder(o.output);
+  const bool part = options.share && options.share->runs();
+  check_folder(o.output, sim, !part);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes), facts);
+  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   options.warn = warn;
-  start_sensors(sim, options, o.output);
+  start_sensors(sim, options, part ? "" : o.output);
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
-  tell(report);
+  if (options.share && (part || report.captures_waiting))
+    tell_share(report, *options.share, o.output);
+  else
+    tell(report);
   for (const auto& reads : later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);
-  for (const auto& sensor : sim.sensors)
-    for (const TextFile& log : sensor->logs()) writer->write_text(log);
+  if (!report.captures_waiting) write_sensor_logs(sim, *writer);
   if (!report.stopped) return 0;
-  warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options.store != nullptr));
+  warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options));
   return 128 + stop_signal();
 }
 

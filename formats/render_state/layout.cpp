@@ -50,6 +50,12 @@ std::vector<double> pack(const Budget& b) {
           static_cast<double>(b.more)};
 }
 
+std::vector<uint32_t> pack(const StatePart& part) {
+  return {part.share.part, part.share.parts, part.planned, part.finished};
+}
+
+namespace {
+
 Budget read_budget(h5::Reader& reader) {
   const std::vector<double> v = reader.get<double>("/budget", "SI", 1, 7);
   for (const double x : v)
@@ -66,10 +72,59 @@ Budget read_budget(h5::Reader& reader) {
   return b;
 }
 
+}  // namespace
+
+StateHead read_head(h5::Reader& reader) {
+  StateHead head{read_budget(reader), {}, reader.get<uint32_t>("/cap", "1", 1, 1)[0]};
+  if (!reader.has("/part")) return head;
+  const std::vector<uint32_t> v = reader.get<uint32_t>("/part", "1", 1, 4);
+  if (v[0] >= v[1]) reader.fail("holds a part that cannot be");
+  head.part = StatePart{{v[0], v[1]}, v[2] != 0, v[3] != 0};
+  return head;
+}
+
+Columns columns_of(h5::Reader& r, size_t capture, const CaptureShape& wanted) {
+  const std::string g = group_of(capture);
+  Columns c;
+  const std::vector<uint32_t> shape = r.get<uint32_t>(g + "/shape", "1", 1, 5);
+  c.shape = {shape[0], shape[1], shape[2], static_cast<int>(shape[3]), shape[4], wanted.mine};
+  if (c.shape.columns != wanted.columns || c.shape.rows != wanted.rows || c.shape.values != wanted.values ||
+      c.shape.truth_slots != wanted.truth_slots || (shape[3] != 4 && shape[3] != 8))
+    r.fail(strf("capture %zu has another shape than in this run", capture));
+  c.blocks = blocks_of(c.shape.columns, c.shape.rows);
+  c.first.push_back(0);
+  for (const Block& b : c.blocks) c.first.push_back(c.first.back() + b.problems());
+  const auto blocks = static_cast<long long>(c.blocks.size()), n = static_cast<long long>(c.shape.problems());
+  const long long counts = blocks * static_cast<long long>(RunStatistics::kCounts);
+  auto at = [&](const char* name, h5::Id type, const char* units, long long rows) {
+    return r.file_offset(g + name, r.open(g + name, type, units, 1, rows));
+  };
+  c.valid = at("/valid", h5::native<uint8_t>(), "1", blocks);
+  c.piloted = at("/piloted", h5::native<uint8_t>(), "1", blocks);
+  c.needs = at("/needs", h5::native<double>(), "1", n);
+  c.counts = at("/counts", h5::native<uint64_t>(), "1", counts * c.shape.scrambles);
+  c.pilot_counts = at("/pilot_counts", h5::native<uint64_t>(), "1", counts);
+  for (size_t i = 0; i < kSumsColumns.size(); ++i) {
+    const SumsColumn& column = kSumsColumns[i];
+    c.sums[i] = at(column.name, column.type(), column.units,
+                   n * c.shape.scrambles * static_cast<long long>(column.width(c.shape)));
+  }
+  return c;
+}
+
 namespace {
 
+// Problems of a capture that this run will save.
+size_t saved_problems(const CaptureShape& s) {
+  if (s.mine.empty()) return s.problems();
+  const std::vector<Block> blocks = blocks_of(s.columns, s.rows);
+  size_t sum = 0;
+  for (size_t b = 0; b < blocks.size(); ++b) sum += s.mine[b] ? blocks[b].problems() : 0;
+  return sum;
+}
+
 double bytes_of(const CaptureShape& s) {
-  const Accumulators::Shape sums{s.problems(), s.values, s.scrambles, s.truth_slots, true};
+  const Accumulators::Shape sums{saved_problems(s), s.values, s.scrambles, s.truth_slots, true};
   return static_cast<double>(sums.bytes()) + 8.0 * static_cast<double>(s.problems());
 }
 
@@ -85,10 +140,49 @@ void check_room(const std::string& path, const std::vector<CaptureShape>& shapes
                 "run without --state, or with fewer bands");
 }
 
+void make_columns(h5::Writer& w, size_t capture, const CaptureShape& s) {
+  const std::string g = group_of(capture);
+  const size_t n = s.problems(), blocks = blocks_of(s.columns, s.rows).size();
+  w.put(g + "/shape",
+        std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.values), static_cast<uint32_t>(s.scrambles),
+                              static_cast<uint32_t>(s.truth_slots)},
+        "1");
+  // Zeros, most by being a hole in the file: nothing is valid yet, and no value is looked at before it is.
+  w.put(g + "/valid", std::vector<uint8_t>(blocks, 0), "1");
+  w.put(g + "/piloted", std::vector<uint8_t>(blocks, 0), "1");
+  w.column(g + "/needs", h5::native<double>(), n, "1");
+  const size_t counts = blocks * RunStatistics::kCounts;
+  w.column(g + "/counts", h5::native<uint64_t>(), counts * static_cast<size_t>(s.scrambles), "1");
+  w.column(g + "/pilot_counts", h5::native<uint64_t>(), counts, "1");
+  for (const SumsColumn& of : kSumsColumns)
+    w.column(g + of.name, of.type(), n * static_cast<size_t>(s.scrambles) * of.width(s), of.units);
+}
+
+// Takes the disk's room for what a part will save: all but the sums of others' blocks.
+void reserve_part(AtomicFile& file, const std::string& path, const std::vector<CaptureShape>& shapes) {
+  const OwnResults own;
+  h5::Reader reader(file.temporary(), path);
+  for (size_t capture = 0; capture < shapes.size(); ++capture) {
+    const Columns c = columns_of(reader, capture, shapes[capture]);
+    const CaptureShape& s = c.shape;
+    const size_t counts = 8 * RunStatistics::kCounts * c.blocks.size(), scrambles = static_cast<size_t>(s.scrambles);
+    file.reserve(8 * s.problems(), c.needs);
+    file.reserve(counts * scrambles, c.counts);
+    file.reserve(counts, c.pilot_counts);
+    const Accumulators row({1, s.values, s.scrambles, s.truth_slots, true});
+    for (size_t i = 0; i < kSumsColumns.size(); ++i)
+      for (size_t b = 0; b < c.blocks.size(); ++b) {
+        const size_t bytes = scrambles * row.columns()[i].width;
+        if (bytes && (s.mine.empty() || s.mine[b]))
+          file.reserve(c.blocks[b].problems() * bytes, c.sums[i] + c.first[b] * bytes);
+      }
+  }
+}
+
 }  // namespace
 
 void create_state(const std::string& path, const StateIdentity& identity, const Budget& budget,
-                  const std::vector<CaptureShape>& shapes) {
+                  const std::optional<StatePart>& part, const std::vector<CaptureShape>& shapes) {
   check_room(path, shapes);
   AtomicFile file(path);
   {
@@ -98,34 +192,25 @@ void create_state(const std::string& path, const StateIdentity& identity, const 
     for (const auto& [key, text] : identity) w.attribute(key, text);
     w.put("/budget", pack(budget), "SI");
     w.put("/cap", std::vector<uint32_t>{0}, "1");
-    for (size_t c = 0; c < shapes.size(); ++c) {
-      const CaptureShape& s = shapes[c];
-      const std::string g = group_of(c);
-      const size_t n = s.problems();
-      w.put(g + "/shape",
-            std::vector<uint32_t>{s.columns, s.rows, static_cast<uint32_t>(s.values),
-                                  static_cast<uint32_t>(s.scrambles), static_cast<uint32_t>(s.truth_slots)},
-            "1");
-      // Zeros by being a hole in the file: nothing is valid yet, and no value is looked at before it is.
-      w.put(g + "/valid", std::vector<uint8_t>(ranges_of(s), 0), "1");
-      w.put(g + "/piloted", std::vector<uint8_t>{0}, "1");
-      w.column(g + "/needs", h5::native<double>(), n, "1");
-      for (const SumsColumn& of : kSumsColumns)
-        w.column(g + of.name, of.type(), n * static_cast<size_t>(s.scrambles) * of.width(s), of.units);
-    }
+    if (part) w.put("/part", pack(*part), "1");
+    for (size_t c = 0; c < shapes.size(); ++c) make_columns(w, c, shapes[c]);
     w.close();
   }
-  file.reserve(file_size(file.temporary()));  // the holes too: a disk that fills up later does not stop the run
+  // The holes too: a disk that fills up later does not stop the run.
+  if (part)
+    reserve_part(file, path, shapes);
+  else
+    file.reserve(file_size(file.temporary()));
   file.commit();
 }
 
 }  // namespace render_state
 
-Budget read_state_budget(const std::string& path, const StateIdentity& identity) {
+StateHead read_state_head(const std::string& path, const StateIdentity& identity) {
   const OwnResults own;
   h5::Reader reader(path, render_state::kHint);
   render_state::check_identity(reader, path, identity);
-  return render_state::read_budget(reader);
+  return render_state::read_head(reader);
 }
 
 }  // namespace suite

@@ -63,7 +63,7 @@ void check_truth(const Params& sensor, const SensorContext& context) {
   if (!list) return;
   for (const Params& item : list->items()) {
     const std::string name = item.as_text();
-    find_truth(name, item.where());
+    truth_rows().find(name, item.where());
     if ((name == "ecef" || name == "geodetic") && !context.frame())
       throw item.error("the truth '" + name + "' needs a scene with an origin on the Earth",
                        "give the scene an origin");

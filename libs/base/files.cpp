@@ -124,9 +124,9 @@ AtomicFile::~AtomicFile() {
   if (!done_) ::unlink(temporary_.c_str());
 }
 
-void AtomicFile::reserve(size_t bytes) {
+void AtomicFile::reserve(size_t bytes, size_t offset) {
   int status;
-  do status = ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes));
+  do status = ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(bytes));
   while (status != 0 && errno == EINTR);
   if (status != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT))
     fail(path_,

@@ -42,8 +42,8 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   const std::string& temporary() const { return temporary_; }  // write here (any library), then commit()
-  // Takes `bytes` bytes of the disk for what will be written. Error when they are not there.
-  void reserve(size_t bytes);
+  // Takes `bytes` bytes of the disk for what will be written from `offset` on. Error when they are not there.
+  void reserve(size_t bytes, size_t offset = 0);
   void write(std::span<const std::byte> bytes);  // append
   void write(std::string_view text);
   void write_at(size_t offset,

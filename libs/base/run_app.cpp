@@ -42,6 +42,10 @@ void Cli::option(const std::string& names, std::vector<std::string>& values, con
                  const std::string& metavar) {
   impl_->app.add_option(names, values, help)->type_name(metavar)->allow_extra_args(false)->take_all();
 }
+void Cli::list(const std::string& names, std::vector<std::string>& values, const std::string& help,
+               const std::string& metavar) {
+  impl_->app.add_option(names, values, help)->type_name(metavar)->take_all();
+}
 void Cli::positional(const std::string& name, std::string& value, const std::string& help, bool required) {
   impl_->app.add_option(name, value, help)->type_name("")->required(required);
 }

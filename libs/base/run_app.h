@@ -25,6 +25,9 @@ class Cli {
   void option(const std::string& names, long long& value, const std::string& help, const std::string& metavar = "INT");
   void option(const std::string& names, std::vector<std::string>& values, const std::string& help,
               const std::string& metavar = "TEXT...");
+  // The same, each time with as many values as follow it.
+  void list(const std::string& names, std::vector<std::string>& values, const std::string& help,
+            const std::string& metavar = "TEXT...");
   // Positional arguments are named without dashes.
   void positional(const std::string& name, std::string& value, const std::string& help, bool required = true);
   void positional(const std::string& name, std::vector<std::string>& values, const std::string& help,

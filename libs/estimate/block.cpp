@@ -4,11 +4,11 @@
 
 namespace suite {
 
-std::vector<Block> blocks_of(const Capture& capture) {
+std::vector<Block> blocks_of(uint32_t columns, uint32_t rows) {
   std::vector<Block> blocks;
-  for (uint32_t r = 0; r < capture.rows; r += kBlockEdge)
-    for (uint32_t c = 0; c < capture.columns; c += kBlockEdge)
-      blocks.push_back({c, r, std::min(kBlockEdge, capture.columns - c), std::min(kBlockEdge, capture.rows - r)});
+  for (uint32_t r = 0; r < rows; r += kBlockEdge)
+    for (uint32_t c = 0; c < columns; c += kBlockEdge)
+      blocks.push_back({c, r, std::min(kBlockEdge, columns - c), std::min(kBlockEdge, rows - r)});
   return blocks;
 }
 

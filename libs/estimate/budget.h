@@ -15,6 +15,7 @@ struct Budget {
   bool all_bands = false;                        // the target holds for every band, not only at the reference
   double seconds = 0;  // of the whole run, sets a maximum of paths after the first pilot; 0 = none
   uint32_t more = 0;   // added to every capture's maximum: what a continued run adds
+  bool operator==(const Budget&) const = default;
 };
 
 inline constexpr uint32_t kDefaultPilot = 32, kDefaultMost = 4096;

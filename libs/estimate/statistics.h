@@ -1,7 +1,9 @@
 // What running paths took.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "trace/tracer.h"
 
@@ -21,6 +23,13 @@ class ExactSum {
     return *this;
   }
   operator double() const { return static_cast<double>(grains_) / kGrains; }
+  // The sum in units of 2^-30, to be stored or sent.
+  uint64_t grains() const { return grains_; }
+  static ExactSum of_grains(uint64_t grains) {
+    ExactSum sum;
+    sum.grains_ = grains;
+    return sum;
+  }
   bool operator==(const ExactSum&) const = default;
 
  private:
@@ -48,6 +57,14 @@ struct RunStatistics {
     sensor_cycles += o.sensor_cycles;
     path_cycles += o.path_cycles;
     shade_cycles += o.shade_cycles;
+  }
+  // All but the cycles, to be stored or sent.
+  static constexpr size_t kCounts = 5;
+  std::array<uint64_t, kCounts> counts() const { return {paths, nodes, failures, truncated.grains(), trace.rays}; }
+  void add_counts(std::span<const uint64_t, kCounts> c) {
+    paths += c[0], nodes += c[1], failures += c[2];
+    truncated += ExactSum::of_grains(c[3]);
+    trace.rays += c[4];
   }
 };
 

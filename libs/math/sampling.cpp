@@ -114,14 +114,45 @@ std::array<uint32_t, 4> sobol4(uint32_t index) {
   return {point[0], point[1], point[2], point[3]};
 }
 
-std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const {
+namespace {
+
+// A point in reversed bits, before it is scrambled, and the seeds of that.
+struct Unscrambled {
+  Four point, seeds;
+};
+inline Unscrambled unscrambled(uint64_t mixed_key, uint32_t sample, uint32_t block) {
   // A nested shuffle of the sample index decorrelates the blocks and keeps every power-of-two prefix stratified.
-  const uint64_t key = mix64(mixed_key_ ^ block);  // hash_of(key_, block)
+  const uint64_t key = mix64(mixed_key ^ block);  // hash_of(key_, block)
   const uint32_t shuffled = laine_karras(reverse_bits(sample), static_cast<uint32_t>(key));
   const uint64_t a = mix64(key), b = mix64(key ^ 0x5bd1e995ull);
   const Four seeds{static_cast<uint32_t>(a), static_cast<uint32_t>(a >> 32), static_cast<uint32_t>(b),
                    static_cast<uint32_t>(b >> 32)};
-  return units(reverse_bits(laine_karras(reversed_point(shuffled), seeds)));
+  return {reversed_point(shuffled), seeds};
+}
+
+}  // namespace
+
+std::array<double, 4> SampleStream::draw(uint32_t sample, uint32_t block) const {
+  const Unscrambled x = unscrambled(mixed_key_, sample, block);
+  return units(reverse_bits(laine_karras(x.point, x.seeds)));
+}
+
+// Two points fill a vector.
+void SampleStream::draw(std::span<const Point> points) {
+  using Eight = uint32_t __attribute__((vector_size(32)));
+  size_t i = 0;
+  for (; i + 2 <= points.size(); i += 2) {
+    const Unscrambled x = unscrambled(points[i].mixed_key, points[i].sample, points[i].block);
+    const Unscrambled y = unscrambled(points[i + 1].mixed_key, points[i + 1].sample, points[i + 1].block);
+    const auto both = [](Four a, Four b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); };
+    const Eight u = reverse_bits(laine_karras<Eight>(both(x.point, y.point), both(x.seeds, y.seeds)));
+    *points[i].numbers = units(__builtin_shufflevector(u, u, 0, 1, 2, 3));
+    *points[i + 1].numbers = units(__builtin_shufflevector(u, u, 4, 5, 6, 7));
+  }
+  for (; i < points.size(); ++i) {
+    const Unscrambled x = unscrambled(points[i].mixed_key, points[i].sample, points[i].block);
+    *points[i].numbers = units(reverse_bits(laine_karras(x.point, x.seeds)));
+  }
 }
 
 }  // namespace suite

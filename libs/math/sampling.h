@@ -7,6 +7,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "math/vec.h"
 
@@ -48,6 +49,16 @@ class SampleStream {
     return hash_of(hash_of(seed, capture), problem);
   }
   std::array<double, 4> draw(uint32_t sample, uint32_t block) const;
+  // The same of many samples and streams, to the same bits, in less time.
+  struct Point {
+    uint64_t mixed_key;
+    uint32_t sample, block;
+    std::array<double, 4>* numbers;  // go there
+  };
+  Point point(uint32_t sample, uint32_t block, std::array<double, 4>& numbers) const {
+    return {mixed_key_, sample, block, &numbers};
+  }
+  static void draw(std::span<const Point> points);
   // A number that is not stratified (hashed), for choices that must not use up a low-discrepancy dimension.
   double hashed(uint32_t sample, uint32_t purpose) const {
     return unit_double(hash_of(key_, 0x68617368ull, (uint64_t{purpose} << 32) | sample));

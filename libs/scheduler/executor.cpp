@@ -44,7 +44,7 @@ bool LocalExecutor::run(std::span<Round> rounds, const std::function<bool()>& st
         sums->join_problem(i, *round.from, problem_at(*round.capture, block, i));
     RunStatistics mine;
     round.pipeline->run(*round.sensor, *round.capture, round.stream, block, round.to, *sums, Slots::by_place, mine);
-    round.take(block, *sums);
+    round.take(block, *sums, mine);
     const std::lock_guard lock(mutex_);
     round.statistics.merge(mine);
     if (progress) progress->add(static_cast<double>(mine.paths));

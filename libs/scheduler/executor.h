@@ -21,9 +21,9 @@ struct Round {
   std::span<const uint32_t> to;        // [problem] samples
   Accumulators::Shape shape;           // of the capture's sums
   const Accumulators* from = nullptr;  // what the problems have already; null = nothing
-  // Takes the partial sums of a block, which stand by place and may not be kept, from whichever thread has them.
-  // Distinct blocks may come at the same time.
-  std::function<void(const Block&, const Accumulators&)> take;
+  // Takes the partial sums of a block, which stand by place and may not be kept, and what they took beyond `from`, from
+  // whichever thread has them. Distinct blocks may come at the same time; parts of one block one after the other.
+  std::function<void(const Block&, const Accumulators&, const RunStatistics&)> take;
   RunStatistics statistics = {};  // of what was run
 };
 

@@ -5,32 +5,42 @@
 namespace suite {
 
 namespace {
-// visit(sensor, capture, budget) of all captures, pre-passes included.
+// visit(sensor, capture, budget, mine) of all captures, pre-passes included. mine: [block] those of the share that is
+// run; empty = all.
 template <class Visit>
 void for_captures(Sensors sensors, const JobOptions& options, const Visit& visit) {
-  for (const Sensors all : {options.prepasses, sensors})
+  std::vector<std::vector<uint8_t>> shared;
+  if (options.share) shared = blocks_of_share(sensors, *options.share);
+  for (const Sensors all : {options.prepasses, sensors}) {
+    size_t id = 0;
     for (const auto& s : all)
       for (const Task& t : s->tasks())
-        for (const Capture& c : t.captures) visit(*s, c, all.data() == sensors.data() ? options.budget : Budget{});
+        for (const Capture& c : t.captures) {
+          const bool own = all.data() == sensors.data();
+          visit(*s, c, own ? options.budget : Budget{}, own && options.share ? shared[id] : std::vector<uint8_t>{});
+          ++id;
+        }
+  }
 }
 }  // namespace
 
 double forecast_paths(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   double sum = 0;
-  for_captures(sensors, options, [&](const Sensor& s, const Capture& c, const Budget& budget) {
-    const Goals goals = goals_of(s, c, budget);
-    auto least = [](const Convergence& goal) {
-      return static_cast<double>(goal.relative_error > 0 ? goal.min_paths : goal.max_paths);
-    };
-    if (goals.own.empty()) sum += static_cast<double>(c.problems()) * least(goals.all);
-    for (const Convergence& goal : goals.own) sum += least(goal);
-  });
+  for_captures(sensors, options,
+               [&](const Sensor& s, const Capture& c, const Budget& budget, const std::vector<uint8_t>& mine) {
+                 const Goals goals = goals_of(s, c, budget);
+                 for (const Block& b : blocks_of(c))
+                   for (size_t i = 0; (mine.empty() || mine[number_of(b, c.columns)]) && i < b.problems(); ++i) {
+                     const Convergence goal = goals.of(problem_at(c, b, i));
+                     sum += goal.relative_error > 0 ? goal.min_paths : goal.max_paths;
+                   }
+               });
   return sum;
 }
 
 double forecast_bytes(std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options) {
   double most = 0;
-  for_captures(sensors, options, [&](const Sensor& s, const Capture& c, const Budget& budget) {
+  for_captures(sensors, options, [&](const Sensor& s, const Capture& c, const Budget& budget, const auto&) {
     const size_t bands = s.bands(c.state).size();
     const Accumulators::Shape sums{c.problems(), bands, scrambles_for(goals_of(s, c, budget).all.max_paths)};
     const double result = static_cast<double>(c.problems()) * (24.0 * static_cast<double>(bands) + 200);

@@ -37,4 +37,17 @@ struct InFlight {
   CaptureLog log;
 };
 
+using Batch = std::vector<std::unique_ptr<InFlight>>;
+
+// The seconds of a batch, shared out by what its captures took.
+inline void share_seconds(const Batch& batch, double seconds) {
+  double cycles = 0;
+  for (const auto& c : batch) cycles += static_cast<double>(c->planner->statistics().cycles);
+  for (const auto& c : batch) {
+    const double share = cycles > 0 ? static_cast<double>(c->planner->statistics().cycles) / cycles
+                                    : 1 / static_cast<double>(batch.size());
+    c->log.seconds = share * seconds;
+  }
+}
+
 }  // namespace suite

@@ -8,6 +8,20 @@
 
 namespace suite {
 
+std::vector<JudgedBand> judged_bands(const Capture& capture, const Budget& budget, const Kit::Bands& bands) {
+  const std::vector<double>& targets = capture.band_targets;
+  if (targets.empty() && !budget.all_bands) return {{bands.reference}};
+  std::vector<JudgedBand> judged;
+  for (size_t b = 0; b < bands.projection.bands(); ++b) {
+    const double target = b < targets.size() ? targets[b] : 0;
+    if (budget.all_bands)
+      judged.push_back({b});
+    else if (target > 0)
+      judged.push_back({b, std::pow(capture.convergence.relative_error / target, 2)});
+  }
+  return judged;
+}
+
 void Judge::add(size_t sensor, const CaptureWork& work, size_t reference, const CaptureResult& r, JobReport& report,
                 CaptureLog& log) {
   const size_t values = r.values_per_problem();
@@ -45,6 +59,11 @@ void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) c
   std::string& s = report.stopped_by;
   if (report.stopped)
     s = strf("stopped from outside after %zu of %zu captures", report.captures, report.captures_asked);
+  else if (options.share && options.share->runs())
+    s = options.share->text() + " has run its share";
+  else if (report.captures_waiting)
+    s = strf("%zu of %zu captures wait for paths that other parts have to run", report.captures_waiting,
+             report.captures_asked);
   else if (options.pipeline.stop == StopRule::change)
     s = strf(
         "each problem stopped when one more path changed its mean by less than %g of it, which is biased low where "

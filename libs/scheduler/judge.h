@@ -7,6 +7,9 @@
 
 namespace suite {
 
+// The bands whose errors decide about a capture, and how much stricter than theirs the strictest target is.
+std::vector<JudgedBand> judged_bands(const Capture& capture, const Budget& budget, const Kit::Bands& bands);
+
 class Judge {
  public:
   // Takes a capture of a sensor (its number in the report). reference: band.

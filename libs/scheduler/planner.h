@@ -41,6 +41,7 @@ struct CaptureWork {
   std::vector<JudgedBand> judged;  // bands whose error decides
   size_t values = 0;               // doubles of a problem's sums: [channel][bin][band]
   size_t truth_slots = 0;
+  std::vector<uint8_t> mine = {};  // [block] 1 where it is run here; empty = everywhere. With it, a store is needed.
   // Called once the pilot is finished, with the needs (all 0 without a target) and the seconds that the pilot took for
   // `paths` new paths; may lower goals.all.max_paths (a time budget). Empty = nothing does.
   std::function<void(CaptureWork&, std::span<const double> needs, double paths, double seconds)> after_pilot = {};
@@ -54,21 +55,31 @@ class CapturePlanner {
   // Keeps references. result: is given all problems.
   CapturePlanner(CaptureWork& work, ResultBuilder& result, Saving& saving);
   ~CapturePlanner();
-  // The round to run next, decided from what the last one brought; nothing when the result has all problems.
+  // The round to run next, decided from what the last one brought; nothing when there is nothing more to do here.
   std::optional<Round> next();
   // The round that next() gave was run, whole or in part.
   void ran(const Round& round);
   // Saves what is finished.
   void save();
+  // When there is nothing more to do: whether the result has been given all problems; whether others have to run parts
+  // of the pilot; the paths of the plan that others have to run.
+  bool whole() const { return whole_; }
+  bool waits_for_pilot() const { return waits_for_pilot_; }
+  double waits_for() const { return waits_for_; }
+  // What all that stands in the sums took, with cycles of what was run here.
   const RunStatistics& statistics() const { return statistics_; }
 
  private:
   class Saver;
   enum class Stage : uint8_t { begin, pilot, rest, done };
+  bool mine(size_t block) const { return work_.mine.empty() || work_.mine[block]; }
+  std::vector<Block> open_blocks(const Accumulators* sums, std::span<const uint32_t> to, bool mine) const;
+  bool decided() const;
   Round round(std::vector<uint32_t> to, uint64_t stream, Accumulators* sums, bool save);
   Round first();
-  void decide();
+  bool decide();
   Round rest();
+  void finish();
 
   CaptureWork& work_;
   ResultBuilder& result_;
@@ -76,12 +87,14 @@ class CapturePlanner {
   const bool target_, alone_, piloted_;
   Accumulators::Shape shape_;
   std::unique_ptr<Accumulators> sums_, thrown_;  // null: none are kept
+  std::unique_ptr<BlockCounts> counts_;          // likewise; of what is stored
   std::unique_ptr<Saver> saver_;
   Stage stage_ = Stage::begin;
   std::vector<double> needs_;
   std::vector<uint32_t> to_;
   RunStatistics statistics_;
-  double pilot_paths_ = 0;
+  double pilot_paths_ = 0, waits_for_ = 0;
+  bool whole_ = false, waits_for_pilot_ = false;
   std::chrono::steady_clock::time_point begun_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -17,6 +16,7 @@
 #include "scheduler/planner.h"
 #include "scheduler/primed.h"
 #include "scheduler/result.h"
+#include "scheduler/stored.h"
 #include "surface/cut_out.h"
 
 namespace suite {
@@ -58,17 +58,19 @@ class Job {
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     doubt_before();
-    if (options_.store) options_.store->begin(shapes(items));
-    if (options_.store && options_.begun) options_.begun(stored_work(items));
+    if (options_.share) mine_ = blocks_of_share(sensors_, *options_.share);
+    if (options_.store) begin_store(items);
     report_.captures_asked = items.size();
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
     saving_.store = options_.store;
     if (!before.empty()) run_all(before, {{}, true});
-    if (!seen.empty() && !report_.stopped) run_all(seen, {options_.loads ? options_.loads() : LoadsAt{}});
+    if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped)
+      run_all(some, {options_.loads ? options_.loads() : LoadsAt{}});
     if (progress_) progress_->finish();
-    if (!report_.stopped) doubt_after();
+    if (!report_.stopped && options_.store) options_.store->finish();
+    if (!report_.stopped && !options_.share) doubt_after();
     finish();
     return std::move(report_);
   }
@@ -116,6 +118,8 @@ class Job {
     return b;
   }
 
+  Goals goals_of(const Item& item) const { return suite::goals_of(sensor_of(item), capture_of(item), budget_of(item)); }
+
   // Whether the pilot of a capture has to tell what time is worth.
   bool unknown_cap(const Item& item) const { return options_.budget.seconds > 0 && !cap_ && !early(item); }
 
@@ -144,56 +148,46 @@ class Job {
         if (const auto doubt = doubt_of_outcome(*sensors_[s], outcomes_[s], !options_.store)) options_.doubt(*doubt);
   }
 
-  // What the store has to hold of each capture, by number.
-  std::vector<CaptureShape> shapes(const std::vector<Item>& items) const {
-    std::vector<CaptureShape> all(items.size());
-    std::map<std::pair<size_t, size_t>, size_t> slots;  // of truth, by sensor and state
-    for (const Item& item : items) {
-      const Sensor& sensor = sensor_of(item);
-      const Capture& capture = capture_of(item);
-      const auto [known, fresh] = slots.try_emplace({item.sensor, capture.state}, 0);
-      if (fresh) {
-        const SpectralState& state = sensor.states()[capture.state];
-        const BandProjection projection(state, sensor.bands(capture.state));
-        const Environment none;
-        known->second =
-            TruthPlan(sensor.truth(), {*tracer_, state, capture.state, sensor.bands(capture.state), projection, none})
-                .slots();
-      }
-      all[item.id] = {capture.columns, capture.rows,
-                      sensor.bands(capture.state).size() * sensor.channels().size() * capture.bins,
-                      scrambles_for(goals_of(sensor, capture, budget_of(item)).all.max_paths), known->second};
-    }
-    return all;
+  // Of a part of a job: the part's blocks of a capture of the sensors; empty = all of them.
+  std::vector<uint8_t> mine_of(const Item& item) const {
+    if (!options_.share || (early(item) && options_.share->runs())) return {};
+    if (early(item)) return std::vector<uint8_t>(blocks_of(capture_of(item)).size());
+    return mine_[item.id];
   }
 
-  // How far the store has each capture.
-  StoredWork stored_work(const std::vector<Item>& items) {
-    StoredWork work{items.size(), 0, 0};
-    if (!cap_) cap_ = options_.store->cap();
+  // Captures of which nothing is run here are not even primed for, unless their results are made here.
+  std::vector<Item> of_share(const std::vector<Item>& items) const {
+    std::vector<Item> some = items;
+    if (options_.share && options_.share->runs())
+      std::erase_if(some, [&](const Item& item) { return !std::ranges::count(mine_[item.id], 1); });
+    return some;
+  }
+
+  bool has_results(const Item& item) const { return !options_.share || !options_.share->runs() || early(item); }
+
+  // Tells the store what it has to hold of each capture, and how far it has that.
+  void begin_store(const std::vector<Item>& items) {
+    std::vector<CaptureShape> shapes(items.size());
+    TruthSlots slots(*tracer_);
     for (const Item& item : items) {
-      std::vector<uint32_t> paths;
-      std::vector<double> needs;
-      options_.store->load_paths(item.id, paths, needs);
-      const Capture& capture = capture_of(item);
-      const Goals goals = goals_of(sensor_of(item), capture, budget_of(item));
-      const bool piloted = goals.all.relative_error > 0 || unknown_cap(item);
-      const std::vector<uint32_t> plan = plan_of(capture, goals, piloted ? needs : std::vector<double>{});
-      work.finished += (!piloted || !needs.empty()) && std::equal(paths.begin(), paths.end(), plan.begin(),
-                                                                  [](uint32_t a, uint32_t b) { return a >= b; });
-      for (const uint32_t p : paths) work.paths += p;
+      shapes[item.id] = shape_of(sensor_of(item), capture_of(item), goals_of(item), slots);
+      if (!has_results(item)) shapes[item.id].mine = mine_of(item);
     }
-    return work;
+    options_.store->begin(shapes);
+    if (!cap_) cap_ = options_.store->cap();
+    StoredWork work;
+    for (const Item& item : items)
+      add_stored(*options_.store, item.id, capture_of(item), goals_of(item), unknown_cap(item), work);
+    report_.paths_kept = work.paths;
+    if (options_.begun) options_.begun(work);
   }
 
   void warn_of_lost_light(const Item& item, const Kit& kit) {
     if (!options_.warn) return;
-    const uint32_t paths = goals_of(sensor_of(item), capture_of(item), budget_of(item)).all.max_paths;
+    const uint32_t paths = goals_of(item).all.max_paths;
     for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline, paths))
       if (told_.insert(s).second) options_.warn(s);
   }
-
-  using Batch = std::vector<std::unique_ptr<InFlight>>;
 
   // Runs the first captures that are left, as many as may be in flight together, round by round of all of them, and
   // delivers them in their order. Returns those that are left then.
@@ -225,17 +219,16 @@ class Job {
     }
     share_seconds(batch, seconds_since(begun));
     for (auto& c : batch)
-      if (report_.stopped)
-        report_.statistics.merge(c->planner->statistics());
-      else
+      if (!report_.stopped && c->planner->whole() && has_results(c->item))
         deliver(*c), c.reset();
+      else
+        leave(*c);
     if (primed_.size() > 1) primed_.erase(primed_.begin(), primed_.end() - 1);
     return left.subspan(batch.size());
   }
 
   double most_paths(const Item& item) const {
-    return static_cast<double>(capture_of(item).problems()) *
-           goals_of(sensor_of(item), capture_of(item), budget_of(item)).all.max_paths;
+    return static_cast<double>(capture_of(item).problems()) * goals_of(item).all.max_paths;
   }
 
   // One round of every capture that is not finished, all of them at once. False when there is nothing more to run.
@@ -250,17 +243,6 @@ class Job {
     if (report_.stopped)
       for (CapturePlanner* p : of) p->save();
     return !report_.stopped;
-  }
-
-  // The seconds of a batch, shared out by what its captures took.
-  static void share_seconds(const Batch& batch, double seconds) {
-    double cycles = 0;
-    for (const auto& c : batch) cycles += static_cast<double>(c->planner->statistics().cycles);
-    for (const auto& c : batch) {
-      const double share = cycles > 0 ? static_cast<double>(c->planner->statistics().cycles) / cycles
-                                      : 1 / static_cast<double>(batch.size());
-      c->log.seconds = share * seconds;
-    }
   }
 
   std::shared_ptr<const Primed> prime(const Item& item, CaptureLog& log) {
@@ -285,9 +267,9 @@ class Job {
     const Capture& capture = capture_of(item);
     CaptureLog log;
     std::shared_ptr<const Primed> primed = prime(item, log);
-    if (options_.store && !cap_) cap_ = options_.store->cap();
-    auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(sensor, capture, budget_of(item)),
-                                        judged_bands(item, primed->kit));
+    auto c = std::make_unique<InFlight>(item, primed, sensor, capture, goals_of(item),
+                                        judged_bands(capture, budget_of(item), *primed->kit.bands));
+    c->work.mine = mine_of(item);
     c->log = std::move(log);
     if (unknown_cap(item)) {
       c->work.after_pilot = [this](CaptureWork& w, std::span<const double> needs, double paths, double seconds) {
@@ -298,6 +280,16 @@ class Job {
     c->plan(saving_);
     sensor.begin(capture);
     return c;
+  }
+
+  // Counts a capture that has no result here.
+  void leave(InFlight& c) {
+    report_.statistics.merge(c.planner->statistics());
+    if (report_.stopped) return;
+    report_.captures_waiting += !c.planner->whole();
+    report_.pilots_waiting += c.planner->waits_for_pilot();
+    report_.paths_waiting += c.planner->waits_for();
+    kits_->done(c.item.state.spectral);
   }
 
   void deliver(InFlight& c) {
@@ -332,23 +324,6 @@ class Job {
     report_.deliver_seconds += seconds_since(handed);
   }
 
-  // The bands that decide, and how much stricter than theirs the strictest target is.
-  std::vector<JudgedBand> judged_bands(const Item& item, const Kit& kit) const {
-    const Capture& capture = capture_of(item);
-    const std::vector<double>& targets = capture.band_targets;
-    const bool all_bands = budget_of(item).all_bands;
-    if (targets.empty() && !all_bands) return {{kit.bands->reference}};
-    std::vector<JudgedBand> judged;
-    for (size_t b = 0; b < kit.bands->projection.bands(); ++b) {
-      const double target = b < targets.size() ? targets[b] : 0;
-      if (all_bands)
-        judged.push_back({b});
-      else if (target > 0)
-        judged.push_back({b, std::pow(capture.convergence.relative_error / target, 2)});
-    }
-    return judged;
-  }
-
   // Turns the time that is left into a maximum of paths, the same for all captures, so that the run can be repeated.
   void fix_cap(CaptureWork& work, std::span<const double> needs, double paths, double seconds) {
     const double left = options_.budget.seconds - seconds_since(start_), rate = seconds > 0 ? paths / seconds : 0;
@@ -359,6 +334,7 @@ class Job {
                          work.goals.all.relative_error > 0 ? total : std::floor(total / here / 4) * 4 * here);
     work.goals.all.max_paths = report_.time_cap = cap_;
     if (options_.store) options_.store->save_cap(cap_);
+    if (options_.time_worth) options_.time_worth(cap_);
   }
 
   void finish() {
@@ -386,6 +362,7 @@ class Job {
   std::set<std::string> doubted_;        // sensors
   Judge judge_;
   std::set<std::string> told_;
+  std::vector<std::vector<uint8_t>> mine_;  // [capture][block] of the sensors that the share runs
   double total_problems_ = 0;
   uint32_t cap_ = 0;
 };

@@ -11,6 +11,7 @@
 #include "estimate/budget.h"
 #include "scheduler/doubts.h"
 #include "scheduler/kits.h"
+#include "scheduler/share.h"
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
 #include "sensor/quality.h"
@@ -40,12 +41,16 @@ struct JobOptions {
   size_t kit_bytes = kDefaultKitBytes;  // of optics and lights that are kept for captures to come (kits.h)
   StateStore* store = nullptr;          // keeps what is needed to continue; null = nothing is kept
   Executor* executor = nullptr;         // who runs the rounds; null = the threads of this process
+  // Only these blocks of the sensors' captures are run, and pre-passes whole; needs a store. Only a share that runs
+  // nothing has results: those of the captures that the store has whole. Nothing = a run by itself.
+  std::optional<Share> share = {};
   bool progress = true;
   // Asked between blocks of problems: true ends the job in good order, with all that is finished in the store. Empty =
   // never.
   std::function<bool()> stop;
-  std::function<void(const StoredWork&)> begun;  // called once, before the first capture of a job that has a store
-  std::function<void(const Doubt&)> doubt = {};  // is told of pictures that will be or are useless; null = nobody
+  std::function<void(const StoredWork&)> begun;   // called once, before the first capture of a job that has a store
+  std::function<void(uint32_t)> time_worth = {};  // is told the maximum of paths that a time budget is turned into
+  std::function<void(const Doubt&)> doubt = {};   // is told of pictures that will be or are useless; null = nobody
   // Told, once each and before the paths are run, what a state's light will lack; empty = nobody listens.
   std::function<void(const std::string&)> warn = {};
 };
@@ -75,6 +80,10 @@ struct JobReport {
   RunStatistics statistics;
   size_t captures = 0, problems = 0;  // that were finished and delivered
   size_t captures_asked = 0;
+  size_t captures_waiting = 0;  // of a share: they are not whole without what other shares run;
+  size_t pilots_waiting = 0;    // of these: not even planned
+  double paths_waiting = 0;     // those of their plans, where the share runs nothing itself
+  double paths_kept = 0;        // that a store held when the job began; the statistics count them, without their cycles
   bool stopped = false;  // JobOptions::stop ended the job; statistics count what the unfinished capture took, too
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
   size_t light_bakes = 0;  // environments made or brought to another moment

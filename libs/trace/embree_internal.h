@@ -259,8 +259,17 @@ class PacketTracer {
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
+  void load(const Tile& tile, const Packet& packet, uint32_t i, RTCRay& q) const;  // lane i alone
   void send(const Tile& tile, const Packet& packet, TraceContext& context, RTCRayHit8& rays);
   TraceContext context(const Packet& packet) const;
+  struct MetIds {  // of Embree
+    unsigned geometry, instance, primitive;
+  };
+  // Rays that do not run alongside each other soon part among instances: a query for eight takes longer there than
+  // eight for one. On surfaces that are one mesh it does not.
+  bool one_by_one(const Tile& tile) const { return !coherent_ && !tile.sets.empty(); }
+  void nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& context);
+  void note(const Tile& tile, const Packet& packet, uint32_t i, float far, const MetIds& met, float u, float v);
   // What a ray met in a tile; object kNone: nothing.
   struct Found {
     const Tile* tile;

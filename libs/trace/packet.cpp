@@ -43,6 +43,18 @@ void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int*
   }
 }
 
+void PacketTracer::load(const Tile& tile, const Packet& packet, uint32_t i, RTCRay& q) const {
+  const uint32_t r = packet.ray[i];
+  const Ray& ray = rays_[r];
+  const Vec3 p = ray.origin + ray.direction * packet.advance[i] - tile.origin;
+  q.org_x = static_cast<float>(p.x), q.org_y = static_cast<float>(p.y), q.org_z = static_cast<float>(p.z);
+  q.dir_x = static_cast<float>(ray.direction.x), q.dir_y = static_cast<float>(ray.direction.y);
+  q.dir_z = static_cast<float>(ray.direction.z);
+  q.tnear = 0, q.tfar = static_cast<float>(reach_[r] - packet.advance[i]);
+  q.time = moving_ ? moving_->fraction(ray.time) : 0;
+  q.mask = 0xffffffffu, q.id = i, q.flags = 0;
+}
+
 // The corners of a triangle; null for exact surfaces.
 const uint32_t* PacketTracer::corners(const Found& found) const {
   const uint32_t mesh = world_.flat.objects[found.object].mesh;
@@ -60,21 +72,43 @@ void PacketTracer::send(const Tile& tile, const Packet& packet, TraceContext& c,
 
 void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
   TraceContext c = context(packet);
+  if (one_by_one(tile)) return nearest_one_by_one(tile, packet, c);
   alignas(32) RTCRayHit8 rh;
   send(tile, packet, c, rh);
-  const size_t lone = tile.direct.size();
+  for (uint32_t i = 0; i < packet.size; ++i)
+    note(tile, packet, i, rh.ray.tfar[i], {rh.hit.geomID[i], rh.hit.instID[0][i], rh.hit.primID[i]}, rh.hit.u[i],
+         rh.hit.v[i]);
+}
+
+void PacketTracer::nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& c) {
+  alignas(16) RTCRayHit rays[kWidth];
   for (uint32_t i = 0; i < packet.size; ++i) {
-    const uint32_t id = rh.hit.geomID[i], r = packet.ray[i];
-    if (id == RTC_INVALID_GEOMETRY_ID) continue;
-    reach_[r] = packet.advance[i] + double{rh.ray.tfar[i]};
-    Found& f = found_[r];
-    f.tile = &tile;
-    f.direct = id < lone;
-    f.object = f.direct ? tile.direct[id] : tile.sets[id - lone]->objects[rh.hit.instID[0][i]];
-    f.triangle = rh.hit.primID[i];
-    f.u = rh.hit.u[i], f.v = rh.hit.v[i];
-    if (const uint32_t* corner = corners(f)) __builtin_prefetch(corner);
+    load(tile, packet, i, rays[i].ray);
+    rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
   }
+  const uint64_t start = __rdtsc();
+  for (uint32_t i = 0; i < packet.size; ++i) rtcIntersect1(tile.handle.scene, &c, &rays[i]);
+  statistics_.cycles += __rdtsc() - start;
+  for (uint32_t i = 0; i < packet.size; ++i) {
+    const RTCHit& h = rays[i].hit;
+    note(tile, packet, i, rays[i].ray.tfar, {h.geomID, h.instID[0], h.primID}, h.u, h.v);
+  }
+}
+
+// What ray i of a packet has met.
+void PacketTracer::note(const Tile& tile, const Packet& packet, uint32_t i, float far, const MetIds& met, float u,
+                        float v) {
+  if (met.geometry == RTC_INVALID_GEOMETRY_ID) return;
+  const uint32_t r = packet.ray[i];
+  const size_t lone = tile.direct.size();
+  reach_[r] = packet.advance[i] + double{far};
+  Found& f = found_[r];
+  f.tile = &tile;
+  f.direct = met.geometry < lone;
+  f.object = f.direct ? tile.direct[met.geometry] : tile.sets[met.geometry - lone]->objects[met.instance];
+  f.triangle = met.primitive;
+  f.u = u, f.v = v;
+  if (const uint32_t* corner = corners(f)) __builtin_prefetch(corner);
 }
 
 void PacketTracer::finish(std::span<Hit> hits) {
@@ -133,17 +167,27 @@ void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
   TraceContext c = context(packet);
+  const auto answer = [&](uint32_t i, float far) {
+    if (!(far < 0)) return;
+    blocked[packet.ray[i]] = 1;
+    reach_[packet.ray[i]] = -1;  // no further tile matters
+  };
+  if (one_by_one(tile)) {
+    alignas(16) RTCRay rays[kWidth];
+    for (uint32_t i = 0; i < packet.size; ++i) load(tile, packet, i, rays[i]);
+    const uint64_t start = __rdtsc();
+    for (uint32_t i = 0; i < packet.size; ++i) rtcOccluded1(tile.handle.scene, &c, &rays[i]);
+    statistics_.cycles += __rdtsc() - start;
+    for (uint32_t i = 0; i < packet.size; ++i) answer(i, rays[i].tfar);
+    return;
+  }
   alignas(32) RTCRay8 q;
   alignas(32) int valid[kWidth];
   load(tile, packet, q, valid);
   const uint64_t start = __rdtsc();
   rtcOccluded8(valid, tile.handle.scene, &c, &q);
   statistics_.cycles += __rdtsc() - start;
-  for (uint32_t i = 0; i < packet.size; ++i)
-    if (q.tfar[i] < 0) {
-      blocked[packet.ray[i]] = 1;
-      reach_[packet.ray[i]] = -1;  // no further tile matters
-    }
+  for (uint32_t i = 0; i < packet.size; ++i) answer(i, q.tfar[i]);
 }
 
 // How far off a surface rays must start for what moving geometry is seen aside from its place by, m.

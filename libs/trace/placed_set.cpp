@@ -77,64 +77,49 @@ std::optional<LocalHit> meet(const PlacedSet& set, uint32_t object, const Ray& r
   return set.world->meet(ray, object, set.moving ? set.moving->to_world(o, ray.time) : *o.place, advance, near, far);
 }
 
-// The rays of a packet that enter one instance.
-struct Entered {
-  unsigned lane[kWidth];
-  LocalRay ray[kWidth];
-  unsigned count = 0;
-};
-
-void enter_all(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const TraceContext& context,
-               const int* valid, RTCRayN* rays, unsigned n, Entered& in) {
-  for (unsigned i = 0; i < n; ++i) {
-    if (!valid[i]) continue;
-    const unsigned lane = RTCRayN_id(rays, n, i);
-    const double advance = context.packet->advance[lane];
-    if (go_in(set, prim, mesh, context.rays[context.packet->ray[lane]], advance + double{RTCRayN_tnear(rays, n, i)},
-              advance + double{RTCRayN_tfar(rays, n, i)}, in.ray[in.count]))
-      in.ray[in.count].id = lane, in.lane[in.count++] = i;
-  }
+// The unrounded ray of a lane, into an instance; false when it does not get there.
+bool enter(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const TraceContext& context, RTCRayN* rays,
+           unsigned n, unsigned i, LocalRay& in) {
+  const unsigned lane = RTCRayN_id(rays, n, i);
+  const double advance = context.packet->advance[lane];
+  in.id = lane;
+  return go_in(set, prim, mesh, context.ray(lane), advance + double{RTCRayN_tnear(rays, n, i)},
+               advance + double{RTCRayN_tfar(rays, n, i)}, in);
 }
 
-void load(const LocalRay& r, unsigned k, RTCRay8& q) {
-  q.org_x[k] = static_cast<float>(r.origin.x), q.org_y[k] = static_cast<float>(r.origin.y),
-  q.org_z[k] = static_cast<float>(r.origin.z);
-  q.dir_x[k] = static_cast<float>(r.direction.x), q.dir_y[k] = static_cast<float>(r.direction.y),
-  q.dir_z[k] = static_cast<float>(r.direction.z);
-  q.tnear[k] = 0, q.tfar[k] = static_cast<float>(r.reach), q.time[k] = 0, q.mask[k] = 0xffffffffu, q.id[k] = r.id,
-  q.flags[k] = 0;
+void load(const LocalRay& r, RTCRay& q) {
+  q.org_x = static_cast<float>(r.origin.x), q.org_y = static_cast<float>(r.origin.y),
+  q.org_z = static_cast<float>(r.origin.z);
+  q.dir_x = static_cast<float>(r.direction.x), q.dir_y = static_cast<float>(r.direction.y),
+  q.dir_z = static_cast<float>(r.direction.z);
+  q.tnear = 0, q.tfar = static_cast<float>(r.reach), q.time = 0, q.mask = 0xffffffffu, q.id = r.id, q.flags = 0;
 }
 
+// One ray after the other: those that enter an instance are few and rarely go the same way through its leaves, where a
+// query for eight takes longer than eight for one.
 void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
   auto* context = static_cast<TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* found = RTCRayHitN_HitN(args->rayhit, args->N);
   const MeshEntry& entry = set.world->meshes[mesh];
-  Entered in;
-  enter_all(set, args->primID, entry, *context, args->valid, outer, args->N, in);
-  if (!in.count) return;
-  alignas(32) RTCRayHit8 rh;
-  alignas(32) int valid[kWidth];
-  for (unsigned k = 0; k < kWidth; ++k) {
-    valid[k] = k < in.count ? -1 : 0;
-    load(in.ray[k < in.count ? k : 0], k, rh.ray);
-    rh.hit.geomID[k] = rh.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-  }
   context->object = set.objects[args->primID];
-  rtcIntersect8(valid, entry.handle.scene, context, &rh);
-  context->object = kNone;
-  for (unsigned k = 0; k < in.count; ++k) {
-    if (rh.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-    const unsigned i = in.lane[k];
-    const LocalRay& r = in.ray[k];
-    const double t = r.enter + double{rh.ray.tfar[k]} / r.stretch;
-    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[RTCRayN_id(outer, args->N, i)]);
-    RTCHitN_u(found, args->N, i) = rh.hit.u[k];
-    RTCHitN_v(found, args->N, i) = rh.hit.v[k];
-    RTCHitN_primID(found, args->N, i) = rh.hit.primID[k];
+  for (unsigned i = 0; i < args->N; ++i) {
+    LocalRay in;
+    if (!args->valid[i] || !enter(set, args->primID, entry, *context, outer, args->N, i, in)) continue;
+    alignas(16) RTCRayHit one;
+    load(in, one.ray);
+    one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(entry.handle.scene, context, &one);
+    if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+    const double t = in.enter + double{one.ray.tfar} / in.stretch;
+    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[in.id]);
+    RTCHitN_u(found, args->N, i) = one.hit.u;
+    RTCHitN_v(found, args->N, i) = one.hit.v;
+    RTCHitN_primID(found, args->N, i) = one.hit.primID;
     RTCHitN_geomID(found, args->N, i) = args->geomID;
     RTCHitN_instID(found, args->N, i, 0) = args->primID;
   }
+  context->object = kNone;
 }
 
 void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t o) {
@@ -174,20 +159,16 @@ void intersect_placed(const RTCIntersectFunctionNArguments* args) {
 void occlude_mesh(const RTCOccludedFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
   auto* context = static_cast<TraceContext*>(args->context);
   const MeshEntry& entry = set.world->meshes[mesh];
-  Entered in;
-  enter_all(set, args->primID, entry, *context, args->valid, args->ray, args->N, in);
-  if (!in.count) return;
-  alignas(32) RTCRay8 q;
-  alignas(32) int valid[kWidth];
-  for (unsigned k = 0; k < kWidth; ++k) {
-    valid[k] = k < in.count ? -1 : 0;
-    load(in.ray[k < in.count ? k : 0], k, q);
-  }
   context->object = set.objects[args->primID];
-  rtcOccluded8(valid, entry.handle.scene, context, &q);
+  for (unsigned i = 0; i < args->N; ++i) {
+    LocalRay in;
+    if (!args->valid[i] || !enter(set, args->primID, entry, *context, args->ray, args->N, i, in)) continue;
+    alignas(16) RTCRay one;
+    load(in, one);
+    rtcOccluded1(entry.handle.scene, context, &one);
+    if (one.tfar < 0) RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  }
   context->object = kNone;
-  for (unsigned k = 0; k < in.count; ++k)
-    if (q.tfar[k] < 0) RTCRayN_tfar(args->ray, args->N, in.lane[k]) = -INFINITY;
 }
 
 void occlude_placed(const RTCOccludedFunctionNArguments* args) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "transport/dimensions.h"
 #include "transport/sensor_samples.h"
 #include "transport/serve.h"
 #include "transport/workspace.h"
@@ -26,9 +27,10 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
       plain_(workspace.sink.targets() == 1 && capture.bin_by == Capture::BinBy::none),
       scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
   for (uint32_t i = 0; i < block.problems(); ++i) {
+    problems_.push_back(problem_at(capture, block, i));
     next_.push_back(sums.next(slot_of(i), block.scrambles));
-    end_.push_back(to[problem_of(i)]);
-    const uint64_t key = SampleStream::problem_key(pipeline.options_.seed, capture_id, problem_of(i));
+    end_.push_back(to[problems_[i]]);
+    const uint64_t key = SampleStream::problem_key(pipeline.options_.seed, capture_id, problems_[i]);
     keys_.push_back(key);
     whole_.push_back(block.scrambles == kAllScrambles);
     for (uint32_t s = 0; s < kMostScrambles; ++s) {
@@ -53,27 +55,28 @@ double BlockRun::reference_sum(size_t slot) const {
 
 void BlockRun::run() {
   const auto width = static_cast<uint32_t>(next_.size());
-  const auto paths = static_cast<uint32_t>(workspace_.width);
-  const uint32_t first = *std::min_element(next_.begin(), next_.end()),
-                 last = *std::max_element(end_.begin(), end_.end());
-  // A rule that looks at every sample must not be given many at a time. Else problems of a block take their samples
-  // before the next ones do: sums of many bands then stay in the cache.
-  const uint32_t together = watched_ ? 1 : std::max(std::min(kTogether, paths), paths / width),
-                 beside = watched_ ? width : std::max(1u, paths / kTogether);
-  for (uint32_t begin = 0; begin < width; begin += beside)
-    for (uint32_t group = first; group < last; group += together)
-      for (uint32_t i = begin; i < std::min(begin + beside, width); ++i)
-        for (uint32_t sample = std::max(group, next_[i]); sample < std::min(group + together, end_[i]); ++sample) {
-          if (!wants(i, sample)) continue;
-          workspace_.lanes.push_back({i, sample});
-          if (workspace_.lanes.size() == paths) run_wave();
-        }
+  if (watched_) {  // a rule that looks at every sample must not be given many at a time
+    const uint32_t first = *std::min_element(next_.begin(), next_.end()),
+                   last = *std::max_element(end_.begin(), end_.end());
+    for (uint32_t sample = first; sample < last; ++sample)
+      for (uint32_t i = 0; i < width; ++i) put(i, sample);
+  } else {
+    for (uint32_t i = 0; i < width; ++i)
+      for (uint32_t sample = next_[i]; sample < end_[i]; ++sample) put(i, sample);
+  }
   if (!workspace_.lanes.empty()) run_wave();
+}
+
+void BlockRun::put(uint32_t i, uint32_t sample) {
+  if (sample < next_[i] || sample >= end_[i] || !wants(i, sample)) return;
+  workspace_.lanes.push_back({i, sample});
+  if (workspace_.lanes.size() == workspace_.width) run_wave();
 }
 
 void BlockRun::run_wave() {
   const auto paths = static_cast<uint32_t>(workspace_.lanes.size());
   const uint64_t asked = __rdtsc();
+  draw(paths);
   for (uint32_t p = 0; p < paths; ++p) start(p);
   const uint64_t started = __rdtsc();
   const Tracer& tracer = pipeline_.surface_.tracer();
@@ -90,18 +93,32 @@ void BlockRun::run_wave() {
   workspace_.lanes.clear();
 }
 
+// The stream of a lane's sample, and its number there.
+std::pair<SampleStream, uint32_t> BlockRun::stream_of(const WaveLane& lane) const {
+  const auto [scramble, index] = deal(lane.sample);
+  // Independent numbers: every sample is the first of a sequence of its own.
+  if (pipeline_.options_.method == Method::paper) return {SampleStream(hash_of(keys_[lane.place], lane.sample), 0), 0};
+  return {streams_[size_t{lane.place} * kMostScrambles + scramble], index};
+}
+
+// The sensor's numbers of the first lanes.
+void BlockRun::draw(uint32_t paths) {
+  workspace_.points.clear();
+  for (uint32_t p = 0; p < paths; ++p) {
+    const auto [stream, number] = stream_of(workspace_.lanes[p]);
+    workspace_.points.push_back(stream.point(number, dimensions::kSensor.first, workspace_.numbers[p]));
+  }
+  SampleStream::draw(workspace_.points);
+}
+
 // Asks the sensor for the ray of a sample and starts its path.
 void BlockRun::start(uint32_t p) {
-  const auto [place, sample] = workspace_.lanes[p];
-  const auto [scramble, index] = deal(sample);
+  const WaveLane& lane = workspace_.lanes[p];
+  const auto [stream, number] = stream_of(lane);
   const size_t bins = pipeline_.state_.size();
-  // Independent numbers: every sample is the first of a sequence of its own.
-  const bool independent = pipeline_.options_.method == Method::paper;
-  const SampleStream stream = independent ? SampleStream(hash_of(keys_[place], sample), 0)
-                                          : streams_[size_t{place} * kMostScrambles + scramble];
-  const uint32_t number = independent ? 0 : index;
   float* const weights = &workspace_.weights[p * bins];
-  const SensorRay ray = ask_ray(sensor_, capture_, problem_of(place), stream, number, {weights, bins});
+  const SensorRay ray =
+      ask_ray(sensor_, capture_, problems_[lane.place], workspace_.numbers[p], stream, number, {weights, bins});
   workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
   workspace_.sink.begin(p);
   PathTracing& kernel = workspace_.kernel_of(ray);

@@ -1,30 +1,33 @@
 // The problems of one block while they run.
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "transport/pipeline.h"
+#include "transport/workspace.h"
 
 namespace suite {
 
-// Neighbours in a wave are samples of one problem as far as possible: their rays run so close together that a packet of
-// eight costs the ray tracer little more than one.
-inline constexpr uint32_t kTogether = 8, kWaveWidth = 64;
+inline constexpr uint32_t kWaveWidth = 64;
 
 class BlockRun {
  public:
   BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture& capture, uint64_t capture_id,
            const Block& block, std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics,
            Pipeline::Workspace& workspace);
-  // Every problem takes its samples in order; a few of one problem run together, those of the next beside them.
+  // Every problem takes its samples in order, and before the next one does: their rays run so close together that a
+  // packet of eight costs the ray tracer little more than one, and its sums stay in the cache.
   void run();
 
  private:
-  size_t problem_of(size_t i) const { return problem_at(capture_, block_, i); }
-  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problem_of(i); }
+  size_t slot_of(size_t i) const { return slots_ == Slots::by_place ? i : problems_[i]; }
   bool wants(size_t i, uint32_t sample) const;
   double reference_sum(size_t slot) const;
+  void put(uint32_t i, uint32_t sample);
   void run_wave();
+  std::pair<SampleStream, uint32_t> stream_of(const WaveLane& lane) const;
+  void draw(uint32_t paths);
   void start(uint32_t p);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
@@ -44,6 +47,7 @@ class BlockRun {
   const bool watched_;                 // a rule looks at every sample
   const bool plain_;                   // one sum a band
   const float scale_;                  // that all samples of the capture have: the number of bins of time
+  std::vector<size_t> problems_;       // by place in the block
   std::vector<uint32_t> next_, end_;   // samples of each problem
   std::vector<uint8_t> whole_;         // it wants all samples from next_ on
   std::vector<uint64_t> keys_;         // of its sample streams

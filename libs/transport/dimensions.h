@@ -59,15 +59,22 @@ struct Use {
 inline constexpr Use kOfScatter{0}, kOfSecond{1};
 constexpr Use own_light(uint32_t i) { return {2 + i}; }
 
+// The stratified block of the n-th surface of a path; kHashed where it has none.
+inline constexpr uint32_t kHashed = UINT32_MAX;
+constexpr uint32_t block_at_surface(uint32_t n, Use use) {
+  const uint32_t own = use.which - 2;
+  if (n >= kNodes || (use.which >= 2 && own >= kOwnLights)) return kHashed;
+  return n + (use.which == 0 ? kScatter.first : use.which == 1 ? kSecond.first : kLight.first + own * kNodes);
+}
+// The same of the scattering that ends the n-th flight.
+constexpr uint32_t block_at_scattering(uint32_t n, Use use) {
+  return n < kFlights && use.which + 1 < kPerFlight ? kFlight.first + kPerFlight * n + 1 + use.which : kHashed;
+}
+
 // Numbers of the n-th surface of a path.
 inline std::array<double, 4> at_surface(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
+  if (const uint32_t block = block_at_surface(n, use); block != kHashed) return stream.draw(sample, block);
   const uint32_t own = use.which - 2;
-  if (n < kNodes && (use.which < 2 || own < kOwnLights)) {
-    const uint32_t first = use.which == 0   ? kScatter.first
-                           : use.which == 1 ? kSecond.first
-                                            : kLight.first + own * kNodes;
-    return stream.draw(sample, first + n);
-  }
   if (use.which < 2) return hashed(stream, sample, use.which == 0 ? Hashed::scatter : Hashed::second, 0, n);
   return hashed(stream, sample, Hashed::light, own % 128, n);  // the other half is that of scatterings
 }
@@ -78,9 +85,9 @@ inline std::array<double, 4> of_flight(const SampleStream& stream, uint32_t samp
   return hashed(stream, sample, Hashed::flight, 0, n);
 }
 inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
-  if (use.which + 1 >= kPerFlight)  // no block: apart from those of surfaces
+  if (const uint32_t block = block_at_scattering(n, use); block != kHashed) return stream.draw(sample, block);
+  if (use.which + 1 >= kPerFlight)  // apart from those of surfaces
     return hashed(stream, sample, Hashed::light, 128 + use.which % 128, n);
-  if (n < kFlights) return stream.draw(sample, kFlight.first + kPerFlight * n + 1 + use.which);
   return hashed(stream, sample, Hashed::flight, 1 + use.which, n);
 }
 

@@ -149,6 +149,7 @@ class PathKernel final : public PathTracing {
   std::vector<Hit> hits_;
   std::vector<Flight> flights_;
   std::vector<NodeAt> nodes_;
+  std::vector<SampleStream::Point> points_;  // of their continuations
   std::vector<uint32_t> onward_;
   SightRays sight_rays_;
   std::vector<Question> questions_;

@@ -38,7 +38,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
   list_lights();
   if (!glowing_.empty()) last_.resize(width);
   for (auto* list : {&active_, &received_, &onward_}) list->reserve(width);
-  nodes_.reserve(width);
+  nodes_.reserve(width), points_.reserve(width);
 }
 
 // Which lights are asked, far disks first, and with which numbers: the first light of two numbers takes those that the

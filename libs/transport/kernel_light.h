@@ -25,12 +25,20 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
   sight_rays_.clear(), space_.clear_sight();
   sight_rays_.first = first_stage_;
+  points_.clear();
   for (const NodeAt& node : nodes_) {
     Path& path = paths_[node.path];
-    path.u = numbers(node, dimensions::kOfScatter);
+    const uint32_t block = Space::kScatters && node.event
+                               ? dimensions::block_at_scattering(path.flights, dimensions::kOfScatter)
+                               : dimensions::block_at_surface(path.surfaces - 1, dimensions::kOfScatter);
+    if (block == dimensions::kHashed)
+      path.u = numbers(node, dimensions::kOfScatter);
+    else
+      points_.push_back(path.stream.point(path.sample, block, path.u));
     if (glowing_.empty()) continue;
     last_[node.path] = {receiver(node), path.length, 1};
   }
+  SampleStream::draw(points_);
   Estimator::ask(*this, options_);
   space_.sight().begin(sight_rays_);
 }

@@ -79,6 +79,7 @@ Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Env
       sink(w, g, s, lost),
       throughputs(w, x.optics.state().size(), sink.targets()),
       kernel(make_kernel(choose_kernel(context), context, width, throughputs, sink)),
+      numbers(width),
       kernels(width),
       weights(width * x.optics.state().size()) {}
 

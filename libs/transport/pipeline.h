@@ -1,5 +1,5 @@
-// The radiometry pipeline (paper, section IV-A): each pass takes a few rays of each of a few neighbouring problems,
-// runs their paths (kernel.h), and adds the light that they have gathered to the problems' accumulators.
+// The radiometry pipeline (paper, section IV-A): each pass takes the next rays of a problem, or of a few beside each
+// other, runs their paths (kernel.h), and adds the light that they have gathered to the problems' accumulators.
 #pragma once
 #include <memory>
 #include <mutex>

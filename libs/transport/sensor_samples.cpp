@@ -8,10 +8,9 @@
 
 namespace suite {
 
-SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream,
-                  uint32_t index, std::span<float> weights) {
+SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const std::array<double, 4>& first,
+                  const SampleStream& stream, uint32_t index, std::span<float> weights) {
   const size_t numbers = static_cast<size_t>(sensor.numbers());
-  std::array<double, 4> first = stream.draw(index, dimensions::kSensor.first);
   if (numbers <= 4) return sensor.ray({capture, problem, {first.data(), numbers}, weights});
   std::array<double, 8> u;
   const std::array<double, 4> second = stream.draw(index, dimensions::kSensorMore.first);

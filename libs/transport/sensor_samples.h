@@ -8,10 +8,10 @@
 
 namespace suite {
 
-// Asks the sensor for the ray of a sample. index: of the sample in the stream. weights: where the sensor may leave
-// spectral weights, one a bin of the state.
-SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const SampleStream& stream,
-                  uint32_t index, std::span<float> weights);
+// Asks the sensor for the ray of a sample. first: the sample's numbers of dimensions::kSensor; index: of the sample in
+// the stream, which gives the others. weights: where the sensor may leave spectral weights, one a bin of the state.
+SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, const std::array<double, 4>& first,
+                  const SampleStream& stream, uint32_t index, std::span<float> weights);
 
 // The bin of a capture that a path's radiance goes into, or Capture::bins when none is right.
 size_t bin_of(const Capture& capture, const PathRecord& path);

@@ -67,4 +67,36 @@ class MatteSurfaces {
   Interaction interaction_;
 };
 
+// Parts of the inner loop, so that they stand in it.
+
+inline bool MatteSurfaces::meet(uint32_t p, const Hit& hit, Dir out, double time, bool first) {
+  Place& place = places_[p];
+  const TracedObject& object = objects_[hit.object];
+  if (object.mesh != kNone && meshes_[object.mesh].normals.empty()) {
+    place.material = surface_.material(object, hit);
+    place.shading = hit.normal;
+  } else {
+    surface_.interact(hit, out, interaction_, time);
+    place.material = interaction_.material;
+    place.shading = interaction_.frame.z;
+  }
+  if (first && keep_first_) keep(p, hit);
+  place.rho = place.material == kNone ? nullptr : rho_[place.material];
+  return place.rho;
+}
+
+inline bool MatteSurfaces::sample(size_t i, uint32_t p, const Hit& hit, Dir out, Vec2, double, int, std::span<float>,
+                                  Continuation& on) const {
+  const Place& place = places_[p];
+  const double side = dot(out, place.shading);
+  Dir in{x_[i], y_[i], z_[i]};
+  if (side == 0 || !(in.z > 0)) return false;
+  on.density[0] = static_cast<float>(in.z / kPi);
+  on.weight = {on.density[0], place.rho};
+  on.dirac = false;
+  if (side < 0) in.z = -in.z;
+  on.in = Frame::around(place.shading).to_world(in);
+  return dot(on.in, hit.normal) * in.z > 0;  // else it would leak through the real surface
+}
+
 }  // namespace suite

@@ -128,6 +128,8 @@ class SpectralThroughputs {
     if (bins_ > 1 && (!chains_[p].folded || chains_[p].steps > 0)) fold(p);
   }
   void fold(uint32_t p);
+  template <class Bins>
+  void fold_bins(const Chain& c, const Step* steps, size_t k, float* T, float* L) const;
 
   size_t bins_, stride_, targets_;
   std::vector<Chain> chains_;

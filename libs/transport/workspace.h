@@ -31,7 +31,9 @@ struct Pipeline::Workspace {
   RadianceSink sink;
   SpectralThroughputs throughputs;
   std::unique_ptr<PathTracing> kernel, receiving;
-  std::vector<WaveLane> lanes;        // of the wave that is being filled or run
+  std::vector<WaveLane> lanes;                 // of the wave that is being filled or run
+  std::vector<std::array<double, 4>> numbers;  // [path] of the sensor
+  std::vector<SampleStream::Point> points;
   std::vector<PathTracing*> kernels;  // [path]
   std::vector<float> weights;         // [path][bin], of rays that weigh wavelengths
 };

@@ -23,8 +23,9 @@ class Fisheye final : public SimpleSensor {
   }
   SensorRay ray(const RayRequest& r) const override {
     const double edge = r.capture.columns;
-    const double x = 2 * (static_cast<double>(r.problem % r.capture.columns) + r.u[0]) / edge - 1;
-    const double y = 1 - 2 * (static_cast<double>(r.problem / r.capture.columns) + r.u[1]) / edge;
+    const Capture::Place at = r.capture.place_of(r.problem);
+    const double x = 2 * (at.column + r.u[0]) / edge - 1;
+    const double y = 1 - 2 * (at.row + r.u[1]) / edge;
     const double radius = std::hypot(x, y), theta = std::min(radius, 1.0) * reach_;
     const double s = radius > 0 ? std::sin(theta) / radius : 0, c = std::cos(theta);
     SensorRay out{{position_, normalized(Vec3{(up_ ? -x : x) * s, y * s, up_ ? c : -c}), moment(r.u[2])}};

@@ -58,8 +58,8 @@ class FrameCamera final : public Sensor {
 
   SensorRay ray(const RayRequest& request) const override {
     const auto& [capture, problem, u, spectral] = request;
-    const double column = static_cast<double>(problem % capture.columns) + u[0],
-                 row = static_cast<double>(problem / capture.columns) + u[1];
+    const Capture::Place at = capture.place_of(problem);
+    const double column = at.column + u[0], row = at.row + u[1];
     const double x = (column - 0.5 * capture.columns) * pitch_, y = (row - 0.5 * capture.rows) * pitch_;
     SensorRay r;
     r.ray.origin = position_;

@@ -19,8 +19,8 @@ class Orthographic final : public SimpleSensor {
     done();
   }
   SensorRay ray(const RayRequest& r) const override {
-    const double column = static_cast<double>(r.problem % r.capture.columns) + r.u[0],
-                 row = static_cast<double>(r.problem / r.capture.columns) + r.u[1];
+    const Capture::Place at = r.capture.place_of(r.problem);
+    const double column = at.column + r.u[0], row = at.row + r.u[1];
     return {{{grid_.origin.x + column * grid_.gsd_x, grid_.origin.y - row * grid_.gsd_y, height_},
              {0, 0, -1},
              moment(r.u[2])}};

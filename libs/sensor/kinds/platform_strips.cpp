@@ -125,8 +125,7 @@ Exposed exposed(const PlatformSpec& spec, const Capture& capture, size_t problem
   const Segment& segment = spec.segments[capture.state];
   const FocalArray& array = spec.arrays[segment.array];
   const Readout& r = array.readout;
-  uint32_t column = static_cast<uint32_t>(problem % capture.columns),
-           row = static_cast<uint32_t>(problem / capture.columns);
+  auto [column, row] = capture.place_of(problem);
   if (capture.reversed & kColumnsReversed) column = capture.columns - 1 - column;
   switch (r.kind) {
     case Readout::Kind::global:

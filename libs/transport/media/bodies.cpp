@@ -136,16 +136,18 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
   if (asked_ && place.x == place_.x && place.y == place_.y && place.z == place_.z && time == time_) return around_;
   asked_ = true;
   place_ = place, time_ = time;
+  // Whether a place has to be asked for depends on what was asked before: its rays are no rays of the paths'.
+  TraceStatistics asking;
   around_.clear(), entered_.clear(), left_.clear();
   // What the ray leaves without having entered it, it started in; the nearest such surface is the innermost body.
   Ray ray{place, normalized(Vec3{0.0123, 0.0345, 1}), time};
   for (int n = 0; n < kMostCrossings; ++n) {
     Hit hit;
-    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, asking);
     if (!hit.hit()) break;
     const Onward on = onward(hit, ray.direction);
     const double back = std::min(0.5 * on.gap, hit.distance);
-    find_beside(hit, {hit.position - ray.direction * back, ray.direction, time}, back, back + on.gap, statistics);
+    find_beside(hit, {hit.position - ray.direction * back, ray.direction, time}, back, back + on.gap, asking);
     for (size_t i = 0; i < beside_.size(); ++i) {
       if (!crosses(i, ray.direction)) continue;
       const Hit& h = beside_[i];
@@ -156,6 +158,7 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
     }
     ray.origin = on.start;
   }
+  statistics.cycles += asking.cycles;
   for (size_t i = left_.size(); i-- > 0;) {
     const bool side = dot(ray.direction, left_[i].first.normal) > 0;
     const uint32_t medium = rules_[left_[i].second].medium[side];

@@ -13,23 +13,23 @@ void nothing(const TruthContext&, const TruthSample&, double*) {}
 }  // namespace
 
 void add_account_rows(std::vector<TruthRow>& table) {
-  table.push_back({"paths", "", "number of sample paths", [](const TruthContext& c) {
+  table.push_back({"paths", "number of sample paths", "", [](const TruthContext& c) {
                      return one<0>(
                          c, "paths", nothing,
                          [](const TruthContext&, const double*, const TruthCounts& n, double* v) { v[0] = n.paths; });
                    }});
-  table.push_back({"hits", "", "number of samples that met something", [](const TruthContext& c) {
+  table.push_back({"hits", "number of samples that met something", "", [](const TruthContext& c) {
                      return one<0>(
                          c, "nodes hit", nothing,
                          [](const TruthContext&, const double*, const TruthCounts& n, double* v) { v[0] = n.hits; });
                    }});
   table.push_back(
-      {"nodes", "", "mean number of scattering events a path", [](const TruthContext& c) {
+      {"nodes", "mean number of scattering events a path", "", [](const TruthContext& c) {
          return one<1>(
              c, "mean nodes", [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.size; },
              [](const TruthContext&, const double* sum, const TruthCounts& n, double* v) { v[0] = sum[0] / n.paths; });
        }});
-  table.push_back({"sun_visibility", "", "share of the first hits that the sun reaches", [](const TruthContext& c) {
+  table.push_back({"sun_visibility", "share of the first hits that the sun reaches", "", [](const TruthContext& c) {
                      return one<1>(
                          c, "sun visibility",
                          [](const TruthContext&, const TruthSample& s, double* sum) {
@@ -39,7 +39,7 @@ void add_account_rows(std::vector<TruthRow>& table) {
                            if (n.hits > 0 && x.environment.towards_sun()) v[0] = sum[0] / n.hits;
                          });
                    }});
-  table.push_back({"state", "", "number of the spectral state", [](const TruthContext& c) {
+  table.push_back({"state", "number of the spectral state", "", [](const TruthContext& c) {
                      return one<0>(c, "spectral state", nothing,
                                    [](const TruthContext& x, const double*, const TruthCounts&, double* v) {
                                      v[0] = static_cast<double>(x.state_index);

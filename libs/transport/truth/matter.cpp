@@ -154,28 +154,28 @@ std::unique_ptr<const TruthCollector> majority(const TruthContext& c) {
 }  // namespace
 
 void add_matter_rows(std::vector<TruthRow>& table) {
-  table.push_back({"material", "", "number of the most frequent material", majority<What::material, false>});
-  table.push_back({"material_fraction", "", "its share of all samples (exact up to 4 different ones)",
+  table.push_back({"material", "number of the most frequent material", "", majority<What::material, false>});
+  table.push_back({"material_fraction", "its share of all samples (exact up to 4 different ones)", "",
                    majority<What::material, true>});
-  table.push_back({"instance", "", "number of the most frequent instance", majority<What::instance, false>});
-  table.push_back({"instance_fraction", "", "its share of all samples (exact up to 4 different ones)",
+  table.push_back({"instance", "number of the most frequent instance", "", majority<What::instance, false>});
+  table.push_back({"instance_fraction", "its share of all samples (exact up to 4 different ones)", "",
                    majority<What::instance, true>});
-  table.push_back({"tag", "", "number of the most frequent tag", majority<What::tag, false>});
+  table.push_back({"tag", "number of the most frequent tag", "", majority<What::tag, false>});
   table.push_back(
-      {"tag_fraction", "", "its share of all samples (exact up to 4 different ones)", majority<What::tag, true>});
-  table.push_back({"abundance", "", "share of all samples that met each tag, one column a tag",
+      {"tag_fraction", "its share of all samples (exact up to 4 different ones)", "", majority<What::tag, true>});
+  table.push_back({"abundance", "share of all samples that met each tag, one column a tag", "",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Abundance>(c, What::tag);
                    }});
-  table.push_back({"material_abundance", "", "the same for each material of the scene",
+  table.push_back({"material_abundance", "the same for each material of the scene", "",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Abundance>(c, What::material);
                    }});
-  table.push_back({"reflectance", "", "directional-hemispherical reflectance of the first surfaces, one column a band",
+  table.push_back({"reflectance", "directional-hemispherical reflectance of the first surfaces, one column a band", "",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Reflectance>(c);
                    }});
-  table.push_back({"temperature", "K", "mean temperature that was rendered, of the first hits that have one",
+  table.push_back({"temperature", "mean temperature that was rendered, of the first hits that have one", "K",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<SimpleCollector>(
                          c, 2, std::vector<std::string>{"temperature [K]"},

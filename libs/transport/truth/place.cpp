@@ -68,28 +68,28 @@ double angle_deg(const FirstMeeting& node, Dir d) {
 }  // namespace
 
 void add_place_rows(std::vector<TruthRow>& table) {
-  table.push_back({"location", "m", "mean place of the first hits, scene ENU", [](const TruthContext& c) {
+  table.push_back({"location", "mean place of the first hits, scene ENU", "m", [](const TruthContext& c) {
                      return simple(c, 3, {"east [m]", "north [m]", "up [m]"}, add_position,
                                    [](const TruthContext&, const double* sum, const TruthCounts& n, double* v) {
                                      if (n.hits > 0)
                                        for (int i = 0; i < 3; ++i) v[i] = sum[i] / n.hits;
                                    });
                    }});
-  table.push_back({"ecef", "m", "the same, Earth-centred Earth-fixed",
+  table.push_back({"ecef", "the same, Earth-centred Earth-fixed", "m",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<EarthPlace>(frame_of(c, "ecef"), false);
                    }});
-  table.push_back({"geodetic", "deg, m", "the same, WGS84 latitude, longitude and ellipsoidal height",
+  table.push_back({"geodetic", "the same, WGS84 latitude, longitude and ellipsoidal height", "deg, m",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<EarthPlace>(frame_of(c, "geodetic"), true);
                    }});
   table.push_back(
-      {"time", "s", "mean time of the sample rays", [](const TruthContext& c) {
+      {"time", "mean time of the sample rays", "s", [](const TruthContext& c) {
          return simple(
              c, 1, {"time [s]"}, [](const TruthContext&, const TruthSample& s, double* sum) { sum[0] += s.path.time; },
              [](const TruthContext&, const double* sum, const TruthCounts& n, double* v) { v[0] = sum[0] / n.paths; });
        }});
-  table.push_back({"range", "m", "mean distance from the sensor to the first hits", [](const TruthContext& c) {
+  table.push_back({"range", "mean distance from the sensor to the first hits", "m", [](const TruthContext& c) {
                      return simple(
                          c, 1, {"range [m]"},
                          [](const TruthContext&, const TruthSample& s, double* sum) {
@@ -100,7 +100,7 @@ void add_place_rows(std::vector<TruthRow>& table) {
 }
 
 void add_angle_rows(std::vector<TruthRow>& table) {
-  table.push_back({"normal", "", "mean normal of the first hits on the side looked at, unit length, ENU",
+  table.push_back({"normal", "mean normal of the first hits on the side looked at, unit length, ENU", "",
                    [](const TruthContext& c) {
                      return simple(
                          c, 3, {"normal east", "normal north", "normal up"},
@@ -117,7 +117,7 @@ void add_angle_rows(std::vector<TruthRow>& table) {
                          });
                    }});
   table.push_back(
-      {"view_angle", "deg", "mean angle between normal and direction to the sensor", [](const TruthContext& c) {
+      {"view_angle", "mean angle between normal and direction to the sensor", "deg", [](const TruthContext& c) {
          return simple(
              c, 1, {"view angle [deg]"},
              [](const TruthContext&, const TruthSample& s, double* sum) {
@@ -125,7 +125,7 @@ void add_angle_rows(std::vector<TruthRow>& table) {
              },
              mean_of_one);
        }});
-  table.push_back({"incidence", "deg", "mean angle between normal and direction to the sun", [](const TruthContext& c) {
+  table.push_back({"incidence", "mean angle between normal and direction to the sun", "deg", [](const TruthContext& c) {
                      return simple(
                          c, 1, {"incidence angle [deg]"},
                          [](const TruthContext& x, const TruthSample& s, double* sum) {

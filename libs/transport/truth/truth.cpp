@@ -5,25 +5,16 @@
 
 namespace suite {
 
-std::span<const TruthRow> truth_rows() {
-  static const std::vector<TruthRow> table = [] {
+const Registry<TruthRow>& truth_rows() {
+  static const Registry<TruthRow> table("truth", "", [] {
     std::vector<TruthRow> rows;
     add_place_rows(rows);
     add_angle_rows(rows);
     add_matter_rows(rows);
     add_account_rows(rows);
     return rows;
-  }();
+  }());
   return table;
-}
-
-const TruthRow& find_truth(const std::string& name, const Where& where) {
-  std::vector<std::string> known;
-  for (const TruthRow& row : truth_rows()) {
-    if (row.name == name) return row;
-    known.push_back(row.name);
-  }
-  throw Error(where, "unknown truth '" + name + "'", name_hint(name, known));
 }
 
 void TruthCollector::join(const double* others, double* own) const {
@@ -33,7 +24,7 @@ void TruthCollector::join(const double* others, double* own) const {
 TruthPlan::TruthPlan(std::span<const std::string> names, const TruthContext& context) {
   if (!names.empty()) slots_ = 1;
   for (const std::string& name : names) {
-    collectors_.push_back(find_truth(name).make(context));
+    collectors_.push_back(truth_rows().find(name).make(context));
     const std::vector<std::string> columns = collectors_.back()->columns();
     widths_.push_back(columns.size());
     columns_.insert(columns_.end(), columns.begin(), columns.end());

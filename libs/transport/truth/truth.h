@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/registry.h"
 #include "light/environment.h"
 #include "motion/scene_frame.h"
 #include "spectral/state.h"
@@ -51,16 +52,9 @@ class TruthCollector {
   virtual void finish(const double* slots, const TruthCounts& counts, double* values) const = 0;
 };
 
-struct TruthRow {
-  std::string name;     // "range"
-  std::string unit;     // "m", "" = none
-  std::string summary;  // one line, says how samples are combined
-  std::unique_ptr<const TruthCollector> (*make)(
-      const TruthContext& context);  // Error when the scene lacks what it needs
-};
-std::span<const TruthRow> truth_rows();
-// Error with the nearest name for a name that is not in the table.
-const TruthRow& find_truth(const std::string& name, const Where& where = {});
+// A row's summary says how samples are combined. make: Error when the scene lacks what it needs.
+using TruthRow = RegistryRow<std::unique_ptr<const TruthCollector>(const TruthContext&)>;
+const Registry<TruthRow>& truth_rows();
 
 // The collectors of a capture, side by side.
 class TruthPlan {

@@ -341,7 +341,7 @@ TEST_F(PrepassRuns, goes_on_where_it_was_interrupted) {
     const std::string path = folder / "plate.state.h5";
     double stored = 0;
     const auto part = [&](StateUse use, int most) {
-      const auto store = make_state(path, use, identity, {});
+      const auto store = make_state(path, identity, {use});
       JobOptions job;
       job.store = store.get();
       job.begun = [&](const StoredWork& work) { stored = work.paths; };

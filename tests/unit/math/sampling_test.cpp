@@ -103,6 +103,13 @@ TEST(Stream, EveryPowerOfTwoPrefixOfEveryBlockIsANetInItsFirstTwoDimensions) {
 
 TEST(Stream, IsAFunctionOfItsIndicesAndTellsThemApart) {
   EXPECT_EQ(SampleStream(1, 2, 3, 4).draw(5, 6), SampleStream(1, 2, 3, 4).draw(5, 6));
+  for (const uint32_t n : {0u, 1u, 2u, 7u}) {  // many at once, in pairs or not
+    std::vector<std::array<double, 4>> together(n);
+    std::vector<SampleStream::Point> points;
+    for (uint32_t i = 0; i < n; ++i) points.push_back(SampleStream(1, 2, 3, i % 3).point(5 + i, 6 * i, together[i]));
+    SampleStream::draw(points);
+    for (uint32_t i = 0; i < n; ++i) EXPECT_EQ(together[i], SampleStream(1, 2, 3, i % 3).draw(5 + i, 6 * i));
+  }
   std::set<std::array<double, 4>> different;
   different.insert(SampleStream(1, 2, 3, 4).draw(5, 6));
   different.insert(SampleStream(2, 2, 3, 4).draw(5, 6));

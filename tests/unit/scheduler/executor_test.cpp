@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/parallel.h"
-#include "support/radiometry_kit.h"
+#include "support/media_kit.h"
 
 namespace suite::test {
 namespace {
@@ -65,7 +65,24 @@ struct Ran {
   JobReport report;
   bool met = false;
 };
-Ran run(uint32_t lines, uint32_t columns, Convergence goal, Executor* executor = nullptr, bool meet = false) {
+std::shared_ptr<const Scene> corner() {
+  return scene_of({quad(2, 0, 0), box({-1, -1, 0}, {0.5, 0.5, 1}, 0, true), quad(0.3, 1.5, 1)},
+                  {material("grey", lambert(0.5)), material("red", lambert(0.9))});
+}
+// The corner in fog, out of which the lines look.
+std::shared_ptr<const Scene> foggy_corner() {
+  auto scene = std::make_shared<Scene>(*corner());
+  scene->media = {medium(Curve::constant(0.01), Curve::constant(0.1))};
+  scene->materials.push_back(boundary(0));
+  scene->meshes.push_back(box({-3, -3, -1}, {3, 3, 4}, 2, true));
+  scene->groups[0].placements.push_back(scene->groups[0].placements[0]);
+  scene->groups[0].placements.back().target = 3;
+  check_scene(*scene, "fog");
+  return scene;
+}
+
+Ran run(uint32_t lines, uint32_t columns, Convergence goal, Executor* executor = nullptr, bool meet = false,
+        const std::shared_ptr<const Scene>& scene = corner()) {
   SourceSpecs sources;
   sources.add(SunSpec{normalized(Vec3{0.3, 0.2, 1}), 0.005, Curve::constant(3)});
   sources.add(uniform_sky(1, false));
@@ -78,9 +95,7 @@ Ran run(uint32_t lines, uint32_t columns, Convergence goal, Executor* executor =
   sensor->meet = meet;
   sensors.push_back(std::move(sensor));
   Ran ran;
-  ran.report = run_job(scene_of({quad(2, 0, 0), box({-1, -1, 0}, {0.5, 0.5, 1}, 0, true), quad(0.3, 1.5, 1)},
-                                {material("grey", lambert(0.5)), material("red", lambert(0.9))}),
-                       sources, sensors, job);
+  ran.report = run_job(scene, sources, sensors, job);
   Lines& done = static_cast<Lines&>(*sensors[0]);
   ran.results = std::move(done.results), ran.met = done.met;
   return ran;
@@ -106,6 +121,36 @@ void expect_same(const Ran& a, const Ran& b) {
   }
 }
 
+// Stands for other processes: every block is computed in parts, by scrambles, from nothing but the block's own sums,
+// the last captures first.
+class Elsewhere final : public Executor {
+ public:
+  bool run(std::span<Round> rounds, const std::function<bool()>&, Progress*) override {
+    for (auto round = rounds.rbegin(); round != rounds.rend(); ++round)
+      for (const Block& block : round->blocks) {
+        Accumulators::Shape shape = round->shape;
+        shape.problems = block.problems();
+        Accumulators whole(shape);
+        RunStatistics took;
+        for (const Scrambles part : {0xaa, 0x11, 0x44}) {
+          Accumulators sums(shape);
+          for (size_t i = 0; round->from && i < block.problems(); ++i)
+            sums.join_problem(i, *round->from, problem_at(*round->capture, block, i));
+          Block mine = block;
+          mine.scrambles = part;
+          round->pipeline->run(*round->sensor, *round->capture, round->stream, mine, round->to, sums, Slots::by_place,
+                               took);
+          whole.join(sums);
+          ++parts;
+        }
+        round->take(block, whole, took);
+        round->statistics.merge(took);
+      }
+    return true;
+  }
+  size_t parts = 0;
+};
+
 const Convergence kFixed{20, 20, 0, 0}, kTarget{32, 600, 0.02, 0};
 
 class Threads : public testing::Test {
@@ -125,39 +170,25 @@ TEST_F(Threads, give_the_same_bytes_and_the_same_counts) {
   }
 }
 
+// Bug: the first path of each thread asked which fog it starts in, and was told what others had asked; that was
+// counted.
+TEST_F(Threads, count_the_same_where_paths_start_in_fog) {
+  set_threads(1);
+  const Ran one = run(12, 20, kFixed, nullptr, false, foggy_corner());
+  EXPECT_EQ(one.report.log[0].kernel, "general in media");
+  for (const int n : {2, 4}) {
+    set_threads(n);
+    expect_same(run(12, 20, kFixed, nullptr, false, foggy_corner()), one);
+  }
+  Elsewhere elsewhere;
+  expect_same(run(12, 20, kFixed, &elsewhere, false, foggy_corner()), one);
+}
+
 // Captures of one block each: two of them are at work at the same time, which one thread can never do.
 TEST_F(Threads, captures_do_not_wait_for_each_other) {
   set_threads(2);
   EXPECT_TRUE(run(64, 8, kFixed, nullptr, true).met);
 }
-
-// Stands for other processes: every block is computed in parts, by scrambles, from nothing but the block's own sums,
-// the last captures first.
-class Elsewhere final : public Executor {
- public:
-  bool run(std::span<Round> rounds, const std::function<bool()>&, Progress*) override {
-    for (auto round = rounds.rbegin(); round != rounds.rend(); ++round)
-      for (const Block& block : round->blocks) {
-        Accumulators::Shape shape = round->shape;
-        shape.problems = block.problems();
-        Accumulators whole(shape);
-        for (const Scrambles part : {0xaa, 0x11, 0x44}) {
-          Accumulators sums(shape);
-          for (size_t i = 0; round->from && i < block.problems(); ++i)
-            sums.join_problem(i, *round->from, problem_at(*round->capture, block, i));
-          Block mine = block;
-          mine.scrambles = part;
-          round->pipeline->run(*round->sensor, *round->capture, round->stream, mine, round->to, sums, Slots::by_place,
-                               round->statistics);
-          whole.join(sums);
-          ++parts;
-        }
-        round->take(block, whole);
-      }
-    return true;
-  }
-  size_t parts = 0;
-};
 
 TEST_F(Threads, other_executors_give_the_same_bytes) {
   for (const Convergence& goal : {kFixed, kTarget}) {
