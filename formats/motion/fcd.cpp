@@ -40,6 +40,7 @@ class FcdReader {
         for (const pugi::xml_node record : step.children(kind)) take(record, kind);
     }
     if (things_.empty()) throw Error({name_, 0, 0, {}, -1}, "nothing moves in it");
+    for (size_t i = 0; i < things_.size(); ++i) things_[i].track = keyframe_track(std::move(keys_[i]));
     return std::move(things_);
   }
 
@@ -106,10 +107,11 @@ class FcdReader {
       throw fault(node, "'" + id + "' is there twice at one time", "one record of each at a time");
     if (fresh || latest->second.step + 1 != step_ || things_[latest->second.thing].type != type) {
       latest->second.thing = things_.size();
-      things_.push_back({id, type, place(node.offset_debug()), {}});
+      things_.push_back({id, type, place(node.offset_debug()), nullptr});
+      keys_.emplace_back();
     }
     latest->second.step = step_;
-    things_[latest->second.thing].keys.push_back(key_of(node));
+    keys_[latest->second.thing].push_back(key_of(node));
   }
 
   const std::string& text_;
@@ -117,6 +119,7 @@ class FcdReader {
   const TrackFileOptions& options_;
   std::vector<size_t> ends_;  // of lines
   std::vector<MovingThing> things_;
+  std::vector<std::vector<PoseKey>> keys_;  // of each
   std::unordered_map<std::string, Latest> latest_;
   double time_ = 0;
   size_t step_ = 0;  // counted from 1

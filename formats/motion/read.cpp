@@ -71,10 +71,13 @@ TrackPtr track_of_file(const Params& file, const Params& node, const MotionConte
   const std::string path = motion_file(file, context), text = read_text(path);
   const TrackFileRow* row = track_file_of(text);
   if (!row) return keyframe_track(parse_pose_keys(text, path, context));
+  std::vector<MovingThing> things = row->make(text, path, track_file_options(node, context));
+  // A file of one thing need not be told its name.
+  if (things.size() == 1 && !node.has("object")) return things.front().track;
   const std::string id = node.text("object");
   std::vector<std::string> known;
   std::vector<MovingThing> mine;
-  for (MovingThing& thing : row->make(text, path, track_file_options(node, context))) {
+  for (MovingThing& thing : things) {
     known.push_back(thing.id);
     if (thing.id == id) mine.push_back(std::move(thing));
   }
@@ -82,7 +85,7 @@ TrackPtr track_of_file(const Params& file, const Params& node, const MotionConte
   if (mine.size() > 1)
     throw node.at("object").error("'" + id + "' is not there all the time between its first record and its last",
                                   "let the scene text's 'traffic' place it");
-  return keyframe_track(std::move(mine.front().keys));
+  return mine.front().track;
 }
 
 TrackPtr make_keyframes(const Params& node, const MotionContext& context) {

@@ -6,7 +6,8 @@
 namespace suite {
 
 const Registry<TrackFileRow>& track_files() {
-  static const Registry<TrackFileRow> table("file of tracks", "", {track_file::fcd_row()});
+  static const Registry<TrackFileRow> table("file of tracks", "",
+                                            {track_file::fcd_row(), track_file::czml_row(), track_file::stk_row()});
   return table;
 }
 
@@ -18,6 +19,10 @@ const TrackFileRow* track_file_of(std::string_view text) {
 
 TrackFileOptions track_file_options(const Params& node, const MotionContext& context) {
   TrackFileOptions o{context};
+  for (const char* key : {"begins", "network", "height_m"})
+    if (node.has(key))
+      o.given = node.at(key).error(std::string("'") + key + "' of a file that has dates and places on the Earth",
+                                   "leave it out");
   if (const auto begins = node.find("begins")) o.begins = time_value(*begins, context);
   o.height = node.number_in("height_m", -1e5, 1e7, "m", 0);
   const auto network = node.find("network");
@@ -37,6 +42,19 @@ TrackFileOptions track_file_options(const Params& node, const MotionContext& con
   if (o.network != TrackFileOptions::Network::scene && !context.frame)
     throw network->error("this network needs a scene with an origin on the Earth", "give the scene an origin");
   return o;
+}
+
+void track_file::require_earth(const TrackFileOptions& options, const std::string& name) {
+  if (options.given) throw *options.given;
+  const Where where{name, 0, 0, {}, -1};
+  if (!options.motion.frame)
+    throw Error(where, "places on the Earth need a scene with an origin on it", "give the scene an origin");
+  if (!options.motion.clock)
+    throw Error(where, "its dates need the date of the scene's second 0", "give the scene an epoch");
+}
+
+Pose track_file::northward(const SceneFrame& frame, Vec3 ecef) {
+  return pose_from_geodetic(frame, geodetic_from_ecef(ecef), {1, 0, 0, 0});
 }
 
 std::vector<MovingThing> read_track_file(const Params& file, const TrackFileOptions& options) {

@@ -10,7 +10,7 @@ namespace suite {
 struct MovingThing {
   std::string id, type;  // type: empty where the format knows none
   Where where;           // of its first record
-  std::vector<PoseKey> keys;
+  TrackPtr track;        // covers the times when it is there
 };
 
 struct TrackFileOptions {
@@ -21,7 +21,8 @@ struct TrackFileOptions {
   UtmZone zone = {};  // utm
   double east = 0;    // where the network's (0, 0) lies: m in the scene, or easting and northing
   double north = 0;
-  double height = 0;  // added to the file's, m: above the scene's z = 0, or above the ellipsoid
+  double height = 0;                // added to the file's, m: above the scene's z = 0, or above the ellipsoid
+  std::optional<Error> given = {};  // what to tell if one of these was given and a file has dates and places of its own
 };
 
 // make takes the text, its name for messages and the options. Error, located: anything that is not of the format, times
@@ -44,6 +45,12 @@ std::vector<MovingThing> read_track_file(const Params& file, const TrackFileOpti
 
 namespace track_file {
 TrackFileRow fcd_row();
-}
+TrackFileRow czml_row();
+TrackFileRow stk_row();
+// Of formats with dates and places on the Earth. Error: the scene has no origin or no date, or options were given.
+void require_earth(const TrackFileOptions& options, const std::string& name);
+// A thing at an ECEF place that points north.
+Pose northward(const SceneFrame& frame, Vec3 ecef);
+}  // namespace track_file
 
 }  // namespace suite

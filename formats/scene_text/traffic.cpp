@@ -42,7 +42,7 @@ void Reader::read_traffic(const Params& p, bool world, std::vector<DraftPlacemen
     const auto type = types.find(thing.type);
     DraftPlacement made = type == types.end() ? *otherwise : type->second;
     if (!made.tag.given()) made.tag = {thing.id, thing.where};
-    made.motion = ending_track(keyframe_track(thing.keys));
+    made.motion = ending_track(thing.track);
     made.motion_where = p.where();
     to.push_back(std::move(made));
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace suite {
@@ -59,6 +58,11 @@ Eight root(Eight x) { return _mm256_sqrt_ps(x); }
 Eight larger(Eight a, Eight b) { return _mm256_max_ps(a, b); }
 Eight smaller(Eight a, Eight b) { return _mm256_min_ps(a, b); }
 Eight absolute(Eight x) { return larger(x, -x); }
+float sum_of(Eight x) {
+  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+}
 Eight sine(Eight cosine) { return root(larger(Eight{}, 1 - cosine * cosine)); }
 // cos and sin of max(0, a - b).
 Eight cos_difference(Eight sin_a, Eight cos_a, Eight sin_b, Eight cos_b) {
@@ -77,8 +81,22 @@ Eight32 step_of(Eight cosine) {
 constexpr float kShareOfBound = 0.05f;
 // By which bounds on cosines are widened: they are compared in single precision, and rounding must not hide a lamp.
 constexpr float kSlack = 1e-3f;
+// Inside the sphere around a branch nothing is known about the directions to its lamps: one that makes up such a share
+// of its node there is opened, and judged by what is in it. So many nodes at most are open at a time: more of them
+// cost more than they save (measured on streets of 60 and of 1000 lamps).
+constexpr float kShareOpened = 0.4f;
+constexpr int kMostOpened = 3;
 
 }  // namespace
+
+// A cut through the tree: nodes that were opened, each after the one above it, and what their branches are worth.
+struct LightTree::Cut {
+  alignas(32) float each[kMostOpened][kWide];
+  uint32_t node[kMostOpened];
+  double worth[kMostOpened];  // sums of each
+  uint32_t size;
+  double sum;
+};
 
 // Of the binary tree that the wide one is made of.
 struct LightTree::Node {
@@ -90,6 +108,7 @@ struct LightTree::Node {
 // Bounds of up to eight branches. Those that are not there have no power.
 struct LightTree::Branches {
   alignas(32) float x[kWide] = {}, y[kWide] = {}, z[kWide] = {}, radius2[kWide] = {};  // spheres, from origin_
+  alignas(32) float opens2[kWide] = {};  // radius2 of those that can be opened, else 0
   alignas(32) float axis_x[kWide] = {}, axis_y[kWide] = {}, axis_z[kWide] = {};
   alignas(32) float cos_cone[kWide] = {}, sin_cone[kWide] = {}, cos_spread[kWide] = {}, power[kWide] = {};
   alignas(32) int32_t both_sides[kWide] = {}, profile[kWide] = {};
@@ -141,6 +160,7 @@ uint32_t LightTree::widen(const std::vector<Node>& nodes, uint32_t top, uint64_t
     to.child[k] = child;
     to.x[k] = static_cast<float>(c.x), to.y[k] = static_cast<float>(c.y), to.z[k] = static_cast<float>(c.z);
     to.radius2[k] = static_cast<float>(0.25 * dot(size, size) * (1 + 1e-6));
+    to.opens2[k] = node.leaf ? 0 : to.radius2[k];
     to.axis_x[k] = static_cast<float>(b.axis.x), to.axis_y[k] = static_cast<float>(b.axis.y),
     to.axis_z[k] = static_cast<float>(b.axis.z);
     to.cos_cone[k] = static_cast<float>(std::cos(b.cone)), to.sin_cone[k] = static_cast<float>(std::sin(b.cone));
@@ -209,14 +229,15 @@ uint32_t LightTree::build(std::span<const LightBounds> lights, std::span<uint32_
 // What the lamps of each branch send to a place, up to a common factor (section 4.3): what one at its centre would
 // send, and a share of the most they can. Single precision: it decides about probabilities only, and those are used as
 // they come out.
-double LightTree::importance(const Branches& b, const LightReceiver& at, float* each) const {
+float LightTree::importance(const Branches& b, const LightReceiver& at, float* each, int room, int& opened) const {
   const Vec3 from = at.position - origin_;
   const Eight to_x = load(b.x) - static_cast<float>(from.x), to_y = load(b.y) - static_cast<float>(from.y),
               to_z = load(b.z) - static_cast<float>(from.z);
   const Eight d2 = larger(to_x * to_x + to_y * to_y + to_z * to_z, Eight{} + 1e-30f), inverse = 1 / root(d2);
   const Eight x = to_x * inverse, y = to_y * inverse, z = to_z * inverse;
   const Eight radius2 = load(b.radius2), power = load(b.power);
-  const Eight sin_b2 = smaller(radius2 / d2, Eight{} + 1), sin_b = root(sin_b2), cos_b = root(1 - sin_b2);
+  const Eight inverse2 = inverse * inverse;
+  const Eight sin_b2 = smaller(radius2 * inverse2, Eight{} + 1), sin_b = root(sin_b2), cos_b = root(1 - sin_b2);
   Eight cos_w = -(load(b.axis_x) * x + load(b.axis_y) * y + load(b.axis_z) * z);
   const auto both = reinterpret_cast<Eight32>(_mm256_load_si256(reinterpret_cast<const __m256i*>(b.both_sides)));
   cos_w = both ? absolute(cos_w) : cos_w;
@@ -248,52 +269,90 @@ double LightTree::importance(const Branches& b, const LightReceiver& at, float* 
     most *= larger(Eight{}, cos_difference(sine(cos_i), cos_i, sin_b, cos_b) + kSlack);
     middle *= larger(Eight{}, cos_i);
   }
-  Eight value = cos_out <= cos_spread ? Eight{} : power / d2 * (middle + kShareOfBound * most);
-  // Inside the sphere around a branch nothing is known about directions.
+  Eight value = cos_out <= cos_spread ? Eight{} : power * inverse2 * (middle + kShareOfBound * most);
+  // Inside the sphere around a branch.
   value = d2 <= radius2 ? 2 * power / larger(radius2, Eight{} + 1e-30f) : value;
   value = power > 0 ? value : Eight{};
-  std::memcpy(each, &value, sizeof value);
-  double sum = 0;
-  for (uint32_t k = 0; k < kWide; ++k) sum += each[k];
-  return sum;
+  float worth = sum_of(value);
+  const Eight32 coarse = (d2 < load(b.opens2)) & (value > kShareOpened * worth);
+  opened = _mm256_movemask_ps(reinterpret_cast<__m256>(coarse));
+  if (opened != 0 && __builtin_popcount(static_cast<unsigned>(opened)) <= room) {
+    value = coarse ? Eight{} : value;
+    worth = sum_of(value);
+  } else {
+    opened = 0;
+  }
+  _mm256_store_ps(each, value);
+  return worth;
+}
+
+void LightTree::cut(uint32_t from, const LightReceiver& at, Cut& made) const {
+  made.node[0] = from;
+  made.size = 1;
+  made.sum = 0;
+  for (uint32_t i = 0; i < made.size; ++i) {
+    const Branches& b = branches_[made.node[i]];
+    int opened = 0;
+    made.worth[i] =
+        static_cast<double>(importance(b, at, made.each[i], kMostOpened - static_cast<int>(made.size), opened));
+    made.sum += made.worth[i];
+    for (; opened; opened &= opened - 1) made.node[made.size++] = b.child[__builtin_ctz(static_cast<unsigned>(opened))];
+  }
 }
 
 std::optional<LightTree::Choice> LightTree::sample(const LightReceiver& at, double u) const {
   double probability = 1;
-  float each[kWide];
-  for (uint32_t i = 0;;) {
-    const Branches& b = branches_[i];
-    const double sum = importance(b, at, each);
-    if (!(sum > 0)) return std::nullopt;
-    // The branch in which u falls; the last that counts where rounding leaves none.
-    const double target = u * sum;
-    uint32_t chosen = 0;
-    double before = 0, passed = 0;
-    for (uint32_t k = 0; k < kWide && passed <= target; ++k) {
-      if (!(each[k] > 0)) continue;
-      chosen = k;
-      before = passed;
-      passed += each[k];
+  Cut c;
+  for (uint32_t from = 0;;) {
+    cut(from, at, c);
+    if (!(c.sum > 0)) return std::nullopt;
+    // The node and its branch in which u falls; the last that counts where rounding leaves none.
+    double rest = u * c.sum;
+    uint32_t node = 0, branch = 0;
+    for (uint32_t i = 0; i < c.size; ++i) {
+      if (!(c.worth[i] > 0)) continue;
+      node = i;
+      if (rest < c.worth[i]) break;
+      rest -= c.worth[i];
     }
-    probability *= each[chosen] / sum;
-    if (b.child[chosen] & kLamp) return Choice{b.child[chosen] & ~kLamp, probability};
-    u = std::clamp((target - before) / each[chosen], 0.0, 1 - 0x1p-53);
-    i = b.child[chosen];
+    const float* const each = c.each[node];
+    double before = 0, passed = 0;
+    for (uint32_t k = 0; k < kWide && passed <= rest; ++k) {
+      if (!(each[k] > 0)) continue;
+      branch = k;
+      before = passed;
+      passed += static_cast<double>(each[k]);
+    }
+    probability *= static_cast<double>(each[branch]) / c.sum;
+    from = branches_[c.node[node]].child[branch];
+    if (from & kLamp) return Choice{from & ~kLamp, probability};
+    u = std::clamp((rest - before) / static_cast<double>(each[branch]), 0.0, 1 - 0x1p-53);
   }
 }
 
 double LightTree::probability(const LightReceiver& at, uint32_t light) const {
   double probability = 1;
-  float each[kWide];
   uint64_t trail = trail_[light];
-  for (uint32_t i = 0;; trail >>= 3) {
-    const Branches& b = branches_[i];
-    const double sum = importance(b, at, each);
-    if (!(sum > 0)) return 0;
-    const uint32_t chosen = trail & 7;
-    probability *= each[chosen] / sum;
-    if (b.child[chosen] & kLamp) return probability;
-    i = b.child[chosen];
+  Cut c;
+  for (uint32_t from = 0;;) {
+    cut(from, at, c);
+    if (!(c.sum > 0)) return 0;
+    // Down to where the cut ends on the way to the lamp.
+    for (uint32_t i = 0;; trail >>= 3) {
+      const auto k = static_cast<uint32_t>(trail & 7);
+      const uint32_t child = branches_[c.node[i]].child[k];
+      const uint32_t* const opened = std::find(c.node + i + 1, c.node + c.size, child);
+      if (opened != c.node + c.size) {
+        i = static_cast<uint32_t>(opened - c.node);
+        continue;
+      }
+      probability *= static_cast<double>(c.each[i][k]) / c.sum;
+      if (child & kLamp) return probability;
+      from = child;
+      trail >>= 3;
+      break;
+    }
+    if (!(probability > 0)) return 0;
   }
 }
 

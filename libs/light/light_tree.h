@@ -4,10 +4,11 @@
 //
 // Based on: A. Conty Estevez & C. Kulla, "Importance sampling of many lights with adaptive tree splitting", Proc. ACM
 // Comput. Graph. Interact. Tech. 1(2), 2018: orientation cones (section 4.1), importance (4.3), the surface-area
-// orientation heuristic (4.4). No adaptive splitting: a walk ends at one lamp. Added to it: profiles of intensity, so
-// that a cluster of street lamps is worth what it sends in the direction asked for, not what it sends at most; and
-// eight branches a node, judged together in one go of the vector unit (as the wide trees of ray tracers, Wald et al.
-// 2008), which also leaves fewer decisions to be made from the coarse bounds of large clusters.
+// orientation heuristic (4.4). A walk ends at one lamp; clusters that surround the place are split before it goes on,
+// so that lamps that look elsewhere are told apart (the splitting of section 5, for one sample). Added to it: profiles
+// of intensity, so that a cluster of street lamps is worth what it sends in the direction asked for, not what it sends
+// at most; and eight branches a node, judged together in one go of the vector unit (as the wide trees of ray tracers,
+// Wald et al. 2008), which also leaves fewer decisions to be made from the coarse bounds of large clusters.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -58,8 +59,12 @@ class LightTree {
   uint32_t build(std::span<const LightBounds> lights, std::span<uint32_t> order, int depth,
                  std::vector<Node>& nodes) const;
   uint32_t widen(const std::vector<Node>& nodes, uint32_t root, uint64_t trail, int depth);
-  // What each branch is worth to a place; returns the sum. 0 for a branch that cannot reach it.
-  double importance(const Branches& branches, const LightReceiver& at, float* each) const;
+  struct Cut;
+  // What each branch is worth to a place, 0 for one that cannot reach it; returns the sum. opened: those that are too
+  // near to be judged as a whole, a bit each, if there is room for so many; they are worth nothing themselves.
+  float importance(const Branches& branches, const LightReceiver& at, float* each, int room, int& opened) const;
+  // The branches below a node among which one is drawn.
+  void cut(uint32_t from, const LightReceiver& at, Cut& made) const;
 
   std::vector<float> profiles_;     // [profile][32]
   std::vector<float> peaks_;        // [profile][first step][last step]: the largest value of a range of steps

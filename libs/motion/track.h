@@ -69,6 +69,15 @@ struct PoseKey {
 };
 TrackPtr keyframe_track(std::vector<PoseKey> keys);
 
+// Places by Lagrange's polynomial of a degree (1 to 15; less with fewer keys) through the keys around a time,
+// orientation as that of keyframes. covered: within the times of the keys.
+struct InterpolatedMotion {
+  std::vector<PoseKey> keys;
+  size_t degree = 1;
+  TimeSpan covered;
+};
+TrackPtr interpolated_track(InterpolatedMotion motion);
+
 // Constant speed (m/s, >= 0) along a heading (mathematical azimuth, rad) with a climb angle (rad, -pi/2..pi/2), at
 // `start` (scene ENU) at time t0; pitched by the climb. With `curved`, the path follows the Earth: a geodesic from the
 // start, whose height above the ellipsoid changes by the climb only; the heading is counted from the east there.

@@ -82,6 +82,18 @@ TrackPtr make_keyframes(Numbers& n) {
   return keyframe_track(std::move(keys));
 }
 
+TrackPtr make_interpolated(Numbers& n) {
+  InterpolatedMotion m;
+  const int degree = n.whole();
+  m.degree = degree < 0 ? 0 : static_cast<size_t>(degree);
+  m.covered.begin = n.next(), m.covered.end = n.next();
+  while (n.more()) {
+    const double time = n.next();
+    m.keys.push_back({time, n.pose()});
+  }
+  return interpolated_track(std::move(m));
+}
+
 TrackPtr make_straight(Numbers& n) {
   StraightMotion m;
   m.start = n.vec();
@@ -171,6 +183,9 @@ TrackPtr make(const TrackRecord& r, int depth) {
       break;
     case Kind::ending:
       made = ending_track(make(r.parts[0], depth + 1));
+      break;
+    case Kind::interpolated:
+      made = make_interpolated(n);
       break;
     default:
       throw Error("a stored motion is of an unknown kind");

@@ -8,7 +8,18 @@
 namespace suite {
 
 struct TrackRecord {
-  enum class Kind : uint8_t { fixed, keyframes, straight, circle, spin, composed, orbit, pointed, ending };
+  enum class Kind : uint8_t {
+    fixed,
+    keyframes,
+    straight,
+    circle,
+    spin,
+    composed,
+    orbit,
+    pointed,
+    ending,
+    interpolated
+  };
   Kind kind = Kind::fixed;
   std::vector<double> numbers;  // SI; track_record.cpp says which
   std::string text;             // orbit: the satellite

@@ -32,11 +32,18 @@ def array(number: int, instrument: int, columns: int, rows: int, pitch_um: float
 
 HEAVY = (8,)
 RAMI_PREP = ("python3 make_inputs.py --half-width 2", "scene-prep scene_nir.yaml -o scene_nir.h5 -q")
+CROSSING = {**array(0, 0, 25, 18, 384), "sensors.0.instruments.0.arrays.0.readout.row_time_s": 0.016, "sensors.0.tasks": "[{start: 20}]",
+            "sensors.0.instruments.0.clock": "null",
+            **{f"sensors.1.instruments.0.arrays.{k}.{key}": value for k in range(3)
+               for key, value in (("columns", 18), ("pitch_um", 500), ("readout.line_rate_hz", 15))}}
+CROSSING_PREP = ("python3 make_traffic.py", PREP)
 BALLS = {"gloss": "ward:diffuse=0.15,specular=0.25,roughness=0.25", "soil": "rpv:rho0=0.2,k=0.7,asymmetry=-0.2,rho_c=0.2"}
 
 CASES: Dict[str, Case] = {
     "calibration_range": Case("sample_scenes/calibration_range", camera(0, 32, 18, 148),
                               ("sqt-fit satin_purple_rgb.bsdf -o satin.sqt -q --order 4", PREP), brighter=0.02),
+    "crossing_day": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "day.yaml", brighter=0.04),
+    "crossing_night": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "night.yaml", paths=64, edges=HEAVY, brighter=0.6, spot=3),
     "map_gallery": Case("sample_scenes/map_gallery", {**camera(0, 26, 18, 500), **camera(1, 26, 18, 500)}),
     "night_street": Case("sample_scenes/night_street", prepare=("python3 make_scene.py . 32 18", PREP),
                          sets={"sensors.0.pitch_um": 300}, paths=64, brighter=0.6, spot=3),

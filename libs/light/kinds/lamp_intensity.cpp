@@ -59,10 +59,17 @@ double dimming(const LampSpec& s, double time) {
   return row ? s.schedule->scale[*row] : 1;
 }
 
-double brightest(const LampSpec& s) {
+double brightest(const LampSpec& s, std::optional<TimeSpan> window) {
   if (!s.schedule) return 1;
-  const double most = *std::max_element(s.schedule->scale.begin(), s.schedule->scale.end());
-  return s.schedule->when.period > 0 ? most : std::max(1.0, most);
+  const LampSchedule& table = *s.schedule;
+  if (!window) {
+    const double most = *std::max_element(table.scale.begin(), table.scale.end());
+    return table.when.period > 0 ? most : std::max(1.0, most);
+  }
+  double most = 0;
+  table.when.over(*window,
+                  [&](std::optional<size_t> row, TimeSpan) { most = std::max(most, row ? table.scale[*row] : 1.0); });
+  return most;
 }
 
 }  // namespace suite

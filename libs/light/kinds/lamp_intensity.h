@@ -11,8 +11,8 @@ double relative_intensity(const LampSpec& lamp, Dir local);
 // have light between these, so none of its steps counts as dark.
 LightProfile profile_of(const LampSpec& lamp);
 
-// What the lamp's schedule multiplies its light with at a time (s), and the most that it ever does.
+// What the lamp's schedule multiplies its light with at a time (s), and the most that it does in a window, or ever.
 double dimming(const LampSpec& lamp, double time);
-double brightest(const LampSpec& lamp);
+double brightest(const LampSpec& lamp, std::optional<TimeSpan> window);
 
 }  // namespace suite

@@ -27,12 +27,13 @@ struct Lamps::Core {
   std::unique_ptr<LampImages> images;
   std::unordered_map<uint32_t, std::pair<uint32_t, Vec3>> copy_of;  // per object: the first one, and the way to it
   LampCarriers carriers;                                            // of lamps that ride
+  std::optional<TimeSpan> window;  // of the tracer: what is dark all through it is in no tree
 
   // While the lamps are gathered.
   std::vector<LightBounds> bounds;
   std::vector<LightProfile> profiles;
 
-  explicit Core(const Scene& scene) : carriers(scene) {}
+  explicit Core(const Tracer& tracer) : carriers(tracer.scene()), window(tracer.window()) {}
   void add_points(uint32_t spec, const Tracer& tracer);
   void add_riding(uint32_t spec, LampShape shape, const LightBounds& still, const Tracer& tracer);
   void add_material(uint32_t spec, const Scene& scene);
@@ -84,7 +85,7 @@ Lamps::~Lamps() = default;
 size_t Lamps::size() const { return core_->shapes.size(); }
 
 uint32_t Lamps::Core::add(const LampShape& shape, LightBounds b) {
-  b.power *= mean_of(spectra[shape.spec]) * brightest(specs[shape.spec]);
+  b.power *= mean_of(spectra[shape.spec]) * brightest(specs[shape.spec], window);
   if (!(b.power > 0)) return kNone;
   shapes.push_back(shape);
   bounds.push_back(b);
@@ -223,7 +224,7 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
 }
 
 Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state)
-    : core_(new Core(tracer.scene())) {
+    : core_(new Core(tracer)) {
   Core& core = *core_;
   const size_t materials = tracer.scene().materials.size();
   core.specs.assign(specs.begin(), specs.end());

@@ -11,7 +11,7 @@ std::string text_of(std::span<const std::byte> b) { return {reinterpret_cast<con
 
 void read(const std::string& text, const TrackFileOptions& options) {
   if (const TrackFileRow* row = track_file_of(text))
-    for (const MovingThing& thing : row->make(text, "f", options)) keyframe_track(thing.keys)->covered();
+    for (const MovingThing& thing : row->make(text, "f", options)) thing.track->covered();
 }
 
 TEST(TrackFilesFuzz, Fcd) {
@@ -27,6 +27,30 @@ TEST(TrackFilesFuzz, Fcd) {
         {"<vehicle ", "<timestep ", "</timestep>", "<![CDATA[", "<!--", "<!DOCTYPE x [", "&#0;", "&lt;", "1e300", "nan",
          "time=\"", "id=\"a\"", "angle=\"-1e9\"", "/>"});
   }
+}
+
+TEST(TrackFilesFuzz, Czml) {
+  const MotionContext context{SceneFrame({48, 9, 0}), Clock({2024, 1, 1, 0, 0, 0}), 0, nullptr};
+  test::fuzz(
+      test::bytes_of(
+          "[{\"id\":\"document\"},{\"id\":\"a\",\"availability\":\"2024-01-01T00:00:00Z/2024-01-01T00:01:00Z\","
+          "\"position\":{\"epoch\":\"2024-01-01T00:00:00Z\",\"interpolationAlgorithm\":\"LAGRANGE\","
+          "\"interpolationDegree\":3,\"cartographicDegrees\":[0,9,48,5,10,9.1,48,5,20,9.2,48,6]},\"orientation\":"
+          "{\"velocityReference\":\"#position\"}},{\"id\":\"b\",\"position\":{\"cartesian\":[7e6,0,0]},"
+          "\"orientation\":{\"unitQuaternion\":[0,0,0,1]}}]"),
+      [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 7, 20000, 4,
+      {"cartesian", "LINEAR", "1e300", "-1", "\"interval\":", "[", "{", "null", "2024-02-30T00:00:00Z", "/", "FIXED"});
+}
+
+TEST(TrackFilesFuzz, Stk) {
+  const MotionContext context{SceneFrame({48, 9, 0}), Clock({2024, 1, 1, 0, 0, 0}), 0, nullptr};
+  test::fuzz(test::bytes_of("stk.v.11.0\nBEGIN Ephemeris\nNumberOfEphemerisPoints 3\nScenarioEpoch 1 Jan 2024 "
+                            "00:00:00.0\nInterpolationMethod Lagrange\nInterpolationOrder 2\nCentralBody Earth\n"
+                            "CoordinateSystem Fixed\nDistanceUnit Meters\nEphemerisTimePos\n0 7e6 0 0\n60 7e6 4e5 "
+                            "0\n120 7e6 8e5 0\nEND Ephemeris\n"),
+             [&](std::span<const std::byte> b) { read(text_of(b), {context}); }, 8, 20000, 4,
+             {"EphemerisLLATimePosVel", "END", "BEGIN", "Kilometers", "1e300", "nan", "InterpolationSamplesM1 15", "#",
+              "30 Feb 2024", "-1"});
 }
 
 TEST(TrackFilesFuzz, ControlTables) {

@@ -183,6 +183,14 @@ class Exposure final : public RaySensor {
   TimeSpan window_;
 };
 
+TEST(LampsInTime, WhatIsDarkAllThroughTheWindowIsNotDrawn) {
+  LampSpec lamp = lamp_at({0, 0, kHeight});
+  lamp.schedule = std::make_shared<const LampSchedule>(LampSchedule{{{0, 2, 3}, 10}, {1, 0, 2.5}});
+  for (const auto& [window, members] :
+       {std::pair{TimeSpan{0, 1.9}, 1u}, {{2.1, 2.9}, 0u}, {{2.1, 3}, 1u}, {{-9, 9}, 1u}})
+    EXPECT_EQ(baked(lamp, Tracer(passing(), std::nullopt, window))->members(), members) << window.begin;
+}
+
 TEST(LampsInTime, AnExposureSeesTheMeanOfItsWindow) {
   // The integral of (h^2 + x^2)^(-3/2) is x / (h^2 sqrt(h^2 + x^2)).
   const auto passed = [](double t) {

@@ -1,6 +1,7 @@
 // The light tree draws lamps as often as it says, says so for every lamp, and misses none that can reach the place.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "light/light_tree.h"
@@ -92,6 +93,43 @@ TEST(LightTree, EveryLampThatReachesThePlaceHasAChance) {
   }
   EXPECT_GT(reaching, 10000u);
   EXPECT_GT(silent, 10000u);
+}
+
+// Headlights on four streets around a place on the ground: most of them look elsewhere, and are drawn the less.
+TEST(LightTree, LampsThatLookElsewhereAreDrawnLessAmidThem) {
+  Pcg32 random(5);
+  std::vector<LightBounds> lights;
+  for (int i = 0; i < 64; ++i) {
+    const double along = 80 * random.uniform() - 40, side = i % 2 ? 2 : -2;
+    LightBounds b;
+    const Vec3 p = i % 4 < 2 ? Vec3{side, along, 0.7} : Vec3{along, side, 0.7};
+    b.box = {p, p};
+    b.axis = i % 4 < 2 ? Dir{0, side > 0 ? 1.0 : -1.0, 0} : Dir{side > 0 ? -1.0 : 1.0, 0, 0};
+    b.spread = 0.5;
+    b.power = 1;
+    lights.push_back(b);
+  }
+  const LightTree tree(lights);
+  std::vector<double> relative;
+  for (int k = 0; k < 400; ++k) {
+    const LightReceiver at{{20 * random.uniform() - 10, 20 * random.uniform() - 10, 0}, {0, 0, 1}, false};
+    double sum = 0, squares = 0;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+      const Vec3 to = lights[i].box.low - at.position;
+      const double d = length(to);
+      if (angle_between(lights[i].axis, -to / d) >= lights[i].spread) continue;
+      const double sent = to.z / (d * d * d);
+      sum += sent, squares += sent * sent / tree.probability(at, i);
+    }
+    if (sum > 0) relative.push_back(squares / (sum * sum) - 1);
+  }
+  // Variance of one draw by the square of its mean; a walk that knows nothing of clusters around the place has 5.4.
+  std::sort(relative.begin(), relative.end());
+  const double median = relative[relative.size() / 2];
+  std::printf("relative variance of a draw: median %.3f, upper tenth %.3f, of %zu places\n", median,
+              relative[relative.size() * 9 / 10], relative.size());
+  EXPECT_GT(relative.size(), 300u);
+  EXPECT_LT(median, 1.5);
 }
 
 TEST(LightTree, OneLampAndLampsAtOnePlace) {

@@ -45,21 +45,21 @@ TEST(Fcd, ThingsAreWhereTheirRecordsSay) {
   EXPECT_EQ(things[0].id, "a");
   EXPECT_EQ(things[0].type, "car");
   EXPECT_EQ(things[0].where.line, 5);
-  ASSERT_EQ(things[0].keys.size(), 2u);
-  EXPECT_EQ(things[0].keys[1].time, 1);
-  EXPECT_NEAR(length(things[0].keys[1].pose.translation - Vec3{123.9, 5, 0.25}), 0, 1e-12);
+  EXPECT_EQ(things[0].track->covered().begin, 0);
+  EXPECT_EQ(things[0].track->covered().end, 1);
+  EXPECT_NEAR(length(things[0].track->at(1).translation - Vec3{123.9, 5, 0.25}), 0, 1e-12);
   // Heading east: forward (y) is ENU x.
-  EXPECT_NEAR(length(things[0].keys[0].pose.vector({0, 1, 0}) - Vec3{1, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(things[0].track->at(0).vector({0, 1, 0}) - Vec3{1, 0, 0}), 0, 1e-12);
   // The bus climbs with its nose to the north, 10 degrees to the west of it and then 10 to the east.
-  const Vec3 nose = things[1].keys[0].pose.vector({0, 1, 0});
+  const Vec3 nose = things[1].track->at(1).vector({0, 1, 0});
   EXPECT_NEAR(nose.z, std::sin(10 * kDegree), 1e-12);
   EXPECT_NEAR(nose.x, -std::cos(10 * kDegree) * std::sin(10 * kDegree), 1e-12);
-  EXPECT_NEAR(things[1].keys[0].pose.translation.z, 2.75, 1e-12);
+  EXPECT_NEAR(things[1].track->at(1).translation.z, 2.75, 1e-12);
   // A person of the same id is somebody else, and one who misses a step comes back as another thing.
   EXPECT_EQ(things[2].type, "person");
   EXPECT_EQ(things[3].id, "a");
   EXPECT_EQ(things[3].type, "car");
-  EXPECT_EQ(things[3].keys[0].time, 3);
+  EXPECT_EQ(things[3].track->covered().begin, 3);
 }
 
 TEST(Fcd, NetworksOnTheEarth) {
@@ -77,11 +77,11 @@ TEST(Fcd, NetworksOnTheEarth) {
   TrackFileOptions options{context};
   options.height = 410;
   options.network = TrackFileOptions::Network::geographic;
-  const Pose at = read(file(9.102, 48.501), options)[0].keys[0].pose;
+  const Pose at = read(file(9.102, 48.501), options)[0].track->at(0);
   EXPECT_NEAR(length(at.translation - frame.enu_from_geodetic(place)), 0, 1e-4);
   options.network = TrackFileOptions::Network::utm;
   options.zone = zone, options.east = 400000, options.north = 5000000;
-  const Pose there = read(file(grid.easting - 400000, grid.northing - 5000000), options)[0].keys[0].pose;
+  const Pose there = read(file(grid.easting - 400000, grid.northing - 5000000), options)[0].track->at(0);
   EXPECT_NEAR(length(there.translation - at.translation), 0, 1e-4);
   // Grid north is not true north.
   EXPECT_NEAR(angle_between(there.vector({0, 1, 0}), rotate(utm_axes(frame, grid), {0, 1, 0})), 0, 1e-7);
