@@ -15,6 +15,7 @@
 namespace suite {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 // Open MPI's words, which others do not mind: more ranks than cores, as root, not each on a core of its own, in a
@@ -128,7 +129,8 @@ TEST_F(Ranks, end_together_when_one_fails_at_work) {
             " & m=$!; for i in $(seq 3000); do [ -d cut ] && break; sleep 0.01; done; sleep 0.3; rm -rf cut; wait $m");
   EXPECT_EQ(r.code, 1) << r.err;
   EXPECT_EQ(times(r.err, "error: "), 1u) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("captures are complete; without --state the rest is lost"));
+  // Whether none or one of the captures was written by then is left to the machine.
+  EXPECT_THAT(r.err, AllOf(HasSubstr("captures are complete"), HasSubstr("without --state the rest is lost")));
 }
 
 TEST_F(Ranks, that_differ_or_cannot_run_are_refused) {
