@@ -259,7 +259,7 @@ class PacketTracer {
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
-  void load(const Tile& tile, const Packet& packet, uint32_t i, RTCRay& q) const;  // lane i alone
+  RTCRay float_ray(const Tile& tile, const Packet& packet, uint32_t i) const;
   void send(const Tile& tile, const Packet& packet, TraceContext& context, RTCRayHit8& rays);
   TraceContext context(const Packet& packet) const;
   struct MetIds {  // of Embree

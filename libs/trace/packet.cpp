@@ -26,33 +26,31 @@ TraceContext PacketTracer::context(const Packet& packet) const {
   return c;
 }
 
-// Rays relative to the tile, advanced in double to where they enter its bounds. Lanes beyond the packet repeat its
-// last.
-void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const {
-  for (uint32_t i = 0; i < kWidth; ++i) {
-    const uint32_t j = std::min(i, packet.size - 1), r = packet.ray[j];
-    const Ray& ray = rays_[r];
-    valid[i] = i < packet.size ? -1 : 0;
-    const Vec3 p = ray.origin + ray.direction * packet.advance[j] - tile.origin;
-    q.org_x[i] = static_cast<float>(p.x), q.org_y[i] = static_cast<float>(p.y), q.org_z[i] = static_cast<float>(p.z);
-    q.dir_x[i] = static_cast<float>(ray.direction.x), q.dir_y[i] = static_cast<float>(ray.direction.y);
-    q.dir_z[i] = static_cast<float>(ray.direction.z);
-    q.tnear[i] = 0, q.tfar[i] = static_cast<float>(reach_[r] - packet.advance[j]);
-    q.time[i] = moving_ ? moving_->fraction(ray.time) : 0;
-    q.mask[i] = 0xffffffffu, q.id[i] = i, q.flags[i] = 0;
-  }
-}
-
-void PacketTracer::load(const Tile& tile, const Packet& packet, uint32_t i, RTCRay& q) const {
+// Lane i of a packet relative to the tile, advanced in double to where it enters its bounds.
+RTCRay PacketTracer::float_ray(const Tile& tile, const Packet& packet, uint32_t i) const {
   const uint32_t r = packet.ray[i];
   const Ray& ray = rays_[r];
   const Vec3 p = ray.origin + ray.direction * packet.advance[i] - tile.origin;
+  RTCRay q;
   q.org_x = static_cast<float>(p.x), q.org_y = static_cast<float>(p.y), q.org_z = static_cast<float>(p.z);
   q.dir_x = static_cast<float>(ray.direction.x), q.dir_y = static_cast<float>(ray.direction.y);
   q.dir_z = static_cast<float>(ray.direction.z);
   q.tnear = 0, q.tfar = static_cast<float>(reach_[r] - packet.advance[i]);
   q.time = moving_ ? moving_->fraction(ray.time) : 0;
   q.mask = 0xffffffffu, q.id = i, q.flags = 0;
+  return q;
+}
+
+// All lanes; those beyond the packet repeat its last.
+void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const {
+  for (uint32_t i = 0; i < kWidth; ++i) {
+    const RTCRay one = float_ray(tile, packet, std::min(i, packet.size - 1));
+    valid[i] = i < packet.size ? -1 : 0;
+    q.org_x[i] = one.org_x, q.org_y[i] = one.org_y, q.org_z[i] = one.org_z;
+    q.dir_x[i] = one.dir_x, q.dir_y[i] = one.dir_y, q.dir_z[i] = one.dir_z;
+    q.tnear[i] = one.tnear, q.tfar[i] = one.tfar, q.time[i] = one.time;
+    q.mask[i] = one.mask, q.id[i] = i, q.flags[i] = one.flags;
+  }
 }
 
 // The corners of a triangle; null for exact surfaces.
@@ -83,7 +81,7 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
 void PacketTracer::nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& c) {
   alignas(16) RTCRayHit rays[kWidth];
   for (uint32_t i = 0; i < packet.size; ++i) {
-    load(tile, packet, i, rays[i].ray);
+    rays[i].ray = float_ray(tile, packet, i);
     rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
   }
   const uint64_t start = __rdtsc();
@@ -174,7 +172,7 @@ void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<ui
   };
   if (one_by_one(tile)) {
     alignas(16) RTCRay rays[kWidth];
-    for (uint32_t i = 0; i < packet.size; ++i) load(tile, packet, i, rays[i]);
+    for (uint32_t i = 0; i < packet.size; ++i) rays[i] = float_ray(tile, packet, i);
     const uint64_t start = __rdtsc();
     for (uint32_t i = 0; i < packet.size; ++i) rtcOccluded1(tile.handle.scene, &c, &rays[i]);
     statistics_.cycles += __rdtsc() - start;

@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "motion/track.h"
-#include "tests/bench/cpu_clock.h"
+#include "support/cpu_clock.h"
 #include "tests/bench/terrain.h"
 
 namespace suite {
@@ -42,7 +42,7 @@ class Frames final : public Sensor {
         1};
   }
   void accept(CaptureResult&&) override {
-    const double now = bench::cpu_seconds();
+    const double now = test::cpu_seconds();
     seconds.push_back(now - last_);
     last_ = now;
     heap.push_back(heap_in_use());
@@ -53,7 +53,7 @@ class Frames final : public Sensor {
   std::vector<Band> bands_;
   SpectralState state_;
   std::vector<Task> tasks_;
-  double last_ = bench::cpu_seconds();
+  double last_ = test::cpu_seconds();
 };
 
 struct Line {

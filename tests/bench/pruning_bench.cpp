@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "math/sampling.h"
 #include "math/warps.h"
-#include "tests/bench/cpu_clock.h"
+#include "support/cpu_clock.h"
 #include "tests/bench/terrain.h"
 #include "transport/pipeline.h"
 
@@ -180,13 +180,13 @@ int main(int argc, char** argv) {
   std::vector<double> seconds[3], over_hand, over_general;
   double difference = 0, mean = 0;
   for (int r = 0; r < rounds; ++r) {
-    const double t0 = bench::cpu_seconds();
+    const double t0 = test::cpu_seconds();
     const std::vector<double> one = whole(general);
-    const double t1 = bench::cpu_seconds();
+    const double t1 = test::cpu_seconds();
     const std::vector<double> two = whole(matte);
-    const double t2 = bench::cpu_seconds();
+    const double t2 = test::cpu_seconds();
     const std::vector<double> three = stripped(tracer, sensor, paths);
-    const double t3 = bench::cpu_seconds();
+    const double t3 = test::cpu_seconds();
     seconds[0].push_back(t1 - t0), seconds[1].push_back(t2 - t1), seconds[2].push_back(t3 - t2);
     over_hand.push_back((t2 - t1) / (t3 - t2)), over_general.push_back((t2 - t1) / (t1 - t0));
     if (r > 0) continue;

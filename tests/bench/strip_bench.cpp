@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "base/parallel.h"
-#include "tests/bench/cpu_clock.h"
+#include "support/cpu_clock.h"
 #include "tests/bench/terrain.h"
 
 namespace suite {
@@ -52,13 +52,13 @@ void run(const char* name, const std::shared_ptr<const Scene>& scene, int lines,
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(std::make_unique<Strip>(lines, columns, paths, target));
   const auto begun = std::chrono::steady_clock::now();
-  const double cpu = bench::cpu_seconds();
+  const double cpu = test::cpu_seconds();
   const JobReport report = run_job(scene, bench::terrain_sources(), sensors, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   std::printf(
       "%s: %d captures of %u, %.2e paths, %.3f s (%.3f s to build), %.3f s CPU, %.1f %% of %d threads, sum %.17g\n",
       name, lines, columns, static_cast<double>(report.statistics.paths), seconds, report.build_seconds,
-      bench::cpu_seconds() - cpu, 100 * (bench::cpu_seconds() - cpu) / seconds / threads(), threads(),
+      test::cpu_seconds() - cpu, 100 * (test::cpu_seconds() - cpu) / seconds / threads(), threads(),
       static_cast<const Strip&>(*sensors[0]).sum);
 }
 

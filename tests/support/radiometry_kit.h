@@ -43,6 +43,23 @@ class RaySensor : public Sensor {
 
 inline std::vector<Band> one_band() { return {Band::rectangular("b", 0.55, 0.01)}; }
 
+// Looks down at the origin from a height (m) at times spread evenly over its window (s).
+class Exposure final : public RaySensor {
+ public:
+  Exposure(double height, TimeSpan window, uint32_t paths)
+      : RaySensor({{{0, 0, height}, {0, 0, -1}, 0}}, one_band(), paths), window_(window) {
+    look_during({window.begin, window.end});
+  }
+  SensorRay ray(const RayRequest& request) const override {
+    Ray ray = rays_[0];
+    ray.time = window_.begin + request.u[0] * (window_.end - window_.begin);
+    return {ray, 1};
+  }
+
+ private:
+  TimeSpan window_;
+};
+
 inline Material material(const std::string& id, ModelSpec spec) {
   check_model(spec);
   Material m;

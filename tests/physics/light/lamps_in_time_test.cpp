@@ -166,23 +166,6 @@ TEST(LampsInTime, ASchedulesRowHoldsFromItsTimeOn) {
   }
 }
 
-// Looks at the origin at times spread evenly over its window.
-class Exposure final : public RaySensor {
- public:
-  Exposure(TimeSpan window, uint32_t paths)
-      : RaySensor({{{0, 0, 1}, {0, 0, -1}, 0}}, one_band(), paths), window_(window) {
-    look_during({window.begin, window.end});
-  }
-  SensorRay ray(const RayRequest& request) const override {
-    Ray ray = rays_[0];
-    ray.time = window_.begin + request.u[0] * (window_.end - window_.begin);
-    return {ray, 1};
-  }
-
- private:
-  TimeSpan window_;
-};
-
 TEST(LampsInTime, WhatIsDarkAllThroughTheWindowIsNotDrawn) {
   LampSpec lamp = lamp_at({0, 0, kHeight});
   lamp.schedule = std::make_shared<const LampSchedule>(LampSchedule{{{0, 2, 3}, 10}, {1, 0, 2.5}});
@@ -199,7 +182,7 @@ TEST(LampsInTime, AnExposureSeesTheMeanOfItsWindow) {
   };
   const SourceSpecs lamp = lit_by(riding_on("cart", lamp_at({})));
   for (const TimeSpan window : {TimeSpan{-1, 1}, TimeSpan{0, 4}, TimeSpan{2, 2.5}, TimeSpan{0.7, 0.7}}) {
-    const Rendered run = render(passing(), lamp, std::make_unique<Exposure>(window, 1 << 12));
+    const Rendered run = render(passing(), lamp, std::make_unique<Exposure>(1, window, 1 << 12));
     const double mean = window.end > window.begin
                             ? (passed(window.end) - passed(window.begin)) / (window.end - window.begin)
                             : irradiance(window.begin),

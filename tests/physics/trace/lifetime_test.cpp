@@ -182,27 +182,12 @@ TEST(Lifetime, WindowsShareATracerWhileTheSameIsThere) {
 
 // A camera pixel over a window: the mean over the times at which it looks.
 TEST(Lifetime, AnExposureSeesTheMeanOfItsWindow) {
-  class Exposure final : public RaySensor {
-   public:
-    Exposure(TimeSpan window, uint32_t paths)
-        : RaySensor({{{0, 0, 5}, {0, 0, -1}, 0}}, one_band(), paths), window_(window) {
-      look_during({window.begin, window.end});
-    }
-    SensorRay ray(const RayRequest& request) const override {
-      Ray ray = rays_[0];
-      ray.time = window_.begin + request.u[0] * (window_.end - window_.begin);
-      return {ray, 1};
-    }
-
-   private:
-    TimeSpan window_;
-  };
   SourceSpecs sky;
   sky.add(uniform_sky(1, false));
   // A panel close over the ground is seen with its own radiance under a uniform sky of radiance 1.
   for (const TimeSpan window : {TimeSpan{0, 4}, TimeSpan{3, 7}, TimeSpan{0, 10}}) {
     const Rendered run =
-        render(ground_under(scheduled(), {}, {life(2, 5)}), sky, std::make_unique<Exposure>(window, 1 << 12));
+        render(ground_under(scheduled(), {}, {life(2, 5)}), sky, std::make_unique<Exposure>(5, window, 1 << 12));
     const double there = (std::min(window.end, 5.0) - std::max(window.begin, 2.0)) / (window.end - window.begin);
     EXPECT_NEAR(run.result.radiance[0], there * kPanel + (1 - there) * kGround,
                 4 * run.result.standard_error[0] + 1e-3);

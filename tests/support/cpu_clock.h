@@ -2,7 +2,7 @@
 #pragma once
 #include <ctime>
 
-namespace suite::bench {
+namespace suite::test {
 
 inline double cpu_seconds() {
   timespec t{};
@@ -10,4 +10,4 @@ inline double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-}  // namespace suite::bench
+}  // namespace suite::test
