@@ -100,6 +100,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
+  cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }
 

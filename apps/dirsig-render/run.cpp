@@ -32,6 +32,7 @@
 #include "start.h"
 #include "study.h"
 #include "together.h"
+#include "transport/channels.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -211,6 +212,7 @@ std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
   if (o.list_sources) return print(light_rows().list());
   if (o.list_truth) return print(truth_rows().list());
+  if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));
   return std::nullopt;
@@ -238,6 +240,7 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
+    for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
     choose_bins_of(*sensor, scene, standing);
   }
 }

@@ -82,8 +82,9 @@ class Light {
   // The density is that of one sample, however many are drawn.
   virtual std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material,
                                               Dir direction, double distance, double cosine, double time) const;
-  // Adds scale times the radiance from a direction: far lights that give no spectrum above. Bug for others.
-  virtual void add(Dir direction, float scale, std::span<float> radiance) const;
+  // Adds scale times the radiance from a direction at the time of a ray (s): far lights that give no spectrum above.
+  // Bug for others.
+  virtual void add(Dir direction, double time, float scale, std::span<float> radiance) const;
   // The beam that the air scatters (Sun, Moon). Its spectrum lives as long as the light.
   virtual std::optional<Beam> beam() const { return std::nullopt; }
 

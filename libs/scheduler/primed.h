@@ -16,7 +16,9 @@ struct Primed {
         surface(*tracer, *kit.optics),
         truth(sensor.truth(),
               {*tracer, state(), sensor_state, sensor.bands(sensor_state), projection(), *kit.environment}),
-        pipeline(surface, *kit.optics, *kit.environment, state(), projection(), kit.bands->reference, truth, options) {}
+        channels(sensor.channels()),
+        pipeline(surface, *kit.optics, *kit.environment, state(), projection(), kit.bands->reference, truth, channels,
+                 options) {}
   Primed(const Primed&) = delete;
 
   const SpectralState& state() const { return kit.optics->state(); }
@@ -30,6 +32,7 @@ struct Primed {
   const Kit kit;
   const Surface surface;
   const TruthPlan truth;
+  const ChannelPlan channels;
   const Pipeline pipeline;
 };
 

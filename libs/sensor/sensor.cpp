@@ -13,9 +13,11 @@ std::span<const std::string> Sensor::truth() const { return default_truth(); }
 
 void Sensor::take_state(size_t, SpectralState) { throw Bug("a sensor whose states stay as they are was given one"); }
 
-std::span<const Channel> Sensor::channels() const {
-  static constexpr Channel only[] = {Channel::radiance};
-  return only;
+std::span<const std::string> default_channels() {
+  static const std::vector<std::string> names{"radiance"};
+  return names;
 }
+
+std::span<const std::string> Sensor::channels() const { return default_channels(); }
 
 }  // namespace suite

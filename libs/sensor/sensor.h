@@ -95,10 +95,6 @@ struct SensorRay {
   enum class Receiver : uint8_t { none, plane, sphere } receiver = Receiver::none;
 };
 
-// What a path can be turned into. radiance: all of it. single: what was scattered or emitted once, at the
-// first thing the ray met (everything, when it met nothing).
-enum class Channel : uint8_t { radiance, single };
-
 // Results of one capture, all problems, row-major. Spectral quantities per band; means and standard errors.
 struct CaptureResult {
   size_t task = 0, capture = 0;
@@ -154,8 +150,9 @@ class Sensor {
   virtual std::span<const Task> tasks() const = 0;
   // Uniform numbers that one ray takes, 1..8. The first four form one stratified block, the others a second.
   virtual int numbers() const { return 4; }
-  // The channels of its results; the first is radiance.
-  virtual std::span<const Channel> channels() const;
+  // The channels of its results, each a part of the light that has means and errors of its own: names of rows of the
+  // table in transport/channels.h; the first is radiance, which is all of it.
+  virtual std::span<const std::string> channels() const;
   // The truth to collect for each problem: names of rows of the table in transport/truth.
   virtual std::span<const std::string> truth() const;
   // What the user wants of the images of a capture.
@@ -178,5 +175,6 @@ class Sensor {
 
 // What is collected unless a sensor or its user says otherwise.
 std::span<const std::string> default_truth();
+std::span<const std::string> default_channels();  // radiance
 
 }  // namespace suite

@@ -68,15 +68,31 @@ SpectralState read_state(const Params& p, std::span<const Band> bands) {
                    p.number_in("reference_um", 0, 10000, "um", 0), static_cast<size_t>(p.integer("knots", 1, 8, 4)));
 }
 
+namespace {
+
+// Adds the names of a list; none may be there already.
+void add_names(const Params& list, const char* what, std::vector<std::string>& names) {
+  for (const Params& item : list.items()) {
+    std::string name = item.as_text();
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw item.error(strf("the %s '%s' is listed twice", what, name.c_str()));
+    names.push_back(std::move(name));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> read_truth(const Params& params) {
   const auto list = params.find("truth");
   if (!list) return {default_truth().begin(), default_truth().end()};
   std::vector<std::string> names;
-  for (const Params& item : list->items()) {
-    names.push_back(item.as_text());
-    for (size_t i = 0; i + 1 < names.size(); ++i)
-      if (names[i] == names.back()) throw item.error("the truth '" + names.back() + "' is listed twice");
-  }
+  add_names(*list, "truth", names);
+  return names;
+}
+
+std::vector<std::string> read_channels(const Params& params) {
+  std::vector<std::string> names(default_channels().begin(), default_channels().end());
+  if (const auto list = params.find("channels")) add_names(*list, "channel", names);
   return names;
 }
 

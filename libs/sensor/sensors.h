@@ -60,6 +60,8 @@ SpectralState read_state(const Params& params, std::span<const Band> bands);
 // Key `truth`: a list of names of the truth table, or `all`; the default when absent. Names are checked by the
 // renderer.
 std::vector<std::string> read_truth(const Params& params);
+// Key `channels`: a list of parts of the light, beside all of it. Names are checked by the renderer.
+std::vector<std::string> read_channels(const Params& params);
 // Keys `units: radiance | toa_reflectance | brightness_temperature` and `geolocation: BOOL | {pixel_m: N}`, which adds
 // `location` to the truth where it is missing. read_units: of a part of a sensor, which keeps the rest.
 ImageWishes read_wishes(const Params& params, std::vector<std::string>& truth);

@@ -157,7 +157,7 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   double* const sums = sums_.sums(slot, scramble);
   if (plain_) {
     const std::span<const float> light = workspace_.throughputs.light(p);
-    if (!good(light)) return false;
+    if (!good(light, 0)) return false;
     const double before = sums[pipeline_.reference_band_];
     pipeline_.projection_.add(light, {sums, pipeline_.projection_.bands()});
     sums_.note_sample(slot, scramble, sums[pipeline_.reference_band_] - before);
@@ -168,8 +168,7 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   const bool suns = capture_.bin_by == Capture::BinBy::sun;
   const size_t bin = suns ? 0 : bin_of(capture_, workspace_.kernels[p]->record(p));
   if (bin < capture_.bins) {
-    add_light(p, bin, false, false, sums);
-    if (workspace_.single) add_light(p, bin, true, false, sums);
+    add_light(p, bin, false, sums);
   }
   if (!suns) sums_.note_sample(slot, scramble, sums[pipeline_.reference_band_] - before);
   if (sums_.keeps_missing() && bin < capture_.bins && workspace_.sink.missed(p) < RadianceSink::kNothing)
@@ -178,28 +177,31 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
 }
 
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-bool BlockRun::good(std::span<const float> light) {
+// lowest: 0, or of channels with a sign what no number is below.
+bool BlockRun::good(std::span<const float> light, float lowest) {
   unsigned all = 1;
-  for (const float L : light) all &= static_cast<unsigned>(L >= 0) & static_cast<unsigned>(L < 3e38f);
+  for (const float L : light) all &= static_cast<unsigned>(L >= lowest) & static_cast<unsigned>(L < 3e38f);
   return all;
 }
 bool BlockRun::acceptable(uint32_t p, bool lost) {
+  const ChannelPlan& channels = pipeline_.channels_;
   bool all = true;
-  for (size_t group = 0; group < workspace_.groups; ++group)
-    for (const bool once : {false, true})
-      if (!once || workspace_.single)
-        all = all && good(workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)));
+  for (size_t channel = 0; channel < channels.size(); ++channel)
+    for (size_t group = 0; group < workspace_.groups; ++group)
+      all = all && good(workspace_.throughputs.light(p, workspace_.sink.target(group, channel, lost)),
+                        channels.is_signed(channel) ? -3e38f : 0);
   return all;
 }
 
-// Adds one channel's light to its sums, [channel][bin][band].
-void BlockRun::add_light(uint32_t p, size_t bin, bool once, bool lost, double* sums) {
+// Adds the light of all channels to their sums, [channel][bin][band].
+void BlockRun::add_light(uint32_t p, size_t bin, bool lost, double* sums) {
   const BandProjection& projection = pipeline_.projection_;
   const size_t bands = projection.bands();
-  for (size_t group = 0; group < workspace_.groups; ++group) {
-    double* const at = sums + ((once ? capture_.bins : 0) + bin + group) * bands;
-    projection.add(workspace_.throughputs.light(p, workspace_.sink.target(group, once, lost)), {at, bands});
-  }
+  for (size_t channel = 0; channel < pipeline_.channels_.size(); ++channel)
+    for (size_t group = 0; group < workspace_.groups; ++group) {
+      double* const at = sums + (channel * capture_.bins + bin + group) * bands;
+      projection.add(workspace_.throughputs.light(p, workspace_.sink.target(group, channel, lost)), {at, bands});
+    }
 }
 
 // Adds what a path is known to have missed.
@@ -208,8 +210,7 @@ void BlockRun::add_missing(uint32_t p, size_t slot, int scramble, size_t bin) {
   const Accumulators::Missing missing = sums_.missing(slot, scramble);
   double* const reference = missing.light + bin * pipeline_.projection_.bands() + pipeline_.reference_band_;
   const double before = *reference, chance = workspace_.sink.missed(p);
-  add_light(p, bin, false, true, missing.light);
-  if (workspace_.single) add_light(p, bin, true, true, missing.light);
+  add_light(p, bin, true, missing.light);
   const double seen = *reference - before;
   *missing.reference += seen;
   *missing.square += chance > 0 ? seen * (seen / chance) : INFINITY;

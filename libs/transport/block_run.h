@@ -31,9 +31,9 @@ class BlockRun {
   void start(uint32_t p);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
-  static bool good(std::span<const float> light);
+  static bool good(std::span<const float> light, float lowest);
   bool acceptable(uint32_t p, bool lost);
-  void add_light(uint32_t p, size_t bin, bool once, bool lost, double* sums);
+  void add_light(uint32_t p, size_t bin, bool lost, double* sums);
   void add_missing(uint32_t p, size_t slot, int scramble, size_t bin);
 
   const Pipeline& pipeline_;

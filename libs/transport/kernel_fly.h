@@ -276,7 +276,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
     if (!met->spectrum) {  // its shape changes with direction
       memory = dense(p);
       std::fill(memory.begin(), memory.end(), 0.0f);
-      light.light->add(path.direction, 1, memory);
+      light.light->add(path.direction, path.time, 1, memory);
     }
     Contribution& c = contribution(p, light.index);
     c.scale = static_cast<float>(met->scale);

@@ -153,7 +153,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   if (!radiance) {  // its shape changes with direction
     const std::span<float> own = dense(p);
     std::fill(own.begin(), own.end(), 0.0f);
-    environment_.lights[q.light]->add(q.direction, 1, own);
+    environment_.lights[q.light]->add(q.direction, sight_rays_.rays()[i].time, 1, own);
     radiance = own.data();
   }
   if (arrives && keep_first_ && q.light == environment_.sun && !node.event && is_first(node)) firsts_[p].sunlit = true;

@@ -23,7 +23,7 @@ void check(const PipelineOptions& options) {
 
 Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environment& environment,
                    const SpectralState& state, const BandProjection& projection, size_t reference_band,
-                   const TruthPlan& truth, const PipelineOptions& options)
+                   const TruthPlan& truth, const ChannelPlan& channels, const PipelineOptions& options)
     : surface_(surface),
       optics_(optics),
       environment_(environment),
@@ -31,6 +31,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
       projection_(projection),
       reference_band_(reference_band),
       truth_(truth),
+      channels_(channels),
       options_(options) {
   if (options_.method == Method::paper && !optics.media().empty())
     throw Error("the paper's estimator knows surfaces only", "render scenes with media by the standard method");
@@ -69,23 +70,22 @@ bool Pipeline::may_miss(const Capture& capture) const {
 }
 
 Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Environment> own, const Capture& capture,
-                               size_t w, size_t g, bool s, bool lost)
+                               size_t w, size_t g, const ChannelPlan& channels, bool lost)
     : environment(std::move(own)),
       suns(capture.suns),
       context(x),
       width(w),
       groups(g),
-      single(s),
-      sink(w, g, s, lost),
+      sink(w, g, channels, lost),
       throughputs(w, x.optics.state().size(), sink.targets()),
       kernel(make_kernel(choose_kernel(context), context, width, throughputs, sink)),
       numbers(width),
       kernels(width),
       weights(width * x.optics.state().size()) {}
 
-bool Pipeline::Workspace::serves(const Capture& capture, bool single_too) const {
+bool Pipeline::Workspace::serves(const Capture& capture, const ChannelPlan& channels) const {
   const auto same = [](const Dir& a, const Dir& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-  return single == single_too && (environment != nullptr) == (capture.bin_by == Capture::BinBy::sun) &&
+  return sink.channels() == channels && (environment != nullptr) == (capture.bin_by == Capture::BinBy::sun) &&
          (!environment || std::equal(suns.begin(), suns.end(), capture.suns.begin(), capture.suns.end(), same));
 }
 
@@ -98,14 +98,13 @@ PathTracing& Pipeline::Workspace::kernel_of(const SensorRay& ray) {
   return *receiving;
 }
 
-std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(const Sensor& sensor, const Capture& capture) const {
-  const bool single = sensor.channels().size() > 1;
+std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(const Capture& capture) const {
   {
     const std::lock_guard lock(mutex_);
     if (!idle_.empty()) {
       std::unique_ptr<Workspace> found = std::move(idle_.back());
       idle_.pop_back();
-      if (found->serves(capture, single)) return found;
+      if (found->serves(capture, channels_)) return found;
       idle_.clear();
     }
   }
@@ -113,16 +112,16 @@ std::unique_ptr<Pipeline::Workspace> Pipeline::borrow(const Sensor& sensor, cons
   const KernelContext from = context(suns ? *suns : environment_);
   const bool lost = may_lose(from);
   const size_t groups = suns ? capture.suns.size() : 1;
-  const size_t targets = RadianceSink(1, groups, single, lost).targets();
+  const size_t targets = RadianceSink(1, groups, channels_, lost).targets();
   const size_t width = std::clamp<size_t>(kMostFloats / (targets * state_.size()), 1, kWaveWidth);
-  return std::make_unique<Workspace>(from, std::move(suns), capture, width, groups, single, lost);
+  return std::make_unique<Workspace>(from, std::move(suns), capture, width, groups, channels_, lost);
 }
 
 void Pipeline::run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
                    std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const {
   const FlushDenormals flush;
   const uint64_t start = __rdtsc();
-  std::unique_ptr<Workspace> workspace = borrow(sensor, capture);
+  std::unique_ptr<Workspace> workspace = borrow(capture);
   BlockRun(*this, sensor, capture, capture_id, block, to, sums, slots, statistics, *workspace).run();
   statistics.cycles += __rdtsc() - start;
   const std::lock_guard lock(mutex_);

@@ -9,6 +9,7 @@
 #include "estimate/block.h"
 #include "estimate/statistics.h"
 #include "sensor/sensor.h"
+#include "transport/channels.h"
 #include "transport/path_tracing.h"
 #include "transport/truth/truth.h"
 
@@ -18,11 +19,11 @@ class Pipeline {
  public:
   // Keeps references; all must outlive it. Error: options out of range, or the paper's estimator with media.
   Pipeline(const Surface& surface, const Optics& optics, const Environment& environment, const SpectralState& state,
-           const BandProjection& projection, size_t reference_band, const TruthPlan& truth,
+           const BandProjection& projection, size_t reference_band, const TruthPlan& truth, const ChannelPlan& channels,
            const PipelineOptions& options);
   ~Pipeline();
 
-  // Continues each problem of a block, in the scrambles that the block has, from what its accumulators hold up to the
+  // sensor: of the truth and the channels. Continues each problem of a block, in the scrambles that the block has, from what its accumulators hold up to the
   // first to[problem] samples. Thread-safe for distinct blocks.
   void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
            std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
@@ -35,7 +36,7 @@ class Pipeline {
   friend class BlockRun;
   struct Workspace;
   KernelContext context(const Environment& environment) const;
-  std::unique_ptr<Workspace> borrow(const Sensor& sensor, const Capture& capture) const;
+  std::unique_ptr<Workspace> borrow(const Capture& capture) const;
 
   const Surface& surface_;
   const Optics& optics_;
@@ -44,6 +45,7 @@ class Pipeline {
   const BandProjection& projection_;
   size_t reference_band_;
   const TruthPlan& truth_;
+  const ChannelPlan& channels_;
   PipelineOptions options_;
   KernelChoice choice_;
   // Working memory goes from block to block; as many as threads have been at work at once. All that are idle were made

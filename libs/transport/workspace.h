@@ -15,11 +15,11 @@ struct WaveLane {
 
 struct Pipeline::Workspace {
   // own: the capture's own lights, null where the pipeline's environment shines; context: over what shines. width:
-  // paths that run together; groups, single, lost: of RadianceSink.
+  // paths that run together; groups, channels, lost: of RadianceSink.
   Workspace(const KernelContext& context, std::unique_ptr<const Environment> own, const Capture& capture, size_t width,
-            size_t groups, bool single, bool lost);
-  // Whether it is what would be made for a capture; single: of two channels.
-  bool serves(const Capture& capture, bool single) const;
+            size_t groups, const ChannelPlan& channels, bool lost);
+  // Whether it is what would be made for a capture with channels.
+  bool serves(const Capture& capture, const ChannelPlan& channels) const;
   // The kernel that serves a ray: what was chosen for the state, or, for rays that start at receivers, a general one.
   PathTracing& kernel_of(const SensorRay& ray);
 
@@ -27,7 +27,6 @@ struct Pipeline::Workspace {
   std::vector<Dir> suns;
   KernelContext context;
   size_t width, groups;
-  bool single;
   RadianceSink sink;
   SpectralThroughputs throughputs;
   std::unique_ptr<PathTracing> kernel, receiving;

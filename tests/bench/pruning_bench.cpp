@@ -149,12 +149,13 @@ int main(int argc, char** argv) {
   const Environment environment = bake_environment(terrain_sources(), tracer, false, optics.state());
   const BandProjection projection(optics.state(), sensor.bands(0));
   const TruthPlan truth({}, {tracer, optics.state(), 0, sensor.bands(0), projection, environment});
+  const ChannelPlan channels(sensor.channels());
   const Surface surface(tracer, optics);
   PipelineOptions options;
   options.max_nodes = kNodes;
-  const Pipeline matte(surface, optics, environment, optics.state(), projection, 0, truth, options);
+  const Pipeline matte(surface, optics, environment, optics.state(), projection, 0, truth, channels, options);
   options.specialise = false;
-  const Pipeline general(surface, optics, environment, optics.state(), projection, 0, truth, options);
+  const Pipeline general(surface, optics, environment, optics.state(), projection, 0, truth, channels, options);
   const std::vector<Block> blocks = blocks_of(capture);
   const std::vector<uint32_t> to(capture.problems(), paths);
   // As the scheduler runs captures whose counts are known: a block gets its sums, runs, and is done with.

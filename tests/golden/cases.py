@@ -44,6 +44,9 @@ CASES: Dict[str, Case] = {
                               ("sqt-fit satin_purple_rgb.bsdf -o satin.sqt -q --order 4", PREP), brighter=0.02),
     "crossing_day": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "day.yaml", brighter=0.04),
     "crossing_night": Case("sample_scenes/crossing", CROSSING, CROSSING_PREP, "night.yaml", paths=64, edges=HEAVY, brighter=0.6, spot=3),
+    "landsat_like": Case("sample_scenes/landsat_like", {"max_nodes": 8,
+                         **{f"sensors.0.instruments.0.arrays.{k}.readout.line_rate_hz": 6 for k in range(9)}},
+                         ("cp $SOURCES/sample_scenes/calibration_range/dem_hd_sub.tif .", "python3 make_inputs.py", PREP)),
     "map_gallery": Case("sample_scenes/map_gallery", {**camera(0, 26, 18, 500), **camera(1, 26, 18, 500)}),
     "night_street": Case("sample_scenes/night_street", prepare=("python3 make_scene.py . 32 18", PREP),
                          sets={"sensors.0.pitch_um": 300}, paths=64, brighter=0.6, spot=3),
@@ -64,5 +67,7 @@ CASES: Dict[str, Case] = {
                             "sim_nir_20.yaml", paths=64, edges=(4,), brighter=0.25),
     "furnace": Case("tests/golden/scenes/furnace", brighter=0.02),
     "slab": Case("tests/golden/scenes/slab", paths=64, brighter=0.08),
+    "slab_in_air": Case("tests/golden/scenes/slab", {"sky": "null", "atmosphere": "{aerosol: {depth_550: 0.3}}"},
+                        paths=64, brighter=0.08),
     "forest": Case("tests/golden/scenes/forest", prepare=("python3 make_tables.py", PREP), paths=64, brighter=0.02),
 }

@@ -171,7 +171,7 @@ double Sky::relative(Dir d) const {
   return sum;
 }
 
-void Sky::add(Dir d, float scale, std::span<float> radiance) const {
+void Sky::add(Dir d, double, float scale, std::span<float> radiance) const {
   if (channels_ == 1) {
     const float s = scale * static_cast<float>(relative(d));
     for (size_t i = 0; i < radiance.size(); ++i) radiance[i] += s * spectrum_[i];

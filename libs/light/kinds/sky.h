@@ -47,7 +47,7 @@ class Sky final : public Light {
   std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
                                     double time) const override;
   std::optional<LightMet> met_outside(Dir direction, double time) const override;
-  void add(Dir d, float scale, std::span<float> radiance) const override;  // any kind of sky
+  void add(Dir d, double time, float scale, std::span<float> radiance) const override;  // any kind of sky
   size_t members() const override { return 0; }
   std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
                                            const std::array<double, 4>& u, double time) const override;

@@ -48,7 +48,7 @@ LightSpectra spectra_of_layers(const SkySpec& sky) {
     Rows rows;
     for (size_t i = 0; i < kZeniths; ++i) {
       rows.emplace_back(s.size(), 0.0f);
-      baked.add(dir_from_angles(std::min(kPi / 2 - 1e-9, 18 * static_cast<double>(i) * kDegree), 0), 1, rows.back());
+      baked.add(dir_from_angles(std::min(kPi / 2 - 1e-9, 18 * static_cast<double>(i) * kDegree), 0), 0, 1, rows.back());
     }
     return rows;
   };

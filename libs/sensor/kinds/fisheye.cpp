@@ -13,6 +13,7 @@ class Fisheye final : public SimpleSensor {
  public:
   Fisheye(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "fisheye") {
     wishes_ = read_wishes(p, truth_);
+    channels_ = read_channels(p);
     capture_.columns = capture_.rows = static_cast<uint32_t>(p.integer("size", 1, 100000));
     const auto [x, y, z] = p.at("position_m").as_vec3();
     position_ = {x, y, z};

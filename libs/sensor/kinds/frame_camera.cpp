@@ -19,6 +19,7 @@ class FrameCamera final : public Sensor {
     state_ = read_state(p, bands_);
     truth_ = read_truth(p);
     wishes_ = read_wishes(p, truth_);
+    channels_ = read_channels(p);
 
     Capture capture;
     capture.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
@@ -73,13 +74,14 @@ class FrameCamera final : public Sensor {
     deliver_(d);
   }
   std::span<const std::string> truth() const override { return truth_; }
+  std::span<const std::string> channels() const override { return channels_; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
 
  private:
   std::function<void(const Delivery&)> deliver_;
   std::string name_;
   std::vector<Band> bands_;
-  std::vector<std::string> truth_;
+  std::vector<std::string> truth_, channels_;
   ImageWishes wishes_;
   SpectralState state_;
   std::vector<Task> tasks_;

@@ -9,6 +9,7 @@ class Orthographic final : public SimpleSensor {
  public:
   Orthographic(const Params& p, const SensorContext& context) : SimpleSensor(p, context, "map") {
     wishes_ = read_wishes(p, truth_);
+    channels_ = read_channels(p);
     capture_.columns = static_cast<uint32_t>(p.integer("columns", 1, 100000));
     capture_.rows = static_cast<uint32_t>(p.integer("rows", 1, 100000));
     const double gsd = p.number_in("gsd_m", 1e-6, 1e6, "m");

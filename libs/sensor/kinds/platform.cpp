@@ -44,6 +44,7 @@ class Platform final : public Sensor {
   }
   std::span<const Task> tasks() const override { return spec_.tasks; }
   std::span<const std::string> truth() const override { return spec_.truth; }
+  std::span<const std::string> channels() const override { return spec_.channels; }
   ImageWishes wishes(const Capture& capture) const override {
     return spec_.arrays[spec_.segments[capture.state].array].wishes;
   }

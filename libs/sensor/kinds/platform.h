@@ -96,7 +96,7 @@ struct PlatformSpec {
     uint64_t event = 0;  // number of the frame or block; the segments of one event share it
   };
   std::vector<std::vector<Part>> parts;  // [task][capture]
-  std::vector<std::string> truth;
+  std::vector<std::string> truth, channels;
   ImageWishes wishes;  // of arrays that do not say
 };
 

@@ -279,6 +279,7 @@ PlatformSpec read_platform(const Params& params, const SensorContext& context) {
   }
   spec.truth = read_truth(params);
   spec.wishes = read_wishes(params, spec.truth);
+  spec.channels = read_channels(params);
   read_carrier(params, {}, spec, context, seed, 0);
   for (const std::string& key : spec.instruments.empty() ? params.keys() : std::vector<std::string>{})
     if (const std::string near = nearest_name(key, std::vector<std::string>{"attachments", "instruments"});

@@ -76,8 +76,8 @@ class Rami final : public SimpleSensor {
       throw p.at("experiment").error("an experiment has one band", "give each band a sensor of its own");
     done();
   }
-  std::span<const Channel> channels() const override {
-    static constexpr Channel both[] = {Channel::radiance, Channel::single};
+  std::span<const std::string> channels() const override {
+    static const std::vector<std::string> both{"radiance", "single_scattering"};
     return both;
   }
   SensorRay ray(const RayRequest& r) const override {

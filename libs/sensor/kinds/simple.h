@@ -24,6 +24,7 @@ class SimpleSensor : public Sensor {
   void take_state(size_t state, SpectralState with_bins) override { states_[state] = std::move(with_bins); }
   std::span<const Task> tasks() const override { return tasks_; }
   std::span<const std::string> truth() const override { return truth_; }
+  std::span<const std::string> channels() const override { return channels_; }
   ImageWishes wishes(const Capture&) const override { return wishes_; }
   void accept(CaptureResult&& result) override {
     Delivery d{*this, lay_out(tasks_, name_)[0][0], std::move(result), bands_, {}, {}, {}, {}};
@@ -42,7 +43,8 @@ class SimpleSensor : public Sensor {
   std::string name_;
   std::vector<Band> bands_;
   std::vector<std::string> truth_;
-  ImageWishes wishes_;  // read by the kinds that make pictures of radiance
+  ImageWishes wishes_;  // read by the kinds that make pictures of radiance, with
+  std::vector<std::string> channels_{"radiance"};
   std::vector<SpectralState> states_;
   Capture capture_;
   std::vector<Task> tasks_;

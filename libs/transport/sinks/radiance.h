@@ -1,25 +1,26 @@
-// Sums contributions to radiance: all of it, what was scattered or emitted once, and, kept apart, the same of light
-// that is known to be missed. Of many suns each has sums of its own.
+// Sums contributions to radiance and the other channels of a result, and, kept apart, the same of light that is known
+// to be missed. Of many suns each has sums of its own.
 #pragma once
 #include <limits>
 #include <vector>
 
+#include "transport/channels.h"
 #include "transport/throughput.h"
 
 namespace suite {
 
 class RadianceSink final : public Sink<SpectralThroughputs> {
  public:
-  // groups: 1, or the number of lights that are told apart by their index; single: Channel::single is wanted; lost:
-  // light may be lost.
-  RadianceSink(size_t width, size_t groups, bool single, bool lost)
-      : groups_(groups), single_(single), lost_(lost), missed_(width, kNothing) {}
+  // groups: 1, or the number of lights that are told apart by their index; lost: light may be lost.
+  RadianceSink(size_t width, size_t groups, ChannelPlan channels, bool lost)
+      : groups_(groups), channels_(std::move(channels)), lost_(lost), missed_(width, kNothing) {}
 
   // Sums of a path (SpectralThroughputs::light).
-  size_t targets() const { return (lost_ ? 2 : 1) * (single_ ? 2 : 1) * groups_; }
-  size_t target(size_t group, bool once, bool lost) const {
-    return ((lost ? (single_ ? 2u : 1u) : 0u) + (once ? 1u : 0u)) * groups_ + group;
+  size_t targets() const { return (lost_ ? 2 : 1) * channels_.size() * groups_; }
+  size_t target(size_t group, size_t channel, bool lost) const {
+    return ((lost ? channels_.size() : 0) + channel) * groups_ + group;
   }
+  const ChannelPlan& channels() const { return channels_; }
   void begin(uint32_t p) { missed_[p] = kNothing; }
   // Of the light that a path has missed, the least chance of having met it; infinite where there is none.
   double missed(uint32_t p) const { return missed_[p]; }
@@ -30,15 +31,22 @@ class RadianceSink final : public Sink<SpectralThroughputs> {
       const size_t group = groups_ == 1 ? 0 : c.light;
       const bool lost = !c.arrived();
       if (lost) missed_[c.path] = std::min(missed_[c.path], double{c.missed});
-      throughputs.shine(
-          c.path, c.factor, c.scale, c.radiance, static_cast<uint16_t>(target(group, false, lost)),
-          single_ && c.order <= 1 ? static_cast<uint16_t>(target(group, true, lost)) : SpectralThroughputs::kNone);
+      const auto to = [&](size_t channel) { return static_cast<uint16_t>(target(group, channel, lost)); };
+      // What a channel takes whole goes there with the radiance; most results have one channel or two.
+      size_t with = 1;
+      while (with < channels_.size() && channels_.share(with, c) != 1) ++with;
+      throughputs.shine(c.path, c.factor, c.scale, c.radiance, to(0),
+                        with < channels_.size() ? to(with) : SpectralThroughputs::kNone);
+      for (size_t channel = 1; channel < channels_.size(); ++channel)
+        if (const float share = channel == with ? 0 : channels_.share(channel, c); share != 0)
+          throughputs.shine(c.path, c.factor, c.scale * share, c.radiance, to(channel));
     }
   }
 
  private:
   size_t groups_;
-  bool single_, lost_;
+  ChannelPlan channels_;
+  bool lost_;
   std::vector<double> missed_;
 };
 

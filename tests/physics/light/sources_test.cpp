@@ -84,7 +84,7 @@ TEST(ClearSky, RadianceClosesToTheDiffuseIrradiance) {
         for (int c = 0; c < columns; ++c) {
           const double theta = (r + 0.5) / rows * kPi / 2;
           std::fill(L.begin(), L.end(), 0.0f);
-          sky.add(dir_from_angles(theta, (c + 0.5) / columns * 2 * kPi), 1, L);
+          sky.add(dir_from_angles(theta, (c + 0.5) / columns * 2 * kPi), 0, 1, L);
           for (int b = 0; b < 2; ++b)
             sum[b] +=
                 L[static_cast<size_t>(b)] * std::cos(theta) * std::sin(theta) * (kPi / 2 / rows) * (2 * kPi / columns);
@@ -162,12 +162,12 @@ TEST(ThermalSky, LayersOfAir) {
     const double c = std::cos(degrees * kDegree), T = degrees == 90 ? 0 : std::exp(-0.4 / c),
                  U = degrees == 90 ? 0 : std::exp(-0.7 / c);
     std::vector<float> L(1, 0.0f);
-    sky.add(dir_from_angles(degrees * kDegree, 1), 1, L);
+    sky.add(dir_from_angles(degrees * kDegree, 1), 0, 1, L);
     EXPECT_NEAR(L[0], warm * (1 - T) + T * cold * (1 - U), 1e-5 * warm) << degrees;
   }
   spec.layers.front().optical_depth = Curve::constant(100);
   std::vector<float> L(1, 0.0f);
-  Sky(spec, state).add({0, 0, 1}, 1, L);
+  Sky(spec, state).add({0, 0, 1}, 0, 1, L);
   EXPECT_NEAR(L[0], warm, 1e-6 * warm);
 }
 

@@ -50,7 +50,7 @@ Outcome run(size_t bands) {
   const Environment environment = bake_environment(sources, tracer, false, optics.state());
   const PipelineOptions options;
   constexpr uint32_t width = 64;
-  RadianceSink sink(width, 1, false, false);
+  RadianceSink sink(width, 1, ChannelPlan(default_channels()), false);
   SpectralThroughputs throughputs(width, optics.state().size(), sink.targets());
   PathKernel<Broken<wrong>, NothingSpace, SpectralThroughputs, StandardEstimator> kernel(
       {surface, optics, environment, options}, width, throughputs, sink);

@@ -80,7 +80,7 @@ class Asked {
     if (spectrum)
       for (size_t i = 0; i < bins_; ++i) all[i] = static_cast<float>(scale) * spectrum[i];
     else
-      light_.add(d, static_cast<float>(scale), all);
+      light_.add(d, 0, static_cast<float>(scale), all);
     return all;
   }
 

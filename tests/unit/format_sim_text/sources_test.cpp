@@ -93,7 +93,7 @@ TEST(SimSources, PanoramaLooksTheWayThePictureDoes) {
   const auto sky = baked(s);
   auto at = [&](double zenith_deg, double compass_deg) {
     std::vector<float> L(1, 0.0f);
-    sky->add(dir_from_angles(zenith_deg * kDegree, azimuth_from_compass_deg(compass_deg)), 1, L);
+    sky->add(dir_from_angles(zenith_deg * kDegree, azimuth_from_compass_deg(compass_deg)), 0, 1, L);
     return L[0];
   };
   EXPECT_EQ(at(67, 202), 255);  // row 1 of 4: 45 to 90 degrees; column 4 of 8: 180 to 225 degrees

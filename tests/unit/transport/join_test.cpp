@@ -83,7 +83,8 @@ struct Kit {
   TruthPlan truth{sensor.truth(), {tracer, optics.state(), 0, sensor.bands(0), projection, environment}};
   Surface surface{tracer, optics};
   PipelineOptions options;
-  Pipeline pipeline{surface, optics, environment, optics.state(), projection, 0, truth, options};
+  ChannelPlan channels{sensor.channels()};
+  Pipeline pipeline{surface, optics, environment, optics.state(), projection, 0, truth, channels, options};
 };
 
 bool same_bytes(const Accumulators& a, const Accumulators& b) {
