@@ -103,6 +103,8 @@ void check_folder(const std::string& folder, const Simulation& sim, bool picture
   if (pictures) check_room(folder, sim);
 }
 
+double image_bytes(const Simulation& sim) { return room_for(sim).whole; }
+
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options) {
   const bool part = options.share && options.share->runs();
   std::string text =

@@ -12,6 +12,9 @@ namespace suite {
 // pictures: there will be some (a part of a run has none).
 void check_folder(const std::string& folder, const Simulation& simulation, bool pictures);
 
+// Bytes that the images take; products of the sensors come on top.
+double image_bytes(const Simulation& simulation);
+
 // One sentence: how many of the captures are whole in the folder, and how the run goes on.
 std::string what_is_left(const std::string& folder, size_t finished, size_t captures, const JobOptions& options);
 

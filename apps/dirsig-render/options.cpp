@@ -93,6 +93,13 @@ void declare_render(Cli& cli, RenderOptions& o) {
              "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.option("--ranks", o.ranks,
+             "with --dry-run: run a few blocks and forecast the seconds and the efficiency of the job on so many ranks",
+             "N,N,...");
+  cli.option("--link", o.link,
+             "with --ranks: what ranks pay for talking, as bench/link_bench measures it: microseconds to fetch a block "
+             "and for a message, GB/s of messages, GB/s at which results are taken",
+             "F,M,R,T");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
              "FEATURE");
   cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");

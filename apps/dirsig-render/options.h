@@ -10,7 +10,8 @@ namespace suite {
 struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins, settings;
-  std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory;
+  std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory,
+                                            ranks, link;
   std::string part, plan;          // K/N; folder of a state of the whole
   std::vector<std::string> merge;  // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;
@@ -18,7 +19,8 @@ struct RenderOptions {
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false, load_all = false;
-  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false, list_channels = false;
+  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false,
+       list_channels = false;
 };
 
 AppInfo render_info();

@@ -81,7 +81,8 @@ EnviHeader OutputWriter::common_header(const Image& m, const Delivery& d) const 
   for (size_t c = 0; c < d.result.channels; ++c)
     for (size_t t = 0; t < d.result.bins; ++t)
       for (const Band& b : d.bands) {
-        h.band_names.push_back(b.name + (c ? " " + d.sensor.channels()[c] : "") + (d.result.bins > 1 ? strf(" t%zu", t) : ""));
+        h.band_names.push_back(b.name + (c ? " " + d.sensor.channels()[c] : "") +
+                               (d.result.bins > 1 ? strf(" t%zu", t) : ""));
         h.wavelength_um.push_back(b.center_um);
         h.fwhm_um.push_back(b.fwhm_um);
       }

@@ -23,6 +23,7 @@
 #include "output.h"
 #include "parts.h"
 #include "preview.h"
+#include "rehearse.h"
 #include "scene/combine.h"
 #include "scheduler/bins.h"
 #include "scheduler/features.h"
@@ -105,7 +106,7 @@ Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
   }
 }
 
-int dry_run(const Simulation& sim, const JobOptions& options) {
+void dry_run(const Simulation& sim, const JobOptions& options) {
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());
     for (const SpectralState& s : sensor->states())
@@ -125,12 +126,11 @@ int dry_run(const Simulation& sim, const JobOptions& options) {
   std::printf("; %zu changes of state\nat least %s paths; accumulators and results of the largest capture take %s\n",
               order.state_changes, human_count(forecast_paths(sim.sensors, options)).c_str(),
               human_bytes(forecast_bytes(sim.sensors, options)).c_str());
-  if (!options.share) return 0;
+  if (!options.share) return;
   size_t blocks = 0, mine = 0;
   for (const std::vector<uint8_t>& capture : blocks_of_share(sim.sensors, *options.share))
     for (const uint8_t m : capture) ++blocks, mine += m;
   std::printf("%s runs %zu of %zu blocks of pixels, these paths\n", options.share->text().c_str(), mine, blocks);
-  return 0;
 }
 
 // A capture that could never be held is refused before anything is computed.
@@ -310,16 +310,22 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options = job_options(sim, o);
-  if (o.dry_run) return dry_run(sim, options);
+  const std::vector<int> forecast = ranks_of(cli, o);
+  const LinkCosts link = link_of(cli, o);
+  if (o.dry_run) dry_run(sim, options);
+  if (o.dry_run && forecast.empty()) return 0;
   check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
   std::vector<std::shared_ptr<const LaterReads>> later;
+  const auto begun = std::chrono::steady_clock::now();
   const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, later));
+  const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
   for (const Material& m : scene->materials) notes.materials.push_back(m.id);
+  if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, load_seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   const Facts facts(sim, scene);
   check_wishes(sim, facts);

@@ -11,6 +11,8 @@ std::optional<LightMet> Light::met_surface(const LightReceiver&, const Hit&, uin
   return std::nullopt;
 }
 
-void Light::add(Dir, double, float, std::span<float>) const { throw Bug("a light that has a spectrum was asked to add it"); }
+void Light::add(Dir, double, float, std::span<float>) const {
+  throw Bug("a light that has a spectrum was asked to add it");
+}
 
 }  // namespace suite

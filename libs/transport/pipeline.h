@@ -23,8 +23,8 @@ class Pipeline {
            const PipelineOptions& options);
   ~Pipeline();
 
-  // sensor: of the truth and the channels. Continues each problem of a block, in the scrambles that the block has, from what its accumulators hold up to the
-  // first to[problem] samples. Thread-safe for distinct blocks.
+  // sensor: of the truth and the channels. Continues each problem of a block, in the scrambles that the block has, from
+  // what its accumulators hold up to the first to[problem] samples. Thread-safe for distinct blocks.
   void run(const Sensor& sensor, const Capture& capture, uint64_t capture_id, const Block& block,
            std::span<const uint32_t> to, Accumulators& sums, Slots slots, RunStatistics& statistics) const;
   // Whether paths of a capture may know of light that they miss (lost_light.h).

@@ -69,7 +69,8 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       // The photon bands follow the listed ones; every band has detectors of its own.
       double signal = 0;
       for (size_t t = 0; t < result.bins; ++t)
-        signal += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] / static_cast<double>(result.bins);
+        signal += result.radiance[(i * result.channels * result.bins + t) * result.bands + bands + b] /
+                  static_cast<double>(result.bins);
       signal *= factor * segment.electrons[b];
       const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
       Detector::Character character = detector.character(own);
