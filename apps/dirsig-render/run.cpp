@@ -82,12 +82,27 @@ SceneNeeds needs_of(const Simulation& sim, const JobOptions& options) {
   return needs;
 }
 
+// Whether any capture looks at a time in a span. (With an epoch of the text, whose seconds may count from elsewhere, it
+// may.)
+bool seen(const Simulation& sim, TimeSpan life) {
+  if (sim.epoch) return true;
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        if (c.window.end >= life.begin && c.window.begin < life.end) return true;
+  return false;
+}
+
 // All scenes of a simulation as one.
 Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
                   std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
   const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options);
   for (const SimulationScene& s : sim.scenes) {
+    if (!parts.empty() && !all && !seen(sim, s.life)) {  // the first gives the others their frame
+      note("of " + s.path + ": nothing is loaded, it is not there in any capture");
+      continue;
+    }
     LoadReport loaded;
     const auto begun = std::chrono::steady_clock::now();
     Scene scene = read_scene(
@@ -96,9 +111,9 @@ Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     note("of " + s.path + strf(", loaded in %.3f s:\n", seconds) + loaded.text() + "(--explain FEATURE says why)");
     if (loaded.later) later.push_back(loaded.later);
-    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion});
+    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion, s.life});
   }
-  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion) return std::move(parts[0].scene);
+  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion && parts[0].life == kAlways) return std::move(parts[0].scene);
   try {
     return combine_scenes(std::move(parts));
   } catch (const Error& e) {

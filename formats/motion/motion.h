@@ -43,6 +43,9 @@ double time_from(const Params& node, const MotionContext& context);
 
 // Seconds of simulation time from one value: a number of them, or a date in UTC.
 double time_value(const Params& value, const MotionContext& context);
+// Keys `appears` and `disappears`, times from which and until just before which something is there; without end where
+// they are absent. Error SP412 when it ends before it begins.
+TimeSpan read_life(const Params& p, const MotionContext& context);
 
 // A control table: what holds from which time on. `columns` are what its rows may say beside their time.
 struct TimedCell {

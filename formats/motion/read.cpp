@@ -237,6 +237,17 @@ double time_from(const Params& node, const MotionContext& context) {
   return seconds ? seconds->as_number() : date_from(*utc, context);
 }
 
+TimeSpan read_life(const Params& p, const MotionContext& context) {
+  const auto appears = p.find("appears"), disappears = p.find("disappears");
+  TimeSpan life = kAlways;
+  if (appears) life.begin = time_value(*appears, context);
+  if (disappears) life.end = time_value(*disappears, context);
+  if (!(life.begin < life.end))
+    throw disappears->error(strf("it disappears at %.9g s and appears at %.9g s", life.end, life.begin),
+                            "a lifetime ends after it begins", "SP412");
+  return life;
+}
+
 double time_value(const Params& p, const MotionContext& context) {
   return p.as_text().find_first_of(":T") == std::string::npos ? p.as_number() : date_from(p, context);
 }

@@ -49,14 +49,10 @@ MotionContext Reader::motion_context(bool world) {
 
 // A lifetime and a control table; nothing when neither is given.
 std::optional<DraftSchedule> Reader::read_schedule(const Params& p, const MotionContext& context) {
-  const auto appears = p.find("appears"), disappears = p.find("disappears"), table = p.find("schedule");
-  if (!appears && !disappears && !table) return std::nullopt;
+  const auto table = p.find("schedule");
   DraftSchedule made;
-  if (appears) made.life.begin = time_value(*appears, context);
-  if (disappears) made.life.end = time_value(*disappears, context);
-  if (!(made.life.begin < made.life.end))
-    throw disappears->error(strf("it disappears at %.9g s and appears at %.9g s", made.life.end, made.life.begin),
-                            "a lifetime ends after it begins", "SP412");
+  made.life = read_life(p, context);
+  if (made.life == kAlways && !table) return std::nullopt;
   if (!table) return made;
   constexpr const char* kColumns[] = {"there", "material"};
   const TimedTable rows = timetable_from(*table, context, kColumns);

@@ -11,8 +11,8 @@ namespace suite {
 
 namespace {
 
-// Motions are told in the frame of the first scene.
-TrackPtr read_motion(const Params& p, const std::string& first) {
+// Motions and times are told in the frame and from second 0 of the first scene.
+MotionContext context_of(const std::string& first) {
   MotionContext context;
   const SceneOrigin at = read_scene_origin(first);
   if (at.origin.given)
@@ -21,7 +21,7 @@ TrackPtr read_motion(const Params& p, const std::string& first) {
   context.satellites = [](const std::string& path, const std::string& satellite) {
     return read_tle_of(path, satellite).elements;
   };
-  return track_from(p, context);
+  return context;
 }
 
 // The file of a prepared scene; a text is refused where it is named.
@@ -40,18 +40,19 @@ std::string prepared(const Params& p) {
 void read_scenes(const Params& root, Simulation& sim) {
   const auto list = root.find("scenes");
   if (!list) {
-    sim.scenes.push_back({prepared(root.at("scene")), {}, {}});
+    sim.scenes.push_back({prepared(root.at("scene")), {}, {}, kAlways});
   } else {
     if (root.has("scene")) throw list->error("'scene' and 'scenes' exclude each other");
     for (const Params& p : list->items()) {
       if (p.kind() == Params::Kind::scalar) {
-        sim.scenes.push_back({prepared(p), {}, {}});
+        sim.scenes.push_back({prepared(p), {}, {}, kAlways});
         continue;
       }
-      SimulationScene scene{prepared(p.at("file")), {}, {}};
+      SimulationScene scene{prepared(p.at("file")), {}, {}, kAlways};
       scene.placement = find_transform(p);
-      if (const auto motion = p.find("motion"))
-        scene.motion = read_motion(*motion, sim.scenes.empty() ? scene.path : sim.scenes.front().path);
+      const MotionContext context = context_of(sim.scenes.empty() ? scene.path : sim.scenes.front().path);
+      if (const auto motion = p.find("motion")) scene.motion = track_from(*motion, context);
+      scene.life = read_life(p, context);
       sim.scenes.push_back(std::move(scene));
     }
     if (sim.scenes.empty()) throw list->error("a simulation needs at least one scene");

@@ -46,6 +46,7 @@ struct SimulationScene {
   std::string path;
   std::optional<Affine3> placement;     // none: by its origin on the Earth
   std::shared_ptr<const Track> motion;  // null: at rest
+  TimeSpan life = kAlways;              // s: of the whole scene
 };
 
 struct Simulation {

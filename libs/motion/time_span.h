@@ -1,5 +1,6 @@
 // A span of simulation time.
 #pragma once
+#include <limits>
 
 namespace suite {
 
@@ -7,6 +8,9 @@ namespace suite {
 struct TimeSpan {
   double begin = 0, end = 0;
   bool contains(double t) const { return t >= begin && t <= end; }
+  bool operator==(const TimeSpan&) const = default;
 };
+inline constexpr double kEver = std::numeric_limits<double>::infinity();  // s
+inline constexpr TimeSpan kAlways{-kEver, kEver};
 
 }  // namespace suite

@@ -89,6 +89,7 @@ class Combiner {
       root.track = static_cast<uint32_t>(all_.tracks.size() + s.tracks.size());
       s.tracks.push_back({"'" + part.name + "'", part.motion});
     }
+    life(part, root);
     volumes(part, root);
     root.target = static_cast<uint32_t>(all_.groups.size());
     if (!part.motion) all_.bounds.grow(transformed(s.bounds, root.to_parent));
@@ -96,6 +97,17 @@ class Combiner {
       if constexpr (!std::is_same_v<Table, TagTable>) move_behind(all_.*Table::rows, s.*Table::rows);
     });
     all_.groups[0].placements.push_back(root);
+  }
+
+  void life(ScenePart& part, Placement& root) const {
+    Scene& s = part.scene;
+    if (part.life == kAlways) return;
+    if (!s.volumes.empty() || s.ambient != kNone)
+      throw Error("scene '" + part.name + "' has " + (s.volumes.empty() ? "an ambient medium" : "volumes") +
+                      ", which cannot appear or disappear",
+                  "let it be there always");
+    root.schedule = static_cast<uint32_t>(all_.schedules.size() + s.schedules.size());
+    s.schedules.push_back({"scene '" + part.name + "'", part.life, {}, {}, {}});
   }
 
   // Volumes follow their scene's placement.

@@ -83,7 +83,7 @@ struct DraftSchedule {
     bool there = true;
     Reference material;  // none: what the placement says
   };
-  TimeSpan life{-kEver, kEver};
+  TimeSpan life = kAlways;
   Timetable when;
   std::vector<Row> rows;
 };

@@ -25,7 +25,6 @@ struct FlatPlane;  // scene/curvature.h
 struct Mesh;
 
 inline constexpr uint32_t kNone = 0xffffffffu;
-inline constexpr double kEver = std::numeric_limits<double>::infinity();  // s
 
 // Faces of one `usemtl`/`g` run: a range of triangles with one material.
 struct Part {
@@ -89,7 +88,7 @@ struct Placement {
 // When a placement is there, and what it is made of. Times count from the scene's epoch.
 struct Schedule {
   std::string name;                // for messages
-  TimeSpan life{-kEver, kEver};    // s: there from `begin` until just before `end`
+  TimeSpan life = kAlways;         // s: there from `begin` until just before `end`
   Timetable when;                  // before its first row: there, of its own materials
   std::vector<uint8_t> there;      // per row: within its life
   std::vector<uint32_t> material;  // per row: replaces all of the target's materials; kNone = what the placement says

@@ -128,6 +128,35 @@ TEST(Combine, MotionsKeepTheirDates) {
   EXPECT_EQ(s.tracks[0].track->covered().begin, 30);
 }
 
+TEST(Combine, ScenesAreThereForTheirTime) {
+  std::vector<ScenePart> parts(2);
+  parts[0] = {"site", part(48, 9, "t"), {}, nullptr};
+  parts[1] = {"crane", part(0, 0, "t"), translation({10, 0, 0}), nullptr, {10, 20}};
+  const auto all = std::make_shared<const Scene>(combine_scenes(parts));
+  check_scene(*all, "all");
+  const auto seen = [&](TimeSpan window, double time) {
+    const Tracer tracer(all, std::nullopt, window);
+    Hit hit;
+    TraceStatistics statistics;
+    const Ray down{{10.3, 0.2, 5}, {0, 0, -1}, time};
+    tracer.nearest({&down, 1}, {&hit, 1}, false, statistics);
+    return hit.hit();
+  };
+  EXPECT_FALSE(seen({0, 9}, 5));
+  EXPECT_TRUE(seen({12, 13}, 12));
+  EXPECT_FALSE(seen({20, 21}, 20));
+  EXPECT_FALSE(seen({5, 15}, 9.9));
+  EXPECT_TRUE(seen({5, 15}, 10));
+  // Times of the whole, whose second 0 is the first scene's.
+  Scene later = *all;
+  later.epoch = "2024-05-01T10:01:00Z";
+  set_epoch(later, "2024-05-01T10:00:30Z");
+  EXPECT_EQ(later.schedules.at(0).life, (TimeSpan{40, 50}));
+  parts[1].scene.media.emplace_back();
+  parts[1].scene.ambient = 0;
+  EXPECT_THAT(message_of([&] { combine_scenes(parts); }), HasSubstr("an ambient medium, which cannot appear"));
+}
+
 TEST(Combine, WhatCannotBeRelatedIsRefused) {
   std::vector<ScenePart> parts(2);
   parts[0] = {"a", part(48, 9, "t"), {}, nullptr};
