@@ -1,64 +1,50 @@
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 
 #include "base/files.h"
+#include "formats/raster/images.h"
 #include "formats/raster/raster.h"
 
 namespace suite {
 
+namespace {
+
+// What is declared must be sound and fit what is there: as it is when uncompressed, else by what deflate can do at best
+// (1032 : 1), times eight for bits stored as bytes.
+void check(const ImageFacts& image, const Where& where, size_t max_pixels, size_t bytes) {
+  if (image.width < 1 || image.height < 1 || image.depth > 1 || image.channels < 1 || image.channels > 4096)
+    throw Error(where, strf("an image of %d x %d x %d with %d channels", image.width, image.height, image.depth,
+                            image.channels));
+  const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+  if (pixels > max_pixels) throw Error(where, strf("%zu pixels, at most %zu are accepted here", pixels, max_pixels));
+  const size_t stored_bytes = pixels * static_cast<size_t>(image.channels) * image.sample_bytes;
+  if (image.plain ? stored_bytes > bytes : stored_bytes / (8 * 1032) > bytes)
+    throw Error(where, strf("declares %d x %d pixels in %zu bytes", image.width, image.height, bytes),
+                "the file is damaged");
+}
+
+}  // namespace
+
 Raster read_raster(const std::string& path, size_t max_pixels) {
   const Where where{path, 0, 0, {}, -1};
   const size_t bytes = file_size(path);  // tells missing files and directories apart
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);  // values as stored, not multiplied by alpha
-  auto input = OIIO::ImageInput::open(path, &config);
-  if (!input) throw Error(where, "cannot be read as an image: " + OIIO::geterror(), "PNG and TIFF are expected");
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 4096)
-    throw Error(where,
-                strf("an image of %d x %d x %d with %d channels", spec.width, spec.height, spec.depth, spec.nchannels));
-  const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
-  if (pixels > max_pixels) throw Error(where, strf("%zu pixels, at most %zu are accepted here", pixels, max_pixels));
-  // What is declared must fit what is there: as it is when uncompressed, else by what deflate can do at best (1032 :
-  // 1), times eight for bits stored as bytes.
-  const size_t samples = pixels * static_cast<size_t>(spec.nchannels), stored_bytes = samples * spec.format.size();
-  const bool plain = spec.get_string_attribute("compression") == "none";
-  if (plain ? stored_bytes > bytes : stored_bytes / (8 * 1032) > bytes)
-    throw Error(where, strf("declares %d x %d pixels in %zu bytes", spec.width, spec.height, bytes),
-                "the file is damaged");
   Raster raster;
-  raster.width = static_cast<uint32_t>(spec.width);
-  raster.height = static_cast<uint32_t>(spec.height);
-  raster.channels = static_cast<uint32_t>(spec.nchannels);
-  raster.values.resize(samples);
-  raster.integer = !spec.format.is_floating_point();
-  const OIIO::TypeDesc stored = spec.format;
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, raster.values.data()))
-    throw Error(where, "cannot be read: " + input->geterror(), "the file is damaged");
+  ImageFacts image;
+  const ImageRead read = image_calls().read(path, image, [&] {
+    check(image, where, max_pixels, bytes);
+    raster.width = static_cast<uint32_t>(image.width);
+    raster.height = static_cast<uint32_t>(image.height);
+    raster.channels = static_cast<uint32_t>(image.channels);
+    raster.values.resize(size_t{raster.width} * raster.height * raster.channels);
+    return raster.values.data();
+  });
+  if (!read.opened) throw Error(where, "cannot be read as an image: " + read.problem, "PNG and TIFF are expected");
+  if (!read.problem.empty()) throw Error(where, "cannot be read: " + read.problem, "the file is damaged");
+  if (image.scale == 0)
+    throw Error(where, "pixels of type " + image.type, "8 or 16 bit integers, or floats, are expected");
+  raster.integer = image.integer;
   // The library maps unsigned integers to 0..1 and signed ones to -1..1; undo that.
-  double scale = 1;
-  switch (stored.basetype) {
-    case OIIO::TypeDesc::UINT8:
-      scale = 255;
-      break;
-    case OIIO::TypeDesc::INT8:
-      scale = 127;
-      break;
-    case OIIO::TypeDesc::UINT16:
-      scale = 65535;
-      break;
-    case OIIO::TypeDesc::INT16:
-      scale = 32767;
-      break;
-    case OIIO::TypeDesc::HALF:
-    case OIIO::TypeDesc::FLOAT:
-    case OIIO::TypeDesc::DOUBLE:
-      return raster;
-    default:
-      throw Error(where, strf("pixels of type %s", stored.c_str()), "8 or 16 bit integers, or floats, are expected");
-  }
-  for (float& v : raster.values) v = static_cast<float>(std::round(v * scale));
+  if (image.integer)
+    for (float& v : raster.values) v = static_cast<float>(std::round(v * image.scale));
   return raster;
 }
 

@@ -4,6 +4,11 @@
 
 namespace suite {
 
+void Light::sample_all(const LightReceiver& at, std::span<const std::array<double, 4>> u, double time,
+                       std::span<std::optional<LightSample>> drawn) const {
+  for (size_t k = 0; k < u.size(); ++k) drawn[k] = sample(at, u[k], time);
+}
+
 std::optional<LightMet> Light::met_outside(Dir, double) const { return std::nullopt; }
 
 std::optional<LightMet> Light::met_surface(const LightReceiver&, const Hit&, uint32_t, Dir, double, double,

@@ -74,6 +74,10 @@ class Light {
   // where no light comes from what was drawn.
   virtual std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
                                             double time) const = 0;
+  // Several samples from one place, one for each of u: as many calls of sample(), in less time where the light looks at
+  // the place as a whole first. drawn: as many as u.
+  virtual void sample_all(const LightReceiver& at, std::span<const std::array<double, 4>> u, double time,
+                          std::span<std::optional<LightSample>> drawn) const;
   // Of a ray that leaves the scene in a direction (far lights). Nothing where the ray does not meet it.
   virtual std::optional<LightMet> met_outside(Dir direction, double time) const;
   // Of a ray that left `from` and hit a surface of a material (kNone = none): lights that are neither far nor delta.

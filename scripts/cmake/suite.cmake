@@ -62,6 +62,17 @@ function(suite_format name)
   _suite_target(format_${name} "${A_SOURCES}" "${A_USES}" "${A_VENDOR}")
 endfunction()
 
+# suite_part(<name> FOR target SOURCES ... VENDOR ...): a shared library that the programs which link `target` load when
+# they need it (libs/base/late_part.h). It links vendors and nothing of ours, so that nothing of ours is there twice.
+function(suite_part name)
+  cmake_parse_arguments(A "" "FOR" "SOURCES;VENDOR" ${ARGN})
+  add_library(part_${name} MODULE ${A_SOURCES})
+  target_link_libraries(part_${name} PRIVATE suite_flags ${A_VENDOR})
+  set_target_properties(part_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/suite)
+  add_dependencies(${A_FOR} part_${name})
+  install(TARGETS part_${name} LIBRARY DESTINATION lib/suite)
+endfunction()
+
 # suite_app(<name> SOURCES ... USES ... VENDOR ...): an executable of apps/. All but main.cpp go into a library so that tests can link it.
 function(suite_app name)
   cmake_parse_arguments(A "" "" "SOURCES;USES;VENDOR" ${ARGN})

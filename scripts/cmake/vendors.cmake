@@ -34,6 +34,8 @@ pkg_check_modules(ERFA REQUIRED IMPORTED_TARGET erfa)
 suite_vendor(geographiclib PkgConfig::GEOGRAPHICLIB)
 suite_vendor(openimageio PkgConfig::OPENIMAGEIO)
 suite_vendor(erfa PkgConfig::ERFA)
+find_package(PNG REQUIRED)
+suite_vendor(png PNG::PNG)
 
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
 suite_vendor(hdf5 PkgConfig::HDF5)

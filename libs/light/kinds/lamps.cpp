@@ -286,6 +286,21 @@ std::optional<LightSample> Lamps::sample(const LightReceiver& at, const std::arr
   return lamp;
 }
 
+void Lamps::sample_all(const LightReceiver& at, std::span<const std::array<double, 4>> u, double time,
+                       std::span<std::optional<LightSample>> drawn) const {
+  // Each of the samples may be of another image.
+  if (!core_->tree || core_->images || u.size() > LightNature::kMostDraws) return Light::sample_all(at, u, time, drawn);
+  std::array<double, LightNature::kMostDraws> numbers;
+  std::array<std::optional<LightTree::Choice>, LightNature::kMostDraws> chosen;
+  for (size_t k = 0; k < u.size(); ++k) numbers[k] = u[k][0];
+  core_->tree->sample(at, std::span(numbers).first(u.size()), chosen);
+  for (size_t k = 0; k < u.size(); ++k) {
+    drawn[k].reset();
+    if (chosen[k])
+      drawn[k] = sample_here(chosen[k]->light, chosen[k]->probability, at.position, {u[k][1], u[k][2]}, time);
+  }
+}
+
 std::optional<LightSample> Lamps::sample_member(size_t member, double probability, const LightReceiver& at,
                                                 const std::array<double, 4>& u, double time) const {
   LampImages::Image drawn{{}, 1};

@@ -67,6 +67,8 @@ class Lamps final : public Light {
   // does not repeat itself.
   std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
                                     double time) const override;
+  void sample_all(const LightReceiver& at, std::span<const std::array<double, 4>> u, double time,
+                  std::span<std::optional<LightSample>> drawn) const override;
   std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,
                                       double distance, double cosine, double time) const override;
   size_t members() const override { return size(); }

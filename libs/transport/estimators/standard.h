@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 
 #include "transport/options.h"
@@ -58,12 +59,18 @@ struct StandardEstimator {
       const double y = x + k * (1.0 / LightNature::kMostDraws);
       return y >= 1 ? y - 1 : y;
     };
-    for (int k = 0; k < draws; ++k) {
-      const std::array<double, 4> v =
-          draws == 1 ? u : std::array<double, 4>{(k + u[0]) / draws, turned(u[1], k), turned(u[2], k), turned(u[3], k)};
-      if (const auto sample = light.light->sample(at, v, kernel.time(node)))
-        kernel.propose(node, light, *sample, draws);
+    if (draws == 1) {
+      if (const auto sample = light.light->sample(at, u, kernel.time(node))) kernel.propose(node, light, *sample, 1);
+      return;
     }
+    std::array<std::array<double, 4>, LightNature::kMostDraws> v;
+    std::array<std::optional<LightSample>, LightNature::kMostDraws> drawn;
+    const auto count = static_cast<size_t>(draws);
+    for (int k = 0; k < draws; ++k)
+      v[static_cast<size_t>(k)] = {(k + u[0]) / draws, turned(u[1], k), turned(u[2], k), turned(u[3], k)};
+    light.light->sample_all(at, std::span(v).first(count), kernel.time(node), std::span(drawn).first(count));
+    for (const auto& sample : std::span(drawn).first(count))
+      if (sample) kernel.propose(node, light, *sample, draws);
   }
 };
 

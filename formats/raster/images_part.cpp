@@ -1,0 +1,75 @@
+// The part `images`: all calls of OpenImageIO.
+#include <OpenImageIO/imageio.h>
+
+#include "base/late_part.h"
+#include "formats/raster/images.h"
+
+namespace suite {
+
+namespace {
+
+double scale_of(const OIIO::TypeDesc& stored) {
+  switch (stored.basetype) {
+    case OIIO::TypeDesc::UINT8:
+      return 255;
+    case OIIO::TypeDesc::INT8:
+      return 127;
+    case OIIO::TypeDesc::UINT16:
+      return 65535;
+    case OIIO::TypeDesc::INT16:
+      return 32767;
+    case OIIO::TypeDesc::HALF:
+    case OIIO::TypeDesc::FLOAT:
+    case OIIO::TypeDesc::DOUBLE:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+std::string told(const std::string& problem) { return problem.empty() ? "unknown reason" : problem; }
+
+ImageRead read(const std::string& path, ImageFacts& facts, const std::function<float*()>& room) {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);  // values as stored, not multiplied by alpha
+  const auto input = OIIO::ImageInput::open(path, &config);
+  if (!input) return {false, OIIO::geterror()};
+  const OIIO::ImageSpec& spec = input->spec();
+  facts = {spec.width,
+           spec.height,
+           spec.depth,
+           spec.nchannels,
+           spec.format.size(),
+           spec.get_string_attribute("compression") == "none",
+           !spec.format.is_floating_point(),
+           scale_of(spec.format),
+           spec.format.c_str()};
+  if (!input->read_image(0, 0, 0, facts.channels, OIIO::TypeDesc::FLOAT, room()))
+    return {true, told(input->geterror())};
+  return {true, {}};
+}
+
+std::string write(const std::string& path, const ImageToWrite& image, const std::function<const float*(int)>& row) {
+  const auto out = OIIO::ImageOutput::create(image.format);
+  if (!out) return told(OIIO::geterror());
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.alpha_channel = -1;
+  for (const ImageAttribute& a : image.attributes)
+    std::visit([&](const auto& value) { spec.attribute(a.name, value); }, a.value);
+  bool fine = out->open(path, spec);
+  for (int y = 0; fine && y < image.height; ++y) fine = out->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, row(y));
+  return fine && out->close() ? "" : told(out->geterror());
+}
+
+}  // namespace
+
+SUITE_PART_VERSION;
+extern "C" {
+extern const ImageCalls suite_image_calls;
+const ImageCalls suite_image_calls{read, write};
+}
+
+}  // namespace suite
