@@ -30,11 +30,12 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window,
-               std::shared_ptr<const HitFilter> filter)
-    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter)), window) {}
+               std::shared_ptr<const HitFilter> filter, double keep)
+    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), keep), window) {}
 
 Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
     : world_(std::move(world)), bounds_(world_->bounds), has_holes_(world_->filter != nullptr) {
+  if (world_->flat.groups.empty()) plain_ = world_->flat.objects;
   if (world_->flat.fixed == world_->flat.objects.size()) return;
   const FlushDenormals flush;
   moving_ = std::make_unique<MovingPart>(*world_, window);
@@ -43,7 +44,6 @@ Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
 
 Tracer::~Tracer() = default;
 const Scene& Tracer::scene() const { return *world_->scene; }
-std::span<const TracedObject> Tracer::objects() const { return world_->flat.objects; }
 const std::optional<Periodic>& Tracer::periodic() const { return world_->periodic; }
 std::optional<TimeSpan> Tracer::window() const { return moving_ ? std::optional(moving_->window) : std::nullopt; }
 size_t Tracer::triangles() const { return world_->triangles; }
@@ -60,10 +60,6 @@ std::string Tracer::engine() {
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_MAJOR)),
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_MINOR)),
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_PATCH)));
-}
-
-Affine3 Tracer::to_world(const TracedObject& o, double time) const {
-  return world_->to_world(o, moving_ ? std::clamp(time, moving_->window.begin, moving_->window.end) : time);
 }
 
 namespace {
@@ -212,7 +208,7 @@ void Tracer::nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, T
   for (const uint32_t object : world_->unbounded)
     for (uint32_t i = 0; i < rays.size(); ++i) {
       tracer.unbounded(object, i, &hits[i]);
-      if (hits[i].object != object) continue;
+      if (hits[i].object != world_->flat.number(object)) continue;
       Vec3& p = hits[i].position;
       p.x -= std::floor((p.x - cell.low.x) / cell.size.x) * cell.size.x;
       p.y -= std::floor((p.y - cell.low.y) / cell.size.y) * cell.size.y;
