@@ -73,24 +73,21 @@ struct Itinerary {
   uint32_t count = 0, next = 0;
   bool more = false;
 
-  void plan(const TileBvh& bvh, const Ray& ray, double t_max) {
+  using Open = std::vector<TileBvh::Entry>;
+  void plan(const TileBvh& bvh, const Ray& ray, double t_max, Open& open) {
     count = next = 0;
     more = false;
-    bvh.walk(ray, t_max, [&](uint32_t index, double at) { note(index, at, t_max); });
+    bvh.walk(ray, t_max, open, [&](uint32_t index, double at) { note(index, at, t_max); });
   }
 
   // The next tiles of a ray that crosses more than fit: all are listed again and those it has been through, which are
   // the nearest, are skipped.
-  void go_on(const TileBvh& bvh, const Ray& ray, double t_max) {
-    const double last = enter[count - 1];
-    std::vector<uint32_t> at_last;  // tiles entered exactly there have been visited
-    for (uint32_t i = 0; i < count; ++i)
-      if (enter[i] == last) at_last.push_back(tile[i]);
+  void go_on(const TileBvh& bvh, const Ray& ray, double t_max, Open& open) {
+    const std::pair last{enter[count - 1], tile[count - 1]};
     count = next = 0;
     more = false;
-    bvh.walk(ray, t_max, [&](uint32_t index, double at) {
-      if (at < last || (at == last && std::find(at_last.begin(), at_last.end(), index) != at_last.end())) return;
-      note(index, at, t_max);
+    bvh.walk(ray, t_max, open, [&](uint32_t index, double at) {
+      if (last < std::pair{at, index}) note(index, at, t_max);
     });
   }
 
@@ -126,13 +123,14 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
   }
   thread_local std::vector<Itinerary> ways;
   thread_local std::vector<std::pair<uint32_t, uint32_t>> waiting;  // (tile, ray)
+  thread_local Itinerary::Open open;
   ways.resize(std::max(ways.size(), rays.size()));
-  for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i]);
+  for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i], open);
   for (;;) {
     waiting.clear();
     for (uint32_t i = 0; i < rays.size(); ++i) {
       Itinerary& way = ways[i];
-      if (way.next == way.count && way.more && reach[i] > 0) way.go_on(bvh, rays[i], reach[i]);
+      if (way.next == way.count && way.more && reach[i] > 0) way.go_on(bvh, rays[i], reach[i], open);
       if (way.next < way.count && way.enter[way.next] <= reach[i])
         waiting.emplace_back(way.tile[way.next], i);
       else
