@@ -122,6 +122,7 @@ struct PlacedSet {
   struct DeepInverse {
     Vec3 base;
     double linear[9];
+    uint32_t group, number;  // the shared group, and the number of its first object, counted as the frame does
   };
   const World* world = nullptr;
   const Assembly* frame = nullptr;
@@ -139,6 +140,8 @@ struct PlacedSet {
   void attach(RTCScene scene, unsigned id);
   // Where an object's floats have their zero, in its own frame.
   Vec3 zero_of(uint32_t object) const;
+  // The number of an object as its frame counts.
+  uint32_t number_of(uint32_t object) const;
 };
 // Embree's callbacks for sets of groups.
 void intersect_groups(const RTCIntersectFunctionNArguments* args);
@@ -233,8 +236,7 @@ struct World {
   }
   // The number of that instance.
   uint32_t number(const TraceContext& context) const {
-    const uint32_t object = context.set->objects[context.prim];
-    return context.outer ? context.first + context.set->frame->objects[object].instance : flat.number(object);
+    return context.first + context.set->number_of(context.set->objects[context.prim]);
   }
   RTCScene mesh_scene(uint32_t mesh) const;        // built on the first call
   Affine3 pose(uint32_t node, double time) const;  // exact; while it is there

@@ -178,6 +178,10 @@ Vec3 PlacedSet::zero_of(uint32_t object) const {
   return group != kNone ? world->groups[group].origin : mesh != kNone ? world->scene->meshes[mesh].origin : Vec3{};
 }
 
+uint32_t PlacedSet::number_of(uint32_t object) const {
+  return frame == &world->flat ? world->flat.number(object) : frame->objects[object].instance;
+}
+
 void PlacedSet::fill_inverse() {
   if (groups)
     deep.resize(objects.size());
@@ -192,6 +196,7 @@ void PlacedSet::fill_inverse() {
       const Vec3 base = place.point(zero_of(objects[k]));
       if (groups) {
         deep[k].base = base;
+        deep[k].group = frame->shared[objects[k]], deep[k].number = number_of(objects[k]);
         std::copy(back.a.begin(), back.a.end(), deep[k].linear);
       } else {
         inverse[k].base = base;

@@ -13,57 +13,61 @@ namespace suite {
 
 namespace {
 
+// A placement of a shared group.
+struct Target {
+  const GroupEntry& group;
+  uint32_t number;  // of its first object, within the frame
+
+  static Target of(const PlacedSet& set, unsigned prim) {
+    if (!set.deep.empty()) return {set.world->groups[set.deep[prim].group], set.deep[prim].number};
+    const uint32_t object = set.objects[prim];
+    return {set.world->groups[set.frame->shared[object]], set.number_of(object)};
+  }
+  // Takes the unrounded ray of a lane into it; false when it does not get there.
+  bool enter(const PlacedSet& set, const TraceContext& outer, unsigned lane, double near, double far,
+             LocalRay& in) const {
+    const Ray& from = outer.ray(lane);
+    const double advance = outer.packet->advance[lane];
+    near += advance, far += advance;
+    if (set.partly && !set.moving->there(set.objects[outer.prim], from.time)) return false;
+    if (!set.deep.empty()) {
+      const PlacedSet::DeepInverse& inverse = set.deep[outer.prim];
+      return go_in(Inward<double>{inverse.base, inverse.linear}, group.room, from, near, far, in);
+    }
+    const PlacedObject& o = set.frame->objects[set.objects[outer.prim]];
+    const Affine3 to_world = set.moving->to_world(o, from.time), back = to_world.inverse();
+    return go_in(Inward<double>{to_world.point(group.origin), back.a.data()}, group.room, from, near, far, in);
+  }
+};
+
 // A ray inside a shared group, and the context in which the group's own acceleration structure is asked.
 struct Inside {
-  const GroupEntry& group;
-  LocalRay in;
   Ray ray;
   Packet packet;
   TraceContext context;
 
-  explicit Inside(const GroupEntry& g) : group(g) {}
-
-  // False when the ray of a lane does not get there.
-  bool enter(const PlacedSet& set, const TraceContext& outer, unsigned lane, double near, double far) {
+  Inside(const Target& target, const TraceContext& outer, unsigned lane, LocalRay& in) {
     const Ray& from = outer.ray(lane);
-    const uint32_t object = set.objects[outer.prim];
-    if (set.partly && !set.moving->there(object, from.time)) return false;
-    const double advance = outer.packet->advance[lane];
-    near += advance, far += advance;
-    if (!set.deep.empty()) {
-      const PlacedSet::DeepInverse& inverse = set.deep[outer.prim];
-      if (!go_in(Inward<double>{inverse.base, inverse.linear}, group.room, from, near, far, in)) return false;
-    } else {
-      const Affine3 to_world = set.moving->to_world(set.frame->objects[object], from.time), back = to_world.inverse();
-      const Inward<double> inward{to_world.point(group.origin), back.a.data()};
-      if (!go_in(inward, group.room, from, near, far, in)) return false;
-    }
     in.id = 0;
-    ray = {in.origin + group.origin, in.direction, from.time, from.draw};
+    ray = {in.origin + target.group.origin, in.direction, from.time, from.draw};
     packet.ray[0] = 0, packet.advance[0] = 0, packet.size = 1;
     static_cast<RTCIntersectContext&>(context) = outer;
     context.rays = &ray, context.packet = &packet;
     context.world = outer.world, context.moving = outer.moving, context.gathered = outer.gathered;
     context.outer = &outer;
-    context.first = outer.world->number(outer);
+    context.first = outer.first + target.number;
     context.enu = &outer.enu_ray(lane);
     context.start = outer.start + in.enter / outer.stretch;
     context.stretch = outer.stretch * in.stretch;
-    return true;
   }
-
   // What a hit in the group's acceleration structure is.
-  TraceContext::Inside met(const RTCHit& hit) const {
+  TraceContext::Inside met(const GroupEntry& group, const RTCHit& hit) const {
     const PlacedSet& set = *group.sets[hit.geomID];
     if (set.groups) return context.inside[0];
     const PlacedObject& o = set.frame->objects[set.objects[hit.instID[0]]];
     return {context.first + o.instance, o.mesh};
   }
 };
-
-const GroupEntry& group_of(const PlacedSet& set, unsigned prim) {
-  return set.world->groups[set.frame->shared[set.objects[prim]]];
-}
 
 }  // namespace
 
@@ -73,18 +77,21 @@ void intersect_groups(const RTCIntersectFunctionNArguments* args) {
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* found = RTCRayHitN_HitN(args->rayhit, args->N);
   context->set = &set, context->prim = args->primID;
+  const Target target = Target::of(set, args->primID);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(outer, args->N, i);
-    Inside inside(group_of(set, args->primID));
-    if (!inside.enter(set, *context, lane, RTCRayN_tnear(outer, args->N, i), RTCRayN_tfar(outer, args->N, i))) continue;
+    LocalRay in;
+    if (!target.enter(set, *context, lane, RTCRayN_tnear(outer, args->N, i), RTCRayN_tfar(outer, args->N, i), in))
+      continue;
+    Inside inside(target, *context, lane, in);
     alignas(16) RTCRayHit one;
-    load(inside.in, one.ray);
+    load(in, one.ray);
     one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(inside.group.handle.scene, &inside.context, &one);
+    rtcIntersect1(target.group.handle.scene, &inside.context, &one);
     if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-    const double t = inside.in.enter + double{one.ray.tfar} / inside.in.stretch;
-    context->inside[lane] = inside.met(one.hit);
+    const double t = in.enter + double{one.ray.tfar} / in.stretch;
+    context->inside[lane] = inside.met(target.group, one.hit);
     RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[lane]);
     RTCHitN_u(found, args->N, i) = one.hit.u;
     RTCHitN_v(found, args->N, i) = one.hit.v;
@@ -99,15 +106,18 @@ void occlude_groups(const RTCOccludedFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
   auto* context = static_cast<TraceContext*>(args->context);
   context->set = &set, context->prim = args->primID;
+  const Target target = Target::of(set, args->primID);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    Inside inside(group_of(set, args->primID));
-    if (!inside.enter(set, *context, RTCRayN_id(args->ray, args->N, i), RTCRayN_tnear(args->ray, args->N, i),
-                      RTCRayN_tfar(args->ray, args->N, i)))
+    const unsigned lane = RTCRayN_id(args->ray, args->N, i);
+    LocalRay in;
+    if (!target.enter(set, *context, lane, RTCRayN_tnear(args->ray, args->N, i), RTCRayN_tfar(args->ray, args->N, i),
+                      in))
       continue;
+    Inside inside(target, *context, lane, in);
     alignas(16) RTCRay one;
-    load(inside.in, one);
-    rtcOccluded1(inside.group.handle.scene, &inside.context, &one);
+    load(in, one);
+    rtcOccluded1(target.group.handle.scene, &inside.context, &one);
     if (one.tfar < 0) RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
   }
   context->set = nullptr;
