@@ -1,6 +1,7 @@
 #include "trace/flatten.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "base/memory.h"
 #include "scene/presence.h"
@@ -105,6 +106,8 @@ Affine3 SharedGroup::placed(const Affine3& group, size_t object) const {
 }
 
 void Flattened::number_objects() {
+  static std::atomic<uint64_t> editions{0};
+  edition_ = ++editions;
   first.clear();
   numbers_ = static_cast<uint32_t>(objects.size());
   if (shared.empty()) return;
@@ -147,6 +150,17 @@ std::optional<Way> Flattened::way_to(uint32_t number) const {
   }
   if (at.number != number) return std::nullopt;
   return at;
+}
+
+const Way& Flattened::way_again(uint32_t number) const {
+  thread_local Way kept;
+  thread_local uint64_t edition = 0;  // of which numbering `kept` is
+  if (edition == edition_ && kept.number == number) return kept;
+  const std::optional<Way> way = way_to(number);
+  SUITE_CHECK(way.has_value());
+  kept = *way;
+  edition = edition_;
+  return kept;
 }
 
 Flattened flatten(const Scene& scene, double keep) {

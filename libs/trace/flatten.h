@@ -70,9 +70,13 @@ struct Flattened : Assembly {  // objects: those always at rest first, then thos
   void step(Way& way, const SharedGroup& group, uint32_t object) const;
   // All the way to an object of a number; nothing when the number stands for nothing.
   std::optional<Way> way_to(uint32_t number) const;
+  // The same of a number that stands for something. Whoever looks at a hit asks several times: the thread keeps the
+  // last one. Valid until the thread's next call.
+  const Way& way_again(uint32_t number) const;
 
  private:
   uint32_t numbers_ = 0;
+  uint64_t edition_ = 0;
 };
 
 // Depth-first in the order of the groups. The scene must outlive the result. keep: as share_groups has it. Error when

@@ -58,4 +58,16 @@ inline void load(const LocalRay& r, RTCRay& q) {
   q.tnear = 0, q.tfar = static_cast<float>(r.reach), q.time = 0, q.mask = 0xffffffffu, q.id = r.id, q.flags = 0;
 }
 
+// What ray i of a callback has met at t, to Embree.
+inline void hand_out(const RTCIntersectFunctionNArguments* args, unsigned i, double t, float u, float v,
+                     unsigned triangle) {
+  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
+  RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, i) = static_cast<float>(t);
+  RTCHitN_u(hit, args->N, i) = u;
+  RTCHitN_v(hit, args->N, i) = v;
+  RTCHitN_primID(hit, args->N, i) = triangle;
+  RTCHitN_geomID(hit, args->N, i) = args->geomID;
+  RTCHitN_instID(hit, args->N, i, 0) = args->primID;
+}
+
 }  // namespace suite

@@ -79,24 +79,13 @@ void World::kinds(const std::function<void(const TracedObject&)>& visit) const {
   }
 }
 
-TracedObject Tracer::nested_object(uint32_t number) const {
-  const auto way = world_->flat.way_to(number);
-  SUITE_CHECK(way.has_value());
-  return way->object;
-}
-
-Affine3 Tracer::nested_place(uint32_t number) const {
-  const auto way = world_->flat.way_to(number);
-  SUITE_CHECK(way.has_value());
-  return way->place;
-}
+TracedObject Tracer::nested_object(uint32_t number) const { return world_->flat.way_again(number).object; }
+Affine3 Tracer::nested_place(uint32_t number) const { return world_->flat.way_again(number).place; }
 
 Affine3 Tracer::to_world(uint32_t number, double time) const {
   if (moving_) time = std::clamp(time, moving_->window.begin, moving_->window.end);
-  if (number < plain_.size()) return world_->to_world(plain_[number], time);
-  const auto way = world_->flat.way_to(number);
-  SUITE_CHECK(way.has_value());
-  return world_->to_world(*way, time);
+  return number < plain_.size() ? world_->to_world(plain_[number], time)
+                                : world_->to_world(world_->flat.way_again(number), time);
 }
 
 size_t Tracer::object_count() const { return world_->flat.numbers(); }
@@ -112,7 +101,7 @@ void Tracer::each(const std::string& what, const std::function<bool(const Traced
     if (const uint32_t group = flat.shared_of(i); group != kNone) count += search.inside(group, flat.objects[i]);
   if (count > kMostVisited)
     throw Error(strf("%s are %.4g copies in groups, at most 2^24 can be looked at one by one", what.c_str(), count),
-                "place fewer copies");
+                "name fewer of them, or place fewer copies");
   for (uint32_t i = 0; i < flat.objects.size(); ++i) {
     const TracedObject& o = flat.objects[i];
     if (const uint32_t group = flat.shared_of(i); group != kNone)

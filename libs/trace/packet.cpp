@@ -127,7 +127,7 @@ void PacketTracer::finish(std::span<Hit> hits) {
     if (f.mesh != kNone)
       finish_triangle(f, rays_[r], hits[r]);
     else
-      finish_exact(f.tile->scale, rays_[r], *world_.flat.way_to(f.number), reach_[r], hits[r]);
+      finish_exact(f.tile->scale, rays_[r], world_.flat.way_again(f.number), reach_[r], hits[r]);
   }
 }
 
@@ -144,11 +144,11 @@ void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>&
     Hit& hit = hits.emplace_back();
     const uint32_t object = world_.flat.with_number(g.number);
     if (g.exact) {
-      const Way way = *world_.flat.way_to(g.number);
+      const Way way = world_.flat.way_again(g.number);
       place_exact(tile.scale, ray, way, seen_at(way, ray.time), *g.exact, hit);
     } else {
       const bool direct = std::find(tile.direct.begin(), tile.direct.end(), object) != tile.direct.end();
-      const uint32_t mesh = world_.flat.way_to(g.number)->object.mesh;
+      const uint32_t mesh = world_.flat.way_again(g.number).object.mesh;
       finish_triangle({&tile, object, g.number, mesh, g.triangle, g.u, g.v, direct}, ray, hit);
     }
   }
@@ -229,7 +229,7 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
     reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile->scale, 1e-6});
   } else {
     const Affine3 to_world = o.mesh != kNone ? world_.to_world(o, exact_time(ray))
-                                             : world_.to_world(*world_.flat.way_to(number), exact_time(ray));
+                                             : world_.to_world(world_.flat.way_again(number), exact_time(ray));
     hit.position = to_world.point(m.origin + p);
     hit.normal = normalized(to_world.normal(across));
     // The winding turns round under a mirror; the front side stays the front side.

@@ -67,7 +67,6 @@ bool enter(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Tra
 void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet& set, uint32_t mesh) {
   auto* context = static_cast<TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* found = RTCRayHitN_HitN(args->rayhit, args->N);
   const MeshEntry& entry = set.world->meshes[mesh];
   context->set = &set, context->prim = args->primID;
   for (unsigned i = 0; i < args->N; ++i) {
@@ -79,12 +78,7 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
     rtcIntersect1(entry.handle.scene, context, &one);
     if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
     const double t = in.enter + double{one.ray.tfar} / in.stretch;
-    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[in.id]);
-    RTCHitN_u(found, args->N, i) = one.hit.u;
-    RTCHitN_v(found, args->N, i) = one.hit.v;
-    RTCHitN_primID(found, args->N, i) = one.hit.primID;
-    RTCHitN_geomID(found, args->N, i) = args->geomID;
-    RTCHitN_instID(found, args->N, i, 0) = args->primID;
+    hand_out(args, i, t - context->packet->advance[in.id], one.hit.u, one.hit.v, one.hit.primID);
   }
   context->set = nullptr;
 }
@@ -92,7 +86,6 @@ void intersect_mesh(const RTCIntersectFunctionNArguments* args, const PlacedSet&
 void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet& set) {
   auto* context = static_cast<TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
   context->set = &set, context->prim = args->primID;
   const ExactSurface surface(set, *context);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -104,12 +97,7 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
       context->gathered->push_back({set.world->number(*context), 0, 0, 0, found});
       context->gathered->back().exact->t = surface.from(lane) + found->t / context->stretch;
     }
-    if (!found) continue;
-    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(found->t);
-    RTCHitN_u(hit, args->N, i) = RTCHitN_v(hit, args->N, i) = 0;
-    RTCHitN_primID(hit, args->N, i) = 0;
-    RTCHitN_geomID(hit, args->N, i) = args->geomID;
-    RTCHitN_instID(hit, args->N, i, 0) = args->primID;
+    if (found) hand_out(args, i, found->t, 0, 0, 0);
   }
   context->set = nullptr;
 }

@@ -75,7 +75,6 @@ void intersect_groups(const RTCIntersectFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
   auto* context = static_cast<TraceContext*>(args->context);
   RTCRayN* outer = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* found = RTCRayHitN_HitN(args->rayhit, args->N);
   context->set = &set, context->prim = args->primID;
   const Target target = Target::of(set, args->primID);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -92,12 +91,7 @@ void intersect_groups(const RTCIntersectFunctionNArguments* args) {
     if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
     const double t = in.enter + double{one.ray.tfar} / in.stretch;
     context->inside[lane] = inside.met(target.group, one.hit);
-    RTCRayN_tfar(outer, args->N, i) = static_cast<float>(t - context->packet->advance[lane]);
-    RTCHitN_u(found, args->N, i) = one.hit.u;
-    RTCHitN_v(found, args->N, i) = one.hit.v;
-    RTCHitN_primID(found, args->N, i) = one.hit.primID;
-    RTCHitN_geomID(found, args->N, i) = args->geomID;
-    RTCHitN_instID(found, args->N, i, 0) = args->primID;
+    hand_out(args, i, t - context->packet->advance[lane], one.hit.u, one.hit.v, one.hit.primID);
   }
   context->set = nullptr;
 }

@@ -11,8 +11,8 @@
 
 #include "math/sampling.h"
 #include "scene/scene.h"
-#include "support/cpu_clock.h"
 #include "tests/bench/memory.h"
+#include "tests/bench/traced.h"
 #include "trace/tracer.h"
 
 using namespace suite;
@@ -94,25 +94,6 @@ std::vector<Ray> rays_of(const Box3& box, bool coherent) {
   return rays;
 }
 
-struct Seen {
-  double seconds = 0, mean = 0;
-  size_t hits = 0;
-};
-Seen trace(const Tracer& tracer, std::span<const Ray> rays, bool coherent) {
-  const FlushDenormals flush;
-  Seen seen;
-  TraceStatistics statistics;
-  std::vector<Hit> hits(64);
-  const double start = test::cpu_seconds();
-  for (size_t i = 0; i < rays.size(); i += 64) {
-    tracer.nearest(rays.subspan(i, 64), hits, coherent, statistics);
-    for (const Hit& h : hits)
-      if (h.hit()) ++seen.hits, seen.mean += h.distance;
-  }
-  seen.seconds = test::cpu_seconds() - start;
-  return seen;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -136,10 +117,10 @@ int main(int argc, char** argv) try {
   for (const bool coherent : {true, false}) {
     const std::vector<Ray> rays = rays_of(tracers[3]->bounds(), coherent);
     std::map<size_t, std::vector<double>> seconds;
-    std::map<size_t, Seen> seen;
+    std::map<size_t, bench::Seen> seen;
     for (int round = 0; round < rounds; ++round)
       for (const auto& [levels, tracer] : tracers)
-        seconds[levels].push_back((seen[levels] = trace(*tracer, rays, coherent)).seconds);
+        seconds[levels].push_back((seen[levels] = bench::trace(*tracer, rays, coherent)).seconds);
     for (auto& [levels, all] : seconds) {
       std::sort(all.begin(), all.end());
       const double median = all[all.size() / 2];
@@ -148,7 +129,7 @@ int main(int argc, char** argv) try {
           "%s, %zu levels: %.3f us a ray (%.3f to %.3f), %zu hits, mean distance %.6f m%s\n",
           coherent ? "coherent" : "incoherent", levels, 1e6 * median / static_cast<double>(rays.size()),
           1e6 * all.front() / static_cast<double>(rays.size()), 1e6 * all.back() / static_cast<double>(rays.size()),
-          seen[levels].hits, seen[levels].mean / static_cast<double>(seen[levels].hits),
+          seen[levels].hits, seen[levels].distance / static_cast<double>(seen[levels].hits),
           less != seconds.end() ? strf("; %.2f times one level less", median / less->second[all.size() / 2]).c_str()
                                 : "");
     }
