@@ -126,6 +126,8 @@ void PacketTracer::finish(std::span<Hit> hits) {
     if (f.object == kNone) continue;
     if (f.mesh != kNone)
       finish_triangle(f, rays_[r], hits[r]);
+    else if (world_.flat.objects[f.object].primitive != kNone)
+      finish_exact(f.tile->scale, rays_[r], world_.flat.way(f.object), reach_[r], hits[r]);
     else
       finish_exact(f.tile->scale, rays_[r], world_.flat.way_again(f.number), reach_[r], hits[r]);
   }

@@ -45,8 +45,10 @@ struct ExactSurface {
     const Ray& ray = context.enu_ray(lane);
     if (set.partly && !set.moving->there(object(), ray.time)) return std::nullopt;
     const bool moves = context.moving && way.object.node != kNone;
-    const Affine3 to_world = moves ? context.moving->nodes[way.object.node].at(ray.time) * way.place : way.place;
-    auto found = set.world->meet(ray, asked, to_world, from(lane), near / context.stretch, far / context.stretch);
+    std::optional<Affine3> moved;
+    if (moves) moved = context.moving->nodes[way.object.node].at(ray.time) * way.place;
+    auto found = set.world->meet(ray, asked, moved ? *moved : way.place, from(lane), near / context.stretch,
+                                 far / context.stretch);
     if (found) found->t *= context.stretch;
     return found;
   }
