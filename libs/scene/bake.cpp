@@ -331,23 +331,28 @@ TimeSpan Baker::time_window() {
   return common;
 }
 
-// Copies of copies multiply: a short text can ask for more than any memory holds. Filed at the innermost group that is
+// Copies of copies multiply: a short text can ask for more than can be numbered. Filed at the innermost group that is
 // too large by itself.
 void Baker::count_unfolded(const std::vector<size_t>& order) {
-  const std::vector<double> counts = unfolded(scene_.groups);
-  if (counts.empty() || counts.front() <= kMostUnfolded) return;
+  if (scene_.groups.empty()) return;
+  const Sharing sharing = share_groups(scene_);
+  const std::vector<double>& counts = sharing.instances;
+  const bool few = counts.front() <= kMostInstances;
+  if (few && sharing.kept <= kMostKept) return;
   size_t at = 0;
-  for (bool deeper = true; deeper;) {
+  for (bool deeper = !few; deeper;) {
     deeper = false;
     for (const Placement& p : scene_.groups[at].placements)
-      if (p.kind == TargetKind::group && counts[p.target] > kMostUnfolded) {
+      if (p.kind == TargetKind::group && counts[p.target] > kMostInstances) {
         at = p.target, deeper = true;
         break;
       }
   }
   const DraftGroup& group = draft_.groups[order[at]];
   add("SP411", group.placements.empty() ? group.where : group.placements.front().where,
-      strf("'%s' unfolds into %.3g placements, the scene into %.3g", group.name.c_str(), counts[at], counts.front()));
+      few ? strf("the scene keeps %.3g placements, however much its groups share", sharing.kept)
+          : strf("'%s' unfolds into %.3g instances, the scene into %.3g", group.name.c_str(), counts[at],
+                 counts.front()));
 }
 
 void Baker::groups() {

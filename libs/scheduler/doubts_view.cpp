@@ -77,7 +77,7 @@ std::optional<Doubt> under_ground(const Tracer& tracer, const SourceSpecs& writt
   if (!over.behind) return std::nullopt;
   const Vertical below = look(tracer, at, -1, ray.ray.time);
   if (below.met && !below.behind) return std::nullopt;
-  const uint32_t material = MaterialLookup(scene).at(tracer.objects()[over.hit.object], over.hit);
+  const uint32_t material = MaterialLookup(scene).at(tracer.object(over.hit.object), over.hit);
   if (material != kNone && !scene.materials[material].surface.model.empty() &&
       !bake(scene.materials[material].surface, state)->opaque())
     return std::nullopt;

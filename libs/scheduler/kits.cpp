@@ -8,9 +8,9 @@ namespace suite {
 namespace {
 
 // Materials that geometry or the Earth can show; the others are never baked.
-std::vector<bool> shown_materials(const Scene& scene, const Tracer& tracer, const SourceSpecs& sources) {
-  std::vector<bool> used = used_materials(scene, tracer.objects());
-  if (sources.earth) used[earth_material(*sources.earth, scene)] = true;
+std::vector<bool> shown_materials(const Tracer& tracer, const SourceSpecs& sources) {
+  std::vector<bool> used = used_materials(tracer);
+  if (sources.earth) used[earth_material(*sources.earth, tracer.scene())] = true;
   return used;
 }
 
@@ -35,8 +35,8 @@ Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const 
   Kit kit;
   kit.optics = cache_.get<Optics>({Kind::optics, state}, [&] {
     ++optics_bakes_;
-    return std::make_shared<const Optics>(scene_, spectral, shown_materials(scene_, *tracer, sources_.written()),
-                                          heating_, window_);
+    return std::make_shared<const Optics>(scene_, spectral, shown_materials(*tracer, sources_.written()), heating_,
+                                          window_);
   });
   const auto lit = lights(state, *kit.optics, tracer, sources_.on_grid(moment_of(capture)));
   kit.environment = {lit, &lit->environment};

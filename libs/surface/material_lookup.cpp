@@ -28,16 +28,17 @@ uint32_t MaterialLookup::by_map(uint32_t material, const TracedObject& object, c
   return c == kNone ? material : map.materials[c];
 }
 
-std::vector<bool> used_materials(const Scene& scene, std::span<const TracedObject> objects) {
+std::vector<bool> used_materials(const Tracer& tracer) {
+  const Scene& scene = tracer.scene();
   std::vector<bool> used(scene.materials.size(), false), mesh_seen(scene.meshes.size(), false);
-  for (const TracedObject& o : objects) {
+  tracer.kinds([&](const TracedObject& o) {
     if (o.material_override != kNone)
       used[o.material_override] = true;
     else if (o.mesh != kNone)
       mesh_seen[o.mesh] = true;
     else if (const uint32_t id = scene.primitives[o.primitive].material; id != kNone)
       used[id] = true;
-  }
+  });
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const Part& p : scene.meshes[m].parts)
       if (mesh_seen[m] && p.material != kNone) used[p.material] = true;

@@ -29,7 +29,8 @@ class MaterialLookup {
   bool any_ = false;
 };
 
-// Materials that some geometry can show, through overrides, class maps and mixtures; the others need no optics.
-std::vector<bool> used_materials(const Scene& scene, std::span<const TracedObject> objects);
+// Materials that some geometry of a tracer can show, through overrides, class maps and mixtures; the others need no
+// optics.
+std::vector<bool> used_materials(const Tracer& tracer);
 
 }  // namespace suite

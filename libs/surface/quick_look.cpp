@@ -13,7 +13,7 @@ namespace suite {
 namespace {
 
 const Part* part_of(const Tracer& tracer, const Hit& hit) {
-  const TracedObject& object = tracer.objects()[hit.object];
+  const TracedObject object = tracer.object(hit.object);
   if (object.mesh == kNone) return nullptr;
   const std::vector<Part>& parts = tracer.scene().meshes[object.mesh].parts;
   const auto after = std::upper_bound(parts.begin(), parts.end(), hit.triangle,
@@ -35,7 +35,7 @@ void colour(uint32_t material, double shade, uint8_t* rgb) {
 }  // namespace
 
 uint32_t material_of(const Tracer& tracer, const Hit& hit) {
-  return MaterialLookup(tracer.scene()).at(tracer.objects()[hit.object], hit);
+  return MaterialLookup(tracer.scene()).at(tracer.object(hit.object), hit);
 }
 
 std::string describe_hit(const Tracer& tracer, const Ray& ray) {
@@ -45,7 +45,7 @@ std::string describe_hit(const Tracer& tracer, const Ray& ray) {
   tracer.nearest(std::span(&ray, 1), std::span(&hit, 1), false, statistics);
   if (!hit.hit()) return "nothing\n";
   const Scene& scene = tracer.scene();
-  const TracedObject& object = tracer.objects()[hit.object];
+  const TracedObject object = tracer.object(hit.object);
   std::string out = "object    " +
                     (object.mesh != kNone ? scene.meshes[object.mesh].name : scene.primitives[object.primitive].name) +
                     strf(" (instance %u)\n", object.instance);
@@ -66,17 +66,24 @@ Box3 box_of(const Tracer& tracer, const std::string& what) {
   for (const Primitive& p : scene.primitives) known.push_back(p.name);
   Box3 all;
   bool found = false;
-  for (const TracedObject& o : tracer.objects()) {
-    const std::string& name = o.mesh != kNone ? scene.meshes[o.mesh].name : scene.primitives[o.primitive].name;
-    // Tiles of a terrain have a number behind its name.
-    const bool meant = number ? std::to_string(o.instance) == what
-                              : name == what || name.substr(0, name.find('/')) == what ||
-                                    (o.tag != kNone && scene.tags[o.tag] == what);
-    if (!meant) continue;
+  const auto grow = [&](uint32_t n, const TracedObject& o) {
     found = true;
     if (o.node != kNone) throw Error("'" + what + "' moves", "look at a place: X Y Z with a size");
-    all.grow(transformed(
-        o.mesh != kNone ? mesh_box(scene.meshes[o.mesh]) : primitive_box(scene.primitives[o.primitive]), *o.place));
+    all.grow(
+        transformed(o.mesh != kNone ? mesh_box(scene.meshes[o.mesh]) : primitive_box(scene.primitives[o.primitive]),
+                    tracer.place(n)));
+  };
+  if (number) {
+    if (what.size() <= 10)
+      for (const uint32_t n : tracer.of_instance(static_cast<uint32_t>(std::min(std::stoull(what), 0xffffffffull))))
+        grow(n, tracer.object(n));
+  } else {
+    const auto meant = [&](const TracedObject& o) {
+      const std::string& name = o.mesh != kNone ? scene.meshes[o.mesh].name : scene.primitives[o.primitive].name;
+      // Tiles of a terrain have a number behind its name.
+      return name == what || name.substr(0, name.find('/')) == what || (o.tag != kNone && scene.tags[o.tag] == what);
+    };
+    tracer.each("what is called '" + what + "'", meant, grow);
   }
   if (!found && number) throw Error("there is no instance " + what, "numbers are those of truth images and --raycast");
   if (!found) throw Error("there is no object or tag '" + what + "'", name_hint(what, known));
@@ -151,8 +158,8 @@ View view_of(const Tracer& tracer, const LookAt& look, int pixels) {
       tracer.nearest(rays, hits, true, statistics);
       for (size_t i = 0; i < rays.size(); ++i)
         if (hits[i].hit())
-          colour(lookup.at(tracer.objects()[hits[i].object], hits[i]),
-                 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)), &view.rgb[3 * (j * rays.size() + i)]);
+          colour(lookup.at(tracer.object(hits[i].object), hits[i]), 0.25 + 0.75 * std::fabs(dot(hits[i].normal, sun)),
+                 &view.rgb[3 * (j * rays.size() + i)]);
     }
   });
   return view;

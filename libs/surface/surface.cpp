@@ -8,11 +8,11 @@ Surface::Surface(const Tracer& tracer, const Optics& optics)
     : tracer_(tracer), optics_(optics), lookup_(tracer.scene()) {}
 
 Vec2 Surface::uv(const Hit& hit) const {
-  return uv_at(tracer_.scene(), tracer_.objects()[hit.object], hit.triangle, hit.u, hit.v);
+  return uv_at(tracer_.scene(), tracer_.object(hit.object), hit.triangle, hit.u, hit.v);
 }
 
 void Surface::interact(const Hit& hit, Dir out, Interaction& at, double time) const {
-  const TracedObject& object = tracer_.objects()[hit.object];
+  const TracedObject object = tracer_.object(hit.object);
   at.position = hit.position;
   at.geometric_normal = hit.normal;
   at.material = lookup_.at(object, hit);

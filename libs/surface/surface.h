@@ -33,7 +33,7 @@ class Surface {
   // `out` stays on the geometric side it came from.
   void interact(const Hit& hit, Dir out, Interaction& at, double time = 0) const;
   // The material at a hit, after overrides and class maps; kNone when the geometry has none.
-  uint32_t material(const Hit& hit) const { return material(tracer_.objects()[hit.object], hit); }
+  uint32_t material(const Hit& hit) const { return material(tracer_.object(hit.object), hit); }
   uint32_t material(const TracedObject& object, const Hit& hit) const { return lookup_.at(object, hit); }
   Vec2 uv(const Hit& hit) const;  // (u, v) barycentrics where the mesh has no UVs
   const Tracer& tracer() const { return tracer_; }

@@ -91,6 +91,8 @@ void Tile::build(const World& world) {
       else
         world.scene->meshes[world.flat.objects[direct[i - meshes.size()]].mesh].require();
   });
+  for (const auto& set : sets)
+    if (set->groups) world.build_placed(*set);
   handle.scene = new_scene(world.all_hits);
   for (uint32_t id = 0; id < direct.size(); ++id)
     attach_mesh(handle.scene, world.scene->meshes[world.flat.objects[direct[id]].mesh], id,
@@ -147,15 +149,14 @@ bool World::there(uint32_t node, double time) const {
   return true;
 }
 
-Box3 World::local_box(const TracedObject& o) const {
-  if (o.mesh == kNone) return primitive_box(scene->primitives[o.primitive]);
-  return meshes[o.mesh].box;
-}
-
 void World::measure_meshes() {
   std::vector<bool> used(scene->meshes.size(), false);
-  for (const TracedObject& o : flat.objects)
-    if (o.mesh != kNone) used[o.mesh] = true;
+  const auto mark = [&](const Assembly& frame) {
+    for (const TracedObject& o : frame.objects)
+      if (o.mesh != kNone) used[o.mesh] = true;
+  };
+  mark(flat);
+  for (const SharedGroup& group : flat.groups) mark(group);
   parallel_for(0, scene->meshes.size(), 1, [&](size_t b, size_t e) {
     for (size_t i = b; i < e; ++i) {
       if (!used[i]) continue;
@@ -169,38 +170,42 @@ void World::measure_meshes() {
   });
 }
 
-World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes)
+void World::find_holes() {
+  holed_meshes.assign(scene->meshes.size(), 0);
+  for (const TracedObject& o : flat.objects)
+    may_pass.push_back((o.mesh != kNone || o.primitive != kNone) && filter->concerns(o));
+  kinds([&](const TracedObject& o) {
+    if (o.mesh != kNone && filter->concerns(o)) holed_meshes[o.mesh] = 1;
+  });
+}
+
+World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes,
+             double keep)
     : scene(std::move(given)),
       periodic(cell),
       filter(std::move(holes)),
-      flat(flatten(*scene)),
+      flat(flatten(*scene, keep)),
       meshes(new MeshEntry[scene->meshes.size()]),
+      groups(new GroupEntry[flat.groups.size()]),
       all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
                            [](const Material& m) { return m.bounds_medium(); })) {
   const FlushDenormals flush;
   measure_meshes();
+  measure_groups();
   if (periodic) repeat_at_sides();
-  if (filter) {
-    holed_meshes.assign(scene->meshes.size(), 0);
-    for (const TracedObject& o : flat.objects) {
-      may_pass.push_back(filter->concerns(o));
-      if (may_pass.back() && o.mesh != kNone) holed_meshes[o.mesh] = 1;
-    }
-  }
+  if (filter) find_holes();
   for (const TracedObject& o : flat.objects)
-    if (o.mesh != kNone) ++meshes[o.mesh].uses, triangles += scene->meshes[o.mesh].triangle_count();
-  std::vector<Box3> boxes(flat.fixed);
-  parallel_for(0, boxes.size(), 4096, [&](size_t b, size_t e) {
-    for (size_t i = b; i < e; ++i) boxes[i] = transformed(local_box(flat.objects[i]), *flat.objects[i].place);
-  });
+    if (o.mesh != kNone) ++meshes[o.mesh].uses;
+  triangles = triangles_in(flat);
+  std::vector<Box3> boxes = boxes_in(flat, flat.fixed);
   std::vector<uint32_t> members;
   members.reserve(boxes.size());
   for (uint32_t i = 0; i < boxes.size(); ++i) {
     bounds.grow(boxes[i]);
-    if (boxes[i].empty())
-      unbounded.push_back(i);
-    else
+    if (!boxes[i].empty())
       members.push_back(i);
+    else if (flat.objects[i].primitive != kNone)
+      unbounded.push_back(i);
   }
   for (const uint32_t i : unbounded) {
     const Dir up = normalized(flat.objects[i].place->normal({0, 0, 1}));
@@ -223,31 +228,40 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
 // others that stand at the same origin.
 void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes) {
   size_t most = 0;
-  const auto lone = [&](const TracedObject& o) {
+  const auto lone = [&](const PlacedObject& o) {
     return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place);
   };
-  const auto place = [&](const TracedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
+  const auto place = [&](const PlacedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
   const double reach = length(tile.bounds.size()) + kTileSize;
   for (const uint32_t i : members) {
-    const TracedObject& o = flat.objects[i];
+    const PlacedObject& o = flat.objects[i];
     if (!lone(o) || length(place(o) - tile.bounds.center()) > reach) continue;
     if (const size_t n = scene->meshes[o.mesh].triangle_count(); n > most) most = n, tile.origin = place(o);
   }
-  auto set = std::make_unique<PlacedSet>();
-  set->world = this;
+  std::vector<uint32_t> placed;
   for (const uint32_t i : members) {
-    const TracedObject& o = flat.objects[i];
-    if (most && lone(o) && place(o) == tile.origin)
-      tile.direct.push_back(i);
-    else
-      set->objects.push_back(i);
+    const PlacedObject& o = flat.objects[i];
+    (most && lone(o) && place(o) == tile.origin ? tile.direct : placed).push_back(i);
   }
-  if (set->objects.empty()) return;
-  set->objects.shrink_to_fit();
-  sort_in_space(set->objects, boxes, tile.bounds);
-  set->origin = tile.origin;
-  set->fill_inverse();
-  tile.sets.push_back(std::move(set));
+  tile.sets = sets_of(flat, tile.origin, tile.bounds, placed, boxes);
+}
+
+std::vector<std::unique_ptr<PlacedSet>> World::sets_of(const Assembly& frame, Vec3 origin, const Box3& within,
+                                                       std::span<const uint32_t> members,
+                                                       std::span<const Box3> boxes) const {
+  std::vector<std::unique_ptr<PlacedSet>> sets;
+  for (const bool groups_only : {false, true}) {
+    auto set = std::make_unique<PlacedSet>();
+    set->world = this, set->frame = &frame, set->groups = groups_only, set->origin = origin;
+    for (const uint32_t i : members)
+      if ((frame.shared_of(i) != kNone) == groups_only && !boxes[i].empty()) set->objects.push_back(i);
+    if (set->objects.empty()) continue;
+    set->objects.shrink_to_fit();
+    sort_in_space(set->objects, boxes, within);
+    set->fill_inverse();
+    sets.push_back(std::move(set));
+  }
+  return sets;
 }
 
 // What sticks out of the cell comes in again on the other side: copies shifted by whole cells, where they reach it.
@@ -259,8 +273,8 @@ void World::repeat_at_sides() {
                 "drop the motion or the schedule, or the periodic cell");
   const size_t count = flat.objects.size();
   for (size_t i = 0; i < count; ++i) {
-    const TracedObject o = flat.objects[i];
-    const Box3 b = transformed(local_box(o), *o.place);
+    const PlacedObject o = flat.objects[i];
+    const Box3 b = transformed(local_box(flat, i), *o.place);
     if (b.empty()) continue;
     const auto reach = [](double low, double high, double from, double size) {
       const double first = std::floor((low - from) / size), last = std::ceil((high - from) / size) - 1;
@@ -275,18 +289,21 @@ void World::repeat_at_sides() {
     const auto [y0, y1] = reach(b.low.y, b.high.y, cell.low.y, cell.size.y);
     for (long x = x0; x <= std::max(x0, x1); ++x)
       for (long y = y0; y <= std::max(y0, y1); ++y) {
-        TracedObject copy = o;
+        PlacedObject copy = o;
         if (x != 0 || y != 0)
           copy.place = &flat.composed.emplace_back(
               translation({-static_cast<double>(x) * cell.size.x, -static_cast<double>(y) * cell.size.y, 0}) *
               *o.place);
-        if (x == x0 && y == y0)
+        if (x == x0 && y == y0) {
           flat.objects[i] = copy;
-        else
-          flat.objects.push_back(copy);
+          continue;
+        }
+        flat.objects.push_back(copy);
+        if (!flat.shared.empty()) flat.shared.push_back(flat.shared[i]);
       }
   }
   flat.fixed = flat.objects.size();
+  flat.number_objects();
 }
 
 }  // namespace suite

@@ -75,45 +75,89 @@ struct Packet {
 };
 
 struct MovingPart;
+struct PlacedSet;
 struct World;
 
 // One of all the hits of a ray. exact: of an exact surface, whose t counts from the ray's origin in m.
 struct Gathered {
-  uint32_t object, triangle;
+  uint32_t number, triangle;
   float u, v;
   std::optional<LocalHit> exact;
 };
 
-// Handed to Embree and by it to the callbacks: the unrounded rays.
+// Handed to Embree and by it to the callbacks: the unrounded rays. Inside a shared group rays have a context of their
+// own, with the one ray as the group's frame sees it.
 struct TraceContext : RTCIntersectContext {
   const Ray* rays = nullptr;
   const Packet* packet = nullptr;  // lanes are the ids of the float rays
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
-  uint32_t object = kNone;                    // the instance that rays are inside of; kNone = in the tile itself
+  const PlacedSet* set = nullptr;             // the instance that rays are inside of; null = in the frame itself
+  uint32_t prim = 0;                          // its position in the set
   std::vector<Gathered>* gathered = nullptr;  // all hits go here, and none ends a ray
+  // Of a shared group: the context around it, which is inside its placement, and the number of its first object; the
+  // ray in ENU, where on it (m) the frame's ray begins, and how long one metre of it is here.
+  const TraceContext* outer = nullptr;
+  uint32_t first = 0;
+  const Ray* enu = nullptr;
+  double start = 0, stretch = 1;
+  // What a lane has met inside a shared group: the number of the object and its mesh.
+  struct Inside {
+    uint32_t number, mesh;
+  } inside[kWidth];
   const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
+  const Ray& enu_ray(unsigned id) const { return outer ? *enu : ray(id); }
 };
 
-// Instances of meshes and exact surfaces as one Embree user geometry; ids of its primitives are positions in `objects`.
+// Placements of one frame as one Embree user geometry: either instances of meshes and exact surfaces, or placements of
+// shared groups. Ids of its primitives are positions in `objects`.
 struct PlacedSet {
-  // From ENU into the floats of an instance that rests in the window; one cache line.
+  // From the frame into the floats of an instance that rests in the window; one cache line.
   struct Inverse {
-    Vec3 base;  // ENU place of the floats' (0, 0, 0)
+    Vec3 base;  // place of the floats' (0, 0, 0) in the frame
     float linear[9];
     uint32_t mesh;
   };
+  // The same of a shared group, whose own objects may be far smaller than float could tell in it.
+  struct DeepInverse {
+    Vec3 base;
+    double linear[9];
+    uint32_t group, number;  // the shared group, and the number of its first object, counted as the frame does
+  };
   const World* world = nullptr;
+  const Assembly* frame = nullptr;
   const MovingPart* moving = nullptr;  // null: all at rest
   bool partly = false;                 // all are there for a part of the window only
+  bool groups = false;                 // all are placements of shared groups
   Vec3 origin;                         // of the tile
   unsigned times = 1;                  // boxes of an object, equally spaced over the window
-  std::vector<uint32_t> objects;       // indices into Tracer::objects()
+  std::vector<uint32_t> objects;       // indices into the frame's objects
   std::vector<Inverse> inverse;        // of each object; empty when they move within the window
-  std::vector<Box3> boxes;             // [object][time], ENU; until the tile is built
+  std::vector<DeepInverse> deep;       // the same of groups
+  std::vector<Box3> boxes;             // [object][time], in the frame; until the tile is built
 
   void fill_inverse();  // from the poses of the window
   void attach(RTCScene scene, unsigned id);
+  // Where an object's floats have their zero, in its own frame.
+  Vec3 zero_of(uint32_t object) const;
+  // The number of an object as its frame counts.
+  uint32_t number_of(uint32_t object) const;
+};
+// Embree's callbacks for sets of groups.
+void intersect_groups(const RTCIntersectFunctionNArguments* args);
+void occlude_groups(const RTCOccludedFunctionNArguments* args);
+
+// A shared group, with its own acceleration structure.
+struct GroupEntry {
+  Box3 box;          // in its frame
+  Vec3 origin;       // of the floats: the middle of the box
+  Box3 room;         // around the floats, enlarged by what float rounding moves
+  double scale = 0;  // largest float coordinate
+  size_t triangles = 0;
+  double slack() const { return 16 * 1.1920929e-7 * scale + 1e-30; }  // as of Tile
+  std::vector<std::unique_ptr<PlacedSet>> sets;                       // geometry ids are positions in it
+  SceneHandle handle;
+  BuildOnce once;
 };
 
 // Geometry ids inside a tile: first the meshes that are attached as they are, then the sets.
@@ -121,7 +165,7 @@ struct Tile {
   Vec3 origin;                   // ENU
   Box3 bounds;                   // ENU, a little enlarged
   double scale = 0;              // largest float coordinate of the tile, m
-  std::vector<uint32_t> direct;  // indices into Tracer::objects()
+  std::vector<uint32_t> direct;  // indices into the scene's objects
   std::vector<std::unique_ptr<PlacedSet>> sets;
   SceneHandle handle;
   BuildOnce once;
@@ -147,42 +191,81 @@ void filter_triangles(const RTCFilterFunctionNArguments* args);
 // The filter of contexts that gather: notes the triangle and lets the ray pass.
 void gather_triangles(const RTCFilterFunctionNArguments* args);
 
+// An object as the filter of holes is asked about it.
+struct Asked {
+  const TracedObject& object;
+  uint32_t number;
+  bool may_pass;
+};
+
 // What does not change with the window.
 struct World {
-  World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter);
+  World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter,
+        double keep);
   std::shared_ptr<const Scene> scene;
   std::optional<Periodic> periodic;
   std::shared_ptr<const HitFilter> filter;  // null: no surface has holes
   Flattened flat;
   std::unique_ptr<MeshEntry[]> meshes;
-  TileSet tiles;                    // of what is at rest
-  std::vector<uint32_t> unbounded;  // exact surfaces without bounds at rest, met in double one by one
-  Box3 bounds;                      // of what is at rest
+  std::unique_ptr<GroupEntry[]> groups;  // of the shared groups
+  TileSet tiles;                         // of what is at rest
+  std::vector<uint32_t> unbounded;       // exact surfaces without bounds at rest, met in double one by one
+  Box3 bounds;                           // of what is at rest
   size_t triangles = 0;
   bool all_hits = false;           // some surface bounds a medium: Tracer::all may be asked
   std::vector<char> may_pass;      // objects with holes; empty without a filter
   std::vector<char> holed_meshes;  // meshes that some such object shows; empty without a filter
 
-  // Asks the filter about a point of an object; true when the object has no holes.
-  bool keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position,
+  // Asks the filter about a point of an object that has holes.
+  bool keeps(const Ray& ray, const Asked& asked, uint32_t triangle, double u, double v, Vec3 position,
              Vec3 normal = {}) const;
   // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
   // through; its t counts from there, and again(t) is where to look for the next.
   static double again(double t) { return t + 1e-12 * std::max(1.0, std::fabs(t)); }
-  std::optional<LocalHit> meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
+  std::optional<LocalHit> meet(const Ray& ray, const Asked& asked, const Affine3& to_world, double from, double t_min,
                                double t_max) const;
+  Asked asked(uint32_t object) const { return {flat.objects[object], flat.number(object), filter && may_pass[object]}; }
+  Asked asked(const Way& way) const { return {way.object, way.number, filter && filter->concerns(way.object)}; }
+  // The way to the instance that a context's rays are inside of.
+  Way way(const TraceContext& context) const {
+    const uint32_t object = context.set->objects[context.prim];
+    if (!context.outer) return flat.way(object);
+    Way at = way(*context.outer);
+    flat.step(at, static_cast<const SharedGroup&>(*context.set->frame), object);
+    return at;
+  }
+  // The number of that instance.
+  uint32_t number(const TraceContext& context) const {
+    return context.first + context.set->number_of(context.set->objects[context.prim]);
+  }
   RTCScene mesh_scene(uint32_t mesh) const;        // built on the first call
   Affine3 pose(uint32_t node, double time) const;  // exact; while it is there
   Presence presence_of(uint32_t node, TimeSpan window) const;
   bool there(uint32_t node, double time) const;
-  Affine3 to_world(const TracedObject& o, double time) const {
+  RTCScene group_scene(uint32_t group) const;  // likewise
+  void build_placed(const PlacedSet& set) const;
+  Affine3 to_world(const PlacedObject& o, double time) const {
     return o.node == kNone ? *o.place : pose(o.node, time) * *o.place;
   }
-  // Extent in the object's local frame; empty when unbounded.
-  Box3 local_box(const TracedObject& o) const;
+  Affine3 to_world(const Way& way, double time) const {
+    return way.object.node == kNone ? way.place : pose(way.object.node, time) * way.place;
+  }
+  // Extent in the own frame of an object of a frame; empty when unbounded.
+  Box3 local_box(const Assembly& frame, size_t object) const;
+  // Visits at least one object of each kind, as Tracer::kinds.
+  void kinds(const std::function<void(const TracedObject&)>& visit) const;
+  // Puts objects of a frame into sets of instances and of groups, in the order of the space `within`. boxes: of all
+  // objects.
+  std::vector<std::unique_ptr<PlacedSet>> sets_of(const Assembly& frame, Vec3 origin, const Box3& within,
+                                                  std::span<const uint32_t> members, std::span<const Box3> boxes) const;
+  // Boxes of the first `count` objects of a frame, in it.
+  std::vector<Box3> boxes_in(const Assembly& frame, size_t count) const;
 
  private:
   void measure_meshes();  // that something shows
+  void measure_groups();
+  size_t triangles_in(const Assembly& frame) const;
+  void find_holes();
   void repeat_at_sides();
   void fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes);
 };
@@ -215,7 +298,7 @@ struct MovingPart {
 
   float fraction(double time) const;  // of the window, 0 to 1
   // As rays see it: linear between keys.
-  Affine3 to_world(const TracedObject& o, double time) const { return nodes[o.node].at(time) * *o.place; }
+  Affine3 to_world(const PlacedObject& o, double time) const { return nodes[o.node].at(time) * *o.place; }
   // Whether an object that is there for a part of the window is there at a time.
   bool there(uint32_t object, double time) const;
   // Of a node that something hangs on.
@@ -254,7 +337,7 @@ class PacketTracer {
   void all(const Tile& tile, const Packet& packet, std::vector<Hit>& hits);
   void all_unbounded(uint32_t object, std::vector<Hit>& hits);
   void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
-  // Surfaces without bounds; lowers reach. hit may be null.
+  // Surfaces without bounds (objects of the scene); lowers reach. hit may be null.
   void unbounded(uint32_t object, uint32_t ray, Hit* hit);
 
  private:
@@ -269,18 +352,21 @@ class PacketTracer {
   // eight for one. On surfaces that are one mesh it does not.
   bool one_by_one(const Tile& tile) const { return !coherent_ && !tile.sets.empty(); }
   void nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& context);
-  void note(const Tile& tile, const Packet& packet, uint32_t i, float far, const MetIds& met, float u, float v);
+  void note(const Tile& tile, const Packet& packet, uint32_t i, const TraceContext& c, float far, const MetIds& met,
+            float u, float v);
   // What a ray met in a tile; object kNone: nothing.
   struct Found {
     const Tile* tile;
-    uint32_t object, triangle;
+    uint32_t object, number, mesh, triangle;  // object: of the scene's own, which may hold the one of this number
     float u, v;
     bool direct;
   };
   const uint32_t* corners(const Found& found) const;
+  Affine3 seen_at(const Way& way, double time) const;
+  double exact_time(const Ray& ray) const;
   void finish_triangle(const Found& found, const Ray& ray, Hit& hit) const;
-  void finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const;
-  void place_exact(double scale, const Ray& ray, uint32_t object, const Affine3& to_world, const LocalHit& found,
+  void finish_exact(double scale, const Ray& ray, const Way& way, double near, Hit& hit) const;
+  void place_exact(double scale, const Ray& ray, const Way& way, const Affine3& to_world, const LocalHit& found,
                    Hit& hit) const;
 
   bool absent(uint32_t object, const Ray& ray) const;

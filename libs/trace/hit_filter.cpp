@@ -9,46 +9,44 @@
 
 namespace suite {
 
-bool World::keeps(const Ray& ray, uint32_t object, uint32_t triangle, double u, double v, Vec3 position,
+bool World::keeps(const Ray& ray, const Asked& asked, uint32_t triangle, double u, double v, Vec3 position,
                   Vec3 normal) const {
-  if (!filter || !may_pass[object]) return true;
   Hit hit;
   hit.position = position;
   hit.normal = normal;
   hit.time = ray.time;
-  hit.object = object;
+  hit.object = asked.number;
   hit.triangle = triangle;
   hit.u = static_cast<float>(u), hit.v = static_cast<float>(v);
-  return filter->keeps(ray, flat.objects[object], hit);
+  return filter->keeps(ray, asked.object, hit);
 }
 
-std::optional<LocalHit> World::meet(const Ray& ray, uint32_t object, const Affine3& to_world, double from, double t_min,
-                                    double t_max) const {
-  const Primitive& primitive = scene->primitives[flat.objects[object].primitive];
+std::optional<LocalHit> World::meet(const Ray& ray, const Asked& asked, const Affine3& to_world, double from,
+                                    double t_min, double t_max) const {
+  const Primitive& primitive = scene->primitives[asked.object.primitive];
   const Affine3 to_local = to_world.inverse();
   const Vec3 origin = to_local.point(ray.origin + ray.direction * from), direction = to_local.vector(ray.direction);
   auto found = intersect(primitive, origin, direction, t_min, t_max);
-  if (!filter || !may_pass[object]) return found;
-  while (found && !keeps(ray, object, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t),
+  if (!asked.may_pass) return found;
+  while (found && !keeps(ray, asked, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t),
                          to_world.normal(found->normal)))
     found = intersect(primitive, origin, direction, again(found->t), t_max);
   return found;
 }
 
-namespace {
-// In the tile itself the geometry knows whose it is.
-uint32_t object_of(const RTCFilterFunctionNArguments* args) {
-  const uint32_t inside = static_cast<const TraceContext*>(args->context)->object;
-  return inside != kNone ? inside : static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
+// In the tile itself the geometry knows whose it is: its user data is the scene's object.
+static uint32_t direct_object(const RTCFilterFunctionNArguments* args) {
+  return static_cast<uint32_t>(reinterpret_cast<uintptr_t>(args->geometryUserPtr));
 }
-}  // namespace
 
 void gather_triangles(const RTCFilterFunctionNArguments* args) {
-  auto& gathered = *static_cast<const TraceContext*>(args->context)->gathered;
+  const auto& context = *static_cast<const TraceContext*>(args->context);
+  const World& world = *context.world;
+  const uint32_t number = context.set ? world.number(context) : world.flat.number(direct_object(args));
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    gathered.push_back({object_of(args), RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-                        RTCHitN_v(args->hit, args->N, i), std::nullopt});
+    context.gathered->push_back({number, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                                 RTCHitN_v(args->hit, args->N, i), std::nullopt});
     args->valid[i] = 0;
   }
 }
@@ -56,13 +54,15 @@ void gather_triangles(const RTCFilterFunctionNArguments* args) {
 void filter_triangles(const RTCFilterFunctionNArguments* args) {
   const auto& context = *static_cast<const TraceContext*>(args->context);
   const World& world = *context.world;
-  const uint32_t object = object_of(args);
-  if (!world.may_pass[object]) return;
-  const TracedObject& o = world.flat.objects[object];
-  const Mesh& m = world.scene->meshes[o.mesh];
+  const uint32_t own = context.outer ? kNone : context.set ? context.set->objects[context.prim] : direct_object(args);
+  if (own != kNone && !world.may_pass[own]) return;
+  const Way way = own != kNone ? world.flat.way(own) : world.way(context);
+  const Asked asked = own != kNone ? world.asked(own) : world.asked(way);
+  if (!asked.may_pass) return;
+  const Mesh& m = world.scene->meshes[way.object.mesh];
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    const Ray& ray = context.ray(RTCRayN_id(args->ray, args->N, i));
+    const Ray& ray = context.enu_ray(RTCRayN_id(args->ray, args->N, i));
     const uint32_t triangle = RTCHitN_primID(args->hit, args->N, i);
     const double u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
     Vec3 p[3];
@@ -72,8 +72,8 @@ void filter_triangles(const RTCFilterFunctionNArguments* args) {
     }
     const double time =
         context.moving ? std::clamp(ray.time, context.moving->window.begin, context.moving->window.end) : 0;
-    const Vec3 position = world.to_world(o, time).point(m.origin + p[0] * (1 - u - v) + p[1] * u + p[2] * v);
-    if (!world.keeps(ray, object, triangle, u, v, position)) args->valid[i] = 0;
+    const Vec3 position = world.to_world(way, time).point(m.origin + p[0] * (1 - u - v) + p[1] * u + p[2] * v);
+    if (!world.keeps(ray, asked, triangle, u, v, position)) args->valid[i] = 0;
   }
 }
 

@@ -125,8 +125,8 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   std::vector<double> radius(w.flat.nodes.size(), -1);  // of what hangs on a node itself; negative: nothing does
   std::vector<Box3> own(count);                         // in the axes of the node
   for (size_t i = 0; i < count; ++i) {
-    const TracedObject& o = w.flat.objects[first + i];
-    own[i] = transformed(w.local_box(o), *o.place);
+    const PlacedObject& o = w.flat.objects[first + i];
+    own[i] = transformed(w.local_box(w.flat, first + i), *o.place);
     if (own[i].empty())
       radius[o.node] = std::max(radius[o.node], 10.0);  // without bounds: motion_bound is at its largest
     if (own[i].empty()) continue;
@@ -152,10 +152,10 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
   for (uint32_t i = 0; i < count; ++i) {
     if (nodes[w.flat.objects[first + i].node].absent()) continue;
     bounds.grow(whole[i]);
-    if (over[i].empty())
-      unbounded.push_back(static_cast<uint32_t>(first) + i);
-    else
+    if (!over[i].empty())
       members.push_back(i);
+    else if (w.flat.objects[first + i].primitive != kNone)
+      unbounded.push_back(static_cast<uint32_t>(first) + i);
   }
   arrange(tiles, members, whole, [&](Tile& tile, std::span<const uint32_t> mine) { fill(tile, mine, over); });
   for (const auto& tile : tiles.tiles)
@@ -166,14 +166,15 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
 
 // One set for what rests in this window, and one for each number of times; others for what is there only partly.
 void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<const std::vector<Box3>> boxes) {
-  std::map<std::pair<bool, size_t>, std::unique_ptr<PlacedSet>> sets;
+  std::map<std::tuple<bool, bool, size_t>, std::unique_ptr<PlacedSet>> sets;
   for (const uint32_t i : members) {
     const uint32_t object = static_cast<uint32_t>(world.flat.fixed) + i;
     const Keys& keys = nodes[world.flat.objects[object].node];
-    std::unique_ptr<PlacedSet>& set = sets[{keys.partly, keys.at_rest() ? 0 : boxes[i].size()}];
+    const bool group = world.flat.shared_of(object) != kNone;
+    std::unique_ptr<PlacedSet>& set = sets[{group, keys.partly, keys.at_rest() ? 0 : boxes[i].size()}];
     if (!set) {
       set = std::make_unique<PlacedSet>();
-      set->world = &world;
+      set->world = &world, set->frame = &world.flat, set->groups = group;
       set->moving = this;
       set->partly = keys.partly;
       set->origin = tile.origin;
@@ -183,7 +184,7 @@ void MovingPart::fill(Tile& tile, std::span<const uint32_t> members, std::span<c
     set->boxes.insert(set->boxes.end(), boxes[i].begin(), boxes[i].end());
   }
   for (auto& [kind, set] : sets) {
-    if (kind.second == 0) set->fill_inverse();
+    if (std::get<2>(kind) == 0) set->fill_inverse();
     tile.sets.push_back(std::move(set));
   }
 }

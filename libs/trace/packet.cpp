@@ -55,8 +55,7 @@ void PacketTracer::load(const Tile& tile, const Packet& packet, RTCRay8& q, int*
 
 // The corners of a triangle; null for exact surfaces.
 const uint32_t* PacketTracer::corners(const Found& found) const {
-  const uint32_t mesh = world_.flat.objects[found.object].mesh;
-  return mesh == kNone ? nullptr : &world_.scene->meshes[mesh].indices[3 * size_t{found.triangle}];
+  return found.mesh == kNone ? nullptr : &world_.scene->meshes[found.mesh].indices[3 * size_t{found.triangle}];
 }
 
 void PacketTracer::send(const Tile& tile, const Packet& packet, TraceContext& c, RTCRayHit8& rh) {
@@ -74,7 +73,7 @@ void PacketTracer::nearest(const Tile& tile, const Packet& packet) {
   alignas(32) RTCRayHit8 rh;
   send(tile, packet, c, rh);
   for (uint32_t i = 0; i < packet.size; ++i)
-    note(tile, packet, i, rh.ray.tfar[i], {rh.hit.geomID[i], rh.hit.instID[0][i], rh.hit.primID[i]}, rh.hit.u[i],
+    note(tile, packet, i, c, rh.ray.tfar[i], {rh.hit.geomID[i], rh.hit.instID[0][i], rh.hit.primID[i]}, rh.hit.u[i],
          rh.hit.v[i]);
 }
 
@@ -89,13 +88,13 @@ void PacketTracer::nearest_one_by_one(const Tile& tile, const Packet& packet, Tr
   statistics_.cycles += __rdtsc() - start;
   for (uint32_t i = 0; i < packet.size; ++i) {
     const RTCHit& h = rays[i].hit;
-    note(tile, packet, i, rays[i].ray.tfar, {h.geomID, h.instID[0], h.primID}, h.u, h.v);
+    note(tile, packet, i, c, rays[i].ray.tfar, {h.geomID, h.instID[0], h.primID}, h.u, h.v);
   }
 }
 
 // What ray i of a packet has met.
-void PacketTracer::note(const Tile& tile, const Packet& packet, uint32_t i, float far, const MetIds& met, float u,
-                        float v) {
+void PacketTracer::note(const Tile& tile, const Packet& packet, uint32_t i, const TraceContext& c, float far,
+                        const MetIds& met, float u, float v) {
   if (met.geometry == RTC_INVALID_GEOMETRY_ID) return;
   const uint32_t r = packet.ray[i];
   const size_t lone = tile.direct.size();
@@ -103,7 +102,12 @@ void PacketTracer::note(const Tile& tile, const Packet& packet, uint32_t i, floa
   Found& f = found_[r];
   f.tile = &tile;
   f.direct = met.geometry < lone;
-  f.object = f.direct ? tile.direct[met.geometry] : tile.sets[met.geometry - lone]->objects[met.instance];
+  const PlacedSet* set = f.direct ? nullptr : tile.sets[met.geometry - lone].get();
+  f.object = f.direct ? tile.direct[met.geometry] : set->objects[met.instance];
+  if (set && set->groups)
+    f.number = c.inside[i].number, f.mesh = c.inside[i].mesh;
+  else
+    f.number = world_.flat.number(f.object), f.mesh = world_.flat.objects[f.object].mesh;
   f.triangle = met.primitive;
   f.u = u, f.v = v;
   if (const uint32_t* corner = corners(f)) __builtin_prefetch(corner);
@@ -114,16 +118,18 @@ void PacketTracer::finish(std::span<Hit> hits) {
     if (f.object == kNone) continue;
     const uint32_t* corner = corners(f);
     if (!corner) continue;
-    const Mesh& mesh = world_.scene->meshes[world_.flat.objects[f.object].mesh];
+    const Mesh& mesh = world_.scene->meshes[f.mesh];
     for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[3 * size_t{corner[k]}]);
   }
   for (size_t r = 0; r < found_.size(); ++r) {
     const Found& f = found_[r];
     if (f.object == kNone) continue;
-    if (world_.flat.objects[f.object].mesh != kNone)
+    if (f.mesh != kNone)
       finish_triangle(f, rays_[r], hits[r]);
+    else if (world_.flat.objects[f.object].primitive != kNone)
+      finish_exact(f.tile->scale, rays_[r], world_.flat.way(f.object), reach_[r], hits[r]);
     else
-      finish_exact(f.tile->scale, rays_[r], f.object, reach_[r], hits[r]);
+      finish_exact(f.tile->scale, rays_[r], world_.flat.way_again(f.number), reach_[r], hits[r]);
   }
 }
 
@@ -138,14 +144,21 @@ void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>&
   const Ray& ray = rays_[packet.ray[0]];
   for (const Gathered& g : gathered) {
     Hit& hit = hits.emplace_back();
-    const TracedObject& o = world_.flat.objects[g.object];
+    const uint32_t object = world_.flat.with_number(g.number);
     if (g.exact) {
-      place_exact(tile.scale, ray, g.object, moving_ ? moving_->to_world(o, ray.time) : *o.place, *g.exact, hit);
+      const Way way = world_.flat.way_again(g.number);
+      place_exact(tile.scale, ray, way, seen_at(way, ray.time), *g.exact, hit);
     } else {
-      const bool direct = std::find(tile.direct.begin(), tile.direct.end(), g.object) != tile.direct.end();
-      finish_triangle({&tile, g.object, g.triangle, g.u, g.v, direct}, ray, hit);
+      const bool direct = std::find(tile.direct.begin(), tile.direct.end(), object) != tile.direct.end();
+      const uint32_t mesh = world_.flat.way_again(g.number).object.mesh;
+      finish_triangle({&tile, object, g.number, mesh, g.triangle, g.u, g.v, direct}, ray, hit);
     }
   }
+}
+
+// Where rays look for an object: at the linear pose of their time.
+Affine3 PacketTracer::seen_at(const Way& way, double time) const {
+  return way.object.node == kNone ? way.place : moving_->nodes[way.object.node].at(time) * way.place;
 }
 
 bool PacketTracer::absent(uint32_t object, const Ray& ray) const {
@@ -156,11 +169,12 @@ bool PacketTracer::absent(uint32_t object, const Ray& ray) const {
 void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
   const Ray& ray = rays_[0];
   if (absent(object, ray)) return;
-  const TracedObject& o = world_.flat.objects[object];
-  const Affine3 to_world = o.node == kNone ? *o.place : moving_->to_world(o, ray.time);
-  for (auto found = world_.meet(ray, object, to_world, 0, 0, reach_[0]); found;
-       found = world_.meet(ray, object, to_world, 0, World::again(found->t), reach_[0]))
-    place_exact(0, ray, object, to_world, *found, hits.emplace_back());
+  const Way way = world_.flat.way(object);
+  const Asked asked = world_.asked(object);
+  const Affine3 to_world = seen_at(way, ray.time);
+  for (auto found = world_.meet(ray, asked, to_world, 0, 0, reach_[0]); found;
+       found = world_.meet(ray, asked, to_world, 0, World::again(found->t), reach_[0]))
+    place_exact(0, ray, way, to_world, *found, hits.emplace_back());
 }
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
@@ -188,15 +202,20 @@ void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<ui
   for (uint32_t i = 0; i < packet.size; ++i) answer(i, q.tfar[i]);
 }
 
+// Where hits are put: inside the window.
+double PacketTracer::exact_time(const Ray& ray) const {
+  return moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0;
+}
+
 // How far off a surface rays must start for what moving geometry is seen aside from its place by, m.
 static double aside(const MovingPart* moving, const TracedObject& o) {
   return o.node == kNone ? 0 : 2 * moving->nodes[o.node].bound;
 }
 
 void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit) const {
-  const auto& [tile, object, triangle, u, v, direct] = found;
-  const TracedObject& o = world_.flat.objects[object];
-  const Mesh& m = world_.scene->meshes[o.mesh];
+  const auto& [tile, object, number, mesh, triangle, u, v, direct] = found;
+  const PlacedObject& o = world_.flat.objects[object];  // or the placement of the group that holds it: the same node
+  const Mesh& m = world_.scene->meshes[mesh];
   const uint32_t* corner = corners(found);
   const auto vertex = [&](uint32_t c) {
     const float* f = &m.positions[3 * size_t{corner[c]}];
@@ -211,13 +230,13 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
     hit.normal = normalized(across);
     reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile->scale, 1e-6});
   } else {
-    const Affine3 to_world =
-        world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+    const Affine3 to_world = o.mesh != kNone ? world_.to_world(o, exact_time(ray))
+                                             : world_.to_world(world_.flat.way_again(number), exact_time(ray));
     hit.position = to_world.point(m.origin + p);
     hit.normal = normalized(to_world.normal(across));
     // The winding turns round under a mirror; the front side stays the front side.
     if (to_world.determinant() < 0) hit.normal = -hit.normal;
-    const double floor = 1e-3 * world_.meshes[o.mesh].scale;
+    const double floor = 1e-3 * world_.meshes[mesh].scale;
     const Vec3 q{std::fmax(std::fabs(p.x), floor), std::fmax(std::fabs(p.y), floor), std::fmax(std::fabs(p.z), floor)};
     for (size_t k = 0; k < 9; k += 3)
       reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y +
@@ -229,7 +248,7 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
   hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * far + aside(moving_, o));
   hit.distance = dot(hit.position - ray.origin, ray.direction);
   hit.time = ray.time;
-  hit.object = object;
+  hit.object = number;
   hit.triangle = triangle;
   hit.u = u;
   hit.v = v;
@@ -237,22 +256,21 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
 
 // `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the
 // tile.
-void PacketTracer::finish_exact(double scale, const Ray& ray, uint32_t object, double near, Hit& hit) const {
-  const TracedObject& o = world_.flat.objects[object];
-  const Affine3 to_world =
-      world_.to_world(o, moving_ ? std::clamp(ray.time, moving_->window.begin, moving_->window.end) : 0);
+void PacketTracer::finish_exact(double scale, const Ray& ray, const Way& way, double near, Hit& hit) const {
+  const Asked asked = world_.asked(way);
+  const Affine3 to_world = world_.to_world(way, exact_time(ray));
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
-  const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, o);
-  auto found = world_.meet(ray, object, to_world, 0, near - window, near + window);
-  if (!found || found->t <= 0) found = world_.meet(ray, object, to_world, 0, 0, INFINITY);
+  const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, way.object);
+  auto found = world_.meet(ray, asked, to_world, 0, near - window, near + window);
+  if (!found || found->t <= 0) found = world_.meet(ray, asked, to_world, 0, 0, INFINITY);
   if (!found) {
     hit = Hit{};
     return;
   }
-  place_exact(scale, ray, object, to_world, *found, hit);
+  place_exact(scale, ray, way, to_world, *found, hit);
 }
 
-void PacketTracer::place_exact(double scale, const Ray& ray, uint32_t object, const Affine3& to_world,
+void PacketTracer::place_exact(double scale, const Ray& ray, const Way& way, const Affine3& to_world,
                                const LocalHit& found, Hit& hit) const {
   hit.distance = found.t;
   hit.position = ray.origin + ray.direction * found.t;
@@ -261,22 +279,21 @@ void PacketTracer::place_exact(double scale, const Ray& ray, uint32_t object, co
   // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
   const double step =
       scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
-  hit.step = static_cast<float>(step + aside(moving_, world_.flat.objects[object]));
+  hit.step = static_cast<float>(step + aside(moving_, way.object));
   hit.time = ray.time;
-  hit.object = object;
+  hit.object = way.number;
   hit.triangle = 0;
   hit.u = static_cast<float>(found.u), hit.v = static_cast<float>(found.v);
 }
 
 void PacketTracer::unbounded(uint32_t object, uint32_t r, Hit* hit) {
-  const TracedObject& o = world_.flat.objects[object];
   const Ray& ray = rays_[r];
   if (absent(object, ray)) return;
-  const auto found =
-      world_.meet(ray, object, o.node == kNone ? *o.place : moving_->to_world(o, ray.time), 0, 0, reach_[r]);
+  const Way way = world_.flat.way(object);
+  const auto found = world_.meet(ray, world_.asked(object), seen_at(way, ray.time), 0, 0, reach_[r]);
   if (!found) return;
   reach_[r] = found->t;
-  if (hit) finish_exact(0, ray, object, found->t, *hit);
+  if (hit) finish_exact(0, ray, way, found->t, *hit);
 }
 
 }  // namespace suite

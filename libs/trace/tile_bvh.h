@@ -30,39 +30,43 @@ inline Vec3 inverse_of(Dir d) { return {1 / d.x, 1 / d.y, 1 / d.z}; }
 class TileBvh {
  public:
   void build(std::span<const Box3> boxes);
-  // Calls visit(tile, enter) for the tiles on the ray, nearest box first, until visit has lowered t_max below the rest.
+  // A node or a tile that a ray has yet to see.
+  struct Entry {
+    double enter;
+    uint32_t tile, node;
+    bool inner() const { return tile == UINT32_MAX; }
+    // Of those entered at one place inner nodes come first, which may hold tiles of any number.
+    bool before(const Entry& o) const {
+      if (enter != o.enter) return enter < o.enter;
+      return inner() != o.inner() ? inner() : tile < o.tile;
+    }
+  };
+  // Calls visit(tile, enter) for the tiles on the ray in the order of (enter, tile), until visit has lowered t_max
+  // below the rest. Tiles overlap, and so do nodes: depth first would not do. open: room to work in.
   template <class Visit>
-  void walk(const Ray& ray, double& t_max, Visit&& visit) const {
-    struct Entry {
-      uint32_t node;
-      double enter;
-    };
-    Entry stack[64];
-    int top = 0;
-    double enter = 0, leave = 0;
+  void walk(const Ray& ray, double& t_max, std::vector<Entry>& open, Visit&& visit) const {
+    open.clear();  // sorted, the next one last; there are rarely more than ten
     const Vec3 inverse = inverse_of(ray.direction);
-    if (nodes_.empty() || !clip(nodes_[0].box, ray.origin, inverse, t_max, enter, leave)) return;
-    stack[top++] = {0, enter};
-    while (top) {
-      const Entry e = stack[--top];
-      if (e.enter > t_max) continue;
-      const Node& n = nodes_[e.node];
-      if (n.tile != UINT32_MAX) {
-        visit(n.tile, e.enter);
+    const auto push = [&](uint32_t node) {
+      double enter = 0, leave = 0;
+      if (!clip(nodes_[node].box, ray.origin, inverse, t_max, enter, leave)) return;
+      const Entry e{enter, nodes_[node].tile, node};
+      open.push_back(e);
+      size_t at = open.size() - 1;
+      for (; at > 0 && open[at - 1].before(e); --at) open[at] = open[at - 1];
+      open[at] = e;
+    };
+    if (!nodes_.empty()) push(0);
+    while (!open.empty()) {
+      const Entry e = open.back();
+      open.pop_back();
+      if (e.enter > t_max) return;
+      if (!e.inner()) {
+        visit(e.tile, e.enter);
         continue;
       }
-      double enter_a = 0, enter_b = 0;
-      const bool a = clip(nodes_[e.node + 1].box, ray.origin, inverse, t_max, enter_a, leave);
-      const bool b = clip(nodes_[n.second].box, ray.origin, inverse, t_max, enter_b, leave);
-      const Entry ea{e.node + 1, enter_a}, eb{n.second, enter_b};
-      if (a && b) {
-        stack[top++] = enter_a <= enter_b ? eb : ea;
-        stack[top++] = enter_a <= enter_b ? ea : eb;
-      } else if (a) {
-        stack[top++] = ea;
-      } else if (b) {
-        stack[top++] = eb;
-      }
+      push(e.node + 1);
+      push(nodes_[e.node].second);
     }
   }
 

@@ -30,11 +30,12 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window,
-               std::shared_ptr<const HitFilter> filter)
-    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter)), window) {}
+               std::shared_ptr<const HitFilter> filter, double keep)
+    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), keep), window) {}
 
 Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
     : world_(std::move(world)), bounds_(world_->bounds), has_holes_(world_->filter != nullptr) {
+  if (world_->flat.groups.empty()) plain_ = world_->flat.objects;
   if (world_->flat.fixed == world_->flat.objects.size()) return;
   const FlushDenormals flush;
   moving_ = std::make_unique<MovingPart>(*world_, window);
@@ -43,7 +44,6 @@ Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
 
 Tracer::~Tracer() = default;
 const Scene& Tracer::scene() const { return *world_->scene; }
-std::span<const TracedObject> Tracer::objects() const { return world_->flat.objects; }
 const std::optional<Periodic>& Tracer::periodic() const { return world_->periodic; }
 std::optional<TimeSpan> Tracer::window() const { return moving_ ? std::optional(moving_->window) : std::nullopt; }
 size_t Tracer::triangles() const { return world_->triangles; }
@@ -62,10 +62,6 @@ std::string Tracer::engine() {
               static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION_PATCH)));
 }
 
-Affine3 Tracer::to_world(const TracedObject& o, double time) const {
-  return world_->to_world(o, moving_ ? std::clamp(time, moving_->window.begin, moving_->window.end) : time);
-}
-
 namespace {
 
 // A ray's way through the tiles, nearest first. Rays that cross more tiles than fit here start again where they
@@ -77,24 +73,21 @@ struct Itinerary {
   uint32_t count = 0, next = 0;
   bool more = false;
 
-  void plan(const TileBvh& bvh, const Ray& ray, double t_max) {
+  using Open = std::vector<TileBvh::Entry>;
+  void plan(const TileBvh& bvh, const Ray& ray, double t_max, Open& open) {
     count = next = 0;
     more = false;
-    bvh.walk(ray, t_max, [&](uint32_t index, double at) { note(index, at, t_max); });
+    bvh.walk(ray, t_max, open, [&](uint32_t index, double at) { note(index, at, t_max); });
   }
 
   // The next tiles of a ray that crosses more than fit: all are listed again and those it has been through, which are
   // the nearest, are skipped.
-  void go_on(const TileBvh& bvh, const Ray& ray, double t_max) {
-    const double last = enter[count - 1];
-    std::vector<uint32_t> at_last;  // tiles entered exactly there have been visited
-    for (uint32_t i = 0; i < count; ++i)
-      if (enter[i] == last) at_last.push_back(tile[i]);
+  void go_on(const TileBvh& bvh, const Ray& ray, double t_max, Open& open) {
+    const std::pair last{enter[count - 1], tile[count - 1]};
     count = next = 0;
     more = false;
-    bvh.walk(ray, t_max, [&](uint32_t index, double at) {
-      if (at < last || (at == last && std::find(at_last.begin(), at_last.end(), index) != at_last.end())) return;
-      note(index, at, t_max);
+    bvh.walk(ray, t_max, open, [&](uint32_t index, double at) {
+      if (last < std::pair{at, index}) note(index, at, t_max);
     });
   }
 
@@ -130,13 +123,14 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
   }
   thread_local std::vector<Itinerary> ways;
   thread_local std::vector<std::pair<uint32_t, uint32_t>> waiting;  // (tile, ray)
+  thread_local Itinerary::Open open;
   ways.resize(std::max(ways.size(), rays.size()));
-  for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i]);
+  for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i], open);
   for (;;) {
     waiting.clear();
     for (uint32_t i = 0; i < rays.size(); ++i) {
       Itinerary& way = ways[i];
-      if (way.next == way.count && way.more && reach[i] > 0) way.go_on(bvh, rays[i], reach[i]);
+      if (way.next == way.count && way.more && reach[i] > 0) way.go_on(bvh, rays[i], reach[i], open);
       if (way.next < way.count && way.enter[way.next] <= reach[i])
         waiting.emplace_back(way.tile[way.next], i);
       else
@@ -212,7 +206,7 @@ void Tracer::nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, T
   for (const uint32_t object : world_->unbounded)
     for (uint32_t i = 0; i < rays.size(); ++i) {
       tracer.unbounded(object, i, &hits[i]);
-      if (hits[i].object != object) continue;
+      if (hits[i].object != world_->flat.number(object)) continue;
       Vec3& p = hits[i].position;
       p.x -= std::floor((p.x - cell.low.x) / cell.size.x) * cell.size.x;
       p.y -= std::floor((p.y - cell.low.y) / cell.size.y) * cell.size.y;

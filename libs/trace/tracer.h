@@ -12,24 +12,28 @@
 //
 // Based on: Goodenough & Brown, section III-A-1 (Embree, instancing of any depth); I. Wald et al., "Embree: a kernel
 // framework for efficient CPU ray tracing", 2014. Debian's Embree has one instance level, so nested placements are
-// flattened here with transforms composed in double.
+// flattened here with transforms composed in double. Where that would be too many, groups that are placed often are
+// kept once (scene/unfolded.h), and rays go from frame to frame in double: memory is the sum of the levels, not their
+// product.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "math/vec.h"
 #include "motion/time_span.h"
 #include "scene/scene.h"
+#include "scene/unfolded.h"
 
 namespace suite {
 
-// One flattened instance of a mesh or of an exact surface.
+// One instance of a mesh or of an exact surface.
 struct TracedObject {
-  const Affine3* place;        // local (double, mesh origin included) -> ENU, or the axes of the moving node
   uint32_t mesh = kNone;       // index into Scene::meshes, or kNone
   uint32_t primitive = kNone;  // index into Scene::primitives, or kNone
   uint32_t material_override = kNone;
@@ -39,12 +43,17 @@ struct TracedObject {
   uint32_t node = kNone;  // the frame it belongs to that moves, comes or goes; kNone = always at rest
 };
 
+// An object with its transform.
+struct PlacedObject : TracedObject {
+  const Affine3* place = nullptr;  // local (double, mesh origin included) -> ENU, or the axes of the moving node
+};
+
 struct Hit {
   double distance = 0;      // m from the ray's origin
   Vec3 position;            // ENU, rebuilt from barycentrics in double
   Dir normal;               // geometric, unit, on the front side (counter-clockwise vertices), ENU
   double time = 0;          // s, of the ray
-  uint32_t object = kNone;  // index into Tracer::objects(); kNone = nothing was hit
+  uint32_t object = kNone;  // number of the object, as Tracer::object() has it; kNone = nothing was hit
   uint32_t triangle = 0;    // in the mesh
   float u = 0, v = 0;       // barycentrics of vertices 1 and 2; of an exact surface its UV
   float step = 0;           // m, how far rays that leave the surface must start off it
@@ -76,10 +85,13 @@ class Tracer {
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Surfaces without bounds are not repeated but met by the whole ray.
+  // keep: how many placements are kept before groups are shared, as share_groups has it; results do not depend on it
+  // but for the numbers of objects.
   // Error: a motion that does not cover the window while what moves is there; things that move, come or go, or a plane
   // that is not level, in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
-                  TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr);
+                  TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr,
+                  double keep = kUnfoldedAtMost);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -102,10 +114,28 @@ class Tracer {
   }
 
   const Scene& scene() const;
-  std::span<const TracedObject> objects() const;
-  // From the object's local frame (mesh origin included) to ENU at the time, exact.
-  Affine3 to_world(const TracedObject& object, double time) const;
-  Affine3 to_world(const Hit& hit) const { return to_world(objects()[hit.object], hit.time); }
+  // Of a hit, or as each() numbers them.
+  TracedObject object(uint32_t number) const {
+    return number < plain_.size() ? static_cast<const TracedObject&>(plain_[number]) : nested_object(number);
+  }
+  // From the object's local frame (mesh origin included) to ENU, or to the axes of its node.
+  Affine3 place(uint32_t number) const { return number < plain_.size() ? *plain_[number].place : nested_place(number); }
+  // From the object's local frame to ENU at the time, exact.
+  Affine3 to_world(uint32_t number, double time) const;
+  Affine3 to_world(const Hit& hit) const { return to_world(hit.object, hit.time); }
+  size_t object_count() const;  // each copy counted
+
+  // Visits at least one object of each kind: mesh or exact surface, and material override.
+  void kinds(const std::function<void(const TracedObject&)>& visit) const;
+  // Visits all objects that are wanted, in the order of their numbers. wanted is asked about what an object is, its
+  // override, its tag and whether it has a node, on behalf of all copies. Error saying `what` they are when copies of
+  // shared groups are more than kMostVisited.
+  static constexpr double kMostVisited = 16777216;  // 2^24
+  void each(const std::string& what, const std::function<bool(const TracedObject&)>& wanted,
+            const std::function<void(uint32_t, const TracedObject&)>& visit) const;
+  // The objects of one instance: one, but for its materials and its copies at the sides of a periodic cell.
+  std::vector<uint32_t> of_instance(uint32_t instance) const;
+
   const std::optional<Periodic>& periodic() const;
   // The window; nothing when all is always at rest, whatever the time.
   std::optional<TimeSpan> window() const;
@@ -127,7 +157,10 @@ class Tracer {
                          TraceStatistics& statistics) const;
   void add_all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
-  std::unique_ptr<MovingPart> moving_;  // null when nothing moves
+  TracedObject nested_object(uint32_t number) const;
+  Affine3 nested_place(uint32_t number) const;
+  std::unique_ptr<MovingPart> moving_;   // null when nothing moves
+  std::span<const PlacedObject> plain_;  // all objects, unless groups are shared
   Box3 bounds_;
   bool has_holes_ = false;
 };

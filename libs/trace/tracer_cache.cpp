@@ -22,7 +22,7 @@ bool at_rest(const MovingPart& part) {
 
 TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic,
                          std::shared_ptr<const HitFilter> filter)
-    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter))) {}
+    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), kUnfoldedAtMost)) {}
 TracerCache::~TracerCache() = default;
 
 std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {

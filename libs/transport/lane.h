@@ -59,7 +59,7 @@ struct PathRecord {
 
 // The first surface that a path met; kept where truth is asked for.
 struct FirstMeeting {
-  uint32_t object = kNone;  // index into Tracer::objects(); kNone: the Earth under the scene
+  uint32_t object = kNone;  // as Tracer::object() has it; kNone: the Earth under the scene
   Dir out;                  // back along the ray, ENU
   double distance = 0;      // m from the sensor, all segments
   bool sunlit = false;      // the explicit sample of the sun arrived

@@ -25,7 +25,6 @@ MatteSurfaces::MatteSurfaces(const Surface& surface, const Optics& optics, size_
     : surface_(surface),
       optics_(optics),
       keep_first_(keep_first),
-      objects_(surface.tracer().objects()),
       meshes_(surface.tracer().scene().meshes),
       places_(width),
       first_(keep_first ? width : 0),

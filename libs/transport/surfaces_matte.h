@@ -58,7 +58,6 @@ class MatteSurfaces {
   const Surface& surface_;
   const Optics& optics_;
   const bool keep_first_;
-  const std::span<const TracedObject> objects_;
   const std::span<const Mesh> meshes_;
   std::vector<const float*> rho_;  // by material; null = nothing scatters
   std::vector<Place> places_;
@@ -71,7 +70,7 @@ class MatteSurfaces {
 
 inline bool MatteSurfaces::meet(uint32_t p, const Hit& hit, Dir out, double time, bool first) {
   Place& place = places_[p];
-  const TracedObject& object = objects_[hit.object];
+  const TracedObject object = surface_.tracer().object(hit.object);
   if (object.mesh != kNone && meshes_[object.mesh].normals.empty()) {
     place.material = surface_.material(object, hit);
     place.shading = hit.normal;

@@ -14,6 +14,7 @@
 #include "motion/track.h"
 #include "scene/scene.h"
 #include "tests/bench/memory.h"
+#include "tests/bench/traced.h"
 #include "trace/tracer.h"
 
 using namespace suite;
@@ -79,26 +80,6 @@ std::vector<Ray> rays_of(double side, bool coherent) {
   return rays;
 }
 
-struct Seen {
-  double rays_per_second = 0, mean = 0;
-  size_t hits = 0;
-};
-
-Seen ours(const Tracer& tracer, std::span<const Ray> rays, bool coherent) {
-  const FlushDenormals flush;
-  Seen seen;
-  TraceStatistics statistics;
-  std::vector<Hit> hits(64);
-  const double start = now();
-  for (size_t i = 0; i < rays.size(); i += 64) {
-    tracer.nearest(rays.subspan(i, 64), hits, coherent, statistics);
-    for (const Hit& h : hits)
-      if (h.hit()) ++seen.hits, seen.mean += h.distance;
-  }
-  seen.rays_per_second = static_cast<double>(rays.size()) / (now() - start);
-  return seen;
-}
-
 // The same with one Embree instance each, rays in float, hits rebuilt in double as the tracer does.
 struct Stock {
   RTCDevice device = rtcNewDevice("isa=avx2,threads=0");
@@ -148,10 +129,10 @@ struct Stock {
     rtcReleaseDevice(device);
   }
 
-  Seen trace(std::span<const Ray> rays, bool coherent) const {
+  bench::Seen trace(std::span<const Ray> rays, bool coherent) const {
     const FlushDenormals flush;
-    Seen seen;
-    const double start = now();
+    bench::Seen seen;
+    const double start = test::cpu_seconds();
     for (size_t i = 0; i < rays.size(); i += 8) {
       RTCIntersectContext context;
       rtcInitIntersectContext(&context);
@@ -183,10 +164,10 @@ struct Stock {
                                           (v[2] - v[0]) * double{rh.hit.v[k]});
         const Vec3 normal = normalized(p.to_parent.normal(cross(v[1] - v[0], v[2] - v[0])));
         ++seen.hits;
-        seen.mean += dot(at - rays[i + k].origin, rays[i + k].direction) + 0 * normal.x;
+        seen.distance += dot(at - rays[i + k].origin, rays[i + k].direction) + 0 * normal.x;
       }
     }
-    seen.rays_per_second = static_cast<double>(rays.size()) / (now() - start);
+    seen.seconds = test::cpu_seconds() - start;
     return seen;
   }
 };
@@ -222,17 +203,18 @@ int main(int argc, char** argv) try {
     const double side = 2 * std::sqrt(count);
     for (const bool coherent : {true, false}) {
       const std::vector<Ray> rays = rays_of(side, coherent);
-      Seen a, b;
-      for (int k = 0; k < 3; ++k) {
-        const Seen x = ours(tracer, rays, coherent), y = stock.trace(rays, coherent);
-        if (x.rays_per_second > a.rays_per_second) a = x;
-        if (y.rays_per_second > b.rays_per_second) b = y;
+      bench::Seen a = bench::trace(tracer, rays, coherent), b = stock.trace(rays, coherent);
+      for (int k = 0; k < 2; ++k) {
+        const bench::Seen x = bench::trace(tracer, rays, coherent), y = stock.trace(rays, coherent);
+        if (x.seconds < a.seconds) a = x;
+        if (y.seconds < b.seconds) b = y;
       }
+      const double millions = static_cast<double>(rays.size()) / 1e6;
       std::printf(
           "%s: %.2f Mrays/s a thread, Embree's own %.2f (%+.1f %%); hits %zu and %zu, mean distance %.6f and %.6f m\n",
-          coherent ? "coherent" : "incoherent", a.rays_per_second / 1e6, b.rays_per_second / 1e6,
-          100 * (a.rays_per_second / b.rays_per_second - 1), a.hits, b.hits, a.mean / static_cast<double>(a.hits),
-          b.mean / static_cast<double>(b.hits));
+          coherent ? "coherent" : "incoherent", millions / a.seconds, millions / b.seconds,
+          100 * (b.seconds / a.seconds - 1), a.hits, b.hits, a.distance / static_cast<double>(a.hits),
+          b.distance / static_cast<double>(b.hits));
     }
   }
   std::remove(path.c_str());

@@ -180,7 +180,7 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   TraceStatistics statistics;
   tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
   const double reach = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z), 1e-3});
-  const auto instance = [&](uint32_t o) { return tracer.objects()[o].instance; };
+  const auto instance = [&](uint32_t o) { return tracer.object(o).instance; };
   shape->step = hit.hit() && instance(hit.object) == instance(object)
                     ? hit.step
                     : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
@@ -192,27 +192,31 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
   const FlushDenormals flush;
   const Scene& scene = tracer.scene();
   auto spec_of = [&](uint32_t material) { return material == kNone ? kNone : spec_of_material[material]; };
+  const auto carried = [&](const TracedObject& o, uint32_t own) {
+    return spec_of(o.material_override != kNone ? o.material_override : own);
+  };
+  const auto glows = [&](const TracedObject& o) {
+    if (o.node != kNone) return false;
+    if (o.primitive != kNone) return carried(o, scene.primitives[o.primitive].material) != kNone;
+    const std::vector<Part>& parts = scene.meshes[o.mesh].parts;
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return carried(o, p.material) != kNone; });
+  };
   std::unordered_map<uint32_t, uint32_t> first;  // object of an instance
-  for (uint32_t o = 0; o < tracer.objects().size(); ++o) {
-    const TracedObject& object = tracer.objects()[o];
-    if (object.node != kNone) continue;
+  tracer.each("surfaces that glow", glows, [&](uint32_t o, const TracedObject& object) {
+    const Affine3 place = tracer.place(o);
     if (const auto [at, is_new] = first.emplace(object.instance, o); !is_new) {
-      copy_of[o] = {at->second, tracer.objects()[at->second].place->b - object.place->b};
-      continue;
+      copy_of[o] = {at->second, tracer.place(at->second).b - place.b};
+      return;
     }
-    const Affine3& place = *object.place;
-    auto carried = [&](uint32_t own) {
-      return spec_of(object.material_override != kNone ? object.material_override : own);
-    };
     if (object.primitive != kNone) {
       const Primitive& primitive = scene.primitives[object.primitive];
-      if (const uint32_t spec = carried(primitive.material); spec != kNone)
-        shape_of_triangle[o] = {add_surface(shape_of(primitive, place), spec, o, tracer)};
-      continue;
+      const uint32_t spec = carried(object, primitive.material);
+      shape_of_triangle[o] = {add_surface(shape_of(primitive, place), spec, o, tracer)};
+      return;
     }
     const Mesh& mesh = scene.meshes[object.mesh];
     for (const Part& part : mesh.parts) {
-      const uint32_t spec = carried(part.material);
+      const uint32_t spec = carried(object, part.material);
       if (spec == kNone) continue;
       std::vector<uint32_t>& map = shape_of_triangle[o];
       mesh.require();
@@ -220,7 +224,7 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
         map[t] = add_surface(shape_of(mesh, t, place), spec, o, tracer);
     }
-  }
+  });
 }
 
 Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const SpectralState& state)

@@ -21,11 +21,13 @@ Bodies::Bodies(const Surface& surface) : surface_(surface) {
     any_ = any_ || m.bounds_medium();
     any_boundary_ = any_boundary_ || m.is_boundary();
   }
-  for (const TracedObject& o : surface.tracer().objects()) {
-    if (o.instance >= unbounded_.size()) unbounded_.resize(o.instance + 1, false);
-    unbounded_[o.instance] = o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty();
-  }
-  alone_ = surface.tracer().objects().size() < 2 && !surface.tracer().periodic();
+  surface.tracer().each(
+      "surfaces without bounds",
+      [&](const TracedObject& o) {
+        return o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty();
+      },
+      [&](uint32_t, const TracedObject& o) { unbounded_.insert(o.instance); });
+  alone_ = surface.tracer().object_count() < 2 && !surface.tracer().periodic();
 }
 
 void Bodies::cross(MediumStack& stack, const Hit& hit, uint32_t material, Dir direction) const {
@@ -168,7 +170,7 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
 }
 
 void Bodies::leave_scene(MediumStack& stack) const {
-  if (!stack.empty()) stack.filter([&](uint32_t of) { return unbounded_[of]; });
+  if (!stack.empty()) stack.filter([&](uint32_t of) { return unbounded_.contains(of); });
 }
 
 }  // namespace suite

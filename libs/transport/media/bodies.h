@@ -3,6 +3,7 @@
 // Bodies may touch: rays leave a surface a little off it, and all that lies on that little way is crossed with it.
 #pragma once
 #include <optional>
+#include <unordered_set>
 #include <vector>
 
 #include "surface/surface.h"
@@ -49,7 +50,7 @@ class Bodies {
     return material != kNone && (rules_[material].medium[0] != kNone || rules_[material].medium[1] != kNone);
   }
   // Copies of one object that a periodic scene puts at its sides are one body.
-  uint32_t body(const Hit& hit) const { return surface_.tracer().objects()[hit.object].instance; }
+  uint32_t body(const Hit& hit) const { return surface_.tracer().object(hit.object).instance; }
   int priority(uint32_t medium) const { return medium == kNone ? 0 : surface_.tracer().scene().media[medium].priority; }
   static Onward onward(const Hit& hit, Dir direction);
   void find_beside(const Hit& hit, const Ray& from, double back, double length, TraceStatistics& statistics);
@@ -57,8 +58,8 @@ class Bodies {
   bool crosses(size_t i, Dir direction) const;
 
   const Surface& surface_;
-  std::vector<Rule> rules_;      // per material
-  std::vector<bool> unbounded_;  // per body
+  std::vector<Rule> rules_;                 // per material
+  std::unordered_set<uint32_t> unbounded_;  // bodies
   bool any_ = false, any_boundary_ = false, asked_ = false;
   bool alone_ = false;  // nothing can touch the only object
   Vec3 place_;

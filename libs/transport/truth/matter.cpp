@@ -68,11 +68,11 @@ uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
       return node.at->material;
     case What::instance:
       if (node.object == kNone) return kNone;  // the Earth under the scene
-      return c.tracer.objects()[node.object].instance;
+      return c.tracer.object(node.object).instance;
     case What::tag:
       break;
   }
-  return node.object != kNone ? c.tracer.objects()[node.object].tag : kNone;
+  return node.object != kNone ? c.tracer.object(node.object).tag : kNone;
 }
 
 struct Majority final : TruthCollector {

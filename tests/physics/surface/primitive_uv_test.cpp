@@ -40,7 +40,7 @@ TEST_P(PrimitiveUv, IsContinuousAndItsTangentsAreItsDerivatives) {
   scene->groups[0].placements.push_back(p);
   check_scene(*scene, "exact");
   const Tracer tracer(scene);
-  const TracedObject& object = tracer.objects()[0];
+  const TracedObject object = tracer.object(0);
   const FlushDenormals flush;
   TraceStatistics statistics;
   const auto shoot = [&](Vec3 from, Dir along) {

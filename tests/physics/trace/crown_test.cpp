@@ -95,13 +95,15 @@ struct Wood {
     check_scene(*scene, "wood");
     tracer = std::make_unique<Tracer>(scene);
     std::vector<DoubleTracer::Triangle> all;
-    for (const TracedObject& o : tracer->objects()) {
+    for (uint32_t n = 0; n < tracer->object_count(); ++n) {
+      const TracedObject o = tracer->object(n);
+      const Affine3 place = tracer->place(n);
       const Mesh& m = scene->meshes[o.mesh];
       first.push_back(static_cast<uint32_t>(all.size()));
       for (size_t t = 0; t < m.triangle_count(); ++t) {
         const auto vertex = [&](size_t c) {
           const float* q = &m.positions[3 * size_t{m.indices[3 * t + c]}];
-          return o.place->point(m.origin + Vec3{q[0], q[1], q[2]});
+          return place.point(m.origin + Vec3{q[0], q[1], q[2]});
         };
         all.push_back({vertex(0), vertex(1), vertex(2)});
         material.push_back(m.parts[0].material);

@@ -58,7 +58,7 @@ Seen seen(const Tracer& tracer, double t, Vec3 from = {0.3, 0.2, 10}) {
   std::vector<uint8_t> blocked(3);
   tracer.occluded(rays, distance, blocked, true, statistics);
   EXPECT_EQ(blocked[0] != 0, hit.position.z > 0.6) << t;
-  const TracedObject& o = tracer.objects()[hit.object];
+  const TracedObject o = tracer.object(hit.object);
   const uint32_t own = tracer.scene().meshes[o.mesh].parts[0].material;
   return {hit.position.z, o.material_override == kNone ? own : o.material_override, o.instance};
 }

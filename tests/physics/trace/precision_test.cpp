@@ -98,7 +98,7 @@ TEST(Precision, ManyTilesOverAThousandKilometres) {
     Hit hit;
     tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
     ASSERT_TRUE(hit.hit()) << i;
-    EXPECT_EQ(tracer.objects()[hit.object].instance, static_cast<uint32_t>(i));
+    EXPECT_EQ(tracer.object(hit.object).instance, static_cast<uint32_t>(i));
     EXPECT_NEAR(hit.position.x, i * 5e4 + 3, 1e-4);
   }
   // A grazing ray passes over all of them and meets the last when aimed at it.
@@ -128,7 +128,7 @@ TEST(Instancing, NestedSixtyFourDeepAgreesWithDoubleReference) {
   }
   check_scene(*scene, "nested");
   const Tracer tracer(scene);
-  ASSERT_EQ(tracer.objects().size(), 1u);
+  ASSERT_EQ(tracer.object_count(), 1u);
   const Vec3 centre = product.point({0.1, 0.2, 0}), normal = normalized(product.normal({0, 0, 1}));
   const Ray ray{centre + normal * 5.0, -normal, 0};
   Hit hit;

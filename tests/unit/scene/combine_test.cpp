@@ -51,12 +51,12 @@ TEST(Combine, ScenesStandWhereTheirOriginsSay) {
   const Vec3 there = frame.enu_from_geodetic({48.001, 9.002, 300});
   EXPECT_NEAR(all->class_maps[1].drape.origin_x, there.x - 1, 1e-8);
   const Tracer tracer(all);
-  ASSERT_EQ(tracer.objects().size(), 2u);
-  const Affine3 second = tracer.to_world(tracer.objects()[1], 0);
+  ASSERT_EQ(tracer.object_count(), 2u);
+  const Affine3 second = tracer.to_world(1, 0);
   EXPECT_LT(length(second.b - there), 1e-8);
   // Its up is the vertical of its own place.
   EXPECT_LT(length(second.vector({0, 0, 1}) - frame.local_axes(there).z), 1e-12);
-  EXPECT_EQ(tracer.objects()[1].tag, 0u);
+  EXPECT_EQ(tracer.object(1).tag, 0u);
   Hit hit;
   TraceStatistics statistics;
   const Ray down{there + Vec3{0.3, 0.2, 5}, {0, 0, -1}, 0};
@@ -79,9 +79,9 @@ TEST(Combine, PlacementsMotionsAndTimes) {
   check_scene(*all, "all");
   EXPECT_EQ(all->epoch, "2024-05-01T10:00:00Z");
   const Tracer tracer(all, std::nullopt, {61, 65});
-  ASSERT_EQ(tracer.objects().size(), 3u);
-  EXPECT_EQ(tracer.to_world(tracer.objects()[1], 62).b, (Vec3{10, 20, 30}));
-  EXPECT_LT(length(tracer.to_world(tracer.objects()[2], 62.5).b - Vec3{30, 6, 7}), 1e-9);
+  ASSERT_EQ(tracer.object_count(), 3u);
+  EXPECT_EQ(tracer.to_world(1, 62).b, (Vec3{10, 20, 30}));
+  EXPECT_LT(length(tracer.to_world(2, 62.5).b - Vec3{30, 6, 7}), 1e-9);
   EXPECT_THAT(message_of([&] { check_motion(*all, 0, 5, {}); }), HasSubstr("car in traffic is known from 60 to 70 s"));
 }
 
