@@ -2,7 +2,7 @@
 // once: sums, rejected samples, what was cut and missed, and truth.
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "math/sampling.h"
 #include "support/radiometry_kit.h"
@@ -91,7 +91,9 @@ bool same_bytes(const Accumulators& a, const Accumulators& b) {
   const auto x = a.columns(), y = b.columns();
   const size_t rows = a.problems() * static_cast<size_t>(a.scrambles());
   for (size_t c = 0; c < x.size(); ++c)
-    if (x[c].width != y[c].width || std::memcmp(x[c].data, y[c].data, rows * x[c].width) != 0) return false;
+    if (x[c].width != y[c].width ||
+        !std::equal(x[c].data, x[c].data + rows * x[c].width, y[c].data, y[c].data + rows * y[c].width))
+      return false;
   return true;
 }
 
