@@ -71,20 +71,21 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
 }
 
 // What the sensors can see decides what is loaded.
-SceneNeeds needs_of(const Simulation& sim, const JobOptions& options) {
+SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
   SceneNeeds needs;
   needs.windows_um = windows_um(sim.sensors, options.prepasses);
   for (const auto& sensor : sim.sensors)
     for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
   needs.later_from = uint64_t{64} << 20;
+  if (ranks) needs.spill = spill_file(*ranks);
   return needs;
 }
 
 // All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
+Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks,
                   std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
-  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options);
+  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
   for (const SimulationScene& s : sim.scenes) {
     LoadReport loaded;
     const auto begun = std::chrono::steady_clock::now();
@@ -312,7 +313,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
 
   // Everything that can be refused is refused before rendering starts.
   std::vector<std::shared_ptr<const LaterReads>> later;
-  const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, later));
+  const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, ranks, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
