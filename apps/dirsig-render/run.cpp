@@ -76,7 +76,8 @@ SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ran
   needs.windows_um = windows_um(sim.sensors, options.prepasses);
   for (const auto& sensor : sim.sensors)
     for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
-  needs.later_from = uint64_t{64} << 20;
+  // Under a limit all of it can be let go.
+  needs.later_from = options.tiles.bytes ? 0 : uint64_t{64} << 20;
   if (ranks) needs.spill = spill_file(*ranks);
   return needs;
 }
@@ -168,6 +169,13 @@ void tell(const JobReport& r) {
   note(strf("median relative standard error %.2f %%", 100 * r.median_relative_error));
   tell_quality(r.quality);
   note(r.stopped_by);
+  if (const TileUse& t = r.tiles; t.built)
+    note(
+        strf("tiles: %llu buildings, %llu at once at the most; the most at once: %s of ray tracer's structures, %s of "
+             "geometry under them",
+             static_cast<unsigned long long>(t.built), static_cast<unsigned long long>(t.most_tiles),
+             human_bytes(static_cast<double>(t.most_structures)).c_str(),
+             human_bytes(static_cast<double>(t.most_geometry)).c_str()));
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
               100 * r.statistics.truncated / paths));
@@ -276,6 +284,7 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   options.budget = budget_of(o);
   options.share = share_of(o);
   options.kit_bytes = kit_bytes_of(o);
+  options.tiles = {tile_bytes_of(o), warn};
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
   return options;
