@@ -106,7 +106,27 @@ Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ra
   }
 }
 
+// What the scene will take in memory.
+void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+  const Sensor& first = *sim.sensors.front();
+  const TimeWindow window = first.tasks().front().captures.front().window;
+  // Under a limit, however large, nothing is built before a ray comes.
+  const Tracer tracer(scene, options.periodic, {window.begin, window.end}, nullptr, {SIZE_MAX, {}});
+  const TileForecast f = tracer.forecast();
+  const auto text = [](uint64_t bytes) { return human_bytes(static_cast<double>(bytes)); };
+  std::printf("%zu tiles of the scene take %s of geometry in its file and some %s of the ray tracer's structures\n",
+              f.tiles, text(f.geometry).c_str(), text(f.structures).c_str());
+  const uint64_t all = f.geometry + f.structures, limit = options.tiles.bytes;
+  if (!limit || f.tiles == 0) return;
+  const double share = static_cast<double>(limit) / static_cast<double>(std::max<uint64_t>(all, 1));
+  std::printf("in %s about %.0f of them fit; the largest takes %s%s\n", text(limit).c_str(),
+              std::min(1.0, share) * static_cast<double>(f.tiles), text(f.largest).c_str(),
+              f.largest > limit ? ", which is more, and is held all the same" : "");
+}
+
 int dry_run(const Simulation& sim, const JobOptions& options) {
+  std::vector<std::shared_ptr<const LaterReads>> later;
+  tell_forecast(std::make_shared<const Scene>(load_scenes(sim, options, false, nullptr, later)), sim, options);
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());
     for (const SpectralState& s : sensor->states())
@@ -317,11 +337,11 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
   JobOptions options = job_options(sim, o);
+  std::vector<std::shared_ptr<const LaterReads>> later;
   if (o.dry_run) return dry_run(sim, options);
   check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  std::vector<std::shared_ptr<const LaterReads>> later;
   const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, ranks, later));
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);

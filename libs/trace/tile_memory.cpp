@@ -108,7 +108,7 @@ void TileMemory::enter_slowly(Tile& tile) {
   while (state.granted_ == 0) {
     Tile* const wanted = working_ - blocked_ < cores_ ? most_wanted() : nullptr;
     if (wanted)
-      build(*wanted, lock);
+      build(*wanted, state, lock);
     else
       changed_.wait(lock);
   }
@@ -129,16 +129,22 @@ Tile* TileMemory::most_wanted() {
   return tile;
 }
 
-void TileMemory::build(Tile& tile, std::unique_lock<std::mutex>& lock) {
+// own: the tile that this thread itself waits for.
+void TileMemory::build(Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock) {
   TileState& state = tile.state;
   state.being_built_ = true;
   --blocked_;  // this thread
   const uint64_t structures = structures_of(tile, world_);
   state.geometry_ = geometry_of(tile, world_);
-  make_room(structures + state.geometry_, tile, lock);
-  state.fault_ = build_in(structures, tile, lock);
+  const bool room = make_room(structures + state.geometry_, tile, own, lock);
+  if (room) state.fault_ = build_in(structures, tile, lock);
   ++blocked_;
   state.being_built_ = false;
+  if (!room) {
+    wanted_.push_back(&tile);
+    changed_.notify_all();
+    return;
+  }
   // All who wait go on and are inside, before anybody can drop it.
   state.granted_ = std::exchange(state.waiting_, 0);
   blocked_ -= static_cast<int>(state.granted_);
@@ -154,8 +160,10 @@ void TileMemory::build(Tile& tile, std::unique_lock<std::mutex>& lock) {
   changed_.notify_all();
 }
 
-// Drops what was not used for longest. Tiles with somebody inside are waited for: who is inside one waits for nothing.
-void TileMemory::make_room(uint64_t bytes, const Tile& tile, std::unique_lock<std::mutex>& lock) {
+// Drops what was not used for longest. Tiles with somebody inside are waited for. Who is inside one must wait for
+// nothing, so a thread whose own tile has come meanwhile, and which may count as inside it, leaves the work to others:
+// false.
+bool TileMemory::make_room(uint64_t bytes, const Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock) {
   bool dropped = false;
   while (embree_now() + geometry_ + promised_ + bytes > limit_.bytes) {
     if (built_.empty() && promised_ == 0) {
@@ -164,11 +172,14 @@ void TileMemory::make_room(uint64_t bytes, const Tile& tile, std::unique_lock<st
     }
     if (drop_one())
       dropped = true;
+    else if (own.granted_)
+      return false;
     else
       changed_.wait_for(lock, std::chrono::microseconds(200));
   }
   // Freed blocks lie among others; the allocator gives their pages back when asked.
   if (dropped) malloc_trim(0);
+  return true;
 }
 
 void TileMemory::tell(uint64_t bytes, const Tile& tile) {

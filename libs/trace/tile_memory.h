@@ -59,8 +59,8 @@ class TileMemory {
  private:
   void enter_slowly(Tile& tile);
   Tile* most_wanted();
-  void build(Tile& tile, std::unique_lock<std::mutex>& lock);
-  void make_room(uint64_t bytes, const Tile& tile, std::unique_lock<std::mutex>& lock);
+  void build(Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock);
+  bool make_room(uint64_t bytes, const Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock);
   std::exception_ptr build_in(uint64_t room, Tile& tile, std::unique_lock<std::mutex>& lock);
   void tell(uint64_t bytes, const Tile& tile);
   bool drop_one();
