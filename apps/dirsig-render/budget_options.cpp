@@ -52,6 +52,15 @@ double seconds_of(const std::string& text) {
   return value * scale;
 }
 
+size_t bytes_of(const std::string& text, const std::string& option) {
+  std::string unit;
+  const double value = leading_number(text, option, unit);
+  const double scale = unit == "KiB" ? 0x1p10 : unit == "MiB" ? 0x1p20 : unit == "GiB" ? 0x1p30 : 0;
+  if (scale == 0) throw UsageError(option + " wants a unit, KiB, MiB or GiB, as in 512MiB; found '" + text + "'");
+  if (!(value >= 0 && value * scale < 0x1p62)) throw UsageError(option + ": '" + text + "' cannot be");
+  return static_cast<size_t>(value * scale);
+}
+
 }  // namespace
 
 Budget budget_of(const RenderOptions& o) {
@@ -76,14 +85,14 @@ Budget budget_of(const RenderOptions& o) {
 }
 
 size_t kit_bytes_of(const RenderOptions& o) {
-  if (o.kit_memory.empty()) return kDefaultKitBytes;
-  std::string unit;
-  const double value = leading_number(o.kit_memory, "--kit-memory", unit);
-  const double scale = unit == "KiB" ? 0x1p10 : unit == "MiB" ? 0x1p20 : unit == "GiB" ? 0x1p30 : 0;
-  if (scale == 0)
-    throw UsageError("--kit-memory wants a unit, KiB, MiB or GiB, as in 512MiB; found '" + o.kit_memory + "'");
-  if (!(value >= 0 && value * scale < 0x1p62)) throw UsageError("--kit-memory: '" + o.kit_memory + "' cannot be");
-  return static_cast<size_t>(value * scale);
+  return o.kit_memory.empty() ? kDefaultKitBytes : bytes_of(o.kit_memory, "--kit-memory");
+}
+
+size_t tile_bytes_of(const RenderOptions& o) {
+  if (o.memory.empty()) return 0;
+  const size_t bytes = bytes_of(o.memory, "--memory");
+  if (bytes == 0) throw UsageError("--memory: '" + o.memory + "' holds nothing");
+  return bytes;
 }
 
 StopRule stop_rule_of(const RenderOptions& o) {

@@ -77,6 +77,11 @@ void declare_render(Cli& cli, RenderOptions& o) {
              "room for materials and lights that are kept for later captures (KiB, MiB, GiB; 1GiB unless given); with "
              "less they are made anew, results stay the same",
              "512MiB");
+  cli.option(
+      "--memory", o.memory,
+      "room for the scene's tiles: the ray tracer's structures and the geometry under them (KiB, MiB, GiB); what "
+      "is over is given up and made anew, results stay the same",
+      "8GiB");
   cli.flag("--state", o.state, "keep FOLDER/result.state.h5, from which the run can be continued");
   cli.flag("--resume", o.resume, "continue a run with --state that was interrupted");
   cli.option("--more", o.more,

@@ -73,12 +73,14 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
 }
 
 // What the sensors can see decides what is loaded.
-SceneNeeds needs_of(const Simulation& sim, const JobOptions& options) {
+SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
   SceneNeeds needs;
   needs.windows_um = windows_um(sim.sensors, options.prepasses);
   for (const auto& sensor : sim.sensors)
     for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
-  needs.later_from = uint64_t{64} << 20;
+  // Under a limit all of it can be let go.
+  needs.later_from = options.tiles.bytes ? 0 : uint64_t{64} << 20;
+  if (ranks) needs.spill = spill_file(*ranks);
   return needs;
 }
 
@@ -94,10 +96,10 @@ bool seen(const Simulation& sim, TimeSpan life) {
 }
 
 // All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
+Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks,
                   std::vector<std::shared_ptr<const LaterReads>>& later) {
   std::vector<ScenePart> parts;
-  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options);
+  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
   for (const SimulationScene& s : sim.scenes) {
     if (!parts.empty() && !all && !seen(sim, s.life)) {  // the first gives the others their frame
       note("of " + s.path + ": nothing is loaded, it is not there in any capture");
@@ -121,7 +123,26 @@ Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all,
   }
 }
 
-void dry_run(const Simulation& sim, const JobOptions& options) {
+// What the scene will take in memory.
+void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+  const Sensor& first = *sim.sensors.front();
+  const TimeWindow window = first.tasks().front().captures.front().window;
+  // Under a limit, however large, nothing is built before a ray comes.
+  const Tracer tracer(scene, options.periodic, {window.begin, window.end}, nullptr, {SIZE_MAX, {}});
+  const TileForecast f = tracer.forecast();
+  const auto text = [](uint64_t bytes) { return human_bytes(static_cast<double>(bytes)); };
+  std::printf("%zu tiles of the scene take %s of geometry in its file and some %s of the ray tracer's structures\n",
+              f.tiles, text(f.geometry).c_str(), text(f.structures).c_str());
+  const uint64_t all = f.geometry + f.structures, limit = options.tiles.bytes;
+  if (!limit || f.tiles == 0) return;
+  const double share = static_cast<double>(limit) / static_cast<double>(std::max<uint64_t>(all, 1));
+  std::printf("in %s about %.0f of them fit; the largest takes %s%s\n", text(limit).c_str(),
+              std::min(1.0, share) * static_cast<double>(f.tiles), text(f.largest).c_str(),
+              f.largest > limit ? ", which is more, and is held all the same" : "");
+}
+
+void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+  tell_forecast(scene, sim, options);
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());
     for (const SpectralState& s : sensor->states())
@@ -183,6 +204,13 @@ void tell(const JobReport& r) {
   note(strf("median relative standard error %.2f %%", 100 * r.median_relative_error));
   tell_quality(r.quality);
   note(r.stopped_by);
+  if (const TileUse& t = r.tiles; t.built)
+    note(
+        strf("tiles: %llu buildings, %llu at once at the most; the most at once: %s of ray tracer's structures, %s of "
+             "geometry under them",
+             static_cast<unsigned long long>(t.built), static_cast<unsigned long long>(t.most_tiles),
+             human_bytes(static_cast<double>(t.most_structures)).c_str(),
+             human_bytes(static_cast<double>(t.most_geometry)).c_str()));
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
               100 * r.statistics.truncated / paths));
@@ -293,6 +321,7 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   options.budget = budget_of(o);
   options.share = share_of(o);
   options.kit_bytes = kit_bytes_of(o);
+  options.tiles = {tile_bytes_of(o), warn};
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
   return options;
@@ -327,15 +356,15 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
-  if (o.dry_run) dry_run(sim, options);
-  if (o.dry_run && forecast.empty()) return 0;
-  check_memory(sim, options);
+  if (!o.dry_run) check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
   std::vector<std::shared_ptr<const LaterReads>> later;
   const auto begun = std::chrono::steady_clock::now();
-  const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, later));
+  const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, ranks, later));
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  if (o.dry_run) dry_run(scene, sim, options);
+  if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);
   SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};

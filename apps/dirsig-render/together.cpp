@@ -88,6 +88,19 @@ void check_alike(Ranks& ranks, const StateIdentity& identity) {
   }
 }
 
+std::shared_ptr<SpillFile> spill_file(Ranks& ranks) {
+  std::shared_ptr<SpillFile> mine;
+  try {
+    mine = std::make_shared<SpillFile>();
+  } catch (const Error&) {
+    // Whoever has something to unpack will be told.
+  }
+  const std::string own = mine ? mine->address() : std::string(), first = ranks.of_first_here(own);
+  if (first != own) mine = SpillFile::open(first);
+  ranks.meet();  // the first one's file is open until all have opened it
+  return mine;
+}
+
 void tell_budget(Ranks& ranks, Budget& budget) {
   static_assert(std::is_trivially_copyable_v<Budget>);
   const auto own = std::as_bytes(std::span<const Budget>(&budget, 1));

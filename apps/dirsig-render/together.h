@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/mapped_file.h"
 #include "cluster/ranks.h"
 #include "formats/render_state/render_state.h"
 #include "options.h"
@@ -32,6 +33,8 @@ void check_ranks_usage(const Cli& cli, const RenderOptions& o);
 // Refuses ranks that differ in what they were given or in what they are (Error, on rank 0). identity: of the run as a
 // rank sees it.
 void check_alike(Ranks& ranks, const StateIdentity& identity);
+// A file that all ranks of this machine have open, for what they unpack; null where they cannot share one.
+std::shared_ptr<SpillFile> spill_file(Ranks& ranks);
 // The budget that rank 0 has, which may be that of a state.
 void tell_budget(Ranks& ranks, Budget& budget);
 

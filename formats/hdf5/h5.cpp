@@ -67,6 +67,9 @@ Handle file_access() {
   // The newest layout of 1.10 puts a checksum on every piece of metadata, so damage is noticed and not followed.
   H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
   H5Pset_file_locking(access, false, true);
+  // Plain values can be used where they lie when the file is mapped.
+  constexpr hsize_t kAll = 1, kWidest = 8;  // bytes
+  H5Pset_alignment(access, kAll, kWidest);
   return access;
 }
 
@@ -260,7 +263,8 @@ bool Reader::has(const std::string& name) const {
   return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
 }
 
-Reader::Opened Reader::open(const std::string& name, hid_t type, const char* units, size_t width, long long rows) {
+Reader::Opened Reader::open(const std::string& name, hid_t type, const char* units, size_t width, long long rows,
+                            bool held) {
   if (!has(name)) fail("dataset '" + name + "' is missing");
   Opened d{Handle(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose), 0, false};
   if (d.dataset < 0) fail("dataset '" + name + "' cannot be opened");
@@ -287,7 +291,7 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
   if (d.packed ? there > limit || bytes / kBestRatio > there : there != bytes || bytes > limit)
     fail("dataset '" + name + "' is not whole");
   // A packed dataset may be a thousand times the size of its file.
-  if (const double memory = available_memory(); d.packed && static_cast<double>(bytes) > 0.9 * memory)
+  if (const double memory = available_memory(); held && d.packed && static_cast<double>(bytes) > 0.9 * memory)
     fail("dataset '" + name + "' unpacks to " + human_bytes(static_cast<double>(bytes)) + ", and " +
          human_bytes(memory) + " of memory are available");
   d.count = dims[0] * width;

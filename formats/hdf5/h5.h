@@ -110,7 +110,8 @@ class Reader {
     size_t count = 0;     // values
     bool packed = false;  // not found in the file as they are
   };
-  Opened open(const std::string& name, Id type, const char* units, size_t width, long long rows);
+  // held: its values will be held in memory; Error when a packed one does not fit there.
+  Opened open(const std::string& name, Id type, const char* units, size_t width, long long rows, bool held = true);
   void read(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t count);
   // `blocks` runs of `run` values, the first at `first`, each `stride` values behind the one before.
   void read_strided(const std::string& name, const Opened& d, Id type, void* out, size_t first, size_t blocks,

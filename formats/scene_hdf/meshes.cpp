@@ -1,9 +1,8 @@
 // Meshes of a prepared scene: a table, and the large arrays behind it.
 #include <algorithm>
 
-#include "base/files.h"
 #include "base/parallel.h"
-#include "formats/scene_hdf/internal.h"
+#include "formats/scene_hdf/mesh_arrays.h"
 
 namespace suite {
 
@@ -11,46 +10,6 @@ namespace {
 
 using h5::Reader;
 using h5::Writer;
-
-// One of the large arrays, read past the HDF5 library by several threads: contiguous and little-endian, as this machine
-// is. A packed one is read by the library, which knows one thread only.
-template <class T>
-class Stored {
- public:
-  Stored(Reader& r, const std::string& name, const char* units) : name_(name) {
-    opened_ = r.open(name, h5::native<T>(), units, 1, -1);
-    count_ = opened_.count;
-    if (opened_.packed) return;
-    offset_ = r.file_offset(name, opened_);
-    opened_.dataset = h5::Handle();  // not needed, and it would keep the file open
-  }
-  // Sets aside the next n values; where they start.
-  uint64_t take(Reader& r, uint64_t n) {
-    if (n > count_ - at_) r.fail("dataset '" + name_ + "' is shorter than its table says");
-    at_ += n;
-    return at_ - n;
-  }
-  void finish(Reader& r) const {
-    if (at_ != count_) r.fail("dataset '" + name_ + "' is longer than its table says");
-  }
-  const std::string& name() const { return name_; }
-  bool packed() const { return opened_.packed; }
-  // r: for a packed one.
-  std::vector<T> values(Reader* r, const RandomAccessFile& file, uint64_t first, uint64_t n, size_t pad = 0) const {
-    std::vector<T> out(n + pad);
-    if (opened_.packed) {
-      r->read(name_, opened_, h5::native<T>(), out.data(), first, n);
-      return out;
-    }
-    file.read_at(offset_ + first * sizeof(T), std::as_writable_bytes(std::span(out.data(), n)));
-    return out;
-  }
-
- private:
-  std::string name_;
-  Reader::Opened opened_;
-  uint64_t count_ = 0, offset_ = 0, at_ = 0;
-};
 
 struct MeshRows {
   std::vector<std::string> names;
@@ -64,86 +23,68 @@ struct MeshRows {
   }
 };
 
-// Where the arrays of all meshes are; outlives the HDF5 library's view of the file when they are read later.
-struct MeshArrays {
-  MeshArrays(Reader& r, const std::string& file)
-      : path(file),
-        raw(file),
-        p(r, "/geometry/positions", "m"),
-        uv(r, "/geometry/uvs", "1"),
-        i(r, "/geometry/indices", "1"),
-        nrm(r, "/geometry/normals", "1") {}
-  struct Start {
-    uint64_t p, i, n, uv;
-    uint64_t vertices, triangles;
-    bool normals, uvs;  // read them
-    uint64_t bytes() const {
-      return 12 * vertices + 12 * triangles + (normals ? 4 : 0) * vertices + (uvs ? 8 : 0) * vertices;
-    }
-  };
-  void fill(Reader* r, const Start& s, const Mesh& mesh) const {
-    mesh.indices = i.values(r, raw, s.i, 3 * s.triangles);
-    if (s.normals) mesh.normals = nrm.values(r, raw, s.n, s.vertices);
-    if (s.uvs) mesh.uvs = uv.values(r, raw, s.uv, 2 * s.vertices);
-    mesh.positions = p.values(r, raw, s.p, 3 * s.vertices, s.vertices ? 1 : 0);
-  }
-  bool packed() const { return p.packed() || uv.packed() || i.packed() || nrm.packed(); }
-
-  std::string path;
-  RandomAccessFile raw;
-  Stored<float> p, uv;
-  Stored<uint32_t> i, nrm;
-  std::vector<Start> starts;
-};
-
-// Lets every mesh fetch its own arrays.
-void leave_for_later(const std::shared_ptr<const MeshArrays>& arrays, const MeshRows& rows, Loading& loading,
-                     std::vector<Mesh>& meshes) {
+// Lets every mesh of a mapped file check its arrays, which reads them, when it is asked to.
+void leave_for_later(const MeshArrays& arrays, const MeshRows& rows, Loading& loading, std::vector<Mesh>& meshes) {
   const auto later = std::make_shared<LaterReads>();
   for (size_t k = 0; k < meshes.size(); ++k) {
-    const MeshArrays::Start& start = arrays->starts[k];
-    if (start.vertices == 0 && start.triangles == 0) continue;
+    const uint64_t bytes = arrays.starts[k].bytes();
+    if (bytes == 0) continue;
     auto stored = std::make_shared<StoredArrays>();
-    stored->vertices = start.vertices, stored->triangles = start.triangles;
     stored->box = rows.box(k);
-    stored->fill = [arrays, k, later](const Mesh& mesh) {
-      arrays->fill(nullptr, arrays->starts[k], mesh);
-      check_arrays(mesh, arrays->path);
+    stored->fetch = [path = arrays.path, bytes, later](const Mesh& mesh) {
+      check_arrays(mesh, path);
       ++later->meshes_read;
-      later->read += arrays->starts[k].bytes();
+      later->read += bytes;
     };
     meshes[k].stored = std::move(stored);
     ++later->meshes;
-    later->stored += start.bytes();
+    later->stored += bytes;
   }
   loading.row("geometry").why = "each mesh when a ray first comes to its tile";
   loading.report.later = later;
 }
 
+// Packed ones, into a file.
+void unpack_all(Reader& r, const MeshArrays& arrays, const MeshRows& rows, const SceneNeeds& needs,
+                std::vector<Mesh>& meshes) {
+  for (size_t k = 0; k < meshes.size(); ++k)
+    if (arrays.starts[k].bytes()) {
+      meshes[k].stored = std::make_shared<StoredArrays>();
+      meshes[k].stored->box = rows.box(k);
+      meshes[k].stored->here = true;
+    }
+  unpack(r, arrays, needs.spill, meshes, [&](const Mesh& mesh) {
+    check_arrays(mesh, arrays.path);
+    mesh.let_go();
+  });
+}
+
 // The big arrays of all meshes, several meshes at a time, or each when it is asked for.
 void read_mesh_arrays(Reader& r, const std::string& path, const MeshRows& rows, const std::vector<bool>& with_uvs,
                       Loading& loading, std::vector<Mesh>& meshes) {
-  const auto arrays = std::make_shared<MeshArrays>(r, path);
+  const SceneNeeds& needs = loading.needs;
+  MeshArrays arrays(r, path, needs.later_from == UINT64_MAX);
   LoadRow &geometry = loading.row("geometry"), &textures = loading.row("texture coordinates");
   for (size_t k = 0; k < meshes.size(); ++k) {
     const uint64_t v = rows.vertices[k], t = rows.triangles[k];
     if (v > kNone || t > kNone) r.fail("mesh '" + rows.names[k] + "' is too large");
-    arrays->starts.push_back({arrays->p.take(r, 3 * v), arrays->i.take(r, 3 * t),
-                              arrays->nrm.take(r, rows.normals[k] ? v : 0), arrays->uv.take(r, rows.uvs[k] ? 2 * v : 0),
-                              v, t, rows.normals[k] != 0, rows.uvs[k] && with_uvs[k]});
+    arrays.starts.push_back({arrays.p.take(r, 3 * v), arrays.i.take(r, 3 * t),
+                             arrays.nrm.take(r, rows.normals[k] ? v : 0), arrays.uv.take(r, rows.uvs[k] ? 2 * v : 0), v,
+                             t, rows.normals[k] != 0, rows.uvs[k] && with_uvs[k]});
     geometry.stored += 12 * v + 12 * t + (rows.normals[k] ? 4 * v : 0);
     if (rows.uvs[k]) textures.stored += 8 * v, textures.read += with_uvs[k] ? 8 * v : 0;
   }
-  arrays->p.finish(r), arrays->uv.finish(r), arrays->i.finish(r), arrays->nrm.finish(r);
-  if (geometry.stored >= loading.needs.later_from && !arrays->packed())
-    return leave_for_later(arrays, rows, loading, meshes);
+  arrays.p.finish(r), arrays.uv.finish(r), arrays.i.finish(r), arrays.nrm.finish(r);
+  const bool large = geometry.stored >= needs.later_from;
+  if (large && !arrays.packed() && map_plain(arrays, meshes)) return leave_for_later(arrays, rows, loading, meshes);
   geometry.read = geometry.stored;
-  for (const std::string* name : {&arrays->p.name(), &arrays->i.name(), &arrays->nrm.name()}) r.note_read(*name);
-  if (textures.read) r.note_read(arrays->uv.name());
+  for (const std::string* name : {&arrays.p.name(), &arrays.i.name(), &arrays.nrm.name()}) r.note_read(*name);
+  if (textures.read) r.note_read(arrays.uv.name());
+  if (large) return unpack_all(r, arrays, rows, needs, meshes);
   const auto read = [&](size_t begin, size_t end) {
-    for (size_t k = begin; k < end; ++k) arrays->fill(&r, arrays->starts[k], meshes[k]);
+    for (size_t k = begin; k < end; ++k) arrays.read(r, arrays.starts[k], meshes[k]);
   };
-  if (arrays->packed())
+  if (arrays.packed())
     read(0, meshes.size());
   else
     parallel_for(0, meshes.size(), 1, read);
@@ -188,10 +129,10 @@ void write_table(Writer& w, const Scene& scene, MeshTable) {
   put_all<float>(w, "/geometry/positions", meshes, "m",
                  [](const Mesh& m) { return std::span<const float>(m.positions.data(), 3 * m.vertex_count()); });
   put_all<uint32_t>(w, "/geometry/indices", meshes, "1",
-                    [](const Mesh& m) { return std::span<const uint32_t>(m.indices); });
+                    [](const Mesh& m) { return std::span(m.indices.data(), m.indices.size()); });
   put_all<uint32_t>(w, "/geometry/normals", meshes, "1",
-                    [](const Mesh& m) { return std::span<const uint32_t>(m.normals); });
-  put_all<float>(w, "/geometry/uvs", meshes, "1", [](const Mesh& m) { return std::span<const float>(m.uvs); });
+                    [](const Mesh& m) { return std::span(m.normals.data(), m.normals.size()); });
+  put_all<float>(w, "/geometry/uvs", meshes, "1", [](const Mesh& m) { return std::span(m.uvs.data(), m.uvs.size()); });
 }
 
 // After everything else: what the materials are decides what is read of the meshes.

@@ -16,8 +16,8 @@ constexpr Feature kFeatures[] = {
      "Vertices, triangles, normals and exact surfaces. dirsig-render reads 64 MiB of them and less at once; of larger "
      "scenes the arrays of a mesh are read when a ray first comes to the tile where it stands (or at the start, when "
      "the "
-     "mesh is a lamp), from the prepared scene, which has to stay in its place until the end. Packed datasets are "
-     "always read at once."},
+     "mesh is a lamp), from the prepared scene, which is mapped and must not be cut until the end. Packed datasets are "
+     "unpacked at once, of larger scenes into a file without a name."},
     {"tracks",
      "Motions: keyframes, spins, orbits and what they are composed of. All are read whenever something moves: the pose "
      "at one time may depend on keys far from it, and every window has to be covered. What is at rest has none."},

@@ -9,11 +9,17 @@
 
 namespace suite {
 
+class SpillFile;  // base/mapped_file.h
+
 // Nothing given = everything is read.
 struct SceneNeeds {
   std::vector<std::array<double, 2>> windows_um;  // wavelengths that some sensor sees; empty = all
   bool temperatures = false;                      // wanted for themselves (truth), whether they glow or not
-  uint64_t later_from = UINT64_MAX;  // bytes: arrays of larger geometry are read mesh by mesh when asked for
+  // Bytes: arrays of geometry from there on are not held but mapped. Plain ones are the file itself, read mesh by mesh
+  // when asked for; packed ones are unpacked into a file at once.
+  uint64_t later_from = UINT64_MAX;
+  // Where packed ones go; processes that read the same scenes may share it. Null = each scene in one of its own.
+  std::shared_ptr<SpillFile> spill = nullptr;
 };
 
 // What has been read since of the arrays that were left for later; several threads count.

@@ -146,13 +146,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text.data(), text.size()))); }
 
 void AtomicFile::write_at(size_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(path_, strf("cannot be written: %s", std::strerror(errno)));
-    offset += static_cast<size_t>(n);
-    bytes = bytes.subspan(static_cast<size_t>(n));
-  }
+  write_all_at(descriptor_, offset, bytes, path_);
 }
 
 void AtomicFile::close() {
@@ -167,6 +161,16 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(path_, strf("cannot be replaced: %s", std::strerror(errno)));
   done_ = true;
+}
+
+void write_all_at(int descriptor, size_t offset, std::span<const std::byte> bytes, const std::string& path) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(path, strf("cannot be written: %s", std::strerror(errno)));
+    offset += static_cast<size_t>(n);
+    bytes = bytes.subspan(static_cast<size_t>(n));
+  }
 }
 
 void write_file(const std::string& path, std::span<const std::byte> bytes) {

@@ -26,6 +26,7 @@ class RandomAccessFile {
   RandomAccessFile& operator=(const RandomAccessFile&) = delete;
   size_t size() const { return size_; }                           // bytes, when it was opened
   void read_at(size_t offset, std::span<std::byte> bytes) const;  // Error past the end; callable from many threads
+  int descriptor() const { return descriptor_; }                  // for what needs the system's own calls
 
  private:
   std::string path_;
@@ -59,6 +60,8 @@ class AtomicFile {
 };
 
 void write_file(const std::string& path, std::span<const std::byte> bytes);
+// All of the bytes at a place of an open file; Error naming `path`. From many threads.
+void write_all_at(int descriptor, size_t offset, std::span<const std::byte> bytes, const std::string& path);
 void write_file(const std::string& path, std::string_view text);
 
 // Bytes that may still be written to the file system of `folder`; the largest number when it does not tell.

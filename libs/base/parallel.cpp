@@ -5,8 +5,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 namespace suite {
 
@@ -47,6 +50,24 @@ void parallel_for(size_t begin, size_t end, size_t grain, const std::function<vo
         size_t{0}, blocks, [&](size_t b) { body(begin + b * grain, std::min(end, begin + (b + 1) * grain)); },
         tbb::simple_partitioner());
   });
+}
+
+void on_threads(int count, const std::function<void()>& body) {
+  std::exception_ptr first;
+  std::mutex mutex;
+  const auto guarded = [&] {
+    try {
+      body();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!first) first = std::current_exception();
+    }
+  };
+  std::vector<std::jthread> others;
+  for (int k = 1; k < count; ++k) others.emplace_back(guarded);
+  guarded();
+  others.clear();  // waits for them
+  if (first) std::rethrow_exception(first);
 }
 
 void isolated(const std::function<void()>& work) {

@@ -13,6 +13,10 @@ int threads();
 // The first exception thrown by a body is rethrown here.
 void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body);
 
+// body() on so many threads of their own, which may wait for each other; the first exception is rethrown here when all
+// have ended.
+void on_threads(int count, const std::function<void()>& body);
+
 // Runs work whose parallel parts, while they wait, take up nothing but their own pieces. For constructions that other
 // work of the same thread might be waiting for.
 void isolated(const std::function<void()>& work);

@@ -36,6 +36,18 @@ class MpiRanks final : public Ranks {
     return texts;
   }
   void meet() override { link_->meet(); }
+  std::string of_first_here(const std::string& mine) override {
+    link_->meet();
+    MPI_Comm here;
+    MPI_Comm_split_type(link_->comm(), MPI_COMM_TYPE_SHARED, rank(), MPI_INFO_NULL, &here);
+    int length = static_cast<int>(mine.size());
+    MPI_Bcast(&length, 1, MPI_INT, 0, here);
+    std::string text = mine;
+    text.resize(static_cast<size_t>(length));
+    MPI_Bcast(text.data(), length, MPI_CHAR, 0, here);
+    MPI_Comm_free(&here);
+    return text;
+  }
   bool fail() override { return link_->fail(); }
   int conclude(int code) override {
     int most = 0;

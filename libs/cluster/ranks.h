@@ -29,6 +29,8 @@ class Ranks {
   virtual std::vector<std::string> gather(const std::string& mine) = 0;
   // Waits for all.
   virtual void meet() = 0;
+  // Of the ranks that share this machine's memory the first one's text, on all of them.
+  virtual std::string of_first_here(const std::string& mine) = 0;
 
   // Called in place of the next call of the others: this rank has failed. Whether it is the first that did, and so the
   // one to say why. After it, and after EndedElsewhere, only conclude() may be called.

@@ -9,8 +9,9 @@
 
 namespace suite {
 
-Box3 mesh_box(const Mesh& m) {
-  if (m.stored) return m.stored->box;
+Box3 mesh_box(const Mesh& m) { return m.stored ? m.stored->box : box_of_positions(m); }
+
+Box3 box_of_positions(const Mesh& m) {
   // In float first: the extremes are found faster and are exact.
   const size_t n = m.vertex_count();
   if (n == 0) return {};

@@ -67,17 +67,12 @@ void check_arrays(const Mesh& m, const SceneFault& fault) {
   uint32_t largest = 0, faulty = 0;
   for (const uint32_t i : m.indices) largest = std::max(largest, i);
   if (!m.indices.empty() && largest >= n) fault(name + strf("vertex index %u of %zu", largest, n));
-  for (const float p : m.positions) faulty |= (std::bit_cast<uint32_t>(p) & 0x7f800000u) == 0x7f800000u;
+  for (const float p : std::span(m.positions.data(), 3 * n))
+    faulty |= (std::bit_cast<uint32_t>(p) & 0x7f800000u) == 0x7f800000u;
   if (faulty) fault(name + "a coordinate is not finite");
   if (!m.stored) return;
-  Mesh here;
-  here.origin = m.origin, here.positions = std::move(m.positions);
-  const Box3 box = mesh_box(here), said = m.stored->box;
-  m.positions = std::move(here.positions);
-  if (m.indices.size() != 3 * m.stored->triangles ||
-      (m.positions.empty() ? 0 : m.positions.size() / 3) != m.stored->vertices ||
-      !(box.low == said.low && box.high == said.high))
-    fault(name + "it is not as large as was said of it");
+  const Box3 box = box_of_positions(m), said = m.stored->box;
+  if (!(box.low == said.low && box.high == said.high)) fault(name + "it is not as large as was said of it");
 }
 }  // namespace
 

@@ -141,11 +141,11 @@ class Curver {
   // A copy of a mesh, vertex by vertex, in scene ENU.
   Mesh laid_down(const Mesh& m, const Affine3& flat) {
     Mesh out;
-    out.name = m.name, out.uvs = m.uvs, out.parts = m.parts, out.indices = m.indices;
+    out.name = m.name, out.uvs = m.uvs, out.parts = m.parts;
+    std::vector<uint32_t> indices(m.indices.begin(), m.indices.end()), normals(m.normals.size());
     const size_t n = m.vertex_count();
     std::vector<Vec3> plane(n), points(n);
     const bool mirrored = flat.determinant() < 0;
-    out.normals.resize(m.normals.size());
     parallel_for(0, n, 1024, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const float* f = &m.positions[3 * i];
@@ -153,26 +153,28 @@ class Curver {
         points[i] = frame_.curved(plane[i]);
         if (m.normals.empty()) continue;
         const Vec3 v = normalized(flat.normal(oct_decode(m.normals[i])));
-        out.normals[i] = oct_encode(rotate(frame_.curved_rotation(plane[i]), mirrored ? -v : v));
+        normals[i] = oct_encode(rotate(frame_.curved_rotation(plane[i]), mirrored ? -v : v));
       }
     });
     Box3 box;
     for (const Vec3& p : points) box.grow(p);
     out.origin = mesh_origin(box);
-    out.positions.reserve(3 * n + 1);
+    std::vector<float> positions;
+    positions.reserve(3 * n + 1);
     for (const Vec3& p : points)
-      for (int k = 0; k < 3; ++k) out.positions.push_back(static_cast<float>(p[k] - out.origin[k]));
-    if (n) out.positions.push_back(0);
+      for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - out.origin[k]));
+    if (n) positions.push_back(0);
     size_t long_edges = 0;
-    for (size_t t = 0; t + 2 < out.indices.size(); t += 3) {
+    for (size_t t = 0; t + 2 < indices.size(); t += 3) {
       double longest = 0;
       for (size_t k = 0; k < 3; ++k) {
-        const Vec3 e = plane[out.indices[t + k]] - plane[out.indices[t + (k + 1) % 3]];
+        const Vec3 e = plane[indices[t + k]] - plane[indices[t + (k + 1) % 3]];
         longest = std::max(longest, e.x * e.x + e.y * e.y);
       }
       long_edges += longest / (8 * kRadius) > tolerance_;
-      if (mirrored) std::swap(out.indices[t + 1], out.indices[t + 2]);
+      if (mirrored) std::swap(indices[t + 1], indices[t + 2]);
     }
+    out.positions = std::move(positions), out.indices = std::move(indices), out.normals = std::move(normals);
     if (long_edges) done_.long_edges.emplace_back(m.name, long_edges);
     return out;
   }

@@ -31,28 +31,31 @@ Mesh make_mesh(const SourceMesh& source, const Affine3& to_local, NormalRule rul
   // Number the used positions in the order of their first use; a mirrored frame turns the winding.
   const bool mirrored = to_local.determinant() < 0;
   std::vector<uint32_t> new_id(made ? normals.from.size() : source.positions.size(), kNone), old_id;
-  mesh.indices.resize(indices.size());
+  std::vector<uint32_t> turned(indices.size()), codes;
+  std::vector<float> positions, uvs;
   for (size_t k = 0; k < indices.size(); ++k) {
     const uint32_t old = indices[k];
     if (new_id[old] == kNone) new_id[old] = static_cast<uint32_t>(old_id.size()), old_id.push_back(old);
-    mesh.indices[mirrored && k % 3 ? k - k % 3 + 3 - k % 3 : k] = new_id[old];
+    turned[mirrored && k % 3 ? k - k % 3 + 3 - k % 3 : k] = new_id[old];
   }
   std::vector<Vec3> points(old_id.size());
   Box3 box;
   for (size_t i = 0; i < old_id.size(); ++i) box.grow(points[i] = to_local.point(source.positions[vertex(old_id[i])]));
   mesh.origin = points.empty() ? Vec3{} : mesh_origin(box);
-  mesh.positions.reserve(3 * points.size() + 1);
+  positions.reserve(3 * points.size() + 1);
   for (const Vec3& p : points)
-    for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(p[k] - mesh.origin[k]));
-  if (!points.empty()) mesh.positions.push_back(0);
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k] - mesh.origin[k]));
+  if (!points.empty()) positions.push_back(0);
   if (made || (rule == NormalRule::file && !source.normals.empty()))
     for (const uint32_t old : old_id) {
       const Vec3 n = to_local.normal(made ? normals.normals[old] : oct_decode(source.normals[old]));
-      mesh.normals.push_back(oct_encode(normalized(mirrored ? -n : n)));
+      codes.push_back(oct_encode(normalized(mirrored ? -n : n)));
     }
   if (!source.uvs.empty())
     for (const uint32_t old : old_id)
-      for (int k = 0; k < 2; ++k) mesh.uvs.push_back(source.uvs[2 * size_t{vertex(old)} + k]);
+      for (int k = 0; k < 2; ++k) uvs.push_back(source.uvs[2 * size_t{vertex(old)} + k]);
+  mesh.positions = std::move(positions), mesh.indices = std::move(turned);
+  mesh.normals = std::move(codes), mesh.uvs = std::move(uvs);
   const auto triangles = static_cast<uint32_t>(source.indices.size() / 3);
   for (size_t r = 0; r < source.runs.size(); ++r) {
     const SourceMesh::Run& run = source.runs[r];

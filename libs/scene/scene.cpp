@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/mapped_file.h"
+
 namespace suite {
 
 uint32_t oct_encode(Dir d) {
@@ -30,15 +32,17 @@ Dir oct_decode(uint32_t code) {
 }
 
 void Mesh::require() const {
-  if (!stored) return;
+  if (!stored || stored->here.load(std::memory_order_acquire)) return;
   const std::lock_guard lock(stored->turn);
-  if (!positions.empty() || !indices.empty() || !stored->vertices) return;
-  try {
-    stored->fill(*this);
-  } catch (...) {  // whoever asks again must be told again
-    positions.clear(), indices.clear(), normals.clear(), uvs.clear();
-    throw;
-  }
+  if (stored->here.load(std::memory_order_relaxed)) return;
+  stored->fetch(*this);  // whoever asks again after an Error is told again
+  stored->here.store(true, std::memory_order_release);
+}
+
+void Mesh::let_go() const {
+  if (!stored) return;
+  const auto give = [](const auto& values) { suite::let_go(values.data(), values.size() * sizeof(values[0])); };
+  give(positions), give(indices), give(normals), give(uvs);
 }
 
 bool uses_media(const Scene& s) {

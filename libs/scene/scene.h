@@ -2,6 +2,7 @@
 // Everything is in the scene's ENU frame, metres; base geometry has its own local frame.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shared_array.h"
 #include "math/vec.h"
 #include "motion/timetable.h"
 #include "optics/medium.h"
@@ -33,32 +35,35 @@ struct Part {
   uint32_t material = kNone;  // index into Scene::materials
 };
 
-// What is known of a mesh whose arrays are still in a file, and how to get them.
+// The arrays of a mesh that are parts of a mapped file: they have their places and sizes, and what they hold comes when
+// it is asked for.
 struct StoredArrays {
-  size_t vertices = 0, triangles = 0;
-  Box3 box;                               // local, mesh origin included
-  std::function<void(const Mesh&)> fill;  // Error when the file is damaged
+  Box3 box;                                // local, mesh origin included
+  std::function<void(const Mesh&)> fetch;  // brings what they hold and checks it; Error when the file is damaged
   std::mutex turn;
+  std::atomic<bool> here{false};
 };
 
 // Base geometry, in local metres. Vertices are float relative to a double origin, so that georeferenced coordinates
-// lose nothing. Arrays are laid out for the ray tracer to share: positions has 3 floats a vertex and one pad float.
-// The arrays may come later: they are empty until require() has been called, and never change after. That a const mesh
-// fills itself is what `mutable` stands for here.
+// lose nothing. Arrays are laid out for the ray tracer to share: positions has 3 floats a vertex and one pad float,
+// which holds anything.
 struct Mesh {
   std::string name;
-  Vec3 origin;                            // local frame position of (0, 0, 0) of the floats
-  mutable std::vector<float> positions;   // 3 * vertex_count + 1
-  mutable std::vector<uint32_t> indices;  // 3 * triangle_count
-  mutable std::vector<uint32_t> normals;  // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
-  mutable std::vector<float> uvs;         // 2 per vertex; empty = none
-  std::vector<Part> parts;                // cover all triangles, ascending
+  Vec3 origin;                    // local frame position of (0, 0, 0) of the floats
+  SharedArray<float> positions;   // 3 * vertex_count + 1
+  SharedArray<uint32_t> indices;  // 3 * triangle_count
+  SharedArray<uint32_t> normals;  // octahedral, 2 x 16 bit snorm per vertex; empty = facet normals (oct.h)
+  SharedArray<float> uvs;         // 2 per vertex; empty = none
+  std::vector<Part> parts;        // cover all triangles, ascending
   std::shared_ptr<StoredArrays> stored = nullptr;  // null: the arrays are here
-  size_t vertex_count() const { return stored ? stored->vertices : positions.empty() ? 0 : (positions.size() - 1) / 3; }
-  size_t triangle_count() const { return stored ? stored->triangles : indices.size() / 3; }
-  // Reads the arrays if they are not here yet; from any thread. Whoever touches them first calls it: the ray tracer
-  // before it builds over them, and those who come before any ray. Error when the file is damaged.
+  size_t vertex_count() const { return positions.size() / 3; }
+  size_t triangle_count() const { return indices.size() / 3; }
+  size_t bytes() const { return 4 * (positions.size() + indices.size() + normals.size() + uvs.size()); }
+  // Brings what the arrays hold if it is not here yet; from any thread. Whoever touches them first calls it: the ray
+  // tracer before it builds over them, and those who come before any ray. Error when the file is damaged.
   void require() const;
+  // Gives the memory of arrays that are parts of a file back; it is taken again as they are touched.
+  void let_go() const;
 };
 
 // What a placement puts somewhere.
@@ -240,6 +245,8 @@ Box3 scene_bounds(const Scene& scene, double begin = 0, double end = 0);
 
 // Extent of one mesh in its local frame, origin included; empty without vertices.
 Box3 mesh_box(const Mesh& mesh);
+// The same from the vertices themselves, which must be here.
+Box3 box_of_positions(const Mesh& mesh);
 // The box around a transformed box; empty stays empty.
 Box3 transformed(const Box3& box, const Affine3& map);
 

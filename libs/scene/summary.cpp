@@ -30,7 +30,7 @@ std::string MeshTable::summary(const Scene& s) {
     vertices += m.vertex_count();
     triangles += m.triangle_count();
     flat += counts[i] * static_cast<double>(m.triangle_count());
-    bytes += 4 * (m.positions.size() + m.indices.size() + m.normals.size() + m.uvs.size());
+    bytes += m.bytes();
   }
   return strf("meshes        %zu with %zu vertices, %zu triangles (%s); flattened %s triangles\n", s.meshes.size(),
               vertices, triangles, human_bytes(static_cast<double>(bytes)).c_str(), human_count(flat).c_str());

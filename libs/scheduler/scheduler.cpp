@@ -53,7 +53,7 @@ class Job {
     items.insert(items.end(), before.begin(), before.end());
     for (const Item& item : items)
       check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
-    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_));
+    tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_), options_.tiles);
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
     doubt_before();
@@ -73,6 +73,7 @@ class Job {
     if (progress_) progress_->finish();
     if (!report_.stopped && options_.store) options_.store->finish();
     if (!report_.stopped && !options_.share) doubt_after();
+    report_.tiles = tracers_->tile_use();
     finish();
     return std::move(report_);
   }

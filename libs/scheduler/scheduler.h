@@ -39,6 +39,7 @@ struct JobOptions {
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;
   size_t kit_bytes = kDefaultKitBytes;  // of optics and lights that are kept for captures to come (kits.h)
+  TileLimit tiles = {};                 // of what the scene's tiles take (trace/tracer.h)
   StateStore* store = nullptr;          // keeps what is needed to continue; null = nothing is kept
   Executor* executor = nullptr;         // who runs the rounds; null = the threads of this process
   // Only these blocks of the sensors' captures are run, and pre-passes whole; needs a store. Only a share that runs
@@ -86,6 +87,7 @@ struct JobReport {
   double paths_kept = 0;        // that a store held when the job began; the statistics count them, without their cycles
   bool stopped = false;  // JobOptions::stop ended the job; statistics count what the unfinished capture took, too
   size_t tracer_builds = 0, optics_bakes = 0, state_changes = 0;
+  TileUse tiles;           // under a limit
   size_t light_bakes = 0;  // environments made or brought to another moment
   double seconds = 0, build_seconds = 0;
   double deliver_seconds = 0;          // sensors taking their results

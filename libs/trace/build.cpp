@@ -69,10 +69,10 @@ RTCScene new_scene(bool all_hits) {
 }
 
 void BuildOnce::go(const void* work, void (*call)(const void*)) const {
-  std::call_once(flag_, [&] {
-    isolated([&] { call(work); });
-    done_.store(true, std::memory_order_release);
-  });
+  const std::lock_guard lock(turn_);
+  if (done()) return;
+  isolated([&] { call(work); });
+  done_.store(true, std::memory_order_release);
 }
 
 void Tile::build(const World& world) {
@@ -99,7 +99,9 @@ void Tile::build(const World& world) {
                 world.filter && world.may_pass[direct[id]], direct[id]);
   for (uint32_t k = 0; k < sets.size(); ++k) sets[k]->attach(handle.scene, static_cast<unsigned>(direct.size()) + k);
   rtcCommitScene(handle.scene);
-  for (const auto& set : sets) std::vector<Box3>().swap(set->boxes);
+  // Tiles that may be given up need them again.
+  for (const auto& set : sets)
+    if (!world.memory) std::vector<Box3>().swap(set->boxes);
 }
 
 // Tiles of large scenes wait for the first ray; a few are built at once, which uses all threads better.
@@ -108,7 +110,8 @@ void TileSet::close(const World& world) {
   std::vector<Box3> boxes;
   for (const auto& tile : tiles) boxes.push_back(tile->bounds);
   bvh.build(boxes);
-  if (tiles.size() > kAtOnce) return;
+  memory = world.memory.get();
+  if (tiles.size() > kAtOnce || memory) return;
   for (const auto& tile : tiles) tile->once.run([&] { tile->build(world); });
 }
 
@@ -180,7 +183,7 @@ void World::find_holes() {
 }
 
 World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, std::shared_ptr<const HitFilter> holes,
-             double keep)
+             const TileLimit& limit, double keep)
     : scene(std::move(given)),
       periodic(cell),
       filter(std::move(holes)),
@@ -190,8 +193,10 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
                            [](const Material& m) { return m.bounds_medium(); })) {
   const FlushDenormals flush;
+  if (limit.bytes) memory = std::make_unique<TileMemory>(limit, *this);
   measure_meshes();
   measure_groups();
+  if (memory) memory->keep_meshes_of_groups();
   if (periodic) repeat_at_sides();
   if (filter) find_holes();
   for (const TracedObject& o : flat.objects)

@@ -17,6 +17,7 @@
 #include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
 #include "trace/tile_bvh.h"
+#include "trace/tile_memory.h"
 #include "trace/tracer.h"
 
 namespace suite {
@@ -50,10 +51,12 @@ class BuildOnce {
   void run(const Work& work) const {
     if (!done()) go(&work, [](const void* w) { (*static_cast<const Work*>(w))(); });
   }
+  // What was constructed goes, and nobody uses it.
+  void undo() { done_.store(false, std::memory_order_relaxed); }
 
  private:
   void go(const void* work, void (*call)(const void*)) const;
-  mutable std::once_flag flag_;
+  mutable std::mutex turn_;
   mutable std::atomic<bool> done_{false};
 };
 
@@ -168,8 +171,10 @@ struct Tile {
   std::vector<uint32_t> direct;  // indices into the scene's objects
   std::vector<std::unique_ptr<PlacedSet>> sets;
   SceneHandle handle;
-  BuildOnce once;
+  BuildOnce once;   // where there is no limit
+  TileState state;  // where there is one
 
+  bool built() const { return once.done() || state.built(); }
   // What float rounding may move geometry out of its exact bounds by, m.
   double slack() const { return 16 * 1.1920929e-7 * scale + 1e-9; }
   void build(const World& world);
@@ -178,12 +183,20 @@ struct Tile {
 struct TileSet {
   std::vector<std::unique_ptr<Tile>> tiles;
   TileBvh bvh;
+  TileMemory* memory = nullptr;  // that knows tiles of this set
 
+  TileSet() = default;
+  ~TileSet() {
+    if (memory) memory->forget(*this);
+  }
+  TileSet(const TileSet&) = delete;
+  TileSet& operator=(const TileSet&) = delete;
   void close(const World& world);  // after the tiles are filled: the hierarchy, and small sets are built at once
   // Sends every ray through its tiles, nearest first, eight rays that are at the same tile at a time.
-  // send(tile, packet) traces a packet and lowers reach[] of rays that need not go on.
+  // The tile is built while send(tile, packet) runs, which traces a packet and lowers reach[] of rays that need not go
+  // on.
   template <class Send>
-  void pass(std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
+  void pass(const World& world, std::span<const Ray> rays, std::span<double> reach, const Send& send) const;
 };
 
 // Embree's filter for triangles of meshes that may have holes.
@@ -201,13 +214,14 @@ struct Asked {
 // What does not change with the window.
 struct World {
   World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter,
-        double keep);
+        const TileLimit& limit, double keep);
   std::shared_ptr<const Scene> scene;
   std::optional<Periodic> periodic;
   std::shared_ptr<const HitFilter> filter;  // null: no surface has holes
   Flattened flat;
   std::unique_ptr<MeshEntry[]> meshes;
   std::unique_ptr<GroupEntry[]> groups;  // of the shared groups
+  std::unique_ptr<TileMemory> memory;    // null: no limit. Outlives the tiles
   TileSet tiles;                         // of what is at rest
   std::vector<uint32_t> unbounded;       // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                           // of what is at rest

@@ -30,8 +30,8 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, TimeSpan window,
-               std::shared_ptr<const HitFilter> filter, double keep)
-    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), keep), window) {}
+               std::shared_ptr<const HitFilter> filter, const TileLimit& limit, double keep)
+    : Tracer(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), limit, keep), window) {}
 
 Tracer::Tracer(std::shared_ptr<const World> world, TimeSpan window)
     : world_(std::move(world)), bounds_(world_->bounds), has_holes_(world_->filter != nullptr) {
@@ -51,9 +51,24 @@ size_t Tracer::tiles() const { return world_->tiles.tiles.size() + (moving_ ? mo
 size_t Tracer::tiles_built() const {
   const auto count = [](const TileSet& set) {
     return static_cast<size_t>(
-        std::count_if(set.tiles.begin(), set.tiles.end(), [](const auto& t) { return t->once.done(); }));
+        std::count_if(set.tiles.begin(), set.tiles.end(), [](const auto& t) { return t->built(); }));
   };
   return count(world_->tiles) + (moving_ ? count(moving_->tiles) : 0);
+}
+TileUse Tracer::tile_use() const { return world_->memory ? world_->memory->use() : TileUse{}; }
+TileForecast Tracer::forecast() const {
+  TileForecast f;
+  const auto add = [&](const TileSet& set) {
+    for (const auto& tile : set.tiles) {
+      const uint64_t structures = structures_of(*tile, *world_), geometry = geometry_of(*tile, *world_);
+      ++f.tiles, f.structures += structures, f.geometry += geometry;
+      f.largest = std::max(f.largest, structures + geometry);
+    }
+  };
+  add(world_->tiles);
+  if (moving_) add(moving_->tiles);
+  f.structures += structures_of_groups(*world_), f.geometry += geometry_of_groups(*world_);
+  return f;
 }
 std::string Tracer::engine() {
   return strf("Embree %d.%d.%d avx2",
@@ -106,19 +121,24 @@ struct Itinerary {
 }  // namespace
 
 template <class Send>
-void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Send& send) const {
+void TileSet::pass(const World& world, std::span<const Ray> rays, std::span<double> reach, const Send& send) const {
   if (tiles.empty()) return;
   Packet packet;
   if (tiles.size() == 1) {
-    const Tile& only = *tiles[0];
+    Tile& only = *tiles[0];
+    std::optional<InTile> inside;  // from the first packet on
+    const auto send_on = [&] {
+      if (!inside) inside.emplace(only, world);
+      send(only, packet), packet.size = 0;
+    };
     for (uint32_t i = 0; i < rays.size(); ++i) {
       double enter = 0, leave = 0;
       if (!clip(only.bounds, rays[i].origin, inverse_of(rays[i].direction), reach[i], enter, leave)) continue;
       packet.ray[packet.size] = i;
       packet.advance[packet.size] = enter;
-      if (++packet.size == kWidth) send(0u, packet), packet.size = 0;
+      if (++packet.size == kWidth) send_on();
     }
-    if (packet.size) send(0u, packet);
+    if (packet.size) send_on();
     return;
   }
   thread_local std::vector<Itinerary> ways;
@@ -138,13 +158,16 @@ void TileSet::pass(std::span<const Ray> rays, std::span<double> reach, const Sen
     }
     if (waiting.empty()) return;
     std::stable_sort(waiting.begin(), waiting.end(), [](auto& a, auto& b) { return a.first < b.first; });
-    for (size_t w = 0; w < waiting.size(); ++w) {
-      const auto [tile, i] = waiting[w];
-      packet.ray[packet.size] = i;
-      packet.advance[packet.size] = ways[i].enter[ways[i].next++];
-      ++packet.size;
-      if (packet.size == kWidth || w + 1 == waiting.size() || waiting[w + 1].first != tile)
-        send(tile, packet), packet.size = 0;
+    for (size_t w = 0; w < waiting.size();) {
+      Tile& tile = *tiles[waiting[w].first];
+      const InTile inside(tile, world);
+      for (const uint32_t same = waiting[w].first; w < waiting.size() && waiting[w].first == same; ++w) {
+        const uint32_t i = waiting[w].second;
+        packet.ray[packet.size] = i;
+        packet.advance[packet.size] = ways[i].enter[ways[i].next++];
+        if (++packet.size == kWidth) send(tile, packet), packet.size = 0;
+      }
+      if (packet.size) send(tile, packet), packet.size = 0;
     }
   }
 }
@@ -164,11 +187,7 @@ void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach
     for (const uint32_t object : unbounded)
       for (uint32_t i = 0; i < rays.size(); ++i) tracer.unbounded(object, i, &hits[i]);
     tracer.begin();
-    set.pass(rays, reach, [&](uint32_t index, const Packet& packet) {
-      Tile& tile = *set.tiles[index];
-      tile.once.run([&] { tile.build(*world_); });
-      tracer.nearest(tile, packet);
-    });
+    set.pass(*world_, rays, reach, [&](const Tile& tile, const Packet& packet) { tracer.nearest(tile, packet); });
     tracer.finish(hits);
   };
   trace(world_->tiles, unbounded_of(*world_), nullptr);
@@ -187,11 +206,8 @@ void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reac
         tracer.unbounded(object, i, nullptr);
         if (reach[i] < before) blocked[i] = 1, reach[i] = -1;
       }
-    set.pass(rays, reach, [&](uint32_t index, const Packet& packet) {
-      Tile& tile = *set.tiles[index];
-      tile.once.run([&] { tile.build(*world_); });
-      tracer.occluded(tile, packet, blocked);
-    });
+    set.pass(*world_, rays, reach,
+             [&](const Tile& tile, const Packet& packet) { tracer.occluded(tile, packet, blocked); });
   };
   trace(world_->tiles, unbounded_of(*world_), nullptr);
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
@@ -243,11 +259,8 @@ void Tracer::add_all(const Ray& ray, double length, std::vector<Hit>& hits, Trac
   const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
     PacketTracer tracer(*world_, moving, {&ray, 1}, {&reach, 1}, false, s);
     for (const uint32_t object : unbounded) tracer.all_unbounded(object, hits);
-    set.pass({&ray, 1}, {&reach, 1}, [&](uint32_t index, const Packet& packet) {
-      Tile& tile = *set.tiles[index];
-      tile.once.run([&] { tile.build(*world_); });
-      tracer.all(tile, packet, hits);
-    });
+    set.pass(*world_, {&ray, 1}, {&reach, 1},
+             [&](const Tile& tile, const Packet& packet) { tracer.all(tile, packet, hits); });
   };
   trace(world_->tiles, unbounded_of(*world_), nullptr);
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());

@@ -74,6 +74,26 @@ struct Periodic {
 // that are found are then put on the exact place.
 double motion_bound(double radius);
 
+// How much tiles may take at once: acceleration structures, and the arrays of the meshes that they stand on.
+struct TileLimit {
+  uint64_t bytes = 0;                                 // 0 = no limit
+  std::function<void(const std::string&)> warn = {};  // is told, once, of a tile that is larger by itself; may be empty
+};
+
+// What tiles took under a limit.
+struct TileUse {
+  uint64_t built = 0, dropped = 0;                  // tiles, each time counted
+  uint64_t most_tiles = 0;                          // at once
+  uint64_t most_structures = 0, most_geometry = 0;  // bytes at once
+};
+
+// What tiles will take, before any is built; some 30 % too much, as space is set aside for it.
+struct TileForecast {
+  size_t tiles = 0;
+  uint64_t structures = 0, geometry = 0;  // bytes of all tiles
+  uint64_t largest = 0;                   // bytes of both of the largest tile
+};
+
 class HitFilter;
 struct World;  // what is at rest, shared by the tracers of all windows
 struct MovingPart;
@@ -83,6 +103,7 @@ class Tracer {
   // Builds acceleration structures in parallel; scenes of many tiles build each one when a ray first comes there. The
   // scene must have passed check_scene and is kept. Rays have times inside the window (others see its nearest end).
   // periodic: objects that stick out of the cell come in again on its other side; positions of hits lie in the cell.
+  // limit: tiles are built when a ray comes, and those given up that none came to for longest; hits are the same.
   // filter: decides about holes in surfaces (hit_filter.h); null = there are none.
   // Surfaces without bounds are not repeated but met by the whole ray.
   // keep: how many placements are kept before groups are shared, as share_groups has it; results do not depend on it
@@ -90,7 +111,7 @@ class Tracer {
   // Error: a motion that does not cover the window while what moves is there; things that move, come or go, or a plane
   // that is not level, in a periodic scene.
   explicit Tracer(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
-                  TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr,
+                  TimeSpan window = {}, std::shared_ptr<const HitFilter> filter = nullptr, const TileLimit& limit = {},
                   double keep = kUnfoldedAtMost);
   ~Tracer();
   Tracer(const Tracer&) = delete;
@@ -143,12 +164,16 @@ class Tracer {
   const Box3& bounds() const { return bounds_; }  // ENU, all places that moving things have in the window
   size_t triangles() const;                       // instanced ones counted each time
   size_t tiles() const;
-  size_t tiles_built() const;  // so far
+  size_t tiles_built() const;  // that are there
+  TileUse tile_use() const;    // zeros without a limit
+  TileForecast forecast() const;
+  int useful_threads() const;  // one a core without a limit
   // Name and instruction set of the ray tracer, for result headers: "Embree 3.13.5 avx2".
   static std::string engine();
 
  private:
   friend class TracerCache;
+  friend class AtWork;
   Tracer(std::shared_ptr<const World> world, TimeSpan window);
   void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent,
                         TraceStatistics& statistics) const;
@@ -165,16 +190,30 @@ class Tracer {
   bool has_holes_ = false;
 };
 
+// A thread's work with a tracer, as long as this lives. Under a limit many threads at work wait for each other's tiles,
+// which are then built less often; Tracer::useful_threads() is how many to start. Without a limit it does nothing.
+class AtWork {
+ public:
+  explicit AtWork(const Tracer& tracer);
+  ~AtWork();
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+
+ private:
+  std::shared_ptr<const World> world_;
+};
+
 // Hands out the tracer of a time window. What is at rest is built once; windows in which everything that could move
 // stays in the same place, and all that comes and goes is there or not throughout, share one tracer; of the others the
 // last few are kept. Not for several threads at once.
 class TracerCache {
  public:
   explicit TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic = std::nullopt,
-                       std::shared_ptr<const HitFilter> filter = nullptr);
+                       std::shared_ptr<const HitFilter> filter = nullptr, const TileLimit& limit = {});
   ~TracerCache();
   std::shared_ptr<const Tracer> get(TimeSpan window);
   size_t builds() const { return builds_; }  // tracers made so far
+  TileUse tile_use() const;                  // of all of them
 
  private:
   struct Kept;

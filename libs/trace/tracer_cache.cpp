@@ -21,9 +21,10 @@ bool at_rest(const MovingPart& part) {
 }  // namespace
 
 TracerCache::TracerCache(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic,
-                         std::shared_ptr<const HitFilter> filter)
-    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), kUnfoldedAtMost)) {}
+                         std::shared_ptr<const HitFilter> filter, const TileLimit& limit)
+    : world_(std::make_shared<const World>(std::move(scene), periodic, std::move(filter), limit, kUnfoldedAtMost)) {}
 TracerCache::~TracerCache() = default;
+TileUse TracerCache::tile_use() const { return world_->memory ? world_->memory->use() : TileUse{}; }
 
 std::shared_ptr<const Tracer> TracerCache::get(TimeSpan window) {
   const auto recent = [&](size_t k) {

@@ -31,6 +31,7 @@ class Pipeline {
   bool may_miss(const Capture& capture) const;
   // The kernel that paths of this state run in: KernelChoice::name().
   const char* kernel() const { return choice_.name(); }
+  const Tracer& tracer() const { return surface_.tracer(); }
 
  private:
   friend class BlockRun;

@@ -27,18 +27,21 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 Mesh ball(uint32_t n, double lumps) {
   Mesh m;
   m.name = "ball";
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
   for (uint32_t j = 0; j <= n; ++j)
     for (uint32_t i = 0; i <= n; ++i) {
       const double theta = kPi * j / n, phi = 2 * kPi * i / n, r = 0.5 + 0.1 * std::sin(lumps * phi) * std::sin(theta);
       const Dir d = dir_from_angles(theta, phi) * r;
-      for (int a = 0; a < 3; ++a) m.positions.push_back(static_cast<float>(d[a]));
+      for (int a = 0; a < 3; ++a) positions.push_back(static_cast<float>(d[a]));
     }
-  m.positions.push_back(0);
+  positions.push_back(0);
   for (uint32_t j = 0; j < n; ++j)
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t v = j * (n + 1) + i;
-      for (const uint32_t k : {v, v + n + 1, v + 1, v + 1, v + n + 1, v + n + 2}) m.indices.push_back(k);
+      for (const uint32_t k : {v, v + n + 1, v + 1, v + 1, v + n + 1, v + n + 2}) indices.push_back(k);
     }
+  m.positions = std::move(positions), m.indices = std::move(indices);
   m.parts.push_back({"ball", 0, static_cast<uint32_t>(m.triangle_count()), kNone});
   return m;
 }

@@ -27,17 +27,20 @@ inline std::shared_ptr<Scene> terrain_scene(uint32_t edge, double reflectance = 
   auto scene = std::make_shared<Scene>();
   Mesh mesh;
   mesh.name = "terrain";
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
   for (uint32_t j = 0; j < edge; ++j)
     for (uint32_t i = 0; i < edge; ++i) {
       const double x = -500 + 1000.0 * i / (edge - 1), y = -500 + 1000.0 * j / (edge - 1);
-      for (const double c : {x, y, terrain_height(x, y)}) mesh.positions.push_back(static_cast<float>(c));
+      for (const double c : {x, y, terrain_height(x, y)}) positions.push_back(static_cast<float>(c));
     }
-  mesh.positions.push_back(0);
+  positions.push_back(0);
   for (uint32_t j = 0; j + 1 < edge; ++j)
     for (uint32_t i = 0; i + 1 < edge; ++i) {
       const uint32_t v = j * edge + i;
-      for (const uint32_t index : {v, v + 1, v + edge + 1, v, v + edge + 1, v + edge}) mesh.indices.push_back(index);
+      for (const uint32_t index : {v, v + 1, v + edge + 1, v, v + edge + 1, v + edge}) indices.push_back(index);
     }
+  mesh.positions = std::move(positions), mesh.indices = std::move(indices);
   mesh.parts.push_back({"terrain", 0, static_cast<uint32_t>(mesh.triangle_count()), 0});
   scene->meshes.push_back(std::move(mesh));
   Group root;

@@ -77,9 +77,11 @@ inline ModelSpec lambert(double reflectance, double transmittance = 0) {
 inline Mesh mesh_of(const std::vector<Vec3>& vertices, std::vector<uint32_t> indices, uint32_t material) {
   Mesh m;
   m.name = "mesh";
+  std::vector<float> positions;
   for (const Vec3& v : vertices)
-    for (int a = 0; a < 3; ++a) m.positions.push_back(static_cast<float>(v[a]));
-  m.positions.push_back(0);
+    for (int a = 0; a < 3; ++a) positions.push_back(static_cast<float>(v[a]));
+  positions.push_back(0);
+  m.positions = std::move(positions);
   m.indices = std::move(indices);
   m.parts.push_back({"part", 0, static_cast<uint32_t>(m.triangle_count()), material});
   return m;

@@ -166,8 +166,8 @@ TEST_P(Nested, SameHitsAsUnfolded) {
     Nest nest(GetParam(), seed);
     const Sharing sharing = share_groups(*nest.scene, kAll);
     EXPECT_GE(std::count(sharing.shared.begin(), sharing.shared.end(), 1), GetParam());
-    const Tracer nested(nest.scene, std::nullopt, {}, nullptr, kAll),
-        plain(nest.scene, std::nullopt, {}, nullptr, kNothing);
+    const Tracer nested(nest.scene, std::nullopt, {}, nullptr, {}, kAll),
+        plain(nest.scene, std::nullopt, {}, nullptr, {}, kNothing);
     EXPECT_EQ(nested.triangles(), plain.triangles());
     EXPECT_EQ(nested.object_count(), plain.object_count());
     compare(nested, plain, nest.rays(4000, plain), 2);
@@ -178,16 +178,16 @@ TEST_P(Nested, SameHolesAsUnfolded) {
   Nest nest(GetParam(), 4);
   nest.add_holes();
   const auto filter = cut_out(*nest.scene);
-  const Tracer nested(nest.scene, std::nullopt, {}, filter, kAll),
-      plain(nest.scene, std::nullopt, {}, filter, kNothing);
+  const Tracer nested(nest.scene, std::nullopt, {}, filter, {}, kAll),
+      plain(nest.scene, std::nullopt, {}, filter, {}, kNothing);
   compare(nested, plain, nest.rays(4000, plain), 2);
 }
 
 TEST_P(Nested, AllSurfacesAsUnfolded) {
   Nest nest(GetParam(), 5);
   nest.add_media();
-  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, kAll),
-      plain(nest.scene, std::nullopt, {}, nullptr, kNothing);
+  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, {}, kAll),
+      plain(nest.scene, std::nullopt, {}, nullptr, {}, kNothing);
   TraceStatistics statistics;
   std::vector<Hit> a, b;
   size_t most = 0;
@@ -212,15 +212,15 @@ TEST_P(Nested, AllSurfacesAsUnfolded) {
 
 TEST_P(Nested, SameHitsTenKilometresAway) {
   Nest nest(GetParam(), 6, {1e4, -7e3, 300});
-  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, kAll),
-      plain(nest.scene, std::nullopt, {}, nullptr, kNothing);
+  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, {}, kAll),
+      plain(nest.scene, std::nullopt, {}, nullptr, {}, kNothing);
   compare(nested, plain, nest.rays(4000, plain), 2);
 }
 
 TEST_P(Nested, SameHitsInACellThatRepeats) {
   Nest nest(GetParam(), 7);
   const Periodic cell{{-3, -4}, {5, 6}};
-  const Tracer nested(nest.scene, cell, {}, nullptr, kAll), plain(nest.scene, cell, {}, nullptr, kNothing);
+  const Tracer nested(nest.scene, cell, {}, nullptr, {}, kAll), plain(nest.scene, cell, {}, nullptr, {}, kNothing);
   compare(nested, plain, nest.rays(2000, plain), 4);
 }
 
@@ -230,8 +230,8 @@ TEST(NestedMotion, SharedGroupsMoveAsAWhole) {
   nest.scene->tracks = {{"turning", turning}};
   nest.scene->groups[0].placements[0].track = 0;
   nest.scene->groups[0].placements[1].track = 0;
-  const Tracer nested(nest.scene, std::nullopt, {0, 2}, nullptr, kAll),
-      plain(nest.scene, std::nullopt, {0, 2}, nullptr, kNothing);
+  const Tracer nested(nest.scene, std::nullopt, {0, 2}, nullptr, {}, kAll),
+      plain(nest.scene, std::nullopt, {0, 2}, nullptr, {}, kNothing);
   std::vector<Ray> rays = nest.rays(4000, plain);
   for (size_t i = 0; i < rays.size(); ++i) rays[i].time = 2.0 * static_cast<double>(i) / 4000;
   compare(nested, plain, rays, 4, motion_bound(10));  // of each, between keys
@@ -264,7 +264,7 @@ TEST(NestedPrecision, IsThatOfTheInnermostFrame) {
   }
   scene->groups = {root, forest, tree};
   check_scene(*scene, "domes");
-  const Tracer tracer(scene, std::nullopt, {}, nullptr, kAll);
+  const Tracer tracer(scene, std::nullopt, {}, nullptr, {}, kAll);
   ASSERT_EQ(tracer.object_count(), 64u);
   TraceStatistics statistics;
   Pcg32 rng(3);
@@ -302,8 +302,8 @@ TEST(NestedPrecision, IsThatOfTheInnermostFrame) {
 
 TEST(NestedObjects, AreFoundWithoutUnfolding) {
   Nest nest(3, 9);
-  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, kAll),
-      plain(nest.scene, std::nullopt, {}, nullptr, kNothing);
+  const Tracer nested(nest.scene, std::nullopt, {}, nullptr, {}, kAll),
+      plain(nest.scene, std::nullopt, {}, nullptr, {}, kNothing);
   const auto list = [](const Tracer& t, const auto& wanted) {
     std::vector<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t>> found;
     uint32_t last = 0;

@@ -21,7 +21,8 @@ std::shared_ptr<Scene> court(const std::function<void(Scene&)>& change = {}) {
   green.model = "lambert";
   green.curves["reflectance"] = kGreen;
   Mesh walls = test::box({-3, -3, -2}, {3, 3, 2}, 0, false);
-  walls.indices.resize(walls.indices.size() / 2);  // half of the box is open to the sky
+  walls.indices = std::vector<uint32_t>(
+      walls.indices.begin(), walls.indices.begin() + walls.indices.size() / 2);  // half of the box is open to the sky
   walls.parts[0].triangle_count = static_cast<uint32_t>(walls.triangle_count());
   Mesh hill = test::dome(2);
   hill.parts[0].material = 1;

@@ -234,10 +234,12 @@ TEST(TouchingBodies, ABodyThatOverlapsItselfIsCounted) {
   scene->materials = {boundary(0)};
   Mesh one = box({-1, -1, 0}, {1, 1, 2}, 0, true);
   const Mesh two = box({-1.5, -1.5, 1}, {1.5, 1.5, 3}, 0, true);
-  one.positions.pop_back();
-  const auto base = static_cast<uint32_t>(one.positions.size() / 3);
-  one.positions.insert(one.positions.end(), two.positions.begin(), two.positions.end());
-  for (const uint32_t i : two.indices) one.indices.push_back(base + i);
+  const auto base = static_cast<uint32_t>(one.vertex_count());
+  std::vector<float> positions(one.positions.begin(), one.positions.end() - 1);
+  std::vector<uint32_t> indices(one.indices.begin(), one.indices.end());
+  positions.insert(positions.end(), two.positions.begin(), two.positions.end());
+  for (const uint32_t i : two.indices) indices.push_back(base + i);
+  one.positions = std::move(positions), one.indices = std::move(indices);
   one.parts[0].triangle_count = static_cast<uint32_t>(one.triangle_count());
   scene->groups.push_back({"root", {}});
   scene->meshes.push_back(one);

@@ -24,9 +24,11 @@ Scene towns() {
     Mesh m;
     m.name = strf("town %d", k);
     const float h = 10.0f + static_cast<float>(k);
+    std::vector<float> positions;
     for (int v = 0; v < 8; ++v)
-      m.positions.insert(m.positions.end(), {v & 1 ? 5.0f : -5.0f, v & 2 ? 5.0f : -5.0f, v & 4 ? h : 0.0f});
-    m.positions.push_back(0);
+      positions.insert(positions.end(), {v & 1 ? 5.0f : -5.0f, v & 2 ? 5.0f : -5.0f, v & 4 ? h : 0.0f});
+    positions.push_back(0);
+    m.positions = std::move(positions);
     m.indices = {4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 1, 3, 7, 1, 7, 5};
     m.parts = {{"", 0, 6, kNone}};
     s.meshes.push_back(m);
@@ -73,8 +75,8 @@ TEST(TileLoading, ARayReadsTheTileItComesTo) {
   EXPECT_EQ(hit.position, same.position);
   EXPECT_NEAR(hit.position.z, 17, 1e-5);
   EXPECT_EQ(l.later->meshes_read, 1u);
-  EXPECT_FALSE(l.scene->meshes[7].positions.empty());
-  EXPECT_TRUE(l.scene->meshes[8].positions.empty());
+  EXPECT_TRUE(l.scene->meshes[7].stored->here);
+  EXPECT_FALSE(l.scene->meshes[8].stored->here);
   EXPECT_FALSE(down(tracer, 5e3).hit());  // between two towns
   EXPECT_EQ(l.later->meshes_read, 1u);
   std::atomic<int> right{0};
