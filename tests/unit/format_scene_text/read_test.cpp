@@ -278,7 +278,7 @@ TEST_F(SceneText, MirroredUpAxisKeepsWindingAndNormals) {
   };
   const Dir facet = normalized(cross(p(1) - p(0), p(2) - p(0)));
   EXPECT_NEAR(facet.z, 1, 1e-6);
-  EXPECT_NEAR(oct_decode(m.normals.at(0)).z, 1, 1e-4);
+  EXPECT_NEAR(oct_decode(m.normals[0]).z, 1, 1e-4);
 }
 
 TEST_F(SceneText, EmptyAndForeignTexts) {
