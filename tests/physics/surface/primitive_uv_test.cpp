@@ -96,7 +96,9 @@ TEST(PrimitiveRadiance, EqualsThatOfItsTessellation) {
       for (const uint32_t k : {a, a + n + 1, a + 1, a + 1, a + n + 1, a + n + 2}) f.push_back(k);
     }
   Mesh ball = mesh_of(v, f, 0);
-  for (const Vec3& at : v) ball.normals.push_back(oct_encode(at));
+  std::vector<uint32_t> normals;
+  for (const Vec3& at : v) normals.push_back(oct_encode(at));
+  ball.normals = std::move(normals);
   const Material m = material("m", lambert(0.5)), ground = material("g", lambert(0.3));
   auto fine = scene_of({ball, quad(5, -1, 1)}, {m, ground});
   auto exact = scene_of({quad(5, -1, 1)}, {m, ground});
