@@ -18,20 +18,12 @@ VolumeField::VolumeField(const Scene& scene, const SpectralState& state, const s
   double coldest = kForever, hottest = 0;
   for (const Volume& v : scene.volumes) {
     const VoxelGrid& g = scene.grids[v.grid];
-    Placed p{&g, v.to_world * g.to_local, nullptr, {}, {}, {}, false};
+    PlacedGrid p{&g, v.to_world * g.to_local};
     if (v.track != kNone)
       p.track = scene.tracks[v.track].track.get();
     else
       p.to_index = p.place.inverse();
-    for (int a = 0; a < 3; ++a) p.blocks[a] = (g.cells[a] + kBlock - 1) / kBlock;
-    auto full = std::make_shared<std::vector<uint8_t>>(size_t{p.blocks[0]} * p.blocks[1] * p.blocks[2], uint8_t{0});
-    size_t cell = 0;
-    for (uint32_t k = 0; k < g.cells[2]; ++k)
-      for (uint32_t j = 0; j < g.cells[1]; ++j)
-        for (uint32_t i = 0; i < g.cells[0]; ++i, ++cell)
-          if (g.density[cell] > 0)
-            (*full)[(size_t{k / kBlock} * p.blocks[1] + j / kBlock) * p.blocks[0] + i / kBlock] = 1;
-    p.block_full = std::move(full);
+    p.blocks = GridBlocks::of(g);
     for (const float t : g.temperature)
       if (t > 0) coldest = std::min(coldest, double{t}), hottest = std::max(hottest, double{t}), p.emits = true;
     if (periodic_)
@@ -52,7 +44,7 @@ VolumeField::VolumeField(const Scene& scene, const SpectralState& state, const s
 }
 
 // One copy for each cell that the grid reaches into, shifted into the first.
-void VolumeField::repeat_at_sides(const Placed& p) {
+void VolumeField::repeat_at_sides(const PlacedGrid& p) {
   if (p.track) throw Error("a periodic scene cannot hold a volume that moves", "drop the motion, or the periodic cell");
   const Box3 box = transformed(
       Box3{{0, 0, 0}, {double(p.grid->cells[0]), double(p.grid->cells[1]), double(p.grid->cells[2])}}, p.place);
@@ -67,7 +59,7 @@ void VolumeField::repeat_at_sides(const Placed& p) {
   }
   for (long x = first[0]; x <= last[0]; ++x)
     for (long y = first[1]; y <= last[1]; ++y) {
-      Placed copy = p;
+      PlacedGrid copy = p;
       copy.place = translation({-static_cast<double>(x) * size[0], -static_cast<double>(y) * size[1], 0}) * p.place;
       copy.to_index = copy.place.inverse();
       placed_.push_back(std::move(copy));
@@ -88,7 +80,7 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
                       double time, std::span<const double> bounds) {
   bounds_ = bounds;
   layer_ = kNone, zone_end_ = kForever;
-  cursors_.clear();
+  grids_.clear();
   background_ = background;
   begin_ = end_ = 0;
   length_ = length;
@@ -100,7 +92,7 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
                         size_t{1}));
   if (!field.periodic()) {
     piece_end_ = length;
-    add_cursors(origin, 0, length);
+    add_grids(origin, 0, length);
     return;
   }
   // Where the ray is between the heights that hold grids, and the scene's cell there.
@@ -133,7 +125,7 @@ void FieldWalk::enter_zone(size_t zone) {
 
 // The next piece of a ray through a periodic scene: what lies before and behind the grids, or the way through one cell.
 void FieldWalk::next_piece() {
-  cursors_.clear();
+  grids_.clear();
   const double begin = piece_end_;
   if (begin < grids_begin_) {
     piece_end_ = std::min(grids_begin_, length_);
@@ -154,92 +146,15 @@ void FieldWalk::next_piece() {
     if (t < piece_end_) piece_end_ = t, axis = a;
   }
   piece_end_ = std::max(piece_end_, begin);
-  add_cursors(origin, begin, piece_end_);
+  add_grids(origin, begin, piece_end_);
   if (axis >= 0) cell_[axis] += direction_[axis] > 0 ? 1 : -1;
 }
 
-void FieldWalk::add_cursors(Vec3 origin, double begin, double end) {
-  for (const VolumeField::Placed& p : field_->placed()) {
-    Cursor c;
-    c.placed = &p;
-    const Affine3 to_index = p.index_at(time_);
-    c.origin = to_index.point(origin);
-    c.direction = to_index.vector(direction_);
-    if (clip(c, begin, end)) cursors_.push_back(c);
+void FieldWalk::add_grids(Vec3 origin, double begin, double end) {
+  for (const PlacedGrid& p : field_->placed()) {
+    grids_.emplace_back();
+    if (!grids_.back().start(p, origin, direction_, time_, begin, end)) grids_.pop_back();
   }
-}
-
-// The part of the ray between begin and end inside the grid's box; false when there is none.
-bool FieldWalk::clip(Cursor& c, double begin, double end) {
-  c.enter = begin;
-  c.leave = end;
-  for (int a = 0; a < 3; ++a) {
-    const double o = c.origin[a], d = c.direction[a], top = c.placed->grid->cells[static_cast<size_t>(a)];
-    if (d == 0) {
-      if (!(o > 0 && o < top)) return false;
-      continue;
-    }
-    const double t0 = -o / d, t1 = (top - o) / d;
-    c.enter = std::max(c.enter, std::min(t0, t1));
-    c.leave = std::min(c.leave, std::max(t0, t1));
-  }
-  return c.enter < c.leave;
-}
-
-double FieldWalk::plane(const Cursor& c, int axis, int at) {
-  return c.direction[axis] == 0 ? kForever : (at - c.origin[axis]) / c.direction[axis];
-}
-
-void FieldWalk::enter(Cursor& c) {
-  for (int a = 0; a < 3; ++a) {
-    const int top = static_cast<int>(c.placed->grid->cells[static_cast<size_t>(a)]) - 1;
-    c.cell[a] = std::clamp(static_cast<int>(std::floor(c.origin[a] + c.direction[a] * c.enter)), 0, top);
-  }
-  c.inside = true;
-  settle(c, c.enter);
-}
-
-void FieldWalk::settle(Cursor& c, double at) {
-  const VoxelGrid& g = *c.placed->grid;
-  constexpr int block = VolumeField::kBlock;
-  const auto place = [](const int* cell, int size, uint32_t nx, uint32_t ny) {
-    return (static_cast<size_t>(cell[2] / size) * ny + static_cast<size_t>(cell[1] / size)) * nx +
-           static_cast<size_t>(cell[0] / size);
-  };
-  const bool full = (*c.placed->block_full)[place(c.cell, block, c.placed->blocks[0], c.placed->blocks[1])];
-  c.until = kForever;
-  c.axis = 0;
-  for (int a = 0; a < 3; ++a) {
-    c.low[a] = full ? c.cell[a] : c.cell[a] / block * block;
-    c.high[a] = full ? c.cell[a] + 1 : std::min(c.low[a] + block, static_cast<int>(g.cells[static_cast<size_t>(a)]));
-    const double t = plane(c, a, c.direction[a] > 0 ? c.high[a] : c.low[a]);
-    if (t < c.until) c.until = t, c.axis = a;
-  }
-  c.until = std::min(std::max(c.until, at), c.leave);
-  c.index = kNone;
-  if (!full) return;
-  const size_t cell = place(c.cell, 1, g.cells[0], g.cells[1]);
-  if (g.density[cell] > 0) c.index = static_cast<uint32_t>(cell);
-}
-
-// Goes on through the nearest plane; on the other axes the cell follows the ray but never turns back, so that rounding
-// cannot keep a ray in place.
-void FieldWalk::advance(Cursor& c) {
-  const int top = static_cast<int>(c.placed->grid->cells[static_cast<size_t>(c.axis)]);
-  const double at = c.until;
-  for (int a = 0; a < 3; ++a) {
-    if (a == c.axis) {
-      c.cell[a] = c.direction[a] > 0 ? c.high[a] : c.low[a] - 1;
-    } else if (c.high[a] - c.low[a] > 1 && c.direction[a] != 0) {
-      const int where = static_cast<int>(std::floor(c.origin[a] + c.direction[a] * at));
-      c.cell[a] =
-          c.direction[a] > 0 ? std::clamp(where, c.cell[a], c.high[a] - 1) : std::clamp(where, c.low[a], c.cell[a]);
-    }
-  }
-  if (c.cell[c.axis] < 0 || c.cell[c.axis] >= top || at >= c.leave)
-    c.enter = c.until = kForever;
-  else
-    settle(c, at);
 }
 
 bool FieldWalk::next() {
@@ -251,22 +166,39 @@ bool FieldWalk::next() {
     contents_.clear();
     if (background_ != kNone) contents_.push_back({background_, 1, 0});
     end_ = std::min(piece_end_, zone_end_);
-    for (Cursor& c : cursors_) {
-      if (c.enter == kForever) continue;
-      if (begin_ < c.enter) {
-        end_ = std::min(end_, c.enter);
+    for (GridWalk& g : grids_) {
+      while (!g.ended() && g.end() <= begin_) g.advance();
+      if (g.ended()) continue;
+      if (begin_ < g.begin()) {
+        end_ = std::min(end_, g.begin());
         continue;
       }
-      if (!c.inside) enter(c);
-      while (c.until <= begin_ && c.enter != kForever) advance(c);
-      if (c.enter == kForever) continue;
-      end_ = std::min(end_, c.until);
-      if (c.index == kNone) continue;
-      const VoxelGrid& g = *c.placed->grid;
-      contents_.push_back({g.media[g.kind.empty() ? 0 : g.kind[c.index]], g.density[c.index],
-                           g.temperature.empty() ? 0 : g.temperature[c.index]});
+      end_ = std::min(end_, g.end());
+      if (g.density() > 0) contents_.push_back({g.placed().medium(g.cell()), g.density(), g.placed().kelvin(g.cell())});
     }
     if (!contents_.empty() || layer_ != kNone) return true;
+  }
+}
+
+uint32_t FieldWalk::lone_medium() const {
+  const bool lone = background_ == kNone && bounds_.empty() && grids_.size() == 1 && grids_[0].placed().plain();
+  return lone ? grids_[0].placed().medium(0) : kNone;
+}
+
+double FieldWalk::pass(double most) {
+  GridWalk& g = grids_[0];
+  while (!g.ended() && g.end() <= end_) g.advance();
+  const double mass = g.pass(most);
+  end_ = std::max(end_, g.ended() ? g.end() : g.begin());
+  return mass;
+}
+
+void FieldWalk::add_depths(std::span<double> depth) {
+  if (background_ != kNone) depth[background_] += std::min(length_, kEndless);
+  for (;;) {
+    for (GridWalk& g : grids_) g.add_depths(depth);
+    if (piece_end_ >= length_) return;
+    next_piece();
   }
 }
 

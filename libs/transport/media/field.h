@@ -5,20 +5,18 @@
 // holds what sticks out of the others, too. Grids that move stand where the ray's time finds them.
 //
 // Cells are constant, so optical depths along a ray are sums without an estimate in them, for all wavelengths at once:
-// one number a medium (its density integrated over the way). A coarse grid of blocks lets rays pass what is empty.
-// Based on: J. Amanatides & A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987, with plane
-// distances computed afresh at each step, so that nothing drifts over thousands of cells.
+// one number a medium (its density integrated over the way). How a ray goes through one grid: grid_walk.h.
 #pragma once
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "motion/track.h"
 #include "optics/medium.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
 #include "trace/tracer.h"
+#include "transport/media/grid_walk.h"
 
 namespace suite {
 
@@ -30,18 +28,7 @@ class VolumeField {
   size_t media() const { return scene_.media.size(); }
   bool has_grids() const { return !placed_.empty(); }
 
-  struct Placed {
-    const VoxelGrid* grid;
-    Affine3 place;                 // index space -> ENU, or the moving body's axes
-    const Track* track = nullptr;  // null: at rest
-    Affine3 to_index;              // ENU -> index space, of what is at rest
-    std::array<uint32_t, 3> blocks;
-    std::shared_ptr<const std::vector<uint8_t>> block_full;  // blocks of kBlock^3 cells that hold anything
-    bool emits = false;                                      // some cell has a temperature of its own
-    Affine3 index_at(double time) const { return track ? (track->at(time).affine() * place).inverse() : to_index; }
-  };
-  static constexpr uint32_t kBlock = 8;
-  std::span<const Placed> placed() const { return placed_; }
+  std::span<const PlacedGrid> placed() const { return placed_; }
   const std::optional<Periodic>& periodic() const { return periodic_; }
   // Heights between which a periodic scene has grids, m.
   double bottom() const { return bottom_; }
@@ -58,11 +45,11 @@ class VolumeField {
   }
 
  private:
-  void repeat_at_sides(const Placed& p);
+  void repeat_at_sides(const PlacedGrid& p);
   const Scene& scene_;
   std::optional<Periodic> periodic_;
   double bottom_ = 0, top_ = 0;
-  std::vector<Placed> placed_;
+  std::vector<PlacedGrid> placed_;
   std::vector<double> table_kelvin_;
   std::vector<float> table_log_;  // [kelvin][bin]
   size_t bins_;
@@ -87,36 +74,28 @@ class FieldWalk {
              std::span<const double> bounds = {});
   // The next stretch that holds anything; false at the end.
   bool next();
+  // For what follows the last stretch: the medium of the only grid around, at that medium's own temperature, if there
+  // is nothing else before the grid ends, no layer of the air either; else kNone.
+  uint32_t lone_medium() const;
+  // Where lone_medium() is not kNone: goes on in one stride, as far as the integral of density stays within `most`.
+  // Returns the integral; next() gives the stretch where it would become more.
+  double pass(double most);
+  // Goes on to the end and adds the density integrated on the way to depth[medium]. Not in layers of the air.
+  void add_depths(std::span<double> depth);
   uint32_t layer() const { return layer_; }  // of the air; kNone = outside
   double begin() const { return begin_; }
   double end() const { return end_; }
   const std::vector<Constituent>& contents() const { return contents_; }
 
  private:
-  struct Cursor {
-    const VolumeField::Placed* placed = nullptr;
-    Vec3 origin, direction;       // index space, parameter in metres of the ray
-    double enter = 0, leave = 0;  // of the grid's box
-    int cell[3] = {};
-    int low[3] = {}, high[3] = {};  // the current cell, or the empty block that it lies in
-    double until = 0;               // where the ray leaves them
-    int axis = 0;                   // through a plane of this axis
-    uint32_t index = kNone;         // current cell; kNone = empty
-    bool inside = false;
-  };
-  void add_cursors(Vec3 origin, double begin, double end);
+  void add_grids(Vec3 origin, double begin, double end);
   void next_piece();
   void enter_zone(size_t zone);
-  static bool clip(Cursor& c, double begin, double end);
-  static double plane(const Cursor& c, int axis, int at);
-  static void enter(Cursor& c);
-  static void settle(Cursor& c, double at);  // finds how far the current cell or empty block reaches
-  static void advance(Cursor& c);            // to the next cell
-  std::vector<Cursor> cursors_;
+  std::vector<GridWalk> grids_;  // that the ray meets in the piece
   std::vector<Constituent> contents_;
   uint32_t background_ = kNone;
   double begin_ = 0, end_ = 0, length_ = 0;
-  // The ray, and the piece of it that the cursors are for: all of it, or its way through one cell of a periodic scene.
+  // The ray, and the piece of it that grids_ is for: all of it, or its way through one cell of a periodic scene.
   const VolumeField* field_ = nullptr;
   Vec3 origin_;
   Dir direction_;

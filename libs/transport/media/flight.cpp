@@ -27,7 +27,7 @@ Flights::Flights(const VolumeField& field, const Optics& optics, std::span<const
     any_emission_ = any_emission_ || !m.blackbody.empty();
     absorbs_.push_back(std::any_of(m.absorption.begin(), m.absorption.end(), [](float a) { return a > 0; }));
   }
-  for (const VolumeField::Placed& p : field.placed()) any_emission_ = any_emission_ || p.emits;
+  for (const PlacedGrid& p : field.placed()) any_emission_ = any_emission_ || p.emits;
 }
 
 double Flights::scattering_depth(size_t bin) const {
@@ -53,7 +53,9 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
   }
   double left = -std::log1p(-u.x);
   walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.bounds());
-  while (!result_.scattered && walk_.next()) {
+  for (;;) {
+    left -= pass_lone(live, left, u.y, emitted);
+    if (result_.scattered || !walk_.next()) break;
     const std::vector<Constituent>& contents = walk_.contents();
     double way = walk_.end() - walk_.begin(), rate = 0;
     for (const Constituent& c : contents) rate += c.density * double{media_[c.medium].scattering[own]};
@@ -78,6 +80,22 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
   }
   weigh(live, through);
   return result_;
+}
+
+// Goes through a grid that is alone in its space, up to the cell where depth `left` of scattering is reached; returns
+// the depth passed.
+double Flights::pass_lone(const LivePath& live, double left, double u, std::span<float> emitted) {
+  const Constituent alone{walk_.lone_medium(), 0, 0};
+  if (result_.scattered || alone.medium == kNone) return 0;
+  const double scattering = media_[alone.medium].scattering[bins_of_knots_[static_cast<size_t>(live.knot)]];
+  const double mass = walk_.pass(scattering > 0 ? left / scattering : std::numeric_limits<double>::infinity());
+  if (!(mass > 0)) return 0;
+  if (run_.size() != 1 || !(run_[0] == alone)) {
+    end_run(live, u, emitted);
+    run_.push_back(alone);
+  }
+  run_[0].density += mass;
+  return std::min(left, scattering * mass);
 }
 
 // Stretches of one medium at one temperature make one run: its emission needs only the mass passed. In a layer of the
@@ -246,9 +264,7 @@ double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
 
 void Flights::add_depths(const Ray& ray, double length, uint32_t background, std::span<double> depth) {
   walk_.start(field_, ray.origin, ray.direction, length, background, ray.time);
-  while (walk_.next())
-    for (const Constituent& c : walk_.contents())
-      depth[c.medium] += c.density * std::min(walk_.end() - walk_.begin(), kEndless);
+  walk_.add_depths(depth);
 }
 
 bool Flights::transmittance(std::span<const double> depth, std::span<float> transmission) const {

@@ -52,6 +52,7 @@ class Flights {
   bool transmittance(std::span<const double> depth, std::span<float> transmission) const;
 
  private:
+  double pass_lone(const LivePath& live, double left, double u, std::span<float> emitted);
   bool same_run() const;
   void begin_run(const LivePath& live);
   void end_run(const LivePath& live, double u, std::span<float> emitted);
