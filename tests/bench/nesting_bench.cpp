@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
     const auto scene = wood(count, levels);
     const double made = test::cpu_seconds();
     // All groups that save anything are shared; the wood of one level has none.
-    tracers[levels] = std::make_unique<Tracer>(scene, std::nullopt, TimeSpan{}, nullptr, 0);
+    tracers[levels] = std::make_unique<Tracer>(scene, std::nullopt, TimeSpan{}, nullptr, TileLimit{}, 0);
     const double built = test::cpu_seconds() - made;
     malloc_trim(0);
     std::printf("%zu levels: %.4g leaves, %.4g triangles; built in %.3f s (the scene in %.3f s), resident %.1f MB\n",
