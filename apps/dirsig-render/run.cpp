@@ -115,7 +115,8 @@ Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ra
     if (loaded.later) later.push_back(loaded.later);
     parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion, s.life});
   }
-  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion && parts[0].life == kAlways) return std::move(parts[0].scene);
+  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion && parts[0].life == kAlways)
+    return std::move(parts[0].scene);
   try {
     return combine_scenes(std::move(parts));
   } catch (const Error& e) {
