@@ -80,7 +80,7 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
                       double time, std::span<const double> bounds) {
   bounds_ = bounds;
   layer_ = kNone, zone_end_ = kForever;
-  grids_.clear();
+  met_ = 0;
   background_ = background;
   begin_ = end_ = 0;
   length_ = length;
@@ -125,7 +125,7 @@ void FieldWalk::enter_zone(size_t zone) {
 
 // The next piece of a ray through a periodic scene: what lies before and behind the grids, or the way through one cell.
 void FieldWalk::next_piece() {
-  grids_.clear();
+  met_ = 0;
   const double begin = piece_end_;
   if (begin < grids_begin_) {
     piece_end_ = std::min(grids_begin_, length_);
@@ -151,9 +151,10 @@ void FieldWalk::next_piece() {
 }
 
 void FieldWalk::add_grids(Vec3 origin, double begin, double end) {
+  if (grids_.empty()) grids_.resize(1);
   for (const PlacedGrid& p : field_->placed()) {
-    grids_.emplace_back();
-    if (!grids_.back().start(p, origin, direction_, time_, begin, end)) grids_.pop_back();
+    if (!grids_[met_].start(p, origin, direction_, time_, begin, end)) continue;
+    if (++met_ == grids_.size()) grids_.emplace_back();
   }
 }
 
@@ -166,7 +167,7 @@ bool FieldWalk::next() {
     contents_.clear();
     if (background_ != kNone) contents_.push_back({background_, 1, 0});
     end_ = std::min(piece_end_, zone_end_);
-    for (GridWalk& g : grids_) {
+    for (GridWalk& g : met()) {
       while (!g.ended() && g.end() <= begin_) g.advance();
       if (g.ended()) continue;
       if (begin_ < g.begin()) {
@@ -181,7 +182,7 @@ bool FieldWalk::next() {
 }
 
 uint32_t FieldWalk::lone_medium() const {
-  const bool lone = background_ == kNone && bounds_.empty() && grids_.size() == 1 && grids_[0].placed().plain();
+  const bool lone = background_ == kNone && bounds_.empty() && met_ == 1 && grids_[0].placed().plain();
   return lone ? grids_[0].placed().medium(0) : kNone;
 }
 
@@ -196,7 +197,7 @@ double FieldWalk::pass(double most) {
 void FieldWalk::add_depths(std::span<double> depth) {
   if (background_ != kNone) depth[background_] += std::min(length_, kEndless);
   for (;;) {
-    for (GridWalk& g : grids_) g.add_depths(depth);
+    for (GridWalk& g : met()) g.add_depths(depth);
     if (piece_end_ >= length_) return;
     next_piece();
   }

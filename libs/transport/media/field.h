@@ -74,6 +74,8 @@ class FieldWalk {
              std::span<const double> bounds = {});
   // The next stretch that holds anything; false at the end.
   bool next();
+  // Nothing fills the way.
+  bool empty() const { return background_ == kNone && bounds_.empty() && met_ == 0 && piece_end_ >= length_; }
   // For what follows the last stretch: the medium of the only grid around, at that medium's own temperature, if there
   // is nothing else before the grid ends, no layer of the air either; else kNone.
   uint32_t lone_medium() const;
@@ -91,11 +93,14 @@ class FieldWalk {
   void add_grids(Vec3 origin, double begin, double end);
   void next_piece();
   void enter_zone(size_t zone);
-  std::vector<GridWalk> grids_;  // that the ray meets in the piece
+  // Of the grids that the ray meets in the piece: the first met_; the others are kept for later rays.
+  std::span<GridWalk> met() { return {grids_.data(), met_}; }
+  std::vector<GridWalk> grids_;
+  size_t met_ = 0;
   std::vector<Constituent> contents_;
   uint32_t background_ = kNone;
   double begin_ = 0, end_ = 0, length_ = 0;
-  // The ray, and the piece of it that grids_ is for: all of it, or its way through one cell of a periodic scene.
+  // The ray, and the piece of it that met() is for: all of it, or its way through one cell of a periodic scene.
   const VolumeField* field_ = nullptr;
   Vec3 origin_;
   Dir direction_;

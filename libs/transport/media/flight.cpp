@@ -51,8 +51,9 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
     stretch_.clear();
     run_layer_ = kNone;
   }
-  double left = -std::log1p(-u.x);
   walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.bounds());
+  if (walk_.empty() && !air_.any()) return result_;
+  double left = -std::log1p(-u.x);
   for (;;) {
     left -= pass_lone(live, left, u.y, emitted);
     if (result_.scattered || !walk_.next()) break;

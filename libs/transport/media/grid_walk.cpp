@@ -96,7 +96,8 @@ void GridWalk::start_blocks() {
   for (int a = 0; a < 3; ++a) {
     const bool up = !(inverse_[a] < 0);
     const int last = static_cast<int>(blocks[static_cast<size_t>(a)]) - 1;
-    const int block = std::clamp(static_cast<int>(origin_[a] + direction_[a] * begin_) / kBlock, 0, last);
+    const double here = std::max(0.0, origin_[a] + direction_[a] * begin_);
+    const int block = std::min(static_cast<int>(static_cast<unsigned>(here) / kBlock), last);
     block_ += static_cast<size_t>(block) * block_stride;
     stride_[a] = up ? stride : size_t{0} - stride;
     block_stride_[a] = up ? block_stride : size_t{0} - block_stride;

@@ -26,7 +26,7 @@ struct GridBlocks {
   // In place of a number of a block of `densities`.
   static constexpr uint32_t kEmpty = kNone, kAlike = kNone - 1;
   std::array<uint32_t, 3> count{};
-  std::array<double, 3> low{}, high{};  // of the cells that hold anything, in cells; low > high: none do
+  std::array<double, 3> low{}, high{};  // box of the blocks that hold anything, in cells; low > high: none
   std::vector<uint32_t> kind;           // per block: kEmpty, kAlike (all cells alike) or its number among the others
   std::vector<float> densities;         // of the others: cell (i, j, k) at i + 8 (j + 8 k); 0 outside of the grid
   explicit GridBlocks(const VoxelGrid& grid);

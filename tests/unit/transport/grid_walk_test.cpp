@@ -266,6 +266,46 @@ TEST(GridWalk, SeveralGridsAddUp) {
   }
 }
 
+TEST(GridWalk, PeriodicScenesRepeatTheirGrids) {
+  Random random(13);
+  const SpectralState state;
+  const Periodic cell{{-2, 1}, {17, 19}};
+  int met = 0;
+  for (int n = 0; n < 60; ++n) {
+    const auto scene = scene_of({patchy_grid(random, true)});
+    const PlacedGrid p = placed(scene->grids[0]);
+    const VolumeField field(*scene, state, cell);
+    Way way = any_way(random, p);
+    way.length = uniform(random, 1, 60);
+    double expected = 0;
+    for (int x = -15; x <= 15; ++x)
+      for (int y = -15; y <= 15; ++y) {
+        const Vec3 shift{x * cell.size.x, y * cell.size.y, 0};
+        expected += depths(p, {way.origin + shift, way.direction, way.length})[0];
+      }
+    std::array<double, 2> sum{}, whole{};
+    FieldWalk walk;
+    walk.start(field, way.origin, way.direction, way.length, kNone, 0);
+    while (walk.next())
+      for (const Constituent& c : walk.contents()) sum[c.medium] += c.density * (walk.end() - walk.begin());
+    walk.start(field, way.origin, way.direction, way.length, kNone, 0);
+    walk.add_depths(whole);
+    // Strides and cells in turn, where grids are alone.
+    double strides = 0;
+    walk.start(field, way.origin, way.direction, way.length, kNone, 0);
+    for (;;) {
+      if (walk.lone_medium() != kNone) strides += walk.pass(0.1 * expected);
+      if (!walk.next()) break;
+      for (const Constituent& c : walk.contents()) strides += c.density * (walk.end() - walk.begin());
+    }
+    met += expected > 0;
+    EXPECT_NEAR(sum[0], expected, 1e-10) << "case " << n;
+    EXPECT_NEAR(whole[0], expected, 1e-10) << "case " << n;
+    EXPECT_NEAR(strides, expected, 1e-10) << "case " << n;
+  }
+  EXPECT_GT(met, 30);
+}
+
 TEST(GridBlocks, AreSharedAndHoldOnlyWhatDiffers) {
   VoxelGrid g = empty_grid({20, 9, 8}, {});  // 3 x 2 x 1 blocks
   g.density[3] = 1;                          // in the first block
