@@ -46,6 +46,27 @@ void declare_parts(Cli& cli, RenderOptions& o) {
   cli.option("--plan", o.plan, "second round: run the part of the plan that --merge left in this folder", "FOLDER");
 }
 
+// What is told instead of a picture.
+void declare_questions(Cli& cli, RenderOptions& o) {
+  cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.option("--ranks", o.ranks,
+             "with --dry-run: run a few blocks and forecast the seconds and the efficiency of the job on so many ranks",
+             "N,N,...");
+  cli.option("--link", o.link,
+             "with --ranks: what ranks pay for talking, as bench/link_bench measures it: microseconds to fetch a block "
+             "and for a message, GB/s of messages, GB/s at which results are taken",
+             "F,M,R,T");
+  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
+             "FEATURE");
+  cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");
+  cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
+  cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
+  cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
+  cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
+  cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
+  cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
+}
+
 }  // namespace
 
 void declare_render(Cli& cli, RenderOptions& o) {
@@ -97,23 +118,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run",
              "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
-  cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
-  cli.option("--ranks", o.ranks,
-             "with --dry-run: run a few blocks and forecast the seconds and the efficiency of the job on so many ranks",
-             "N,N,...");
-  cli.option("--link", o.link,
-             "with --ranks: what ranks pay for talking, as bench/link_bench measures it: microseconds to fetch a block "
-             "and for a message, GB/s of messages, GB/s at which results are taken",
-             "F,M,R,T");
-  cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
-             "FEATURE");
-  cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");
-  cli.flag("--list-sensors", o.list_sensors, "print the kinds of sensors and stop");
-  cli.flag("--list-sources", o.list_sources, "print the kinds of light sources and stop");
-  cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
-  cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
-  cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
-  cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
+  declare_questions(cli, o);
 }
 
 }  // namespace suite

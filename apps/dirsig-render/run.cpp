@@ -18,6 +18,7 @@
 #include "formats/sqt/sqt.h"
 #include "guard.h"
 #include "light/light_rows.h"
+#include "load.h"
 #include "log.h"
 #include "optics/models.h"
 #include "output.h"
@@ -69,58 +70,6 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
               100 * r.reached, r.under.c_str(), 100 * r.wanted,
               r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
                        : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
-  }
-}
-
-// What the sensors can see decides what is loaded.
-SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
-  SceneNeeds needs;
-  needs.windows_um = windows_um(sim.sensors, options.prepasses);
-  for (const auto& sensor : sim.sensors)
-    for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
-  // Under a limit all of it can be let go.
-  needs.later_from = options.tiles.bytes ? 0 : uint64_t{64} << 20;
-  if (ranks) needs.spill = spill_file(*ranks);
-  return needs;
-}
-
-// Whether any capture looks at a time in a span. (With an epoch of the text, whose seconds may count from elsewhere, it
-// may.)
-bool seen(const Simulation& sim, TimeSpan life) {
-  if (sim.epoch) return true;
-  for (const auto& sensor : sim.sensors)
-    for (const Task& task : sensor->tasks())
-      for (const Capture& c : task.captures)
-        if (c.window.end >= life.begin && c.window.begin < life.end) return true;
-  return false;
-}
-
-// All scenes of a simulation as one.
-Scene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks,
-                  std::vector<std::shared_ptr<const LaterReads>>& later) {
-  std::vector<ScenePart> parts;
-  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
-  for (const SimulationScene& s : sim.scenes) {
-    if (!parts.empty() && !all && !seen(sim, s.life)) {  // the first gives the others their frame
-      note("of " + s.path + ": nothing is loaded, it is not there in any capture");
-      continue;
-    }
-    LoadReport loaded;
-    const auto begun = std::chrono::steady_clock::now();
-    Scene scene = read_scene(
-        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; },
-        needs, &loaded);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    note("of " + s.path + strf(", loaded in %.3f s:\n", seconds) + loaded.text() + "(--explain FEATURE says why)");
-    if (loaded.later) later.push_back(loaded.later);
-    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion, s.life});
-  }
-  if (parts.size() == 1 && !parts[0].placement && !parts[0].motion && parts[0].life == kAlways)
-    return std::move(parts[0].scene);
-  try {
-    return combine_scenes(std::move(parts));
-  } catch (const Error& e) {
-    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
   }
 }
 
@@ -302,6 +251,12 @@ std::unique_ptr<StateStore> join_or_open(const RenderOptions& o, const Simulatio
   return store;
 }
 
+SceneNotes notes_of(const Scene& scene) {
+  SceneNotes notes{{}, scene.tags, scene.origin, Tracer::engine()};
+  for (const Material& m : scene.materials) notes.materials.push_back(m.id);
+  return notes;
+}
+
 // What a rank does that does not lead: the same job, of which nothing stays here.
 int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options) {
   start_sensors(sim, options, "");
@@ -360,17 +315,13 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (!o.dry_run) check_memory(sim, options);
 
   // Everything that can be refused is refused before rendering starts.
-  std::vector<std::shared_ptr<const LaterReads>> later;
-  const auto begun = std::chrono::steady_clock::now();
-  const auto scene = std::make_shared<Scene>(load_scenes(sim, options, o.load_all, ranks, later));
-  const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const LoadedScene loaded = load_scenes(sim, options, o.load_all, ranks);
+  const std::shared_ptr<Scene>& scene = loaded.scene;
   if (o.dry_run) dry_run(scene, sim, options);
   if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);
-  SceneNotes notes{{}, scene->tags, scene->origin, Tracer::engine()};
-  for (const Material& m : scene->materials) notes.materials.push_back(m.id);
-  if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, load_seconds);
+  if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   const Facts facts(sim, scene);
   check_wishes(sim, facts);
@@ -380,14 +331,14 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   make_folder(o.output);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
-  writer = std::make_unique<OutputWriter>(o.output, sim.output, std::move(notes), facts);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts);
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   options.warn = warn;
   start_sensors(sim, options, part ? "" : o.output);
   const JobReport report = run_safely(scene, sim, options, o.output, delivered);
   tell(report, options, o.output);
-  for (const auto& reads : later) note(reads->text());
+  for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, *writer);
   if (!report.stopped) return 0;

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "cluster/makespan.h"
+
 namespace suite::cluster {
 
 // Waits that leave the processor to others: many ranks may share one.
@@ -50,5 +52,8 @@ class Link {
   int rank_ = 0, size_ = 1;
   std::mutex mutex_;  // of the window
 };
+
+// measure_link.cpp; called by all ranks.
+LinkCosts measure(Link& link);
 
 }  // namespace suite::cluster

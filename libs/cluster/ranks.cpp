@@ -36,6 +36,7 @@ class MpiRanks final : public Ranks {
     return texts;
   }
   void meet() override { link_->meet(); }
+  LinkCosts measure_link() override { return cluster::measure(*link_); }
   std::string of_first_here(const std::string& mine) override {
     link_->meet();
     MPI_Comm here;

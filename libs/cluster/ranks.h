@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cluster/makespan.h"
 #include "scheduler/executor.h"
 
 namespace suite {
@@ -29,6 +30,8 @@ class Ranks {
   virtual std::vector<std::string> gather(const std::string& mine) = 0;
   // Waits for all.
   virtual void meet() = 0;
+  // What talking costs between the first two ranks; a second or so. Of use on rank 0 of two or more.
+  virtual LinkCosts measure_link() = 0;
   // Of the ranks that share this machine's memory the first one's text, on all of them.
   virtual std::string of_first_here(const std::string& mine) = 0;
 

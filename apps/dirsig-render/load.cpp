@@ -1,0 +1,74 @@
+#include "load.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include "base/progress.h"
+#include "formats/sqt/sqt.h"
+#include "scene/combine.h"
+#include "scheduler/prepass.h"
+#include "together.h"
+
+namespace suite {
+
+namespace {
+
+using Steady = std::chrono::steady_clock;
+double seconds_since(Steady::time_point t) { return std::chrono::duration<double>(Steady::now() - t).count(); }
+
+// What the sensors can see decides what is loaded.
+SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
+  SceneNeeds needs;
+  needs.windows_um = windows_um(sim.sensors, options.prepasses);
+  for (const auto& sensor : sim.sensors)
+    for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
+  // Under a limit all of it can be let go.
+  needs.later_from = options.tiles.bytes ? 0 : uint64_t{64} << 20;
+  if (ranks) needs.spill = spill_file(*ranks);
+  return needs;
+}
+
+// Whether any capture looks at a time in a span. (With an epoch of the text, whose seconds may count from elsewhere, it
+// may.)
+bool seen(const Simulation& sim, TimeSpan life) {
+  if (sim.epoch) return true;
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        if (c.window.end >= life.begin && c.window.begin < life.end) return true;
+  return false;
+}
+
+}  // namespace
+
+LoadedScene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks) {
+  LoadedScene out;
+  const Steady::time_point first = Steady::now();
+  std::vector<ScenePart> parts;
+  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
+  for (const SimulationScene& s : sim.scenes) {
+    if (!parts.empty() && !all && !seen(sim, s.life)) {  // the first gives the others their frame
+      note("of " + s.path + ": nothing is loaded, it is not there in any capture");
+      continue;
+    }
+    LoadReport loaded;
+    const Steady::time_point begun = Steady::now();
+    Scene scene = read_scene(
+        s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; },
+        needs, &loaded);
+    note("of " + s.path + strf(", loaded in %.3f s:\n", seconds_since(begun)) + loaded.text() +
+         "(--explain FEATURE says why)");
+    if (loaded.later) out.later.push_back(loaded.later);
+    parts.push_back({std::filesystem::path(s.path).stem().string(), std::move(scene), s.placement, s.motion, s.life});
+  }
+  const bool whole = parts.size() == 1 && !parts[0].placement && !parts[0].motion && parts[0].life == kAlways;
+  try {
+    out.scene = std::make_shared<Scene>(whole ? std::move(parts[0].scene) : combine_scenes(std::move(parts)));
+  } catch (const Error& e) {
+    throw Error(Where{sim.path, 0, 0, {}, -1}, e.message(), e.hint());
+  }
+  out.seconds = seconds_since(first);
+  return out;
+}
+
+}  // namespace suite
