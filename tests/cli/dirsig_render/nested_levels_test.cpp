@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "formats/envi/envi.h"
@@ -45,6 +46,30 @@ class NestedLevels : public ProgramsTest<NestedLevels> {
            world + "]\n";
   }
 };
+
+// Tiles come and go while the groups in them stay: their structures call those of the leaf, which other tiles place,
+// too.
+TEST_F(NestedLevels, UnderALimitOfMemoryGiveTheSame) {
+  prepare(text("{place: land}, {place: leaf, table: five.csv, translate: [0, 0, 40]}, {place: leaf, table: leaves.csv, "
+               "scale: 2000}"),
+          "mixed");
+  const std::string sim =
+      "scene: mixed.h5\nsun: {direction: {zenith_deg: 30, azimuth_deg: 120}, irradiance: 1000}\n"
+      "sensors:\n  - {kind: orthographic, name: eye, columns: 48, rows: 48, gsd_m: 400, center_m: [0, 0], paths: 4,\n"
+      "     truth: [instance, range], bands: [{name: b, center_um: 0.55, fwhm_um: 0.01}]}\n";
+  ASSERT_EQ(render(sim, "free").code, 0);
+  const CommandResult r = run("dirsig-render free.yaml -o limited --memory 1MiB");
+  ASSERT_EQ(r.code, 0) << r.err;
+  unsigned built = 0, at_once = 0;
+  const size_t told = r.err.find("tiles: ");
+  ASSERT_NE(told, std::string::npos) << r.err;
+  ASSERT_EQ(std::sscanf(r.err.c_str() + told, "tiles: %u buildings, %u at once", &built, &at_once), 2) << r.err;
+  EXPECT_GT(built, at_once) << "some were given up";
+  for (const char* file : {"eye.img", "eye_truth.img"})
+    EXPECT_EQ(read_bytes(*folder_ / (std::string("free/") + file)),
+              read_bytes(*folder_ / (std::string("limited/") + file)))
+        << file;
+}
 
 TEST_F(NestedLevels, AThousandMillionLeavesFitIntoAGigabyte) {
   prepare(text("{place: land}"));
