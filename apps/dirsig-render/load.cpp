@@ -1,9 +1,9 @@
 #include "load.h"
 
-#include <chrono>
 #include <filesystem>
 
 #include "base/progress.h"
+#include "base/stopwatch.h"
 #include "formats/sqt/sqt.h"
 #include "scene/combine.h"
 #include "scheduler/prepass.h"
@@ -12,9 +12,6 @@
 namespace suite {
 
 namespace {
-
-using Steady = std::chrono::steady_clock;
-double seconds_since(Steady::time_point t) { return std::chrono::duration<double>(Steady::now() - t).count(); }
 
 // What the sensors can see decides what is loaded.
 SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
@@ -30,12 +27,13 @@ SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ran
 
 // Whether any capture looks at a time in a span. (With an epoch of the text, whose seconds may count from elsewhere, it
 // may.)
-bool seen(const Simulation& sim, TimeSpan life) {
+bool seen(const Simulation& sim, const JobOptions& options, TimeSpan life) {
   if (sim.epoch) return true;
-  for (const auto& sensor : sim.sensors)
-    for (const Task& task : sensor->tasks())
-      for (const Capture& c : task.captures)
-        if (c.window.end >= life.begin && c.window.begin < life.end) return true;
+  for (const Sensors all : {Sensors(sim.sensors), options.prepasses})
+    for (const auto& sensor : all)
+      for (const Task& task : sensor->tasks())
+        for (const Capture& c : task.captures)
+          if (c.window.end >= life.begin && c.window.begin < life.end) return true;
   return false;
 }
 
@@ -43,16 +41,16 @@ bool seen(const Simulation& sim, TimeSpan life) {
 
 LoadedScene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks) {
   LoadedScene out;
-  const Steady::time_point first = Steady::now();
+  const Stopwatch::time_point first = Stopwatch::now();
   std::vector<ScenePart> parts;
   const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
   for (const SimulationScene& s : sim.scenes) {
-    if (!parts.empty() && !all && !seen(sim, s.life)) {  // the first gives the others their frame
+    if (!parts.empty() && !all && !seen(sim, options, s.life)) {  // the first gives the others their frame
       note("of " + s.path + ": nothing is loaded, it is not there in any capture");
       continue;
     }
     LoadReport loaded;
-    const Steady::time_point begun = Steady::now();
+    const Stopwatch::time_point begun = Stopwatch::now();
     Scene scene = read_scene(
         s.path, [](std::span<const std::byte> bytes, const std::string& name) { return parse_sqt(bytes, name).bundle; },
         needs, &loaded);

@@ -49,6 +49,9 @@ std::vector<int> ranks_of(const Cli& cli, const RenderOptions& o) {
   if (!cli.given("--ranks")) return {};
   if (!o.dry_run)
     throw UsageError("--ranks is what --dry-run forecasts; to run on ranks: mpirun -n N dirsig-render ...");
+  for (const char* option : {"--part", "--merge", "--plan", "--study", "--resume", "--more"})
+    if (cli.given(option))
+      throw UsageError(std::string("--ranks forecasts a whole job from its beginning: leave out ") + option);
   if (!o.time.empty()) throw UsageError("--ranks tells the time that paths take: leave out --time, give --paths");
   if (o.stop == "change" || o.method == "paper")
     throw UsageError("--stop change and --method paper are for one process: leave out --ranks");

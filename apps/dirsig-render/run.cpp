@@ -81,8 +81,8 @@ void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& 
   const Tracer tracer(scene, options.periodic, {window.begin, window.end}, nullptr, {SIZE_MAX, {}});
   const TileForecast f = tracer.forecast();
   const auto text = [](uint64_t bytes) { return human_bytes(static_cast<double>(bytes)); };
-  std::printf("%zu tiles of the scene take %s of geometry in its file and some %s of the ray tracer's structures\n",
-              f.tiles, text(f.geometry).c_str(), text(f.structures).c_str());
+  std::printf("%zu tiles of the scene take %s of geometry and some %s of the ray tracer's structures\n", f.tiles,
+              text(f.geometry).c_str(), text(f.structures).c_str());
   const uint64_t all = f.geometry + f.structures, limit = options.tiles.bytes;
   if (!limit || f.tiles == 0) return;
   const double share = static_cast<double>(limit) / static_cast<double>(std::max<uint64_t>(all, 1));

@@ -63,7 +63,7 @@ int Together::conclude(int code) {
 }
 
 void check_ranks_usage(const Cli& cli, const RenderOptions& o) {
-  for (const char* option : {"--part", "--plan", "--merge", "--study"})
+  for (const char* option : {"--part", "--plan", "--merge", "--study", "--dry-run"})
     if (cli.given(option))
       throw UsageError(std::string(option) + " is for one process: start it without mpirun, or leave it out");
   if (o.stop == "change" || o.method == "paper")

@@ -1,13 +1,11 @@
 #include "cluster/rehearsal.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
 #include "base/parallel.h"
-#include "cluster/message.h"
+#include "base/stopwatch.h"
 #include "cluster/pieces.h"
 
 namespace suite {
@@ -20,10 +18,6 @@ constexpr uint32_t kMeasured = 16, kPilot = 64;
 
 // Costs have any unit of time.
 constexpr double kCyclesPerSecond = 1e9;
-
-double seconds_since(std::chrono::steady_clock::time_point begun) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
 
 // Of the processor, for this thread.
 double thread_seconds() {
@@ -154,8 +148,6 @@ void Rehearsal::time(std::span<const Round> rounds, std::span<const cluster::Pie
     shape.problems = block.problems();
     const double bytes = static_cast<double>(shape.bytes()) / p.of;
     timed.push_back({paths[i] * double{per_path(round, block)}, bytes, p.continues != 0});
-    found_.paths += paths[i], found_.blocks += 1.0 / p.of;
-    found_.bytes += ranks_ > 1 ? bytes : 0;
   }
   const cluster::Makespan m = cluster::makespan_of(timed, ranks_, threads_, link_);
   found_.busy += m.busy, found_.trace += m.trace;
@@ -164,7 +156,7 @@ void Rehearsal::time(std::span<const Round> rounds, std::span<const cluster::Pie
 }
 
 bool Rehearsal::run(std::span<Round> rounds, const std::function<bool()>& stop, Progress*) {
-  const auto begun = std::chrono::steady_clock::now();
+  const Stopwatch::time_point begun = Stopwatch::now();
   // What the problems have already changes when results are taken.
   const auto workers = static_cast<size_t>(ranks_) * static_cast<size_t>(threads_);
   const std::vector<cluster::Piece> pieces = cluster::pieces_of(rounds, costs_->known, workers);

@@ -21,8 +21,6 @@ struct Rehearsed {
   double trace = 0;   // until the last path is done, were talking free
   double gather = 0;  // more, for fetching, telling, and results on their way to the first rank
   double here = 0;    // that all of it took here
-  double paths = 0, blocks = 0;
-  double bytes = 0;  // of results that travel
 };
 
 class Rehearsal final : public Executor {

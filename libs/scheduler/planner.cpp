@@ -5,13 +5,11 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 
 namespace suite {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 // The sample points of a pilot that is thrown away are those of another capture.
 constexpr uint64_t kPilotStream = 0x70696c6f74ull << 20;
@@ -48,7 +46,7 @@ class CapturePlanner::Saver {
     waiting_.erase(std::unique(waiting_.begin(), waiting_.end()), waiting_.end());
     saving_.store->save(work_.id, waiting_, sums_, counts_);
     waiting_.clear();
-    saving_.last = Clock::now();
+    saving_.last = Stopwatch::now();
   }
   const CaptureWork& work_;
   Saving& saving_;
@@ -171,7 +169,7 @@ Round CapturePlanner::round(std::vector<uint32_t> to, uint64_t stream, Accumulat
 
 Round CapturePlanner::first() {
   stage_ = Stage::pilot;
-  begun_ = Clock::now();
+  begun_ = Stopwatch::now();
   std::vector<uint32_t> pilot(shape_.problems);
   for (size_t i = 0; i < pilot.size(); ++i) pilot[i] = work_.goals.of(i).min_paths;
   if (!alone_) return round(std::move(pilot), work_.id, sums_.get(), true);

@@ -1,12 +1,12 @@
 #include "scheduler/scheduler.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/stopwatch.h"
 #include "estimate/plan.h"
 #include "scheduler/in_flight.h"
 #include "scheduler/items.h"
@@ -21,9 +21,6 @@
 namespace suite {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 // Captures whose rounds are run together: as many as keep many threads busy to the end, unless they take more memory.
 constexpr size_t kBlocksInFlight = 1024;
@@ -200,7 +197,7 @@ class Job {
   // Runs the first captures that are left, as many as may be in flight together, round by round of all of them, and
   // delivers them in their order. Returns those that are left then.
   std::span<const Item> run_batch(std::span<const Item> left) {
-    const Clock::time_point begun = Clock::now();
+    const Stopwatch::time_point begun = Stopwatch::now();
     Batch batch;
     // What may be in flight depends on nothing that differs between the processes of a job.
     const size_t processes = together(left.front()) ? static_cast<size_t>(executor().processes()) : 1;
@@ -339,7 +336,7 @@ class Job {
     ++report_.captures;
     report_.problems += capture.problems();
     report_.log.push_back(std::move(log));
-    const Clock::time_point handed = Clock::now();
+    const Stopwatch::time_point handed = Stopwatch::now();
     kits_->done(item.state.spectral);
     sensor_of(item).accept(std::move(result));
     report_.deliver_seconds += seconds_since(handed);
@@ -370,7 +367,7 @@ class Job {
   const SourceSpecs& sources_;
   std::span<const std::unique_ptr<Sensor>> sensors_;
   const JobOptions& options_;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch::time_point start_ = Stopwatch::now();
   JobReport report_;
   std::unique_ptr<TracerCache> tracers_;
   std::shared_ptr<const Tracer> tracer_;  // of the capture that runs

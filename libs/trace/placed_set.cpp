@@ -104,11 +104,15 @@ void intersect_exact(const RTCIntersectFunctionNArguments* args, const PlacedSet
   context->set = nullptr;
 }
 
+// What is placed there; kNone: an exact surface.
+uint32_t mesh_of(const PlacedSet& set, unsigned prim) {
+  const uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[prim].mesh;
+  return mesh != kNone ? mesh : set.frame->objects[set.objects[prim]].mesh;
+}
+
 void intersect_placed(const RTCIntersectFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
-  if (mesh == kNone) mesh = set.frame->objects[set.objects[args->primID]].mesh;
-  if (mesh != kNone)
+  if (const uint32_t mesh = mesh_of(set, args->primID); mesh != kNone)
     intersect_mesh(args, set, mesh);
   else
     intersect_exact(args, set);
@@ -142,9 +146,7 @@ void occlude_exact(const RTCOccludedFunctionNArguments* args, const PlacedSet& s
 
 void occlude_placed(const RTCOccludedFunctionNArguments* args) {
   const auto& set = *static_cast<const PlacedSet*>(args->geometryUserPtr);
-  uint32_t mesh = set.inverse.empty() ? kNone : set.inverse[args->primID].mesh;
-  if (mesh == kNone) mesh = set.frame->objects[set.objects[args->primID]].mesh;
-  if (mesh != kNone)
+  if (const uint32_t mesh = mesh_of(set, args->primID); mesh != kNone)
     occlude_mesh(args, set, mesh);
   else
     occlude_exact(args, set);

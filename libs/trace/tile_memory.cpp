@@ -51,6 +51,8 @@ std::vector<uint32_t> meshes_of_groups(const World& world) {
   return meshes;
 }
 
+uint64_t counted(const Mesh& mesh, Arrays of) { return of == Arrays::all || mesh.stored ? mesh.bytes() : 0; }
+
 const Mesh& direct_mesh(const World& world, uint32_t object) {
   return world.scene->meshes[world.flat.objects[object].mesh];
 }
@@ -75,9 +77,9 @@ uint64_t structures_of(const Tile& tile, const World& world) {
   return kScene + kTriangle * triangles + kInstance * instances;
 }
 
-uint64_t geometry_of(const Tile& tile, const World& world) {
+uint64_t geometry_of(const Tile& tile, const World& world, Arrays of) {
   uint64_t bytes = 0;
-  const auto add = [&](const Mesh& mesh) { bytes += mesh.stored ? mesh.bytes() : 0; };
+  const auto add = [&](const Mesh& mesh) { bytes += counted(mesh, of); };
   for (const uint32_t object : tile.direct) add(direct_mesh(world, object));
   for (const uint32_t m : shared_meshes(tile, world)) add(world.scene->meshes[m]);
   return bytes;
@@ -90,10 +92,9 @@ uint64_t structures_of_groups(const World& world) {
   return bytes;
 }
 
-uint64_t geometry_of_groups(const World& world) {
+uint64_t geometry_of_groups(const World& world, Arrays of) {
   uint64_t bytes = 0;
-  for (const uint32_t m : meshes_of_groups(world))
-    if (const Mesh& mesh = world.scene->meshes[m]; mesh.stored) bytes += mesh.bytes();
+  for (const uint32_t m : meshes_of_groups(world)) bytes += counted(world.scene->meshes[m], of);
   return bytes;
 }
 
@@ -163,7 +164,7 @@ void TileMemory::build(Tile& tile, const TileState& own, std::unique_lock<std::m
   state.being_built_ = true;
   --blocked_;  // this thread
   const uint64_t structures = structures_of(tile, world_);
-  state.geometry_ = geometry_of(tile, world_);
+  state.geometry_ = geometry_of(tile, world_, Arrays::mapped);
   const bool room = make_room(structures + state.geometry_, tile, own, lock);
   if (room) state.fault_ = build_in(structures, tile, lock);
   ++blocked_;

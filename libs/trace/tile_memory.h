@@ -33,13 +33,14 @@ class TileState {
   uint64_t geometry_ = 0;           // bytes of its arrays that are counted with it
 };
 
-// Bytes that the structures of a tile take while they are built, as far as is known before; and those of the mapped
-// arrays that they stand on. What it shares with other tiles is counted, too.
+// Bytes that the structures of a tile take while they are built, as far as is known before; and those of the arrays
+// that they stand on: of mapped ones, which can be let go, or of all. What it shares with other tiles is counted, too.
+enum class Arrays { mapped, all };
 uint64_t structures_of(const Tile& tile, const World& world);
-uint64_t geometry_of(const Tile& tile, const World& world);
+uint64_t geometry_of(const Tile& tile, const World& world, Arrays of);
 // The same of what shared groups place, which stays once it is built.
 uint64_t structures_of_groups(const World& world);
-uint64_t geometry_of_groups(const World& world);
+uint64_t geometry_of_groups(const World& world, Arrays of);
 
 class TileMemory {
  public:

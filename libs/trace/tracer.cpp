@@ -60,14 +60,14 @@ TileForecast Tracer::forecast() const {
   TileForecast f;
   const auto add = [&](const TileSet& set) {
     for (const auto& tile : set.tiles) {
-      const uint64_t structures = structures_of(*tile, *world_), geometry = geometry_of(*tile, *world_);
+      const uint64_t structures = structures_of(*tile, *world_), geometry = geometry_of(*tile, *world_, Arrays::all);
       ++f.tiles, f.structures += structures, f.geometry += geometry;
       f.largest = std::max(f.largest, structures + geometry);
     }
   };
   add(world_->tiles);
   if (moving_) add(moving_->tiles);
-  f.structures += structures_of_groups(*world_), f.geometry += geometry_of_groups(*world_);
+  f.structures += structures_of_groups(*world_), f.geometry += geometry_of_groups(*world_, Arrays::all);
   return f;
 }
 std::string Tracer::engine() {

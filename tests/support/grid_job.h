@@ -6,6 +6,7 @@
 #include "formats/render_state/render_state.h"
 #include "support/one_state_sensor.h"
 #include "support/radiometry_kit.h"
+#include "support/same_counts.h"
 
 namespace suite::test {
 
@@ -89,14 +90,6 @@ inline void expect_same(const std::vector<CaptureResult>& a, const std::vector<C
     EXPECT_EQ(sha256(std::as_bytes(std::span(a[i].truth))),
               sha256(std::as_bytes(std::span(b[i].truth))));  // NaNs compare too
   }
-}
-
-inline void expect_same_counts(const RunStatistics& a, const RunStatistics& b) {
-  EXPECT_EQ(a.paths, b.paths);
-  EXPECT_EQ(a.nodes, b.nodes);
-  EXPECT_EQ(a.failures, b.failures);
-  EXPECT_EQ(a.truncated, b.truncated);
-  EXPECT_EQ(a.trace.rays, b.trace.rays);
 }
 
 // A store that dies after some saves, as a killed program does: what was saved last stays.

@@ -84,6 +84,8 @@ TEST_F(Forecast, BadUsageIsRefused) {
                                                         {"--dry-run --ranks 2,", "whole numbers"},
                                                         {"--ranks 2", "mpirun -n N"},
                                                         {"--dry-run --ranks 2 --time 10s", "leave out --time"},
+                                                        {"--dry-run --ranks 2 --part 1/2", "leave out --part"},
+                                                        {"--dry-run --ranks 2 --resume", "leave out --resume"},
                                                         {"--dry-run --link 1,1,1,1", "belongs to --ranks"},
                                                         {"--dry-run --ranks 2 --link 1,1,1", "four positive"}}) {
     const CommandResult r = run("dirsig-render sim.yaml -q " + arguments);
