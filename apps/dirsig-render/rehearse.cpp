@@ -76,7 +76,7 @@ int rehearse(const std::shared_ptr<const Scene>& scene, const Simulation& sim, c
       std::ceil(blocks / static_cast<double>(measured->every())), blocks, threads());
   std::printf(
       "assumed: %g us to fetch a block, %g us and %g GB/s for a message, results taken at %g GB/s, written at "
-      "%g GB/s\n",
+      "%g GB/s; not counted: what threads slow each other down by\n",
       1e6 * link.fetch, 1e6 * link.message, 1e-9 * link.rate, 1e-9 * link.take, 1e-9 * kWriteRate);
   std::printf("%6s %10s %9s %9s %9s %9s %9s %9s %9s %8s %8s\n", "ranks", "blocks per", "load", "build", "prepare",
               "trace", "gather", "write", "whole", "tracing", "whole");
