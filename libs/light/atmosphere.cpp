@@ -4,35 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "air/molecules.h"
 #include "optics/phase_function.h"
 #include "spectral/planck.h"
 
 namespace suite {
-
-double rayleigh_depth(double w, double pressure) {
-  const double x = std::min(w, 1.0), w2 = x * x;
-  const double depth =
-      0.0021520 * (1.0455996 - 341.29061 / w2 - 0.90230850 * w2) / (1 + 0.0027059889 / w2 - 85.968563 * w2);
-  return depth * std::pow(x / w, 4) * pressure / 101325;
-}
-
-Air standard_air(double height) {
-  // Geopotential height, lapse rates and base temperatures (table 4 of the standard).
-  constexpr double base[] = {0, 11000, 20000, 32000, 47000, 51000, 71000},
-                   lapse[] = {-0.0065, 0, 0.001, 0.0028, 0, -0.0028, -0.002};
-  constexpr double constant = 0.0341631947;  // g0 M / R, K/m
-  const double h = std::max(0.0, height) * 6356766 / (6356766 + std::max(0.0, height));
-  Air air;
-  for (int i = 0; i < 7; ++i) {
-    const double top = i < 6 ? std::min(h, base[i + 1]) : h, dh = top - base[i];
-    if (dh <= 0) break;
-    const double t = std::max(air.temperature + lapse[i] * dh, 150.0);
-    air.pressure *= lapse[i] == 0 ? std::exp(-constant * dh / air.temperature)
-                                  : std::pow(t / air.temperature, -constant / lapse[i]);
-    air.temperature = t;
-  }
-  return air;
-}
 
 namespace {
 
@@ -101,7 +77,7 @@ class Layered final : public Atmosphere {
     const double cosine = dot(beam.direction, d);
     std::fill(along.scattered.begin(), along.scattered.end(), 0.0f);
     if (phase_) phase_->eval(std::clamp(cosine, -1.0, 1.0), along.scattered);
-    const float air = rayleigh_phase(cosine);
+    const float air = static_cast<float>(rayleigh_phase(cosine));
     const auto rise = static_cast<float>(bounds_[l + 1] - from.z), slant = static_cast<float>(1 / beam.direction.z),
                fall = static_cast<float>(-d.z / beam.direction.z);
     const float *k = &extinction_[l * bins_], *r = &rayleigh_[l * bins_], *a = &aerosol_[l * bins_],
@@ -114,11 +90,6 @@ class Layered final : public Atmosphere {
   }
 
  private:
-  // 1/sr, of molecules.
-  static float rayleigh_phase(double cosine) {
-    constexpr double depolarisation = 0.0279, gamma = depolarisation / (2 - depolarisation);
-    return static_cast<float>(3 / (16 * kPi * (1 + 2 * gamma)) * (1 + 3 * gamma + (1 - gamma) * cosine * cosine));
-  }
   static void check(const AtmosphereSpec& s) {
     const size_t layers = s.heights.size() < 2 ? 0 : s.heights.size() - 1;
     if (layers < 1 || layers > 200)
@@ -216,7 +187,7 @@ class Layered final : public Atmosphere {
   // depth along the piece, the integral of exp(-t - x s / l) over it is l (exp(-t) - exp(-t - x)) / x.
   void scatter(size_t layer, double z, double l, double mu, const Beam& beam, double cosine,
                std::span<const float> phase, std::span<const float> T, std::span<float> S) const {
-    const float air = rayleigh_phase(cosine);
+    const float air = static_cast<float>(rayleigh_phase(cosine));
     const auto rise = static_cast<float>(heights_[layer + 1] - z), slant = static_cast<float>(1 / beam.direction.z),
                length = static_cast<float>(l);
     const auto growth = static_cast<float>(l * (1 - mu / beam.direction.z));

@@ -5,9 +5,7 @@
 // The layered atmosphere assumes: plane-parallel homogeneous layers; sunlight and moonlight scattered once on the way
 // (no multiple scattering, nothing scattered from the ground); the beam to the scattering points is not shadowed by the
 // scene; no refraction. Within these, transmittance and path radiance are closed forms, exact for the layers.
-// Based on: Rayleigh scattering, B. Bodhaine et al., "On Rayleigh optical depth calculations", J. Atmos. Oceanic
-// Technol. 16, 1999, equation 30 (lambda^-4 from 1 um on, where the fit ends) with the depolarisation of Bates 1984;
-// the profile of the U.S. Standard Atmosphere 1976; single scattering and emission of a layer, e.g. K.-N. Liou, "An
+// Based on: single scattering and emission of a layer, e.g. K.-N. Liou, "An
 // introduction to atmospheric radiation", 2002, equations 3.4.9 and 4.2.9.
 #pragma once
 #include <cmath>
@@ -89,14 +87,5 @@ inline float mean_falling(float t, float x) {
 // negative depths, albedo above 1.
 std::unique_ptr<const Atmosphere> make_layered_atmosphere(const AtmosphereSpec& spec, const SpectralState& state,
                                                           std::vector<Beam> beams);
-
-// Rayleigh optical depth of the whole atmosphere over a place with this pressure (Pa).
-double rayleigh_depth(double wavelength_um, double pressure);
-// U.S. Standard Atmosphere 1976 at a geometric height, m (0 to 86 km; constant below, decaying above).
-struct Air {
-  double temperature = 288.15;  // K
-  double pressure = 101325;     // Pa
-};
-Air standard_air(double height);
 
 }  // namespace suite

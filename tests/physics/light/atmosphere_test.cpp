@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "air/molecules.h"
 #include "light/kinds/solar_spectrum.h"
 #include "math/warps.h"
 #include "optics/phase_function.h"
