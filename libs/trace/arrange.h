@@ -18,11 +18,29 @@ inline Box3 enlarged(Box3 box, double by) {
   return box;
 }
 
-// One tile for what spans a few kilometres, a grid by centres otherwise; what is larger than a cell gets its own.
-// members: indices into boxes (ENU, not empty). fill(tile, members) gets the tile with its bounds and their middle as
-// origin; it may choose another origin.
-template <class Fill>
-void arrange(TileSet& set, std::span<const uint32_t> members, std::span<const Box3> boxes, const Fill& fill) {
+// Parts a cell so that each part has one heavy object, such as a tile of a terrain, and what stands nearest to it.
+inline std::vector<std::vector<uint32_t>> parted(std::vector<uint32_t> members, std::span<const Box3> boxes,
+                                                 const auto& heavy) {
+  std::vector<uint32_t> heavies;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(heavies), heavy);
+  if (heavies.size() < 2) return {std::move(members)};
+  std::vector<std::vector<uint32_t>> parts(heavies.size());
+  for (const uint32_t i : members) {
+    const auto distance = [&](uint32_t h) { return length(boxes[h].center() - boxes[i].center()); };
+    const auto nearest = std::min_element(heavies.begin(), heavies.end(),
+                                          [&](uint32_t a, uint32_t b) { return distance(a) < distance(b); });
+    const auto own = std::find(heavies.begin(), heavies.end(), i);
+    parts[static_cast<size_t>((own != heavies.end() ? own : nearest) - heavies.begin())].push_back(i);
+  }
+  return parts;
+}
+
+// One tile for what spans a few kilometres, a grid by centres otherwise; what is larger than a cell gets its own, and
+// so does what is heavy. members: indices into boxes (ENU, not empty). fill(tile, members) gets the tile with its
+// bounds and their middle as origin; it may choose another origin.
+template <class Heavy, class Fill>
+void arrange(TileSet& set, std::span<const uint32_t> members, std::span<const Box3> boxes, const Heavy& heavy,
+             const Fill& fill) {
   const auto widest = [](Vec3 size) { return std::max({size.x, size.y, size.z}); };
   const auto add = [&](std::span<const uint32_t> own) {
     Tile& tile = *set.tiles.emplace_back(std::make_unique<Tile>());
@@ -47,7 +65,8 @@ void arrange(TileSet& set, std::span<const uint32_t> members, std::span<const Bo
     else
       cells[{std::lround(c.x / kTileSize), std::lround(c.y / kTileSize), std::lround(c.z / kTileSize), 0}].push_back(i);
   }
-  for (const auto& [key, own] : cells) add(own);
+  for (auto& [key, cell] : cells)
+    for (const std::vector<uint32_t>& own : parted(std::move(cell), boxes, heavy)) add(own);
 }
 
 }  // namespace suite

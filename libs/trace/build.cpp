@@ -33,7 +33,16 @@ void attach_mesh(RTCScene scene, const Mesh& mesh, unsigned id, bool holes, uint
   rtcReleaseGeometry(g);
 }
 
+// Triangles of a lone mesh in a large scene that make it a tile: as many as gain more from being attached without an
+// instance than rays lose by one more tile on their way.
+constexpr size_t kHeavy = 4096;
+
 bool pure_translation(const Affine3& m) { return m.a == Affine3{}.a; }
+
+// Placed once and not turned: it can be attached as it is.
+bool lone(const World& world, const PlacedObject& o) {
+  return o.mesh != kNone && world.meshes[o.mesh].uses == 1 && pure_translation(*o.place);
+}
 
 // Neighbours in space become neighbours in memory (Morton 1966): rays that visit many small instances wait less.
 void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, const Box3& all) {
@@ -218,7 +227,10 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       throw Error("a plane or layer without bounds in a periodic scene is not level",
                   "tilted planes do not repeat themselves: give it a size");
   }
-  arrange(tiles, members, boxes, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });
+  const auto heavy = [&](uint32_t i) {
+    return lone(*this, flat.objects[i]) && scene->meshes[flat.objects[i].mesh].triangle_count() >= kHeavy;
+  };
+  arrange(tiles, members, boxes, heavy, [&](Tile& tile, std::span<const uint32_t> own) { fill(tile, own, boxes); });
   // The boxes of a set are needed in its own order.
   for (const auto& tile : tiles.tiles)
     for (const auto& set : tile->sets) {
@@ -233,20 +245,17 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
 // others that stand at the same origin.
 void World::fill(Tile& tile, std::span<const uint32_t> members, std::span<const Box3> boxes) {
   size_t most = 0;
-  const auto lone = [&](const PlacedObject& o) {
-    return o.mesh != kNone && meshes[o.mesh].uses == 1 && pure_translation(*o.place);
-  };
   const auto place = [&](const PlacedObject& o) { return o.place->b + scene->meshes[o.mesh].origin; };
   const double reach = length(tile.bounds.size()) + kTileSize;
   for (const uint32_t i : members) {
     const PlacedObject& o = flat.objects[i];
-    if (!lone(o) || length(place(o) - tile.bounds.center()) > reach) continue;
+    if (!lone(*this, o) || length(place(o) - tile.bounds.center()) > reach) continue;
     if (const size_t n = scene->meshes[o.mesh].triangle_count(); n > most) most = n, tile.origin = place(o);
   }
   std::vector<uint32_t> placed;
   for (const uint32_t i : members) {
     const PlacedObject& o = flat.objects[i];
-    (most && lone(o) && place(o) == tile.origin ? tile.direct : placed).push_back(i);
+    (most && lone(*this, o) && place(o) == tile.origin ? tile.direct : placed).push_back(i);
   }
   tile.sets = sets_of(flat, tile.origin, tile.bounds, placed, boxes);
 }

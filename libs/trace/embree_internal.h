@@ -17,6 +17,7 @@
 #include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
 #include "trace/tile_bvh.h"
+#include "trace/tile_hull.h"
 #include "trace/tile_memory.h"
 #include "trace/tracer.h"
 
@@ -173,6 +174,7 @@ struct Tile {
   SceneHandle handle;
   BuildOnce once;   // where there is no limit
   TileState state;  // where there is one
+  TileHull hull;    // likewise, from the first building on
 
   bool built() const { return once.done() || state.built(); }
   // What float rounding may move geometry out of its exact bounds by, m.

@@ -157,7 +157,8 @@ MovingPart::MovingPart(const World& w, TimeSpan span) : world(w), window(span) {
     else if (w.flat.objects[first + i].primitive != kNone)
       unbounded.push_back(static_cast<uint32_t>(first) + i);
   }
-  arrange(tiles, members, whole, [&](Tile& tile, std::span<const uint32_t> mine) { fill(tile, mine, over); });
+  const auto heavy = [](uint32_t) { return false; };
+  arrange(tiles, members, whole, heavy, [&](Tile& tile, std::span<const uint32_t> mine) { fill(tile, mine, over); });
   for (const auto& tile : tiles.tiles)
     for (const auto& set : tile->sets)
       for (Box3& b : set->boxes) b = enlarged(b, tile->slack());

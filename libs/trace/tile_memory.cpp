@@ -165,8 +165,15 @@ void TileMemory::build(Tile& tile, const TileState& own, std::unique_lock<std::m
   --blocked_;  // this thread
   const uint64_t structures = structures_of(tile, world_);
   state.geometry_ = geometry_of(tile, world_, Arrays::mapped);
-  const bool room = make_room(structures + state.geometry_, tile, own, lock);
-  if (room) state.fault_ = build_in(structures, tile, lock);
+  bool room = wait_for_turn(structures, own, lock);
+  if (room) {
+    // Promised before there is room, so that of several who make room each sees what the others will take.
+    promised_ += structures, geometry_ += state.geometry_;
+    room = make_room(structures + state.geometry_, tile, own, lock);
+    if (room) state.fault_ = build_in(tile, lock);
+    promised_ -= structures;
+    if (!room || state.fault_) geometry_ -= state.geometry_;
+  }
   ++blocked_;
   state.being_built_ = false;
   if (!room) {
@@ -189,13 +196,24 @@ void TileMemory::build(Tile& tile, const TileState& own, std::unique_lock<std::m
   changed_.notify_all();
 }
 
-// Drops what was not used for longest. Tiles with somebody inside are waited for. Who is inside one must wait for
-// nothing, so a thread whose own tile has come meanwhile, and which may count as inside it, leaves the work to others:
-// false.
+// Structures that are being built take twice what stays of them and keep other tiles out, so several at a time may take
+// no more than an eighth of the limit. Whoever waits has chosen its tile before, so that one that few want is built,
+// too. False: as make_room.
+bool TileMemory::wait_for_turn(uint64_t bytes, const TileState& own, std::unique_lock<std::mutex>& lock) {
+  while (promised_ > 0 && promised_ + bytes > limit_.bytes / 8) {
+    if (own.granted_) return false;
+    changed_.wait(lock);
+  }
+  return true;
+}
+
+// Drops what was not used for longest, until what is promised has room. Tiles with somebody inside are waited for. Who
+// is inside one must wait for nothing, so a thread whose own tile has come meanwhile, and which may count as inside it,
+// leaves the work to others: false.
 bool TileMemory::make_room(uint64_t bytes, const Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock) {
   bool dropped = false;
-  while (embree_now() + geometry_ + promised_ + bytes > limit_.bytes) {
-    if (built_.empty() && promised_ == 0) {
+  while (embree_now() + geometry_ + hulls_ + promised_ > limit_.bytes) {
+    if (built_.empty() && building_ == 0) {
       tell(bytes, tile);
       break;
     }
@@ -221,23 +239,27 @@ void TileMemory::tell(uint64_t bytes, const Tile& tile) {
            human_bytes(static_cast<double>(limit_.bytes)).c_str()));
 }
 
-// Without the lock meanwhile; `room` bytes are set aside for it. What went wrong, or null.
-std::exception_ptr TileMemory::build_in(uint64_t room, Tile& tile, std::unique_lock<std::mutex>& lock) {
+// Without the lock meanwhile. What went wrong, or null.
+std::exception_ptr TileMemory::build_in(Tile& tile, std::unique_lock<std::mutex>& lock) {
   const std::vector<uint32_t> meshes = shared_meshes(tile, world_);
   for (const uint32_t m : meshes) ++users_[m];
-  promised_ += room, geometry_ += tile.state.geometry_;
+  const uint64_t before = tile.hull.bytes();  // of an earlier building
+  ++building_;
   lock.unlock();
   std::exception_ptr fault;
   try {
-    isolated([&] { tile.build(world_); });
+    isolated([&] {
+      tile.build(world_);
+      tile.hull.make(tile, world_);
+    });
   } catch (...) {
     fault = std::current_exception();
   }
   lock.lock();
-  promised_ -= room;
+  --building_;
+  hulls_ += tile.hull.bytes() - before;
   if (!fault) return nullptr;
   tile.handle = SceneHandle();
-  geometry_ -= tile.state.geometry_;
   release_meshes(meshes);
   return fault;
 }
@@ -276,11 +298,13 @@ void TileMemory::release_meshes(const std::vector<uint32_t>& meshes) {
 
 void TileMemory::forget(const TileSet& set) {
   const std::lock_guard lock(mutex_);
-  for (const auto& tile : set.tiles)
+  for (const auto& tile : set.tiles) {
+    hulls_ -= tile->hull.bytes();
     if (const auto at = std::find(built_.begin(), built_.end(), tile.get()); at != built_.end()) {
       built_.erase(at);
       drop(*tile);
     }
+  }
 }
 
 TileUse TileMemory::use() const {

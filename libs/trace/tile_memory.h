@@ -66,8 +66,9 @@ class TileMemory {
   void enter_slowly(Tile& tile);
   Tile* most_wanted();
   void build(Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock);
+  bool wait_for_turn(uint64_t bytes, const TileState& own, std::unique_lock<std::mutex>& lock);
   bool make_room(uint64_t bytes, const Tile& tile, const TileState& own, std::unique_lock<std::mutex>& lock);
-  std::exception_ptr build_in(uint64_t room, Tile& tile, std::unique_lock<std::mutex>& lock);
+  std::exception_ptr build_in(Tile& tile, std::unique_lock<std::mutex>& lock);
   void tell(uint64_t bytes, const Tile& tile);
   bool drop_one();
   void drop(Tile& tile);
@@ -78,12 +79,14 @@ class TileMemory {
   std::condition_variable changed_;  // a tile was built or could not be, or a thread stopped
   const int cores_;
   int working_ = 0, blocked_ = 0;  // threads between begin_work() and end_work(); those that wait for a tile
+  int building_ = 0;               // threads that build
   std::vector<Tile*> wanted_;      // that somebody waits for and nobody builds
   std::atomic<uint64_t> now_{1};   // builds so far
   std::vector<Tile*> built_;
   std::vector<uint32_t> users_;  // of each mesh: tiles that are built or being built and share its structure
   uint64_t geometry_ = 0;        // bytes of the arrays of tiles that are built or being built
-  uint64_t promised_ = 0;        // bytes for those being built
+  uint64_t hulls_ = 0;           // bytes of the hulls of all tiles that have one, which stay
+  uint64_t promised_ = 0;        // bytes for those being built, or that room is being made for
   bool told_ = false;
   TileUse use_;
 };

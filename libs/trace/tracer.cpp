@@ -118,6 +118,16 @@ struct Itinerary {
   }
 };
 
+using Waiting = std::pair<uint32_t, uint32_t>;  // (tile, ray)
+
+// As far as the tile's hull can tell.
+bool missed_by_all(const Tile& tile, std::span<const Waiting> here, std::span<const Ray> rays,
+                   std::span<const double> reach) {
+  return tile.hull.made() && std::none_of(here.begin(), here.end(), [&](const Waiting& one) {
+           return tile.hull.meets(rays[one.second], reach[one.second]);
+         });
+}
+
 }  // namespace
 
 template <class Send>
@@ -142,7 +152,7 @@ void TileSet::pass(const World& world, std::span<const Ray> rays, std::span<doub
     return;
   }
   thread_local std::vector<Itinerary> ways;
-  thread_local std::vector<std::pair<uint32_t, uint32_t>> waiting;  // (tile, ray)
+  thread_local std::vector<Waiting> waiting;
   thread_local Itinerary::Open open;
   ways.resize(std::max(ways.size(), rays.size()));
   for (uint32_t i = 0; i < rays.size(); ++i) ways[i].plan(bvh, rays[i], reach[i], open);
@@ -160,8 +170,15 @@ void TileSet::pass(const World& world, std::span<const Ray> rays, std::span<doub
     std::stable_sort(waiting.begin(), waiting.end(), [](auto& a, auto& b) { return a.first < b.first; });
     for (size_t w = 0; w < waiting.size();) {
       Tile& tile = *tiles[waiting[w].first];
+      size_t end = w;
+      while (end < waiting.size() && waiting[end].first == waiting[w].first) ++end;
+      // All rays go in or none: packets, and with them last bits, are what they are without a limit.
+      if (missed_by_all(tile, std::span(waiting).subspan(w, end - w), rays, reach)) {
+        for (; w < end; ++w) ++ways[waiting[w].second].next;
+        continue;
+      }
       const InTile inside(tile, world);
-      for (const uint32_t same = waiting[w].first; w < waiting.size() && waiting[w].first == same; ++w) {
+      for (; w < end; ++w) {
         const uint32_t i = waiting[w].second;
         packet.ray[packet.size] = i;
         packet.advance[packet.size] = ways[i].enter[ways[i].next++];

@@ -95,6 +95,7 @@ struct TileForecast {
 };
 
 class HitFilter;
+class TileHull;
 struct World;  // what is at rest, shared by the tracers of all windows
 struct MovingPart;
 
@@ -174,6 +175,7 @@ class Tracer {
  private:
   friend class TracerCache;
   friend class AtWork;
+  friend std::vector<const TileHull*> hulls_of(const Tracer& tracer);
   Tracer(std::shared_ptr<const World> world, TimeSpan window);
   void nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<Hit> hits, bool coherent,
                         TraceStatistics& statistics) const;

@@ -123,6 +123,33 @@ TEST(TileMemory, HitsAreTheSameAndTilesGo) {
   EXPECT_EQ(roomy.tiles_built(), roomy.tile_use().built);
 }
 
+// Rays that cross the boxes of tiles, which a mast makes high, but none of the boxes of what is in them.
+TEST(TileMemory, TilesAreNotBuiltAgainForRaysThatMissTheirHulls) {
+  TempFolder folder;
+  write_scene(towns(), {}, folder / "towns.h5");
+  const uint64_t largest = Tracer(load(folder / "towns.h5"), {}, {}, nullptr, {SIZE_MAX, {}}).forecast().largest;
+  const Tracer tracer(load(folder / "towns.h5"), {}, {}, nullptr, {3 * largest, {}});
+  const FlushDenormals flush;
+  TraceStatistics statistics;
+  std::vector<Hit> hits(kTowns);
+  std::vector<Ray> down;
+  for (int k = 0; k < kTowns; ++k) down.push_back({{k * 1e4 + 300, 300, 500}, {0, 0, -1}, 0});
+  tracer.nearest(down, hits, false, statistics);
+  const uint64_t before = tracer.tile_use().built;
+  EXPECT_GE(before, uint64_t{kTowns});
+  const auto along = [&](double y, double z) {
+    std::vector<Ray> rays;
+    for (size_t k = 0; k < hits.size(); ++k)
+      rays.push_back({{-100, y + 20.0 * static_cast<double>(k), z}, {1, 0, 0}, 0});
+    tracer.nearest(rays, hits, false, statistics);
+  };
+  along(150, 20);
+  for (const Hit& hit : hits) EXPECT_FALSE(hit.hit());
+  EXPECT_EQ(tracer.tile_use().built, before);
+  along(150, 9.5);  // the sheets are 10 m high
+  EXPECT_GT(tracer.tile_use().built, before);
+}
+
 TEST(TileMemory, WhatIsLargerThanTheLimitIsToldOnceAndHeld) {
   TempFolder folder;
   write_scene(towns(), {}, folder / "towns.h5");
