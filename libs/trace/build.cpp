@@ -8,6 +8,7 @@
 #include "scene/primitives.h"
 #include "trace/arrange.h"
 #include "trace/embree_internal.h"
+#include "trace/loose_mesh.h"
 
 namespace suite {
 
@@ -68,12 +69,13 @@ void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, 
 
 }  // namespace
 
-RTCScene new_scene(bool all_hits) {
+RTCScene new_scene(bool all_hits, bool loose) {
   RTCScene s = rtcNewScene(device());
-  rtcSetSceneFlags(s, all_hits
-                          ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION)
-                          : RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneFlags(s, static_cast<RTCSceneFlags>((loose ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST) |
+                                                 (all_hits ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0)));
+  // Among leaves splits in space are not worth what they take: 4 times the time to build, 4 % more memory, rays the
+  // same.
+  rtcSetSceneBuildQuality(s, loose ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
   return s;
 }
 
@@ -99,6 +101,10 @@ void Tile::build(const World& world) {
         world.mesh_scene(meshes[i]);
       else
         world.scene->meshes[world.flat.objects[direct[i - meshes.size()]].mesh].require();
+  });
+  constexpr size_t kCrown = 1024;  // triangles
+  crowns = std::any_of(meshes.begin(), meshes.end(), [&](uint32_t m) {
+    return world.meshes[m].loose && world.scene->meshes[m].triangle_count() >= kCrown;
   });
   for (const auto& set : sets)
     if (set->groups) world.build_placed(*set);
@@ -127,7 +133,9 @@ void TileSet::close(const World& world) {
 RTCScene World::mesh_scene(uint32_t mesh) const {
   MeshEntry& entry = meshes[mesh];
   entry.once.run([&] {
-    entry.handle.scene = new_scene(all_hits);
+    scene->meshes[mesh].require();
+    entry.loose = is_loose(scene->meshes[mesh]);
+    entry.handle.scene = new_scene(all_hits, entry.loose);
     attach_mesh(entry.handle.scene, scene->meshes[mesh], 0, filter && holed_meshes[mesh]);
     rtcCommitScene(entry.handle.scene);
   });

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scene/presence.h"
+#include "trace/build_once.h"
 #include "trace/flatten.h"
 #include "trace/hit_filter.h"
 #include "trace/primitive_hit.h"
@@ -27,8 +28,8 @@ inline constexpr uint32_t kWidth = 8;  // rays in a packet
 
 // One device per process, its instruction set pinned: other sets give other last bits.
 RTCDevice device();
-// all_hits: Tracer::all may be asked of it.
-RTCScene new_scene(bool all_hits);
+// all_hits: Tracer::all may be asked of it. loose: of a mesh that is (loose_mesh.h).
+RTCScene new_scene(bool all_hits, bool loose = false);
 
 struct SceneHandle {
   RTCScene scene = nullptr;
@@ -43,30 +44,13 @@ struct SceneHandle {
   }
 };
 
-// Runs a construction once, whichever thread comes first; the others wait. What it spawns is not mixed with other work
-// of the thread, which might wait for this very construction.
-class BuildOnce {
- public:
-  bool done() const { return done_.load(std::memory_order_acquire); }
-  template <class Work>
-  void run(const Work& work) const {
-    if (!done()) go(&work, [](const void* w) { (*static_cast<const Work*>(w))(); });
-  }
-  // What was constructed goes, and nobody uses it.
-  void undo() { done_.store(false, std::memory_order_relaxed); }
-
- private:
-  void go(const void* work, void (*call)(const void*)) const;
-  mutable std::mutex turn_;
-  mutable std::atomic<bool> done_{false};
-};
-
 // A mesh that instances share, with its own acceleration structure.
 struct MeshEntry {
-  Box3 box;           // local, mesh origin included
-  Box3 room;          // around the floats (without the mesh's origin), enlarged by what float rounding moves
-  double scale = 0;   // largest float coordinate
-  uint32_t uses = 0;  // objects
+  Box3 box;            // local, mesh origin included
+  Box3 room;           // around the floats (without the mesh's origin), enlarged by what float rounding moves
+  double scale = 0;    // largest float coordinate
+  uint32_t uses = 0;   // objects
+  bool loose = false;  // as is_loose; known when it is built
   SceneHandle handle;
   BuildOnce once;
 };
@@ -118,9 +102,10 @@ struct TraceContext : RTCIntersectContext {
 struct PlacedSet {
   // From the frame into the floats of an instance that rests in the window; one cache line.
   struct Inverse {
-    Vec3 base;  // place of the floats' (0, 0, 0) in the frame
-    float linear[9];
-    uint32_t mesh;
+    static constexpr uint32_t kExact = 0x80000000u;
+    Vec3 base;        // place of the floats' (0, 0, 0) in the frame
+    float linear[9];  // column-major; RestingInward reads 4 at a time, `thing` among them
+    uint32_t thing;   // a mesh, or kExact + an exact surface without holes; kNone: other exact surfaces
   };
   // The same of a shared group, whose own objects may be far smaller than float could tell in it.
   struct DeepInverse {
@@ -140,7 +125,8 @@ struct PlacedSet {
   std::vector<DeepInverse> deep;       // the same of groups
   std::vector<Box3> boxes;             // [object][time], in the frame; until the tile is built
 
-  void fill_inverse();  // from the poses of the window
+  void fill_inverse();                       // from the poses of the window
+  uint32_t thing_of(uint32_t object) const;  // Inverse::thing
   void attach(RTCScene scene, unsigned id);
   // Where an object's floats have their zero, in its own frame.
   Vec3 zero_of(uint32_t object) const;
@@ -169,6 +155,7 @@ struct Tile {
   Vec3 origin;                   // ENU
   Box3 bounds;                   // ENU, a little enlarged
   double scale = 0;              // largest float coordinate of the tile, m
+  bool crowns = false;           // loose meshes of many leaves are placed in it; known when it is built
   std::vector<uint32_t> direct;  // indices into the scene's objects
   std::vector<std::unique_ptr<PlacedSet>> sets;
   SceneHandle handle;
@@ -353,8 +340,8 @@ class PacketTracer {
   void all(const Tile& tile, const Packet& packet, std::vector<Hit>& hits);
   void all_unbounded(uint32_t object, std::vector<Hit>& hits);
   void occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked);
-  // Surfaces without bounds (objects of the scene); lowers reach. hit may be null.
-  void unbounded(uint32_t object, uint32_t ray, Hit* hit);
+  // A surface without bounds (an object of the scene) and all rays, as occluded(); blocked empty: as nearest().
+  void unbounded(uint32_t object, std::span<uint8_t> blocked);
 
  private:
   void load(const Tile& tile, const Packet& packet, RTCRay8& q, int* valid) const;
@@ -364,15 +351,13 @@ class PacketTracer {
   struct MetIds {  // of Embree
     unsigned geometry, instance, primitive;
   };
-  // Rays that do not run alongside each other soon part among instances: a query for eight takes longer there than
-  // eight for one. On surfaces that are one mesh it does not.
-  bool one_by_one(const Tile& tile) const { return !coherent_ && !tile.sets.empty(); }
+  bool one_by_one(const Tile& tile) const;
   void nearest_one_by_one(const Tile& tile, const Packet& packet, TraceContext& context);
   void note(const Tile& tile, const Packet& packet, uint32_t i, const TraceContext& c, float far, const MetIds& met,
             float u, float v);
   // What a ray met in a tile; object kNone: nothing.
   struct Found {
-    const Tile* tile;
+    const Tile* tile;                         // null: a surface without bounds
     uint32_t object, number, mesh, triangle;  // object: of the scene's own, which may hold the one of this number
     float u, v;
     bool direct;

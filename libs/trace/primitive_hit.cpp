@@ -9,11 +9,24 @@ namespace suite {
 
 namespace {
 
-// Keeps the nearest candidate inside the interval.
-struct Nearest {
+// Keeps the nearest candidate inside the interval: here its distance,
+struct Soonest {
   double t_min, t_max;
+  bool wants(double t) const { return t > t_min && t < t_max; }
+  template <class Describe>
+  void take(double t, const Describe&) {
+    t_max = t;
+  }
+};
+
+// and here what it is like.
+struct Nearest : Soonest {
   std::optional<LocalHit> hit;
-  bool wants(double t) const { return t > t_min && t < t_max && (!hit || t < hit->t); }
+  template <class Describe>
+  void take(double t, const Describe& describe) {
+    t_max = t;
+    hit = describe();
+  }
 };
 
 double turns(double y, double x) {
@@ -32,33 +45,39 @@ bool roots(double a, double b, double c, double t[2]) {
   return true;
 }
 
-void plane(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void plane(const std::vector<double>& a, Vec3 o, Vec3 d, Found& n) {
   const double t = -o.z / d.z;
   if (d.z == 0 || !n.wants(t)) return;
   const double x = o.x + t * d.x, y = o.y + t * d.y;
   if (a[0] == 0)
-    n.hit = LocalHit{t, {0, 0, 1}, x, y};
+    n.take(t, [&] { return LocalHit{t, {0, 0, 1}, x, y}; });
   else if (std::fabs(x) <= a[0] / 2 && std::fabs(y) <= a[1] / 2)
-    n.hit = LocalHit{t, {0, 0, 1}, x / a[0] + 0.5, y / a[1] + 0.5};
+    n.take(t, [&] { return LocalHit{t, {0, 0, 1}, x / a[0] + 0.5, y / a[1] + 0.5}; });
 }
 
 // A flat ring at height z, facing along `up`.
-void ring(double inner, double outer, double z, double up, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void ring(double inner, double outer, double z, double up, Vec3 o, Vec3 d, Found& n) {
   const double t = (z - o.z) / d.z;
   if (d.z == 0 || !n.wants(t)) return;
-  const double x = o.x + t * d.x, y = o.y + t * d.y, r = std::hypot(x, y);
-  if (r >= inner && r <= outer) n.hit = LocalHit{t, {0, 0, up}, (r - inner) / (outer - inner), turns(y, x)};
+  const double x = o.x + t * d.x, y = o.y + t * d.y, r = std::sqrt(x * x + y * y);
+  if (r >= inner && r <= outer)
+    n.take(t, [&] { return LocalHit{t, {0, 0, up}, (r - inner) / (outer - inner), turns(y, x)}; });
 }
 
 // Of a box without end: the two faces that it has.
-void layer(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void layer(const std::vector<double>& a, Vec3 o, Vec3 d, Found& n) {
   for (const int side : {0, 1}) {
     const double t = (a[static_cast<size_t>(2 + 3 * side)] - o.z) / d.z;
-    if (d.z != 0 && n.wants(t)) n.hit = LocalHit{t, {0, 0, side ? 1.0 : -1.0}, o.x + t * d.x, o.y + t * d.y};
+    if (d.z != 0 && n.wants(t))
+      n.take(t, [&] { return LocalHit{t, {0, 0, side ? 1.0 : -1.0}, o.x + t * d.x, o.y + t * d.y}; });
   }
 }
 
-void box(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void box(const std::vector<double>& a, Vec3 o, Vec3 d, Found& n) {
   if (is_layer(a)) return layer(a, o, d, n);
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -67,13 +86,16 @@ void box(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
       const int b = (axis + 1) % 3, c = (axis + 2) % 3;
       const double u = (o[b] + t * d[b] - a[b]) / (a[3 + b] - a[b]), v = (o[c] + t * d[c] - a[c]) / (a[3 + c] - a[c]);
       if (u < 0 || u > 1 || v < 0 || v > 1) continue;
-      Vec3 normal;
-      normal[axis] = side ? 1 : -1;
-      n.hit = LocalHit{t, normal, u, v};
+      n.take(t, [&] {
+        Vec3 normal;
+        normal[axis] = side ? 1 : -1;
+        return LocalHit{t, normal, u, v};
+      });
     }
 }
 
-void sphere(double radius, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void sphere(double radius, Vec3 o, Vec3 d, Found& n) {
   // The discriminant from the closest approach: no cancellation for small spheres far away (Haines et al. 2019).
   const double a = dot(d, d), b = dot(o, d);
   const Vec3 closest = o - d * (b / a);
@@ -83,14 +105,16 @@ void sphere(double radius, Vec3 o, Vec3 d, Nearest& n) {
   double t[2] = {q / a, q != 0 ? c / q : q / a};
   if (t[0] > t[1]) std::swap(t[0], t[1]);
   for (const double root : t)
-    if (n.wants(root)) {
-      const Vec3 p = o + d * root;
-      n.hit = LocalHit{root, p, turns(p.y, p.x), std::atan2(std::hypot(p.x, p.y), p.z) / kPi};
-    }
+    if (n.wants(root))
+      n.take(root, [&] {
+        const Vec3 p = o + d * root;
+        return LocalHit{root, p, turns(p.y, p.x), std::atan2(std::hypot(p.x, p.y), p.z) / kPi};
+      });
 }
 
 // Side of a cone whose radius goes from r0 at z = 0 to r1 at z = h, with its caps.
-void cone(double r0, double r1, double h, bool capped, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void cone(double r0, double r1, double h, bool capped, Vec3 o, Vec3 d, Found& n) {
   const double slope = (r1 - r0) / h, ro = r0 + slope * o.z, rd = slope * d.z;
   double t[2];
   double a = d.x * d.x + d.y * d.y - rd * rd;
@@ -106,7 +130,7 @@ void cone(double r0, double r1, double h, bool capped, Vec3 o, Vec3 d, Nearest& 
     for (const double root : t) {
       const Vec3 p = o + d * root;
       if (!n.wants(root) || p.z < 0 || p.z > h || r0 + slope * p.z < 0) continue;
-      n.hit = LocalHit{root, {p.x, p.y, -slope * (r0 + slope * p.z)}, turns(p.y, p.x), p.z / h};
+      n.take(root, [&] { return LocalHit{root, {p.x, p.y, -slope * (r0 + slope * p.z)}, turns(p.y, p.x), p.z / h}; });
     }
   if (!capped) return;
   if (r0 > 0) ring(0, r0, 0, -1, o, d, n);
@@ -161,7 +185,8 @@ struct Waves {
   }
 };
 
-void sinusoid(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
+template <class Found>
+void sinusoid(const std::vector<double>& a, Vec3 o, Vec3 d, Found& n) {
   // Only the part of the ray over the rectangle and between the extremes counts.
   double reach = 0;
   for (size_t i = 2; i < a.size(); i += 4) reach += std::fabs(a[i]);
@@ -181,20 +206,20 @@ void sinusoid(const std::vector<double>& a, Vec3 o, Vec3 d, Nearest& n) {
   const Waves waves(a, o, d);
   const double t = waves.root(low, high, 0);
   if (!n.wants(t)) return;
-  const double x = o.x + t * d.x, y = o.y + t * d.y;
-  Vec3 normal{0, 0, 1};
-  for (size_t i = 2; i < a.size(); i += 4) {
-    const double c = a[i] * std::cos(a[i + 1] * x + a[i + 2] * y + a[i + 3]);
-    normal.x -= c * a[i + 1];
-    normal.y -= c * a[i + 2];
-  }
-  n.hit = LocalHit{t, normal, x / a[0] + 0.5, y / a[1] + 0.5};
+  n.take(t, [&] {
+    const double x = o.x + t * d.x, y = o.y + t * d.y;
+    Vec3 normal{0, 0, 1};
+    for (size_t i = 2; i < a.size(); i += 4) {
+      const double c = a[i] * std::cos(a[i + 1] * x + a[i + 2] * y + a[i + 3]);
+      normal.x -= c * a[i + 1];
+      normal.y -= c * a[i + 2];
+    }
+    return LocalHit{t, normal, x / a[0] + 0.5, y / a[1] + 0.5};
+  });
 }
 
-}  // namespace
-
-std::optional<LocalHit> intersect(const Primitive& p, Vec3 o, Vec3 d, double t_min, double t_max) {
-  Nearest n{t_min, t_max, std::nullopt};
+template <class Found>
+void meet(const Primitive& p, Vec3 o, Vec3 d, Found& n) {
   const std::vector<double>& a = p.parameters;
   switch (p.kind) {
     case PrimitiveKind::plane:
@@ -219,7 +244,20 @@ std::optional<LocalHit> intersect(const Primitive& p, Vec3 o, Vec3 d, double t_m
       sinusoid(a, o, d, n);
       break;
   }
+}
+
+}  // namespace
+
+std::optional<LocalHit> intersect(const Primitive& p, Vec3 o, Vec3 d, double t_min, double t_max) {
+  Nearest n{{t_min, t_max}, std::nullopt};
+  meet(p, o, d, n);
   return n.hit;
+}
+
+double distance_to(const Primitive& p, Vec3 o, Vec3 d, double t_min, double t_max) {
+  Soonest n{t_min, t_max};
+  meet(p, o, d, n);
+  return n.t_max < t_max ? n.t_max : INFINITY;
 }
 
 }  // namespace suite

@@ -16,5 +16,7 @@ struct LocalHit {
 
 // First hit with t_min < t < t_max. direction: any length > 0. The primitive has passed check_primitive.
 std::optional<LocalHit> intersect(const Primitive& primitive, Vec3 origin, Vec3 direction, double t_min, double t_max);
+// The same hit's t, which takes less; infinity when there is none.
+double distance_to(const Primitive& primitive, Vec3 origin, Vec3 direction, double t_min, double t_max);
 
 }  // namespace suite

@@ -32,11 +32,11 @@ struct Target {
     if (set.partly && !set.moving->there(set.objects[outer.prim], from.time)) return false;
     if (!set.deep.empty()) {
       const PlacedSet::DeepInverse& inverse = set.deep[outer.prim];
-      return go_in(Inward<double>{inverse.base, inverse.linear}, group.room, from, near, far, in);
+      return go_in(Inward{inverse.base, inverse.linear}, group.room, from, near, far, in);
     }
     const PlacedObject& o = set.frame->objects[set.objects[outer.prim]];
     const Affine3 to_world = set.moving->to_world(o, from.time), back = to_world.inverse();
-    return go_in(Inward<double>{to_world.point(group.origin), back.a.data()}, group.room, from, near, far, in);
+    return go_in(Inward{to_world.point(group.origin), back.a.data()}, group.room, from, near, far, in);
   }
 };
 

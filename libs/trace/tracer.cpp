@@ -201,9 +201,8 @@ void Tracer::nearest_in_tiles(std::span<const Ray> rays, std::span<double> reach
   s.rays += rays.size();
   const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
     PacketTracer tracer(*world_, moving, rays, reach, coherent, s);
-    for (const uint32_t object : unbounded)
-      for (uint32_t i = 0; i < rays.size(); ++i) tracer.unbounded(object, i, &hits[i]);
     tracer.begin();
+    for (const uint32_t object : unbounded) tracer.unbounded(object, {});
     set.pass(*world_, rays, reach, [&](const Tile& tile, const Packet& packet) { tracer.nearest(tile, packet); });
     tracer.finish(hits);
   };
@@ -217,12 +216,7 @@ void Tracer::occluded_in_tiles(std::span<const Ray> rays, std::span<double> reac
   s.rays += rays.size();
   const auto trace = [&](const TileSet& set, std::span<const uint32_t> unbounded, const MovingPart* moving) {
     PacketTracer tracer(*world_, moving, rays, reach, coherent, s);
-    for (const uint32_t object : unbounded)
-      for (uint32_t i = 0; i < rays.size(); ++i) {
-        const double before = reach[i];
-        tracer.unbounded(object, i, nullptr);
-        if (reach[i] < before) blocked[i] = 1, reach[i] = -1;
-      }
+    for (const uint32_t object : unbounded) tracer.unbounded(object, blocked);
     set.pass(*world_, rays, reach,
              [&](const Tile& tile, const Packet& packet) { tracer.occluded(tile, packet, blocked); });
   };
@@ -236,9 +230,11 @@ void Tracer::nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, T
   std::vector<double> reach(rays.size());
   for (size_t i = 0; i < rays.size(); ++i) reach[i] = hits[i].hit() ? hits[i].distance : INFINITY;
   PacketTracer tracer(*world_, nullptr, rays, reach, false, s);
+  tracer.begin();
+  for (const uint32_t object : world_->unbounded) tracer.unbounded(object, {});
+  tracer.finish(hits);
   for (const uint32_t object : world_->unbounded)
     for (uint32_t i = 0; i < rays.size(); ++i) {
-      tracer.unbounded(object, i, &hits[i]);
       if (hits[i].object != world_->flat.number(object)) continue;
       Vec3& p = hits[i].position;
       p.x -= std::floor((p.x - cell.low.x) / cell.size.x) * cell.size.x;
@@ -335,11 +331,7 @@ void Tracer::occluded(std::span<const Ray> rays, std::span<const double> distanc
   if (world_->unbounded.empty()) return;
   std::vector<double> whole(distance.begin(), distance.end());
   PacketTracer tracer(*world_, nullptr, rays, whole, coherent, s);
-  for (const uint32_t object : world_->unbounded)
-    for (uint32_t i = 0; i < rays.size(); ++i) {
-      tracer.unbounded(object, i, nullptr);
-      blocked[i] |= static_cast<uint8_t>(whole[i] < distance[i]);
-    }
+  for (const uint32_t object : world_->unbounded) tracer.unbounded(object, blocked);
 }
 
 }  // namespace suite

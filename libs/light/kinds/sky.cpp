@@ -92,9 +92,7 @@ void Sky::bake_layers(const SkySpec& spec, const SpectralState& state) {
 }
 
 double Sky::cell_solid_angle(size_t row) const {
-  const double a = theta_max_ * static_cast<double>(row) / static_cast<double>(rows_),
-               b = theta_max_ * static_cast<double>(row + 1) / static_cast<double>(rows_);
-  return (std::cos(a) - std::cos(b)) * 2 * kPi / static_cast<double>(columns_);
+  return (edges_[row] - edges_[row + 1]) * 2 * kPi / static_cast<double>(columns_);
 }
 
 double Sky::cell_mean(size_t r, size_t c, size_t channel) const {
@@ -107,6 +105,8 @@ double Sky::cell_mean(size_t r, size_t c, size_t channel) const {
 }
 
 void Sky::bake_density() {
+  for (size_t r = 0; r <= rows_; ++r)
+    edges_.push_back(std::cos(theta_max_ * static_cast<double>(r) / static_cast<double>(rows_)));
   // Flux of every channel, then of every bin; a channel counts with what its bins give it, each bin normalised to one.
   std::vector<double> flux(channels_, 0.0), share(channels_, 0.0);
   for (size_t r = 0; r < rows_; ++r)
@@ -138,14 +138,17 @@ void Sky::bake_density() {
   cdf_.back() = 1;
 }
 
-Sky::Corners Sky::corners_of(Dir d) const {
-  Corners c;
-  const double row = std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_);
+Sky::Place Sky::place_of(Dir d) const {
   double phi = azimuth(d) / (2 * kPi);
   phi -= std::floor(phi);
-  const double column = phi * static_cast<double>(columns_);
-  const size_t r = std::min(rows_ - 1, static_cast<size_t>(row)),
-               k = std::min(columns_ - 1, static_cast<size_t>(column));
+  return {std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_),
+          phi * static_cast<double>(columns_)};
+}
+
+Sky::Corners Sky::corners_of(Place place) const {
+  Corners c;
+  const auto [row, column] = place;
+  const size_t r = row_of(place), k = column_of(place);
   if (cells_) {
     c.at[0] = r * columns_ + k;
     c.weight[0] = 1;
@@ -164,8 +167,11 @@ Sky::Corners Sky::corners_of(Dir d) const {
 
 double Sky::relative(Dir d) const {
   if (outside(d)) return 0;
-  if (table_.empty()) return 1;
-  const Corners c = corners_of(d);
+  return table_.empty() ? 1 : relative(place_of(d));
+}
+
+double Sky::relative(Place place) const {
+  const Corners c = corners_of(place);
   double sum = 0;
   for (int i = 0; i < c.count; ++i) sum += c.weight[i] * static_cast<double>(table_[c.at[i]]);
   return sum;
@@ -178,7 +184,7 @@ void Sky::add(Dir d, double, float scale, std::span<float> radiance) const {
     return;
   }
   if (outside(d)) return;
-  const Corners c = corners_of(d);
+  const Corners c = corners_of(place_of(d));
   for (int j = 0; j < c.count; ++j) {
     const float* v = &table_[c.at[j] * channels_];
     const float s = scale * static_cast<float>(c.weight[j]);
@@ -187,20 +193,12 @@ void Sky::add(Dir d, double, float scale, std::span<float> radiance) const {
   }
 }
 
-size_t Sky::cell_of(Dir d, size_t& row) const {
-  row = std::min(rows_ - 1,
-                 static_cast<size_t>(std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_)));
-  double phi = azimuth(d) / (2 * kPi);
-  phi -= std::floor(phi);
-  return row * columns_ + std::min(columns_ - 1, static_cast<size_t>(phi * static_cast<double>(columns_)));
-}
-
-double Sky::density(Dir d) const {
-  if (outside(d)) return 0;
-  size_t row = 0;
-  const size_t cell = cell_of(d, row);
+double Sky::density(Place place) const {
+  const size_t row = row_of(place), cell = row * columns_ + column_of(place);
   return (cdf_[cell] - (cell ? cdf_[cell - 1] : 0.0)) / cell_solid_angle(row);
 }
+
+double Sky::density(Dir d) const { return outside(d) ? 0 : density(place_of(d)); }
 
 std::optional<LightSample> Sky::sample(const LightReceiver&, const std::array<double, 4>& u, double) const {
   if (!tabulated()) return std::nullopt;
@@ -221,7 +219,9 @@ std::optional<LightSample> Sky::sample_member(size_t, double, const LightReceive
 
 std::optional<LightMet> Sky::met_outside(Dir d, double) const {
   if (outside(d)) return std::nullopt;
-  return LightMet{spectrum() ? relative(d) : 1, spectrum(), tabulated() ? density(d) : 0};
+  if (table_.empty()) return LightMet{1, spectrum(), 0};
+  const Place place = place_of(d);
+  return LightMet{spectrum() ? relative(place) : 1, spectrum(), density(place)};
 }
 
 DirectionSample Sky::draw(Vec2 u) const {
@@ -231,9 +231,7 @@ DirectionSample Sky::draw(Vec2 u) const {
   const size_t row = cell / columns_;
   // Uniform in solid angle inside the cell; what is left of u.x after choosing the cell is uniform again.
   const double x = std::clamp((u.x - before) / probability, 0.0, 1.0);
-  const double a = std::cos(theta_max_ * static_cast<double>(row) / static_cast<double>(rows_)),
-               b = std::cos(theta_max_ * static_cast<double>(row + 1) / static_cast<double>(rows_));
-  const double z = a + (b - a) * x,
+  const double z = edges_[row] + (edges_[row + 1] - edges_[row]) * x,
                phi = 2 * kPi * (static_cast<double>(cell % columns_) + u.y) / static_cast<double>(columns_);
   const double s = std::sqrt(std::max(0.0, 1 - z * z));
   return {{s * std::cos(phi), s * std::sin(phi), z}, probability / cell_solid_angle(row)};

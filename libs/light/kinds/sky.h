@@ -4,6 +4,7 @@
 // 2016, section 14.2.4), extended to many wavelengths by averaging the densities each bin would use. Thermal sky:
 // Schwarzschild's equation for isothermal absorbing layers over a plane Earth (e.g. Liou 2002, eq. 4.2.9).
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "light/light_spec.h"
@@ -62,6 +63,10 @@ class Sky final : public Light {
   double density(Dir d) const;
 
  private:
+  // Where a direction lies in the table.
+  struct Place {
+    double row, column;
+  };
   // The corners of the table that a direction lies between.
   struct Corners {
     size_t at[4];
@@ -72,8 +77,12 @@ class Sky final : public Light {
   void bake_layers(const SkySpec& spec, const SpectralState& state);
   void bake_density();
   bool outside(Dir d) const { return d.z < 0 && !full_sphere_; }
-  Corners corners_of(Dir d) const;
-  size_t cell_of(Dir d, size_t& row) const;
+  Place place_of(Dir d) const;
+  size_t row_of(Place p) const { return std::min(rows_ - 1, static_cast<size_t>(p.row)); }
+  size_t column_of(Place p) const { return std::min(columns_ - 1, static_cast<size_t>(p.column)); }
+  Corners corners_of(Place place) const;
+  double relative(Place place) const;
+  double density(Place place) const;
   double cell_mean(size_t row, size_t column, size_t channel) const;
   double cell_solid_angle(size_t row) const;
 
@@ -86,6 +95,7 @@ class Sky final : public Light {
   };
   std::vector<Mix> mix_;
   std::vector<double> cdf_;                       // over cells, row-major, last = 1
+  std::vector<double> edges_;                     // cosines of the zenith angles between rows of cells
   size_t rows_ = 0, columns_ = 0, channels_ = 1;  // cells: rows x columns
   double theta_max_ = kPi / 2;
   bool full_sphere_ = false, cells_ = false;
