@@ -56,6 +56,10 @@ void declare_questions(Cli& cli, RenderOptions& o) {
              "with --ranks: what ranks pay for talking, as bench/link_bench measures it: microseconds to fetch a block "
              "and for a message, GB/s of messages, GB/s at which results are taken",
              "F,M,R,T");
+  cli.flag(
+      "--air", o.air,
+      "print the layers of real air (`atmosphere: {profile: ...}`) and, for each band, what they let through and the "
+      "light at the ground, and stop");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
              "FEATURE");
   cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");

@@ -19,8 +19,8 @@ struct RenderOptions {
   double target_floor = -1;
   long long seed = -1, more = -1;
   bool state = false, resume = false, load_all = false;
-  bool dry_run = false, list_sensors = false, list_sources = false, list_models = false, list_truth = false,
-       list_channels = false;
+  bool dry_run = false, air = false, list_sensors = false, list_sources = false, list_models = false,
+       list_truth = false, list_channels = false;
 };
 
 AppInfo render_info();

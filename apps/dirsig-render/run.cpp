@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "air_told.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
@@ -270,6 +271,13 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
   }
 }
 
+Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks) {
+  Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
+  for (const SimulationScene& s : sim.scenes) note_input(s.path);
+  if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
+  return sim;
+}
+
 JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   JobOptions options;
   options.pipeline = sim.pipeline;
@@ -306,21 +314,20 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
-  Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
-  for (const SimulationScene& s : sim.scenes) note_input(s.path);
-  if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
+  Simulation sim = simulation_of(o, callbacks);
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
   if (!o.dry_run) check_memory(sim, options);
 
-  // Everything that can be refused is refused before rendering starts.
+  // What can be refused is refused before rendering starts.
   const LoadedScene loaded = load_scenes(sim, options, o.load_all, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
   if (o.dry_run) dry_run(scene, sim, options);
   if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene);
+  if (o.air) return print(air_text(sim, *scene));
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
   const Facts facts(sim, scene);

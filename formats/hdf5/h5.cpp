@@ -13,6 +13,7 @@
 #include "base/inputs.h"
 #include "base/memory.h"
 #include "base/progress.h"
+#include "formats/hdf5/silence.h"
 
 namespace suite::h5 {
 
@@ -47,20 +48,18 @@ Id native<double>() {
   return H5T_IEEE_F64LE;
 }
 
+void silence() {
+  static const herr_t no_work_at_exit = H5dont_atexit();  // before anything else of the library
+  (void)no_work_at_exit;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 namespace {
 
 constexpr size_t kMaxText = 1 << 20;
 constexpr size_t kChunkBytes = 512 << 10;  // packed in one piece: fits the library's cache, large enough to pack well
 constexpr size_t kSmall = 4096;            // below this packing gains nothing
 constexpr hsize_t kBestRatio = 1040;       // deflate packs no better
-
-// The library prints its error stack unless told not to. When the program ends it writes what a file still lacks, and
-// crashes where that is refused; whoever writes here closes his files, so there is nothing left to do then.
-void silence() {
-  static const herr_t no_work_at_exit = H5dont_atexit();  // before anything else of the library
-  (void)no_work_at_exit;
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
 
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);

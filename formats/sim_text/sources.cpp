@@ -4,6 +4,7 @@
 #include "formats/curve/curve.h"
 #include "formats/motion/motion.h"
 #include "formats/raster/raster.h"
+#include "formats/sim_text/air.h"
 #include "formats/sqt/sqt.h"
 #include "optics/phase_function.h"
 
@@ -184,7 +185,16 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
     }
     s.add(std::move(lights));
   }
-  if (const auto air = root.find("atmosphere")) s.atmosphere = read_atmosphere(*air, context);
+  if (const auto air = root.find("atmosphere")) {
+    if (air->has("profile")) {
+      s.air = read_air(*air, context);
+      if (const auto sky = root.find("sky"))
+        throw sky->error("a sky stands beside an atmosphere with a profile, which makes its own",
+                         "drop one of the two");
+    } else {
+      s.atmosphere = read_atmosphere(*air, context);
+    }
+  }
   for (const LightSpecPtr& light : s.lights) light->check_beside(s);
   if (const auto earth = root.find("earth")) {
     EarthSpec e;

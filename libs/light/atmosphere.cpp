@@ -21,10 +21,12 @@ double exponential_share(double low, double high, double bottom, double top, dou
 class Layered final : public Atmosphere {
  public:
   Layered(const AtmosphereSpec& s, const SpectralState& state, std::vector<Beam> beams)
-      : heights_(s.heights), offset_(s.scene_height), bins_(state.size()), beams_(std::move(beams)) {
-    check(s);
+      : heights_(checked(s).heights),
+        shells_(Shells::flat(in_scene(s))),
+        offset_(s.scene_height),
+        bins_(state.size()),
+        beams_(std::move(beams)) {
     layers_ = heights_.size() - 1;
-    for (const double h : heights_) bounds_.push_back(h - offset_);
     const size_t n = layers_ * bins_;
     extinction_.assign(n, 0), rayleigh_.assign(n, 0), aerosol_.assign(n, 0), source_.assign(n, 0),
         above_.assign((layers_ + 1) * bins_, 0);
@@ -69,8 +71,11 @@ class Layered final : public Atmosphere {
     });
   }
 
-  std::span<const double> bounds() const override { return bounds_; }
-  Layer layer(size_t l) const override { return {{&extinction_[l * bins_], bins_}, {&source_[l * bins_], bins_}}; }
+  const Shells& shells() const override { return shells_; }
+  std::span<const float> extinction(size_t l) const override { return {&extinction_[l * bins_], bins_}; }
+  void source(size_t l, Vec3, Dir, std::span<float> to) const override {
+    std::copy_n(&source_[l * bins_], bins_, to.begin());
+  }
   size_t beams() const override { return beams_.size(); }
   void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
     const Beam& beam = beams_[b];
@@ -78,8 +83,8 @@ class Layered final : public Atmosphere {
     std::fill(along.scattered.begin(), along.scattered.end(), 0.0f);
     if (phase_) phase_->eval(std::clamp(cosine, -1.0, 1.0), along.scattered);
     const float air = static_cast<float>(rayleigh_phase(cosine));
-    const auto rise = static_cast<float>(bounds_[l + 1] - from.z), slant = static_cast<float>(1 / beam.direction.z),
-               fall = static_cast<float>(-d.z / beam.direction.z);
+    const auto rise = static_cast<float>(shells_.heights()[l + 1] - from.z),
+               slant = static_cast<float>(1 / beam.direction.z), fall = static_cast<float>(-d.z / beam.direction.z);
     const float *k = &extinction_[l * bins_], *r = &rayleigh_[l * bins_], *a = &aerosol_[l * bins_],
                 *above = &above_[(l + 1) * bins_];
     for (size_t i = 0; i < bins_; ++i) {
@@ -90,7 +95,12 @@ class Layered final : public Atmosphere {
   }
 
  private:
-  static void check(const AtmosphereSpec& s) {
+  static std::vector<double> in_scene(const AtmosphereSpec& s) {
+    std::vector<double> heights = s.heights;
+    for (double& h : heights) h -= s.scene_height;
+    return heights;
+  }
+  static const AtmosphereSpec& checked(const AtmosphereSpec& s) {
     const size_t layers = s.heights.size() < 2 ? 0 : s.heights.size() - 1;
     if (layers < 1 || layers > 200)
       throw Error(strf("an atmosphere of %zu heights", s.heights.size()),
@@ -118,6 +128,7 @@ class Layered final : public Atmosphere {
         if (c.min() < 0) throw Error("gas '" + g.name + "' has a negative optical depth");
       if (g.layers.empty() && g.column.min() < 0) throw Error("gas '" + g.name + "' has a negative optical depth");
     }
+    return s;
   }
 
   void bake_layer(const AtmosphereSpec& s, const SpectralState& state, size_t l) {
@@ -199,7 +210,8 @@ class Layered final : public Atmosphere {
     }
   }
 
-  std::vector<double> heights_, bounds_;  // above sea level; in the scene
+  std::vector<double> heights_;  // above sea level
+  Shells shells_;                // in the scene
   double offset_;
   size_t bins_, layers_ = 0;
   std::vector<Beam> beams_;

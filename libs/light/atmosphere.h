@@ -9,11 +9,13 @@
 // introduction to atmospheric radiation", 2002, equations 3.4.9 and 4.2.9.
 #pragma once
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "air/shells.h"
 #include "light/light.h"
 #include "math/vec.h"
 #include "optics/model_spec.h"
@@ -55,17 +57,26 @@ class Atmosphere {
   // The same, and the radiance S that the air of the segment sends back to `from`, W/(m2 sr um).
   virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
 
-  // Heights that bound the layers, z in the scene, m, ascending: layer l lies between bounds l and l + 1. The lowest
-  // one goes on below the first bound; above the last bound, or without bounds, there is no air.
-  virtual std::span<const double> bounds() const = 0;
-  // Per bin.
-  struct Layer {
-    std::span<const float> extinction;  // 1/m
-    std::span<const float> source;      // what it emits over its extinction, W/(m2 sr um)
-  };
-  virtual Layer layer(size_t layer) const = 0;
+  // The same as path() to infinity, from places where light that is scattered at surfaces goes on; may be less exact
+  // and quicker.
+  virtual void skylight(Vec3 from, Dir direction, std::span<float> T, std::span<float> S) const {
+    path(from, direction, std::numeric_limits<double>::infinity(), T, S);
+  }
+
+  // The layers; above the last height, or without any, there is no air.
+  virtual const Shells& shells() const = 0;
+  // Extinction of a layer, per bin, 1/m.
+  virtual std::span<const float> extinction(size_t layer) const = 0;
+  // What it sends out along a ray from a point in it over its extinction, without the beams' light that it scatters
+  // once: emission, and what it scatters more often where the atmosphere knows it. Per bin, W/(m2 sr um).
+  virtual void source(size_t layer, Vec3 from, Dir direction, std::span<float> source) const = 0;
   // Light from above that the layers scatter once.
   virtual size_t beams() const = 0;
+  // What the air sends from outside, as a light that can be asked for: only its directions and their densities, the
+  // radiance is that of path() to infinity. Null = met by chance only.
+  virtual const Light* sky() const { return nullptr; }
+  // 1/sr, with which sky() draws a direction.
+  virtual double sky_density(Dir) const { return 0; }
   // One of them along a ray that goes from a point in a layer in a unit direction. Per bin.
   struct BeamAlong {
     std::span<float> scattered;  // what the layer would send back to `from` if nothing dimmed it, W/(m3 sr um)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/stratified_air.h"
+
 namespace suite {
 
 void SourceSpecs::add(std::vector<LightSpecPtr> more) {
@@ -24,8 +26,33 @@ const SourceTime* SourceSpecs::date() const {
   return nullptr;
 }
 
+namespace {
+
+// Mean radius of curvature of the WGS84 ellipsoid, m.
+double curvature_radius(double latitude_deg) {
+  constexpr double a = 6378137, e2 = 6.69437999014e-3;
+  const double s = std::sin(latitude_deg * kDegree);
+  return a * std::sqrt(1 - e2) / (1 - e2 * s * s);
+}
+
+// Air over the scene's place on Earth, where that is known.
+std::shared_ptr<const AirSpec> placed(const std::shared_ptr<const AirSpec>& air, const Scene& scene,
+                                      std::vector<std::string>& said) {
+  if (!air) return air;
+  said.insert(said.end(), air->notes.begin(), air->notes.end());
+  if (air->gases) said.push_back("gases: " + air->gases->note());
+  if (air->scene_height) return air;
+  auto here = std::make_shared<AirSpec>(*air);
+  here->scene_height = scene.origin.given ? scene.origin.ellipsoid_height_m : 0;
+  if (scene.origin.given) here->radius = curvature_radius(scene.origin.latitude_deg);
+  return here;
+}
+
+}  // namespace
+
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds) {
   std::vector<std::string> said;
+  specs.air = placed(specs.air, scene, said);
   for (LightSpecPtr& light : specs.lights)
     if (auto now = light->resolved({scene, seconds, specs.dut1, said})) light = std::move(now);
   for (size_t i = 0; i < specs.lights.size(); ++i) {
@@ -51,13 +78,14 @@ uint32_t earth_material(const EarthSpec& spec, const Scene& scene) {
 
 namespace {
 
-// The air scatters the beams of the bodies.
+// The air scatters the beams of the bodies; where it is traced, paths do.
 void bake_air(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
-  if (!specs.atmosphere) return;
+  if (!specs.has_air() || (specs.air && specs.air->scattering == AirScattering::traced)) return;
   std::vector<Beam> beams;
   for (const auto& light : e.lights)
     if (const auto beam = light->beam()) beams.push_back(*beam);
-  e.atmosphere = make_layered_atmosphere(*specs.atmosphere, state, std::move(beams));
+  e.atmosphere = specs.air ? make_stratified_air(*specs.air, state, std::move(beams))
+                           : make_layered_atmosphere(*specs.atmosphere, state, std::move(beams));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "air/air_spec.h"
 #include "light/atmosphere.h"
 #include "light/earth.h"
 #include "light/light_spec.h"
@@ -15,7 +16,9 @@ namespace suite {
 // Sources before they are baked for a state. Dates are those of second 0; what has one goes on with time.
 struct SourceSpecs {
   std::vector<LightSpecPtr> lights = {};  // the index is a light's identity, in the environment as well
+  // Air: quick layers in closed form, or real air (air_spec.h); at most one of them.
   std::optional<AtmosphereSpec> atmosphere = {};
+  std::shared_ptr<const AirSpec> air = {};
   std::optional<EarthSpec> earth = {};
   double dut1 = 0;  // s, UT1 - UTC, -0.9..0.9
 
@@ -28,7 +31,8 @@ struct SourceSpecs {
   }
   // The first sun; null = none.
   LightSpecPtr sun() const;
-  bool any() const { return !lights.empty() || atmosphere; }
+  bool any() const { return !lights.empty() || has_air(); }
+  bool has_air() const { return atmosphere || air; }
   // Of the first light that follows from one; null = none does. Dates are all that of second 0.
   const SourceTime* date() const;
   // Something is another one at every moment.
@@ -54,8 +58,8 @@ struct Environment {
 };
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear
-// skies, `seconds` after the dates. Returns a sentence about each body. What is resolved already stays. Error: as
-// LightSpec::resolved and settle.
+// skies, `seconds` after the dates; and where real air lies over the scene. Returns a sentence about each body. What is
+// resolved already stays. Error: as LightSpec::resolved and settle.
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds = 0);
 
 // Bakes resolved sources. periodic: the scene repeats itself. Error: as the sources' constructors; unknown material of

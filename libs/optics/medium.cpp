@@ -48,6 +48,16 @@ BakedMedium::BakedMedium(const Medium& m, const SpectralState& state)
   }
 }
 
+BakedMedium::BakedMedium(std::vector<float> absorbs, std::vector<float> scatters_, std::vector<float> emits,
+                         std::unique_ptr<const PhaseFunction> how)
+    : absorption(std::move(absorbs)),
+      scattering(std::move(scatters_)),
+      index_squared(absorption.size(), 1.0f),
+      blackbody(std::move(emits)),
+      phase(std::move(how)) {
+  SUITE_CHECK(scattering.size() == absorption.size() && (blackbody.empty() || blackbody.size() == absorption.size()));
+}
+
 bool BakedMedium::uniform() const {
   return !phase || (phase->spectrally_uniform() && std::all_of(scattering.begin(), scattering.end(),
                                                                [&](float s) { return s == scattering.front(); }));

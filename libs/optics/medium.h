@@ -30,6 +30,9 @@ void check_medium(Medium& medium, const Where& where = {});
 // Per bin of a state. Error when a curve does not cover the state.
 struct BakedMedium {
   BakedMedium(const Medium& medium, const SpectralState& state);
+  // Of an index of 1, from its parts; blackbody may be empty. Bug: sizes that differ.
+  BakedMedium(std::vector<float> absorption, std::vector<float> scattering, std::vector<float> blackbody,
+              std::unique_ptr<const PhaseFunction> phase);
   std::vector<float> absorption, scattering;  // 1/m at density 1
   std::vector<float> index_squared;
   std::vector<float> blackbody;                // n^2 B(T), W/(m2 sr um); empty = does not emit at its own temperature

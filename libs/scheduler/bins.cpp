@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scheduler/air_bins.h"
 #include "scheduler/products.h"
 
 namespace suite {
@@ -176,8 +177,10 @@ class StateBins {
 }  // namespace
 
 std::string BinReport::text() const {
-  return strf("sensor '%s': %zu band%s in %zu bin%s, within %.2g %% of bins of %.3g nm", sensor.c_str(), bands,
-              bands == 1 ? "" : "s", bins, bins == 1 ? "" : "s", 100 * reached, 1000 * cell_um) +
+  const char* what = g_points > 0 ? "interval" : "bin";
+  return strf("sensor '%s': %zu band%s in %zu %s%s%s, within %.2g %% of bins of %.3g nm", sensor.c_str(), bands,
+              bands == 1 ? "" : "s", bins, what, bins == 1 ? "" : "s",
+              g_points > 0 ? strf(" and %zu g-points of gases", g_points).c_str() : "", 100 * reached, 1000 * cell_um) +
          (under.empty() ? "" : " (farthest: band '" + band + "', " + under + ")");
 }
 
@@ -189,7 +192,13 @@ std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpe
   for (size_t s = 0; s < sensor.states().size(); ++s) {
     const SpectralState state = sensor.states()[s];
     StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s)), white_light);
-    if (state.choice.error > 0) {
+    if (!sources.empty() && sources[0].air) {
+      AirBins in_air = bins_in_air(*sources[0].air, state, sensor.bands(s));
+      bins.judge(in_air.intervals);
+      reports.push_back(bins.report(sensor.name(), in_air.intervals.size()));
+      reports.back().g_points = in_air.state.size();
+      sensor.take_state(s, std::move(in_air.state));
+    } else if (state.choice.error > 0) {
       SpectralState chosen = bins.choose();
       reports.push_back(bins.report(sensor.name(), chosen.size()));
       sensor.take_state(s, std::move(chosen));

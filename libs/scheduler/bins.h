@@ -24,6 +24,7 @@ struct BinReport {
   double cell_um = 0;       // width of the finest cells
   std::string band, under;  // the farthest: "red edge", "the sun on reflectance of asphalt"
   bool chosen = true;       // false: the user wants even bins (spectral_error: 0), which were only looked at
+  size_t g_points = 0;      // under real air; what gases do within intervals is not in `reached`
   bool met() const { return reached <= wanted; }
   // "sensor 'camera': 4 bands in 7 bins, within 0.08 % of bins of 0.05 nm (farthest: band 'red', the sun)"
   std::string text() const;

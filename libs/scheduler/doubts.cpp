@@ -38,7 +38,7 @@ std::string when(const SourceTime* date, double moment) {
 // Sun and Moon have set whenever the sensor looks, and nothing else shines.
 std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const bool others = std::any_of(written.lights.begin(), written.lights.end(), [](auto& l) { return !l->disk(); });
-  if (!written.sun() || others || written.atmosphere || glows(scene)) return std::nullopt;
+  if (!written.sun() || others || written.has_air() || glows(scene)) return std::nullopt;
   SourcesInTime sources(written, scene);
   double highest = -1, moment = 0;
   for (const Capture* c : some_captures(sensor, 64)) {
@@ -64,7 +64,7 @@ std::string named(const std::vector<std::string>& names) {
 
 // Bands in which no source sends anything, of a scene that does not glow itself.
 std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
-  if (!now.any() || glows(scene) || now.atmosphere) return std::nullopt;
+  if (!now.any() || glows(scene) || now.has_air()) return std::nullopt;
   std::vector<std::string> names;
   for (size_t s = 0; s < sensor.states().size(); ++s)
     for (const Band& b : sensor.bands(s)) {

@@ -80,7 +80,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
                               count("property maps", scene.property_maps.size(), "in the scene", "none in the scene"),
                               count("emission", warm, "temperatures", "no temperature shows in any window")};
   add_lights(sources, all);
-  all.push_back(source("atmosphere", sources.atmosphere.has_value()));
+  all.push_back(source("atmosphere", sources.has_air()));
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

@@ -167,6 +167,26 @@ void place_knots(SpectralState& state, size_t knot_count) {
   }
 }
 
+SpectralState with_g_points(const SpectralState& state, std::span<const std::vector<double>> weights) {
+  SUITE_CHECK(weights.size() == state.size());
+  SpectralState split = state;
+  split.bins.clear();
+  std::vector<size_t> first;
+  for (size_t i = 0; i < state.size(); ++i) {
+    SUITE_CHECK(state.bins[i].weight == 1 && !weights[i].empty());
+    first.push_back(split.bins.size());
+    for (size_t g = 0; g < weights[i].size(); ++g)
+      split.bins.push_back({state.bins[i].low_um, state.bins[i].high_um, static_cast<uint32_t>(g), weights[i][g]});
+  }
+  for (size_t& knot : split.knots) knot = first[knot];
+  const size_t bands = state.shares.size() / std::max<size_t>(1, state.size());
+  split.shares.clear();
+  for (size_t b = 0; b < bands; ++b)
+    for (size_t i = 0; i < state.size(); ++i)
+      for (const double w : weights[i]) split.shares.push_back(w * state.shares[b * state.size() + i]);
+  return split;
+}
+
 double band_mean(const Band& band, const Curve& curve) {
   if (curve.is_constant()) return curve.value()[0];
   std::vector<double> knots = band.response.wavelength_um();

@@ -81,6 +81,10 @@ SpectralState make_state(std::span<const Band> bands, double step_um, double ref
 // Chooses the knots of a state whose bins and reference wavelength are set, as make_state does.
 void place_knots(SpectralState& state, size_t knot_count);
 
+// Splits every interval of a state into g-points: weights[i] are those of bin i, adding up to 1; {1} leaves it whole.
+// What stood for an interval (reference, knots) is then its first g-point. Bug: bins that are g-points already.
+SpectralState with_g_points(const SpectralState& state, std::span<const std::vector<double>> weights);
+
 // Mean of a curve weighed by the response of a band; exact. Error when the curve does not cover the band.
 double band_mean(const Band& band, const Curve& curve);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "air/air_media.h"
 #include "spectral/planck.h"
 #include "thermal/models.h"
 
@@ -66,9 +67,9 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 }  // namespace
 
 Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const Heating& heating,
-               TimeSpan window)
-    : state_(std::move(state)), window_(window) {
-  if (uses_media(scene)) bake_media(scene);
+               TimeSpan window, std::shared_ptr<const AirSpec> traced)
+    : state_(std::move(state)), window_(window), traced_(std::move(traced)) {
+  if (uses_media(scene) || traced_) bake_media(scene);
   bake_all(scene, used, heating);
   if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
@@ -98,6 +99,10 @@ void Optics::bake_media(const Scene& scene) {
         throw Error(e.where(), "medium '" + m.id + "': " + e.message(), e.hint(), e.code());
       }
     }
+    if (!traced_) return;
+    const auto column = std::make_shared<const AirColumn>(bake_column(*traced_, state_));
+    air_ = {column->shells, static_cast<uint32_t>(media_.size())};
+    for (BakedMedium& m : air_media(column, state_)) media_.push_back(std::move(m));
   };
   bake_them();
   const size_t before = state_.knots.size();

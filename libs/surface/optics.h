@@ -2,8 +2,11 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "air/air_spec.h"
+#include "air/shells.h"
 #include "motion/time_span.h"
 #include "optics/models.h"
 #include "scene/scene.h"
@@ -27,18 +30,27 @@ struct Heating {
   bool pending = false;  // it is yet to be found: until then they do not glow
 };
 
+// Layers of air among the media of a state: paths are scattered in them.
+struct AirLayers {
+  Shells shells;
+  uint32_t first;  // medium of layer 0; the others follow
+};
+
 class Optics {
  public:
   // Bakes the materials for which used[i] is true (all when empty). A temperature model that asks for loads where there
   // are none is an Error unless they are pending. Models that bring their own are solved here once, for the times of
-  // the window; the others are asked at hits, with position, normal, instance and triangle. Error naming the material
-  // when one cannot be baked. Keeps a reference to the scene.
+  // the window; the others are asked at hits, with position, normal, instance and triangle. traced: air whose layers
+  // are media like those of the scene; null = none. Error naming the material when one cannot be baked. Keeps a
+  // reference to the scene.
   Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const Heating& heating = {},
-         TimeSpan window = {});
+         TimeSpan window = {}, std::shared_ptr<const AirSpec> traced = nullptr);
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
   // The scene's media, all of them where a ray can meet one, else none.
   std::span<const BakedMedium> media() const { return media_; }
+  // Null = no air among them.
+  const AirLayers* air() const { return air_ ? &*air_ : nullptr; }
   // False when every medium scatters alike at all wavelengths, so that flights need not be weighed between knots.
   bool spectral_flights() const { return spectral_flights_; }
   bool any_emission() const { return any_emission_; }
@@ -56,6 +68,8 @@ class Optics {
   TimeSpan window_;
   std::vector<BakedMaterial> materials_;
   std::vector<BakedMedium> media_;
+  std::shared_ptr<const AirSpec> traced_;
+  std::optional<AirLayers> air_;
   bool any_emission_ = false, spectral_flights_ = false;
 };
 

@@ -53,6 +53,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
     if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
     asked_.push_back(asked);
   }
+  if (const Light* sky = options_.explicit_sources ? space_.sky() : nullptr)
+    asked_.push_back({sky, kFromAir, sky->nature(), dimensions::kOfScatter, 0, std::nullopt});
   std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) {
     return Estimator::parallel(a.nature) > Estimator::parallel(b.nature);
   });
@@ -166,6 +168,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, through, emitted);
   const Flight& flight = flights_[slot];
   c.radiance = flight.emitted;
+  // The sky of the air was asked for, too.
+  if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? space_.sky() : nullptr)
+    if (const double density = space_.sky_density(path.direction);
+        density > 0 && options_.explicit_sources && path.last_density > 0)
+      c.scale = static_cast<float>(Estimator::by_chance(sky->nature(), path.before * density / path.last_density));
   if (c.radiance) return contribute();
   throughputs_.give_back(p);
   if (!flight.through.spectrum) throughputs_.give_back(p);

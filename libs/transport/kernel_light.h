@@ -133,7 +133,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   const double distance = sight_rays_.distance()[i];
   double reach[kMaxKnots];
   std::fill_n(reach, knots(), 1.0);
-  const bool dim = space_.dims(sight_rays_.rays()[i], distance, i, transmission_, std::span(reach, knots()));
+  // The air's own light comes as it is.
+  const bool of_air = q.light == kFromAir;
+  const bool dim = !of_air && space_.dims(sight_rays_.rays()[i], distance, i, transmission_, std::span(reach, knots()));
   double denominator = 1, missed = std::numeric_limits<double>::infinity();
   const double by_chance = q.density > 0 || !arrives ? chance(node, q.direction, {reach, knots()}) : 0;
   if (q.density > 0) denominator = arrives ? Estimator::asked(q.density, by_chance, q.disk) : q.density;
@@ -153,7 +155,10 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   if (!radiance) {  // its shape changes with direction
     const std::span<float> own = dense(p);
     std::fill(own.begin(), own.end(), 0.0f);
-    environment_.lights[q.light]->add(q.direction, sight_rays_.rays()[i].time, 1, own);
+    if (of_air)
+      space_.sky_radiance(sight_rays_.rays()[i], transmission_, own);
+    else
+      environment_.lights[q.light]->add(q.direction, sight_rays_.rays()[i].time, 1, own);
     radiance = own.data();
   }
   if (arrives && keep_first_ && q.light == environment_.sun && !node.event && is_first(node)) firsts_[p].sunlit = true;

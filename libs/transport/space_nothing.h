@@ -1,6 +1,7 @@
 // What fills space: nothing, or air alone in closed form. Two of the answers that the path kernel is made for; the
 // third is media/space_field.h.
 #pragma once
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -54,6 +55,10 @@ class NothingSpace {
     return lane.origin;
   }
   double index(uint32_t) const { return 1; }
+  // What fills space all the way to the outside, as a light that nodes can ask for (Atmosphere::sky); null = none.
+  const Light* sky() const { return nullptr; }
+  double sky_density(Dir) const { return 0; }
+  void sky_radiance(const Ray&, std::span<float>, std::span<float>) const {}
   void cross(uint32_t, const Hit&, uint32_t, Dir) {}
   void clear_sight() {}
   Sight& sight() { return sight_; }
@@ -78,10 +83,19 @@ class AirSpace : public NothingSpace {
   template <class L>
   Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, std::span<float> through,
              std::span<float> emitted) const {
-    air_.path(lane.origin, lane.direction, length, through, emitted);
+    if (lane.surfaces > 0 && length == std::numeric_limits<double>::infinity())
+      air_.skylight(lane.origin, lane.direction, through, emitted);
+    else
+      air_.path(lane.origin, lane.direction, length, through, emitted);
     return {Arrival::met, {1, through.data()}, true, emitted.data()};
   }
   static constexpr uint16_t kEmitter = kFromAir;
+  const Light* sky() const { return air_.sky(); }
+  double sky_density(Dir d) const { return air_.sky_density(d); }
+  // What comes along a ray from outside. scratch, radiance: per bin.
+  void sky_radiance(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
+    air_.skylight(ray.origin, ray.direction, scratch, radiance);
+  }
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);
     return true;

@@ -18,7 +18,7 @@ double place_in_fall(double u, double fall) {
 
 AirLight::AirLight(const Atmosphere* air, size_t bins) : air_(air) {
   if (!air) return;
-  for (auto* v : {&left_, &passed_, &grow_, &keep_, &fall_}) v->resize(bins);
+  for (auto* v : {&left_, &passed_, &grow_, &keep_, &fall_, &source_}) v->resize(bins);
   beams_.resize(air->beams());
   for (Scattered& b : beams_)
     for (auto* v : {&b.light, &b.depth, &b.slope, &b.near}) v->resize(bins);
@@ -32,7 +32,8 @@ void AirLight::begin() {
 
 void AirLight::enter(uint32_t layer, Vec3 from, Dir direction) {
   if (layer != kNone && layer != layer_) {
-    air_here_ = air_->layer(layer);
+    extinction_ = air_->extinction(layer);
+    air_->source(layer, from, direction, source_);
     for (size_t b = 0; b < beams_.size(); ++b) {
       Scattered& s = beams_[b];
       air_->beam(b, layer, from, direction, {s.light, s.depth, s.slope});
@@ -63,10 +64,10 @@ void AirLight::add_warm(float way, std::span<const float> depth, std::span<const
   for (size_t i = 0; i < sent.size(); ++i) {
     float x = depth[i], e = emission[i];
     if (layer_ != kNone) {
-      const float tau = air_here_.extinction[i] * way;
+      const float tau = extinction_[i] * way;
       passed_[i] += tau;
       x += tau;
-      e += tau * air_here_.source[i];
+      e += tau * source_[i];
     }
     const bool thin = x < kThin;
     grow_[i] = x;

@@ -22,10 +22,10 @@ double place_in_fall(double u, double fall);
 
 class AirLight {
  public:
-  // air: may be null, then nothing but any() and bounds() may be asked. Keeps a reference.
+  // air: may be null, then nothing but any() and shells() may be asked. Keeps a reference.
   AirLight(const Atmosphere* air, size_t bins);
   bool any() const { return air_ != nullptr; }
-  std::span<const double> bounds() const { return air_ ? air_->bounds() : std::span<const double>{}; }
+  const Shells* shells() const { return air_ ? &air_->shells() : nullptr; }
 
   void begin();
   // The next run goes on from `from` in a direction, in a layer or, kNone, outside the air.
@@ -48,13 +48,14 @@ class AirLight {
 
   const Atmosphere* air_;
   uint32_t layer_ = kNone;
-  Atmosphere::Layer air_here_;
-  std::vector<Scattered> beams_;  // at the begin of the run
-  std::vector<float> left_;       // T
-  std::vector<float> passed_;     // extinction of the air so far
-  std::vector<float> grow_;       // growth of depth along the run, and
-  std::vector<float> keep_;       // exp(-that)
-  std::vector<float> fall_;       // x of the part that a place is drawn from
+  std::span<const float> extinction_;  // of the layer
+  std::vector<float> source_;          // of the layer along the ray
+  std::vector<Scattered> beams_;       // at the begin of the run
+  std::vector<float> left_;            // T
+  std::vector<float> passed_;          // extinction of the air so far
+  std::vector<float> grow_;            // growth of depth along the run, and
+  std::vector<float> keep_;            // exp(-that)
+  std::vector<float> fall_;            // x of the part that a place is drawn from
 };
 
 }  // namespace suite

@@ -77,9 +77,7 @@ float VolumeField::blackbody(size_t bin, double kelvin) const {
 }
 
 void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background,
-                      double time, std::span<const double> bounds) {
-  bounds_ = bounds;
-  layer_ = kNone, zone_end_ = kForever;
+                      double time, const Shells* shells, uint32_t first_medium) {
   met_ = 0;
   background_ = background;
   begin_ = end_ = 0;
@@ -87,9 +85,15 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
   field_ = &field;
   origin_ = origin, direction_ = direction;
   time_ = time;
-  if (!bounds.empty())
-    enter_zone(std::max(static_cast<size_t>(std::upper_bound(bounds.begin(), bounds.end(), origin.z) - bounds.begin()),
-                        size_t{1}));
+  zones_.clear();
+  if (shells)
+    shells->walk(origin, direction, length, [&](const Shells::Piece& piece) {
+      if (zones_.empty() && piece.near > 0) zones_.push_back({piece.near, kNone});
+      zones_.push_back({piece.far, static_cast<uint32_t>(piece.layer)});
+    });
+  zone_ = 0;
+  first_medium_ = first_medium;
+  enter_zone();
   if (!field.periodic()) {
     piece_end_ = length;
     add_grids(origin, 0, length);
@@ -113,14 +117,10 @@ void FieldWalk::start(const VolumeField& field, Vec3 origin, Dir direction, doub
   cell_[1] = std::floor((at.y - p.low.y) / p.size.y);
 }
 
-// The layer below bound `zone`, or what lies above the last one.
-void FieldWalk::enter_zone(size_t zone) {
-  zone_ = zone;
-  const bool above = zone == bounds_.size();
-  layer_ = above ? kNone : static_cast<uint32_t>(zone - 1);
-  zone_end_ = kForever;
-  if (direction_.z > 0 && !above) zone_end_ = (bounds_[zone] - origin_.z) / direction_.z;
-  if (direction_.z < 0 && zone > 1) zone_end_ = (bounds_[zone - 1] - origin_.z) / direction_.z;
+void FieldWalk::enter_zone() {
+  const bool in_air = zone_ < zones_.size();
+  layer_ = in_air ? zones_[zone_].layer : kNone;
+  zone_end_ = in_air ? zones_[zone_].end : kForever;
 }
 
 // The next piece of a ray through a periodic scene: what lies before and behind the grids, or the way through one cell.
@@ -163,9 +163,10 @@ bool FieldWalk::next() {
     begin_ = end_;
     if (!(begin_ < length_)) return false;
     while (begin_ >= piece_end_) next_piece();
-    while (begin_ >= zone_end_) enter_zone(direction_.z > 0 ? zone_ + 1 : zone_ - 1);
+    while (begin_ >= zone_end_) ++zone_, enter_zone();
     contents_.clear();
     if (background_ != kNone) contents_.push_back({background_, 1, 0});
+    if (first_medium_ != kNone && layer_ != kNone) contents_.push_back({first_medium_ + layer_, 1, 0});
     end_ = std::min(piece_end_, zone_end_);
     for (GridWalk& g : met()) {
       while (!g.ended() && g.end() <= begin_) g.advance();
@@ -182,7 +183,7 @@ bool FieldWalk::next() {
 }
 
 uint32_t FieldWalk::lone_medium() const {
-  const bool lone = background_ == kNone && bounds_.empty() && met_ == 1 && grids_[0].placed().plain();
+  const bool lone = background_ == kNone && zones_.empty() && met_ == 1 && grids_[0].placed().plain();
   return lone ? grids_[0].placed().medium(0) : kNone;
 }
 
@@ -195,6 +196,11 @@ double FieldWalk::pass(double most) {
 }
 
 void FieldWalk::add_depths(std::span<double> depth) {
+  if (!zones_.empty()) {
+    while (next())
+      for (const Constituent& c : contents_) depth[c.medium] += c.density * (std::min(end_, kEndless) - begin_);
+    return;
+  }
   if (background_ != kNone) depth[background_] += std::min(length_, kEndless);
   for (;;) {
     for (GridWalk& g : met()) g.add_depths(depth);

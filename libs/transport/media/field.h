@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "air/shells.h"
 #include "optics/medium.h"
 #include "scene/scene.h"
 #include "spectral/state.h"
@@ -69,20 +70,20 @@ inline constexpr double kEndless = 1e30;  // m, for an infinite way: finite when
 class FieldWalk {
  public:
   // From origin along a unit direction to `length` (infinity allowed). background: medium without cells, or kNone.
-  // time: s, of the ray. bounds: heights of layers (Atmosphere::bounds), which must live as long; none = no air.
+  // time: s, of the ray. shells: layers of air; null = none. first_medium: that of layer 0 where layers are media.
   void start(const VolumeField& field, Vec3 origin, Dir direction, double length, uint32_t background, double time,
-             std::span<const double> bounds = {});
+             const Shells* shells = nullptr, uint32_t first_medium = kNone);
   // The next stretch that holds anything; false at the end.
   bool next();
   // Nothing fills the way.
-  bool empty() const { return background_ == kNone && bounds_.empty() && met_ == 0 && piece_end_ >= length_; }
+  bool empty() const { return background_ == kNone && zones_.empty() && met_ == 0 && piece_end_ >= length_; }
   // For what follows the last stretch: the medium of the only grid around, at that medium's own temperature, if there
   // is nothing else before the grid ends, no layer of the air either; else kNone.
   uint32_t lone_medium() const;
   // Where lone_medium() is not kNone: goes on in one stride, as far as the integral of density stays within `most`.
   // Returns the integral; next() gives the stretch where it would become more.
   double pass(double most);
-  // Goes on to the end and adds the density integrated on the way to depth[medium]. Not in layers of the air.
+  // Goes on to the end and adds the density integrated on the way to depth[medium].
   void add_depths(std::span<double> depth);
   uint32_t layer() const { return layer_; }  // of the air; kNone = outside
   double begin() const { return begin_; }
@@ -92,7 +93,7 @@ class FieldWalk {
  private:
   void add_grids(Vec3 origin, double begin, double end);
   void next_piece();
-  void enter_zone(size_t zone);
+  void enter_zone();
   // Of the grids that the ray meets in the piece: the first met_; the others are kept for later rays.
   std::span<GridWalk> met() { return {grids_.data(), met_}; }
   std::vector<GridWalk> grids_;
@@ -108,9 +109,14 @@ class FieldWalk {
   double grids_begin_ = 0, grids_end_ = 0;  // of the ray between the heights that have grids
   double cell_[2] = {};                     // of the periodic scene, whole numbers
   uint32_t cells_ = 0;
-  // Zone n lies between bounds n - 1 and n; the first one goes on below.
-  std::span<const double> bounds_;
+  // The ray's ways through layers of air, and which of them it is in.
+  struct Zone {
+    double end;      // m
+    uint32_t layer;  // kNone = none
+  };
+  std::vector<Zone> zones_;
   size_t zone_ = 0;
+  uint32_t first_medium_ = kNone;
   double zone_end_ = 0;
   uint32_t layer_ = kNone;
 };

@@ -51,7 +51,10 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
     stretch_.clear();
     run_layer_ = kNone;
   }
-  walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.bounds());
+  if (const AirLayers* layers = optics_.air())
+    walk_.start(field_, live.origin, live.direction, length, background, live.time, &layers->shells, layers->first);
+  else
+    walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.shells());
   if (walk_.empty() && !air_.any()) return result_;
   double left = -std::log1p(-u.x);
   for (;;) {
@@ -264,7 +267,9 @@ double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
 }
 
 void Flights::add_depths(const Ray& ray, double length, uint32_t background, std::span<double> depth) {
-  walk_.start(field_, ray.origin, ray.direction, length, background, ray.time);
+  const AirLayers* layers = optics_.air();
+  walk_.start(field_, ray.origin, ray.direction, length, background, ray.time, layers ? &layers->shells : nullptr,
+              layers ? layers->first : kNone);
   walk_.add_depths(depth);
 }
 

@@ -29,6 +29,10 @@ class FieldSpace {
   Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
+  // Flights bring all light of the air: media on the way dim it in parts.
+  const Light* sky() const { return nullptr; }
+  double sky_density(Dir) const { return 0; }
+  void sky_radiance(const Ray&, std::span<float>, std::span<float>) const {}
   // The path goes through a surface to the other side.
   void cross(uint32_t p, const Hit& hit, uint32_t material, Dir in) {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);

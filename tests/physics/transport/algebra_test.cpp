@@ -80,10 +80,14 @@ class Air final : public Atmosphere {
     S[0] = 1;
   }
   // No walk goes through it.
-  std::span<const double> bounds() const override { return {}; }
-  Layer layer(size_t) const override { return {}; }
+  const Shells& shells() const override { return shells_; }
+  std::span<const float> extinction(size_t) const override { return {}; }
+  void source(size_t, Vec3, Dir, std::span<float>) const override {}
   size_t beams() const override { return 0; }
   void beam(size_t, size_t, Vec3, Dir, BeamAlong) const override {}
+
+ private:
+  Shells shells_ = Shells::flat({0, 1});
 };
 
 TEST(Algebra, ThroughputsAreMultipliedInTheOrderOfThePath) {

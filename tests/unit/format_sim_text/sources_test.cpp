@@ -25,6 +25,29 @@ SourceSpecs read(const std::string& text, const std::string& file = "x.yaml") {
   return s;
 }
 
+TEST(Sources, AirIsReadAsItIsWritten) {
+  const SourceSpecs s = read(
+      "atmosphere: {profile: tropical, water_kg_m2: 20, ozone_du: 250, ppm: {co2: 420}, gases: none, g_points: 8, "
+      "shape: "
+      "flat, scattering: single, streams: 8, scene_height_m: 1200, ground_albedo: 0.4, aerosol: {model: urban, "
+      "depth_550: 0.3}, clouds: [{kind: water, base_m: 3000, top_m: 3500, depth_550: 5, effective_radius_um: 8}]}");
+  ASSERT_TRUE(s.air);
+  EXPECT_FALSE(s.atmosphere);
+  EXPECT_NEAR(precipitable_water(s.air->profile), 20, 1e-6);
+  EXPECT_NEAR(dobson(s.air->profile), 250, 1e-6);
+  EXPECT_NEAR(s.air->profile.levels[0].share(Gas::co2), 420e-6, 1e-12);
+  EXPECT_FALSE(s.air->gases);
+  EXPECT_EQ(s.air->points.most, 8);
+  EXPECT_FALSE(s.air->round);
+  EXPECT_EQ(s.air->scattering, AirScattering::single);
+  EXPECT_EQ(s.air->streams, 8);
+  EXPECT_EQ(s.air->height_of_scene(), 1200);
+  EXPECT_NEAR(s.air->aerosol->profile.depth(), 0.3, 1e-6);
+  const double middle[] = {0.55};
+  EXPECT_NEAR(s.air->clouds[0].content * 500 * particle_optics(s.air->clouds[0].particles, middle).extinction(0), 5,
+              1e-6);
+}
+
 // The first of them, for one bin at 0.55 um.
 std::shared_ptr<const Light> baked(const SourceSpecs& s) {
   const Tracer tracer(test::scene_of({test::quad(1, 0, 0)}, {test::material("m", test::lambert(0))}));
@@ -41,6 +64,20 @@ TEST_P(BadSources, AreToldAtTheirPlace) {
   EXPECT_THAT(message, testing::StartsWith("x.yaml:"));
 }
 const BadCase kBad[] = {
+    {"atmosphere: {profile: us_standart}", "us_standard"},
+    {"atmosphere: {profile: tropical, ppm: {co3: 400}}", "unknown gas 'co3'"},
+    {"atmosphere: {profile: tropical, water_kg_m2: -1}", "-1"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rurale}}", "rural"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, depth_550: 0.1, visibility_km: 5}}", "drop one"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, scale_height_m: 1000}}", "depth_550"},
+    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000}]}", "content_g_m3"},
+    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 900, depth_550: 1}]}", "900"},
+    {"atmosphere: {profile: tropical, streams: 7}", "7 streams are not even"},
+    {"atmosphere: {profile: tropical, ground_albedo: 1.2}", "the albedo exceeds 1"},
+    {"atmosphere: {profile: tropical, g_points: 99}", "99"},
+    {"atmosphere: {profile: tropical, scattering: twice}", "twice"},
+    {"atmosphere: {profile: tropical, heights_m: [0, 1]}", "heights_m"},
+    {"{sky: {radiance: 1}, atmosphere: {profile: tropical}}", "makes its own"},
     {"sun: {irradiance: 3}", "the key 'direction' is missing"},
     {"sun: {direction: {zenith_deg: 190, azimuth_deg: 0}}", "190"},
     {"sun: {direction: {zenith_deg: 10, azimuth_deg: 0}, irradiance: -3}", "the irradiance is negative"},

@@ -1,0 +1,13 @@
+// The real air of a simulation in numbers, without rendering (--air).
+#pragma once
+#include <string>
+
+#include "formats/sim_text/sim_text.h"
+
+namespace suite {
+
+// The layers' profile and, for each sensor and band at second 0, depths, transmittance and light at the ground.
+// Sensors have their bins. Error: a simulation without real air.
+std::string air_text(const Simulation& sim, const Scene& scene);
+
+}  // namespace suite

@@ -1,0 +1,69 @@
+// Real air as it is asked for: a profile, its gases, what floats in it, and how its light is followed.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "air/aerosol_profile.h"
+#include "air/gases.h"
+#include "air/particles.h"
+#include "air/profile.h"
+#include "spectral/curve.h"
+
+namespace suite {
+
+enum class AirScattering {
+  single,   // once, along every segment
+  diffuse,  // and the rest from a field solved once for a flat, even ground
+  traced,   // every time, by paths that are scattered in the air as in any medium: the reference for the others
+};
+
+struct AirSpec {
+  AirProfile profile;
+  // What absorbs; null = no gas does.
+  std::shared_ptr<const GasProvider> gases;
+  GasReduction points;    // of an interval
+  bool molecules = true;  // scatter
+
+  // Aerosols: boundary layer of a kind, free troposphere and stratosphere above it.
+  struct Aerosol {
+    ParticleSpec boundary;
+    AerosolProfile profile{23e3};
+    bool one_kind = false;  // the boundary layer's kind at all heights
+  };
+  std::optional<Aerosol> aerosol;
+  struct Cloud {
+    ParticleSpec particles;    // water or ice
+    double base = 0, top = 0;  // m above sea level
+    double content = 0;        // kg/m3 of water
+  };
+  std::vector<Cloud> clouds;
+
+  std::optional<double>
+      scene_height;  // of the scene's z = 0 above sea level, m; default: from the scene's origin, or 0
+  bool round = true;
+  double radius = 6371e3;  // of curvature at sea level, m
+  AirScattering scattering = AirScattering::diffuse;
+  int streams = 16;
+  // Of the ground as the diffuse field sees it: even, flat, at `ground_height` above sea level.
+  Curve ground_albedo = Curve::constant(0.2);
+  double ground_temperature = 0;        // K; 0 = the air's at the ground
+  std::optional<double> ground_height;  // m; default: the scene's z = 0
+  std::vector<std::string> notes;       // what was not given and where it comes from, a sentence each
+  Where where = {};                     // in the text
+
+  double height_of_scene() const { return scene_height.value_or(0); }
+  double height_of_ground() const { return ground_height.value_or(height_of_scene()); }
+};
+
+// The levels that bound its layers, ascending: from the ground, or below it from the lowest level of the profile, to
+// its top; every 250 m up to 3 km, 500 m to 10 km, 1 km to 25 km, 2.5 km to 50 km, 10 km above; and where aerosols and
+// clouds begin and end. Halving all of them changes zenith and nadir radiance by less than 0.5 % (tests/physics/air).
+std::vector<AirLevel> air_levels(const AirSpec& spec);
+
+// Error, located: a profile that is none (check_profile), a ground outside of it, clouds of no thickness, values out of
+// range.
+void check_air(const AirSpec& spec);
+
+}  // namespace suite

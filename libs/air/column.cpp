@@ -1,0 +1,182 @@
+#include "air/column.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "air/molecules.h"
+#include "air/particle_phase.h"
+#include "base/parallel.h"
+#include "spectral/planck.h"
+
+namespace suite {
+
+namespace {
+
+// Mean of what runs exponentially between two values, linearly where one is 0.
+double mean_of(double a, double b) {
+  if (!(a > 0 && b > 0) || std::fabs(a - b) < 1e-6 * (a + b)) return 0.5 * (a + b);
+  return (a - b) / std::log(a / b);
+}
+
+// The intervals of a state: the first bin of each.
+std::vector<size_t> intervals_of(const SpectralState& state) {
+  std::vector<size_t> first;
+  for (size_t i = 0; i < state.size(); ++i)
+    if (state.bins[i].g == 0) first.push_back(i);
+  return first;
+}
+
+// Of one interval; at the levels. No gas at all where there is no provider.
+GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const Bin& bin) {
+  if (!spec.gases) return {{1.0}, std::vector<float>(levels.size(), 0.0f)};
+  if (bin.low_um < spec.gases->low_um() || bin.high_um > spec.gases->high_um())
+    throw Error(spec.where,
+                strf("gases are known from %.4g to %.4g um, and a band reaches from %.4g to %.4g um",
+                     spec.gases->low_um(), spec.gases->high_um(), bin.low_um, bin.high_um),
+                "`gases: none` leaves them out");
+  return gas_points(*spec.gases, levels, bin.low_um, bin.high_um, spec.points);
+}
+
+class Baker {
+ public:
+  Baker(const AirSpec& spec, const SpectralState& state)
+      : spec_(spec), state_(state), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, 0} {
+    const double ground = spec.height_of_ground();
+    while (column_.ground + 2 < levels_.size() && levels_[column_.ground].height < ground - 1) ++column_.ground;
+    column_.extinction.assign(layers() * bins(), 0.0f);
+    column_.blackbody.resize(levels_.size() * bins());
+    for (size_t i = 0; i < bins(); ++i) middles_.push_back(state.bins[i].center_um());
+  }
+  AirColumn bake() {
+    parallel_for(0, intervals_of(state_).size(), 1, [&, first = intervals_of(state_)](size_t begin, size_t end) {
+      for (size_t n = begin; n < end; ++n) bake_interval(first[n]);
+    });
+    if (spec_.molecules) add_molecules();
+    add_aerosol();
+    for (const AirSpec::Cloud& cloud : spec_.clouds)
+      add_particles(particle_optics(cloud.particles, middles_), [&](double low, double high) {
+        return low >= cloud.base - 1 && high <= cloud.top + 1 ? cloud.content : 0;
+      });
+    return std::move(column_);
+  }
+
+ private:
+  size_t bins() const { return state_.size(); }
+  size_t layers() const { return levels_.size() - 1; }
+  double low(size_t layer) const { return levels_[layer].height; }
+  double high(size_t layer) const { return levels_[layer + 1].height; }
+
+  Shells shells() const {
+    std::vector<double> heights;
+    for (const AirLevel& l : levels_) heights.push_back(l.height - spec_.height_of_scene());
+    if (!spec_.round) return Shells::flat(std::move(heights));
+    const double radius = spec_.radius + spec_.height_of_scene();
+    return Shells::round({0, 0, -radius}, radius, std::move(heights));
+  }
+
+  // Absorption by gases, and Planck's function, which the g-points of an interval share.
+  void bake_interval(size_t first) {
+    const Bin& bin = state_.bins[first];
+    const GasPoints points = points_of(spec_, levels_, bin);
+    size_t count = 1;
+    while (first + count < bins() && state_.bins[first + count].g > 0) ++count;
+    SUITE_CHECK(points.count() == count);
+    for (size_t l = 0; l < levels_.size(); ++l) {
+      const double mean =
+          planck_band_radiance(bin.low_um, bin.high_um, levels_[l].temperature) / (bin.high_um - bin.low_um);
+      for (size_t g = 0; g < count; ++g) {
+        column_.blackbody[l * bins() + first + g] = static_cast<float>(mean);
+        if (l + 1 == levels_.size()) continue;
+        const auto at = [&](size_t level) { return double{points.absorption[level * count + g]}; };
+        column_.extinction[l * bins() + first + g] = static_cast<float>(mean_of(at(l), at(l + 1)));
+      }
+    }
+  }
+
+  void add_molecules() {
+    AirColumn::Kind kind;
+    kind.phase = bake_phase({"rayleigh", {{"depolarisation", kDepolarisation}}, {}, {}, nullptr}, state_);
+    constexpr double gamma = kDepolarisation / (2 - kDepolarisation);
+    kind.moments.assign(bins(), {1, 0, (1 - gamma) / (10 * (1 + 2 * gamma))});
+    kind.scattering.resize(layers() * bins());
+    for (size_t l = 0; l < layers(); ++l)
+      for (size_t i = 0; i < bins(); ++i)
+        kind.scattering[l * bins() + i] = static_cast<float>(
+            rayleigh_depth(middles_[i], levels_[l].pressure - levels_[l + 1].pressure) / (high(l) - low(l)));
+    add(std::move(kind), nullptr);
+  }
+
+  void add_aerosol() {
+    if (!spec_.aerosol) return;
+    const AirSpec::Aerosol& a = *spec_.aerosol;
+    const double ground = levels_[column_.ground].height;
+    using Region = AerosolProfile::Region;
+    for (const Region region : {Region::boundary, Region::free_troposphere, Region::stratosphere}) {
+      ParticleSpec kind = a.boundary;
+      if (region == Region::free_troposphere) kind = {.name = "free_troposphere", .relative_humidity = 0.5};
+      if (region == Region::stratosphere) kind = {.name = "stratosphere", .relative_humidity = 0};
+      if (a.one_kind && region != Region::boundary) return;
+      add_particles(particle_optics(kind, middles_), [&](double bottom, double top) {
+        if (!a.one_kind && AerosolProfile::region(0.5 * (bottom + top) - ground) != region) return 0.0;
+        return a.profile.depth(bottom - ground, top - ground) / (top - bottom);
+      });
+    }
+  }
+
+  // amount: of extinction at 0.55 um, 1/m, or kg/m3, as the mean between two heights.
+  template <class Amount>
+  void add_particles(const ParticleOptics& optics, const Amount& amount) {
+    AirColumn::Kind kind;
+    kind.scattering.resize(layers() * bins());
+    std::vector<float> extinction(layers() * bins());
+    bool any = false;
+    for (size_t l = 0; l < layers(); ++l) {
+      const double here = amount(low(l), high(l));
+      any = any || here > 0;
+      for (size_t i = 0; i < bins(); ++i) {
+        extinction[l * bins() + i] = static_cast<float>(here * optics.extinction(i));
+        kind.scattering[l * bins() + i] = static_cast<float>(here * optics.extinction(i) * optics.albedo(i));
+      }
+    }
+    if (!any) return;
+    kind.phase = particle_phase(optics, state_.knots);
+    for (size_t i = 0; i < bins(); ++i)
+      kind.moments.push_back(i > 0 && middles_[i] == middles_[i - 1]
+                                 ? kind.moments.back()
+                                 : optics.moments(i, static_cast<size_t>(spec_.streams) + 1));
+    add(std::move(kind), extinction.data());
+  }
+
+  // extinction: null = what is scattered.
+  void add(AirColumn::Kind kind, const float* extinction) {
+    for (size_t i = 0; i < column_.extinction.size(); ++i)
+      column_.extinction[i] += extinction ? extinction[i] : kind.scattering[i];
+    column_.kinds.push_back(std::move(kind));
+  }
+
+  static constexpr double kDepolarisation = 0.0279;  // of air, Bates 1984
+  const AirSpec& spec_;
+  const SpectralState& state_;
+  std::vector<AirLevel> levels_;
+  AirColumn column_;
+  std::vector<double> middles_;  // of the bins, um
+};
+
+}  // namespace
+
+AirColumn bake_column(const AirSpec& spec, const SpectralState& state) {
+  check_air(spec);
+  return Baker(spec, state).bake();
+}
+
+SpectralState with_gas_points(const AirSpec& spec, const SpectralState& state) {
+  check_air(spec);
+  const std::vector<AirLevel> levels = air_levels(spec);
+  std::vector<std::vector<double>> weights(state.size());
+  parallel_for(0, state.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) weights[i] = points_of(spec, levels, state.bins[i]).weight;
+  });
+  return with_g_points(state, weights);
+}
+
+}  // namespace suite

@@ -1,0 +1,139 @@
+#include "light/kinds/sky_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kAzimuths = 144;  // around, of nodes
+
+// Draws from the table of a sky, and leaves the radiance to the air.
+class AskedSky final : public Light {
+ public:
+  AskedSky(const SkySpec& density, const SpectralState& one) : sky_(density, one) {
+    nature_.far = nature_.wide = true;
+    nature_.drawn = sky_.tabulated();
+  }
+  std::optional<LightSample> sample(const LightReceiver&, const std::array<double, 4>& u, double) const override {
+    const DirectionSample drawn = sky_.draw({u[0], u[1]});
+    if (!(drawn.density > 0)) return std::nullopt;
+    LightSample sample;
+    sample.direction = drawn.direction;
+    sample.density = drawn.density;
+    sample.scale = 1;
+    return sample;
+  }
+  double density(Dir direction) const { return sky_.density(direction); }
+  size_t members() const override { return 0; }
+  std::optional<LightSample> sample_member(size_t, double, const LightReceiver&, const std::array<double, 4>&,
+                                           double) const override {
+    throw Bug("the sky of the air has no members");
+  }
+
+ private:
+  Sky sky_;
+};
+
+}  // namespace
+
+SkyTable::SkyTable(size_t bins, bool even, std::optional<double> symmetric, double step, Radiance radiance)
+    : step_(step),
+      bins_(bins),
+      columns_(even        ? 1
+               : symmetric ? kAzimuths / 2 + 1
+                           : kAzimuths),
+      symmetric_(symmetric),
+      turns_(even ? 0 : kAzimuths / (2 * kPi)),
+      radiance_(std::move(radiance)),
+      floors_(static_cast<size_t>((kHighest - kLowest) / step) + 1) {}
+
+void SkyTable::fill(size_t index, size_t row) const {
+  const double theta = static_cast<double>(row) * (kPi / 2) / (kRows - 1),
+               height = kLowest + static_cast<double>(index) * step_;
+  for (size_t c = 0; c < columns_; ++c) {
+    Dir d = dir_from_angles(theta, symmetric_.value_or(0) + static_cast<double>(c) * 2 * kPi / kAzimuths);
+    d.z = std::max(d.z, 0.0);
+    radiance_(height, d, {&floors_[index].table[(row * columns_ + c) * bins_], bins_});
+  }
+}
+
+const float* SkyTable::floor(size_t index) const {
+  std::call_once(floors_[index].once, [&] {
+    floors_[index].table.resize(kRows * columns_ * bins_);
+    isolated([&] {
+      parallel_for(0, kRows, 1, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) fill(index, row);
+      });
+    });
+  });
+  return floors_[index].table.data();
+}
+
+double SkyTable::column(double azimuth) const {
+  if (columns_ == 1) return 0;
+  double turn = azimuth - symmetric_.value_or(0);
+  turn -= 2 * kPi * std::floor(turn / (2 * kPi));
+  if (symmetric_ && turn > kPi) turn = 2 * kPi - turn;
+  return turn * turns_;
+}
+
+void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
+  const double row = std::min(polar_angle(d) * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)),
+               col = column(azimuth(d));
+  const auto r = std::min(static_cast<size_t>(row), kRows - 2), c = std::min(static_cast<size_t>(col), columns_ - 1);
+  const size_t next = c + 1 < columns_ ? c + 1 : symmetric_ || columns_ == 1 ? c : 0;
+  const auto v = static_cast<float>(row - static_cast<double>(r)), u = static_cast<float>(col - static_cast<double>(c));
+  const float weight[4] = {(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u};
+  const double place = (height - kLowest) / step_;
+  const auto low = std::min(static_cast<size_t>(place), floors_.size() - 2);
+  const auto rise = static_cast<float>(place - static_cast<double>(low));
+  const auto add = [&](size_t index, float share, bool first) {
+    const float *table = floor(index), *a = table + (r * columns_ + c) * bins_,
+                *b = table + (r * columns_ + next) * bins_, *e = a + columns_ * bins_, *f = b + columns_ * bins_;
+    for (size_t i = 0; i < bins_; ++i) {
+      const float sum = share * (weight[0] * a[i] + weight[1] * b[i] + weight[2] * e[i] + weight[3] * f[i]);
+      to[i] = first ? sum : to[i] + sum;
+    }
+  };
+  add(low, 1 - rise, true);
+  if (rise > 0) add(low + 1, rise, false);
+}
+
+void SkyTable::make_light() {
+  const auto ground = static_cast<size_t>(-kLowest / step_);
+  const auto at = [&](size_t row, size_t column) { return floor(ground) + (row * columns_ + column) * bins_; };
+  SkySpec density;
+  density.radiance = Curve::constant(1);
+  density.zeniths = kRows;
+  density.azimuths = columns_ == 1 ? 1 : kAzimuths;
+  density.table.assign(density.zeniths * density.azimuths, 0.0);
+  // Each bin counts alike: divided by its flux.
+  std::vector<double> flux(bins_, 0.0);
+  for (size_t r = 0; r < kRows; ++r)
+    for (size_t c = 0; c < columns_; ++c)
+      for (size_t i = 0; i < bins_; ++i) flux[i] += std::sin(static_cast<double>(r) * kPi / 180) * at(r, c)[i];
+  double sum = 0;
+  for (size_t r = 0; r < kRows; ++r)
+    for (size_t c = 0; c < density.azimuths; ++c) {
+      const double phi = static_cast<double>(c) * 2 * kPi / static_cast<double>(density.azimuths);
+      const auto from = std::min(static_cast<size_t>(std::lround(column(phi))), columns_ - 1);
+      double mean = 0;
+      for (size_t i = 0; i < bins_; ++i)
+        if (flux[i] > 0) mean += at(r, from)[i] / flux[i];
+      sum += density.table[r * density.azimuths + c] = mean;
+    }
+  if (!(sum > 0)) return;
+  SpectralState one;
+  one.low_um = 1, one.high_um = 1.1, one.reference_um = 1.05;
+  one.bins = {{1, 1.1}};
+  one.knots = {0};
+  auto light = std::make_unique<const AskedSky>(density, one);
+  density_ = [asked = light.get()](Dir d) { return asked->density(d); };
+  light_ = std::move(light);
+}
+
+}  // namespace suite

@@ -1,0 +1,60 @@
+// Radiance of the air over zenith angle and azimuth, tabulated for every bin at even steps of height: the sky over a
+// place, with the light that nodes ask for in it, or what lies between a place and a view from far above. Tables of
+// heights are made when a place first needs them.
+//
+// Assumes: radiance that changes little over a degree of zenith angle and 2.5 degrees of azimuth; nothing is tabulated
+// below the horizon. Where there is one plane of symmetry (a single sun) half of the azimuths are made.
+#pragma once
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "light/kinds/sky.h"
+
+namespace suite {
+
+class SkyTable {
+ public:
+  // Radiance at a height (m, of the scene) along a direction, per bin.
+  using Radiance = std::function<void(double height, Dir direction, std::span<float> radiance)>;
+  // even: nothing depends on azimuth; symmetric: azimuth (rad) of the plane of symmetry, if there is one.
+  // step: of heights, m.
+  SkyTable(size_t bins, bool even, std::optional<double> symmetric, double step, Radiance radiance);
+
+  // Whether a place and a direction lie in the table.
+  static bool covers(double height, Dir d) { return d.z >= 0 && height >= kLowest && height < kHighest; }
+  // Bilinear; per bin.
+  void radiance(double height, Dir d, std::span<float> to) const;
+  // As a light to ask (Atmosphere::sky): one density for all bins, that of height 0. Null before make_light(), and
+  // where the sky is black.
+  const Light* light() const { return light_.get(); }
+  // 1/sr, with which light() draws a direction; 0 without it.
+  double density(Dir d) const { return light_ ? density_(d) : 0; }
+  void make_light();
+
+ private:
+  static constexpr double kLowest = -6000, kHighest = 12000;  // m
+  static constexpr size_t kRows = 91;                         // nodes of zenith angle, 0 to 90 degrees
+  struct Floor {
+    std::once_flag once;
+    std::vector<float> table;  // [row][column][bin]
+  };
+  // Column of an azimuth (rad), as a number with a fraction.
+  double column(double azimuth) const;
+  const float* floor(size_t index) const;
+  void fill(size_t index, size_t row) const;
+
+  double step_;
+  size_t bins_, columns_;
+  std::optional<double> symmetric_;
+  double turns_ = 0;  // columns a radian
+  Radiance radiance_;
+  mutable std::vector<Floor> floors_;
+  std::unique_ptr<const Light> light_;
+  std::function<double(Dir)> density_;
+};
+
+}  // namespace suite

@@ -1,0 +1,274 @@
+#include "light/stratified_air.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "air/beam_table.h"
+#include "air/column.h"
+#include "air/diffuse_field.h"
+#include "light/air_loops.h"
+#include "light/kinds/sky_table.h"
+
+namespace suite {
+
+namespace {
+
+using Row = std::vector<float>;
+constexpr float kShadow = 1e4f;  // depth of a beam in the shadow of the Earth
+
+class StratifiedAir final : public Atmosphere {
+ public:
+  StratifiedAir(const AirSpec& spec, const SpectralState& state, std::vector<Beam> beams)
+      : column_(bake_column(spec, state)), beams_(std::move(beams)), bins_(column_.bins) {
+    const std::span<const double> heights = column_.shells.heights();
+    bounds_.assign(heights.begin(), heights.end());
+    std::vector<AirBeam> from;
+    for (const Beam& beam : beams_) {
+      tables_.emplace_back(column_.shells, bounds_[column_.ground], column_.extinction, bins_);
+      from.push_back({beam.direction, beam.irradiance});
+    }
+    bake_emission();
+    if (spec.scattering == AirScattering::diffuse)
+      diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &report_);
+    tabulate_sky();
+  }
+
+  void transmittance(Vec3 from, Dir d, double distance, std::span<float> T) const override {
+    std::fill(T.begin(), T.end(), 0.0f);
+    column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
+      const float* __restrict k = &column_.extinction[piece.layer * bins_];
+      float* __restrict depth = T.data();
+      const auto length = static_cast<float>(piece.length);
+      for (size_t i = 0; i < bins_; ++i) depth[i] += k[i] * length;
+    });
+    for (float& t : T) t = exp_falling(t);
+  }
+
+  void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
+    const Vec3 end = from + d * distance;
+    if (!view_ || !seen_from_above(from, d, end)) return integrate(from, d, distance, T, S);
+    transmittance(from, d, distance, T);
+    const Vec3 up = Frame::with_tangent(column_.shells.up(end), {1, 0, 0}).to_local(-d);
+    view_->radiance(column_.shells.height(end), up, S);
+  }
+
+ private:
+  // Whether a way comes through all of the air down to a place where the table of views holds: not far from the scene's
+  // origin, where the sun stands as there, and not too slant.
+  bool seen_from_above(Vec3 from, Dir d, Vec3 end) const {
+    constexpr double kFar = 3e4, kSlant = 0.17;
+    return std::fabs(end.x) < kFar && std::fabs(end.y) < kFar && d.z < -kSlant && SkyTable::covers(end.z, -d) &&
+           column_.shells.height(from) >= bounds_.back();
+  }
+  void integrate(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const {
+    std::fill(T.begin(), T.end(), 1.0f);
+    std::fill(S.begin(), S.end(), 0.0f);
+    Scratch& s = scratch();
+    bool first = true;
+    column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
+      const Vec3 middle = from + d * (0.5 * (piece.near + piece.far));
+      pass(piece, s, d, column_.shells.up(middle));
+      for (size_t b = 0; b < beams_.size(); ++b) {
+        BeamAt &near = s.near[b], &far = s.far[b];
+        if (first)
+          phase_of(b, d, s), look_up(b, from + d * piece.near, piece.near_height, near);
+        else
+          std::swap(near, far);
+        look_up(b, from + d * piece.far, piece.far_height, far);
+        scatter(b, piece, s, T, S);
+      }
+      air_loops::send(bins_, s.weights(), s.at_near.data(), s.at_far.data(), T.data(), S.data());
+      first = false;
+    });
+  }
+
+ public:
+  void skylight(Vec3 from, Dir d, std::span<float> T, std::span<float> S) const override {
+    if (!sky_->covers(from.z, d)) return path(from, d, std::numeric_limits<double>::infinity(), T, S);
+    transmittance(from, d, std::numeric_limits<double>::infinity(), T);
+    sky_->radiance(from.z, d, S);
+  }
+  const Light* sky() const override { return sky_->light(); }
+  double sky_density(Dir d) const override { return sky_->density(d); }
+
+  const Shells& shells() const override { return column_.shells; }
+  std::span<const float> extinction(size_t l) const override { return {&column_.extinction[l * bins_], bins_}; }
+  void source(size_t l, Vec3 from, Dir d, std::span<float> to) const override {
+    const float *low = &emission_[2 * l * bins_], *high = low + bins_;
+    for (size_t i = 0; i < bins_; ++i) to[i] = 0.5f * (low[i] + high[i]);
+    if (!diffuse_) return;
+    const DiffuseSource::Corners corners = corners_of(d, column_.shells.up(from));
+    for (size_t c = 0; c < 4; ++c) {
+      const float *bottom = diffuse_->at(l, 0, corners.at[c]), *top = diffuse_->at(l, 1, corners.at[c]);
+      for (size_t i = 0; i < bins_; ++i) to[i] += corners.weight[c] * 0.5f * (bottom[i] + top[i]);
+    }
+  }
+  size_t beams() const override { return beams_.size(); }
+  void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
+    Scratch& s = scratch();
+    phase_of(b, d, s);
+    beam_depth(b, from, column_.shells.height(from), along.depth);
+    // Growth of the depth over a way so short that it stays in the layer.
+    const double step = 1e-2 * (bounds_[l + 1] - bounds_[l]);
+    const Vec3 on = from + d * step;
+    beam_depth(b, on, column_.shells.height(on), along.slope);
+    scattered_once(b, l, s, along.scattered);
+    for (size_t i = 0; i < bins_; ++i) {
+      along.slope[i] = (along.slope[i] - along.depth[i]) / static_cast<float>(step);
+      along.scattered[i] *= beams_[b].irradiance[i];
+    }
+  }
+
+ private:
+  // What is left of a beam somewhere, per bin.
+  struct BeamAt {
+    Row depth, light;  // exp(-depth)
+  };
+  // Of one thread.
+  struct Scratch {
+    Row depth, keep, even, change;  // of the piece
+    Row at_near, at_far;            // its source there
+    air_loops::Weights weights() { return {depth.data(), keep.data(), even.data(), change.data()}; }
+    std::vector<BeamAt> near, far;         // per beam, at the ends of the piece
+    Row scattered;                         // scattering times phase function, 1/(m sr)
+    std::vector<std::vector<Row>> phases;  // per beam and kind, 1/sr
+  };
+  Scratch& scratch() const {
+    thread_local Scratch s;
+    if (s.depth.size() != bins_ || s.near.size() != beams_.size() ||
+        (!s.phases.empty() && s.phases[0].size() != column_.kinds.size())) {
+      s = {};
+      for (Row* row : {&s.depth, &s.keep, &s.even, &s.change, &s.at_near, &s.at_far, &s.scattered}) row->resize(bins_);
+      s.near.assign(beams_.size(), {Row(bins_), Row(bins_)}), s.far = s.near;
+      s.phases.assign(beams_.size(), std::vector<Row>(column_.kinds.size(), Row(bins_)));
+    }
+    return s;
+  }
+
+  // What a layer emits at its ends, over its extinction; and which layers do anything at all.
+  void bake_emission() {
+    constexpr float kDark = 1e-12f;  // W/(m2 sr um)
+    const auto any = [&](const float* row, float more) {
+      return std::any_of(row, row + bins_, [more](float v) { return v > more; });
+    };
+    for (const AirColumn::Kind& kind : column_.kinds)
+      for (size_t l = 0; l < column_.layers(); ++l) scatters_.push_back(any(&kind.scattering[l * bins_], 0));
+    emission_.resize(2 * column_.layers() * bins_);
+    for (size_t l = 0; l < column_.layers(); ++l)
+      for (size_t i = 0; i < bins_; ++i) {
+        const size_t at = l * bins_ + i;
+        double scattered = 0;
+        for (const AirColumn::Kind& kind : column_.kinds) scattered += kind.scattering[at];
+        const double k = column_.extinction[at], absorbed = k > 0 ? std::clamp(1 - scattered / k, 0.0, 1.0) : 0;
+        for (size_t end = 0; end < 2; ++end)
+          emission_[(2 * l + end) * bins_ + i] =
+              static_cast<float>(absorbed * column_.blackbody[(l + end) * bins_ + i]);
+      }
+    for (size_t l = 0; l < column_.layers(); ++l)
+      emits_.push_back(any(&emission_[2 * l * bins_], kDark) || any(&emission_[(2 * l + 1) * bins_], kDark));
+  }
+
+  void tabulate_sky() {
+    std::optional<double> symmetric;
+    if (beams_.size() == 1) symmetric = azimuth(beams_[0].direction);
+    const auto along = [this](Vec3 from, Dir d, double distance, std::span<float> radiance) {
+      thread_local Row T;
+      T.resize(bins_);
+      integrate(from, d, distance, T, radiance);
+    };
+    sky_ = std::make_unique<SkyTable>(bins_, beams_.empty(), symmetric, 1000,
+                                      [along](double height, Dir d, std::span<float> radiance) {
+                                        along({0, 0, height}, d, std::numeric_limits<double>::infinity(), radiance);
+                                      });
+    sky_->make_light();
+    view_ = std::make_unique<SkyTable>(bins_, beams_.empty(), symmetric, 250,
+                                       [along, this](double height, Dir up, std::span<float> radiance) {
+                                         const double far = 20 * bounds_.back();  // beyond the air at any angle used
+                                         along(Vec3{0, 0, height} + up * far, -up, far, radiance);
+                                       });
+  }
+
+  // Depth of the piece and the mean of its source.
+  void pass(const Shells::Piece& piece, Scratch& s, Dir d, Dir up) const {
+    const size_t l = piece.layer;
+    const double low = bounds_[l], thickness = bounds_[l + 1] - low;
+    const auto share = [&](double height) {
+      return static_cast<float>(std::clamp((height - low) / thickness, 0.0, 1.0));
+    };
+    const float length = static_cast<float>(piece.length), near = share(piece.near_height),
+                far = share(piece.far_height);
+    air_loops::weigh(bins_, &column_.extinction[l * bins_], length, s.weights());
+    std::fill(s.at_near.begin(), s.at_near.end(), 0.0f);
+    std::fill(s.at_far.begin(), s.at_far.end(), 0.0f);
+    const auto add = [&](const float* bottom, const float* top, float weight) {
+      air_loops::add_source(bins_, bottom, top, weight, near, far, s.at_near.data(), s.at_far.data());
+    };
+    if (emits_[l]) add(&emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], 1);
+    if (!diffuse_) return;
+    const DiffuseSource::Corners corners = corners_of(d, up);
+    for (size_t c = 0; c < 4; ++c)
+      if (corners.weight[c] > 0)
+        add(diffuse_->at(l, 0, corners.at[c]), diffuse_->at(l, 1, corners.at[c]), corners.weight[c]);
+  }
+
+  DiffuseSource::Corners corners_of(Dir d, Dir up) const {
+    const Vec3 local = Frame::with_tangent(up, {1, 0, 0}).to_local(d);
+    return diffuse_->corners(local.z, azimuth(local));
+  }
+  void phase_of(size_t b, Dir d, Scratch& s) const {
+    // Light comes along -beam and goes on along -d.
+    const double cosine = std::clamp(dot(beams_[b].direction, d), -1.0, 1.0);
+    for (size_t k = 0; k < column_.kinds.size(); ++k) {
+      const PhaseFunction& phase = *column_.kinds[k].phase;
+      Row& p = s.phases[b][k];
+      phase.eval(cosine, phase.spectrally_uniform() ? std::span(p).first(1) : std::span(p));
+      if (phase.spectrally_uniform()) std::fill(p.begin(), p.end(), p[0]);
+    }
+  }
+  void beam_depth(size_t b, Vec3 p, double height, std::span<float> depth) const {
+    if (!tables_[b].depth(height, dot(column_.shells.up(p), beams_[b].direction), depth))
+      std::fill(depth.begin(), depth.end(), kShadow);
+  }
+  void look_up(size_t b, Vec3 p, double height, BeamAt& at) const {
+    beam_depth(b, p, height, at.depth);
+    air_loops::fall(bins_, at.depth.data(), at.light.data());
+  }
+
+  // Scattering times phase function, summed over the kinds.
+  void scattered_once(size_t b, size_t layer, const Scratch& s, std::span<float> to) const {
+    std::fill(to.begin(), to.end(), 0.0f);
+    for (size_t k = 0; k < column_.kinds.size(); ++k) {
+      if (scatters_[k * column_.layers() + layer])
+        air_loops::multiply_add(bins_, &column_.kinds[k].scattering[layer * bins_], s.phases[b][k].data(), to.data());
+    }
+  }
+  // Light of a beam that is scattered once in the piece.
+  void scatter(size_t b, const Shells::Piece& piece, Scratch& s, std::span<const float> T, std::span<float> S) const {
+    scattered_once(b, piece.layer, s, s.scattered);
+    const BeamAt &near = s.near[b], &far = s.far[b];
+    air_loops::scatter(bins_, beams_[b].irradiance, s.scattered.data(), static_cast<float>(piece.length), s.weights(),
+                       {near.depth.data(), near.light.data()}, {far.depth.data(), far.light.data()}, T.data(),
+                       S.data());
+  }
+
+  AirColumn column_;
+  std::vector<Beam> beams_;
+  std::shared_ptr<const DiffuseSource> diffuse_;
+  size_t bins_;
+  std::vector<double> bounds_;
+  std::vector<BeamTable> tables_;
+  DiffuseReport report_;
+  std::vector<float> emission_;    // [layer][end][bin]
+  std::vector<uint8_t> emits_;     // per layer
+  std::vector<uint8_t> scatters_;  // [kind][layer]
+  std::unique_ptr<SkyTable> sky_, view_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Atmosphere> make_stratified_air(const AirSpec& spec, const SpectralState& state,
+                                                      std::vector<Beam> beams) {
+  return std::make_unique<StratifiedAir>(spec, state, std::move(beams));
+}
+
+}  // namespace suite

@@ -1,0 +1,20 @@
+// The bins of spectral states under real air: intervals so narrow that gases are alike within them, split into g-points
+// where gases absorb (libs/air).
+#pragma once
+#include <span>
+
+#include "air/air_spec.h"
+#include "spectral/state.h"
+
+namespace suite {
+
+struct AirBins {
+  SpectralState intervals;  // evenly divided, before they are split
+  SpectralState state;
+};
+// Intervals at most 10 nm or, beyond 2.58 um, 15 cm-1 wide, and at most half as wide as the narrowest band. The first
+// g-point of an interval is the one that gases absorb least, so reference and knots are transparent. Error: bands
+// beyond what the gases are known for.
+AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
+
+}  // namespace suite

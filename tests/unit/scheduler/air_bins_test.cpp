@@ -1,0 +1,54 @@
+// Bins under real air: widths of intervals, g-points, and what stands for an interval.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scheduler/air_bins.h"
+#include "support/message_of.h"
+
+namespace suite {
+namespace {
+
+AirSpec air() {
+  AirSpec a;
+  a.profile = standard_profile("us_standard");
+  a.gases = shared_builtin_gases();
+  return a;
+}
+
+TEST(AirBins, IntervalsAreNarrowAndSplitWhereGasesAbsorb) {
+  const std::vector<Band> bands{Band::rectangular("oxygen", 0.762, 0.03), Band::rectangular("clear", 0.865, 0.03),
+                                Band::rectangular("water", 6.3, 0.5)};
+  const SpectralState state = make_state(bands, 0.01);
+  const AirBins bins = bins_in_air(air(), state, bands);
+  double sum = 0;
+  size_t split = 0, whole = 0;
+  for (size_t i = 0; i < bins.state.size(); ++i) {
+    const Bin& b = bins.state.bins[i];
+    const double widest = std::max(0.01, 15e-4 * b.center_um() * b.center_um());
+    EXPECT_LT(b.high_um - b.low_um, 1.05 * widest);
+    EXPECT_LE(b.high_um - b.low_um, 0.0151);  // half of the narrowest band
+    sum += b.weight;
+    const bool alone = b.g == 0 && (i + 1 == bins.state.size() || bins.state.bins[i + 1].g == 0);
+    ++(alone ? whole : split);
+    EXPECT_TRUE(alone || std::fabs(b.center_um() - 0.865) > 0.005) << b.center_um();
+  }
+  EXPECT_NEAR(sum, static_cast<double>(bins.intervals.size()), 1e-9);
+  EXPECT_GT(split, whole);
+  for (const size_t knot : bins.state.knots) EXPECT_EQ(bins.state.bins[knot].g, 0u);
+  const BandProjection projection(bins.state, bands);
+  for (size_t band = 0; band < bands.size(); ++band) {
+    double whole_band = 0;
+    for (size_t i = 0; i < bins.state.size(); ++i) whole_band += projection.weight(band, i);
+    EXPECT_NEAR(whole_band, 1, 1e-9);
+  }
+}
+
+TEST(AirBins, BandsThatGasesAreNotKnownForAreNamed) {
+  const std::vector<Band> bands{Band::rectangular("deep", 0.15, 0.01)};
+  EXPECT_NE(message_of([&] { bins_in_air(air(), make_state(bands, 0.01), bands); }).find("gases are known from"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace suite
