@@ -30,9 +30,6 @@ struct AirColumn {
   size_t ground = 0;  // level of the ground that the diffuse field stands on
 
   size_t layers() const { return shells.layers(); }
-  std::span<const float> of_layer(const std::vector<float>& values, size_t layer) const {
-    return {&values[layer * bins], bins};
-  }
 };
 
 // Bakes air for a state, whose g-points are those of with_gas_points. Error: bands beyond what gases or particles are

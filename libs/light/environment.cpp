@@ -35,12 +35,28 @@ double curvature_radius(double latitude_deg) {
   return a * std::sqrt(1 - e2) / (1 - e2 * s * s);
 }
 
+// What the way of following its light leaves out.
+std::string neglected(const AirSpec& air) {
+  if (air.scattering == AirScattering::traced) return {};
+  const std::string shadows = "shadows that the scene throws into the air";
+  if (air.scattering == AirScattering::single)
+    return "air: light is scattered once; what is scattered more often, also between ground and air, and " + shadows +
+           " are left out";
+  return strf(
+             "air: light between ground and air is that of an even ground (albedo %.3g to %.3g); what single places "
+             "send "
+             "into it (adjacency) and ",
+             air.ground_albedo.min(), air.ground_albedo.max()) +
+         shadows + " are left out";
+}
+
 // Air over the scene's place on Earth, where that is known.
 std::shared_ptr<const AirSpec> placed(const std::shared_ptr<const AirSpec>& air, const Scene& scene,
                                       std::vector<std::string>& said) {
   if (!air) return air;
   said.insert(said.end(), air->notes.begin(), air->notes.end());
   if (air->gases) said.push_back("gases: " + air->gases->note());
+  if (const std::string left_out = neglected(*air); !left_out.empty()) said.push_back(left_out);
   if (air->scene_height) return air;
   auto here = std::make_shared<AirSpec>(*air);
   here->scene_height = scene.origin.given ? scene.origin.ellipsoid_height_m : 0;

@@ -29,7 +29,7 @@ class StratifiedAir final : public Atmosphere {
     }
     bake_emission();
     if (spec.scattering == AirScattering::diffuse)
-      diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &report_);
+      diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, nullptr);
     tabulate_sky();
   }
 
@@ -257,7 +257,6 @@ class StratifiedAir final : public Atmosphere {
   size_t bins_;
   std::vector<double> bounds_;
   std::vector<BeamTable> tables_;
-  DiffuseReport report_;
   std::vector<float> emission_;    // [layer][end][bin]
   std::vector<uint8_t> emits_;     // per layer
   std::vector<uint8_t> scatters_;  // [kind][layer]
