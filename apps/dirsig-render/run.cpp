@@ -69,8 +69,9 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
     if (r.met()) continue;
     warn(strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(), r.band.c_str(),
               100 * r.reached, r.under.c_str(), 100 * r.wanted,
-              r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
-                       : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
+              r.g_points > 0 ? "real air is carried in even intervals: give a smaller spectral_step_um"
+              : r.chosen     ? "more bins are not carried: its spectra have lines that are finer still"
+                             : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
   }
 }
 
@@ -234,7 +235,13 @@ void check_sensors(Simulation& sim, const Scene& scene) {
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
-    for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
+    for (const std::string& channel : sensor->channels()) {
+      channel_rows().find(channel);
+      if (channel == "path_radiance" && sim.sources.air && sim.sources.air->scattering == AirScattering::traced)
+        throw Error(sim.sources.air->where,
+                    "sensor '" + sensor->name() + "' asks for path_radiance, which traced air has not got",
+                    "its light comes by paths, as that of any medium: ask for unscattered, single_scattering, ...");
+    }
     choose_bins_of(*sensor, scene, standing);
   }
 }

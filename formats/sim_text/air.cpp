@@ -12,6 +12,16 @@ namespace {
 
 std::vector<std::string> names_of(std::span<const std::string_view> names) { return {names.begin(), names.end()}; }
 
+// Makes something of what p says; what is wrong with it is told there.
+template <class Make>
+auto located(const Params& p, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& e) {
+    throw e.where().file.empty() ? p.error(e.message(), e.hint()) : e;
+  }
+}
+
 AirProfile read_the_profile(const Params& p, std::vector<std::string>& notes) {
   const std::string name = p.as_text();
   const std::vector<std::string> known = names_of(standard_profiles());
@@ -46,11 +56,7 @@ AirProfile read_scaled(const Params& p, std::vector<std::string>& notes) {
       scaling.at_ground[static_cast<size_t>(*which)] = 1e-6 * shares->number_in(gas, 0, 1e6, "ppm at the lowest level");
     }
   const AirProfile profile = read_the_profile(p.at("profile"), notes);
-  try {
-    return scaled(profile, scaling);
-  } catch (const Error& e) {
-    throw p.error(e.message(), e.hint());
-  }
+  return located(p, [&] { return scaled(profile, scaling); });
 }
 
 std::string file_of(const Params& p, const char* otherwise) {
@@ -82,22 +88,20 @@ ParticleSpec read_particles(const Params& p, const char* key, bool aerosol) {
     if (kind.aerosol == aerosol) known.push_back(kind.name);
   ParticleSpec spec;
   spec.name = known[p.at(key).as_choice(known)];
-  if (aerosol) {
-    spec.relative_humidity = p.number_in("relative_humidity", 0, 0.99, "", spec.relative_humidity);
+  // Each only where it changes anything; elsewhere the key is left unread and refused.
+  if (spec.name == "desert")
     spec.wind_m_s = p.number_in("wind_m_s", 0, 30, "m/s", spec.wind_m_s);
-  } else {
-    spec.effective_radius_um = p.number_in("effective_radius_um", 1, 100, "um", spec.effective_radius_um);
-  }
+  else if (aerosol && spec.name != "stratosphere")
+    spec.relative_humidity = p.number_in("relative_humidity", 0, 0.99, "", spec.relative_humidity);
+  if (!aerosol) spec.effective_radius_um = p.number_in("effective_radius_um", 1, 100, "um", spec.effective_radius_um);
+  const double middle[] = {0.55};
+  located(p, [&] { particle_optics(spec, middle); });
   return spec;
 }
 
 AirSpec::Aerosol read_aerosol(const Params& p) {
   AirSpec::Aerosol a;
   a.boundary = read_particles(p, "model", true);
-  using Season = AerosolProfile::Season;
-  Season season = Season::spring_summer;
-  if (const auto given = p.find("season"))
-    season = given->as_choice({"spring_summer", "fall_winter"}) ? Season::fall_winter : Season::spring_summer;
   const auto depth = p.find("depth_550");
   if (depth && p.has("visibility_km"))
     throw depth->error("both a depth and a visibility are given", "drop one of the two");
@@ -107,7 +111,12 @@ AirSpec::Aerosol read_aerosol(const Params& p) {
     a.one_kind = true;
     return a;
   }
-  a.profile = AerosolProfile(1000 * p.number_in("visibility_km", 0.01, 337, "km", 23), season);
+  using Season = AerosolProfile::Season;
+  Season season = Season::spring_summer;
+  if (const auto given = p.find("season"))
+    season = given->as_choice({"spring_summer", "fall_winter"}) ? Season::fall_winter : Season::spring_summer;
+  const double visibility = 1000 * p.number_in("visibility_km", 0.01, 337, "km", 23);
+  a.profile = located(p, [&] { return AerosolProfile(visibility, season); });
   if (depth) a.profile = a.profile.with_depth(depth->as_number_in(0, 100, ""));
   return a;
 }
@@ -127,6 +136,17 @@ AirSpec::Cloud read_cloud(const Params& p) {
         depth->as_number_in(0, 1e5, "") / (particle_optics(c.particles, middle).extinction(0) * (c.top - c.base));
   }
   return c;
+}
+
+// What was read and does nothing in this air is told, not refused: one file serves all ways of following its light.
+void note_unused(const Params& p, AirSpec& air) {
+  const auto unused = [&](std::initializer_list<const char*> keys, const char* why) {
+    for (const char* key : keys)
+      if (p.has(key)) air.notes.push_back(strf("atmosphere: '%s' does nothing %s", key, why));
+  };
+  if (air.scattering != AirScattering::diffuse)
+    unused({"streams", "ground_albedo", "ground_temperature_k"}, "without `scattering: diffuse`");
+  if (!air.gases) unused({"g_points", "ppm", "ozone_du"}, "without gases");
 }
 
 }  // namespace
@@ -153,6 +173,7 @@ std::shared_ptr<const AirSpec> read_air(const Params& p, const LightContext& con
     if (air->ground_albedo.max() > 1) throw albedo->error("the albedo exceeds 1");
   }
   if (p.has("ground_temperature_k")) air->ground_temperature = p.number_in("ground_temperature_k", 1, 2000, "K");
+  note_unused(p, *air);
   check_air(*air);
   return air;
 }

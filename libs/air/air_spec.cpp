@@ -17,7 +17,7 @@ std::vector<AirLevel> air_levels(const AirSpec& spec) {
   };
   for (double h = 0;
        const Steps& s : {Steps{3e3, 250}, Steps{10e3, 500}, Steps{25e3, 1e3}, Steps{50e3, 2.5e3}, Steps{1e6, 10e3}})
-    for (; h < s.to && h < top; h += s.step) add(h);
+    for (; h < s.to && h < top; h += s.step / spec.closer) add(h);
   for (const AirSpec::Cloud& c : spec.clouds) add(c.base), add(c.top);
   add(spec.height_of_ground());
   if (spec.aerosol && !spec.aerosol->one_kind)

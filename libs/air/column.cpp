@@ -166,7 +166,12 @@ class Baker {
 
 AirColumn bake_column(const AirSpec& spec, const SpectralState& state) {
   check_air(spec);
-  return Baker(spec, state).bake();
+  try {
+    return Baker(spec, state).bake();
+  } catch (const Error& e) {
+    if (!e.where().file.empty()) throw;
+    throw Error(spec.where, "the atmosphere: " + e.message(), e.hint());
+  }
 }
 
 SpectralState with_gas_points(const AirSpec& spec, const SpectralState& state) {

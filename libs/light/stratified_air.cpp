@@ -46,18 +46,23 @@ class StratifiedAir final : public Atmosphere {
 
   void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
     const Vec3 end = from + d * distance;
-    if (!view_ || !seen_from_above(from, d, end)) return integrate(from, d, distance, T, S);
+    if (!seen_from_above(from, d, end)) return integrate(from, d, distance, T, S);
     transmittance(from, d, distance, T);
-    const Vec3 up = Frame::with_tangent(column_.shells.up(end), {1, 0, 0}).to_local(-d);
-    view_->radiance(column_.shells.height(end), up, S);
+    view_->radiance(column_.shells.height(end), to_local(end, -d), S);
   }
 
  private:
-  // Whether a way comes through all of the air down to a place where the table of views holds: not far from the scene's
-  // origin, where the sun stands as there, and not too slant.
+  // Tables are those of the scene's origin; so far from it the sun stands as there, within 0.3 degrees.
+  static bool near_origin(Vec3 p) {
+    constexpr double kFar = 3e4;  // m
+    return std::fabs(p.x) < kFar && std::fabs(p.y) < kFar;
+  }
+  // A direction in the frame of the local vertical; azimuths are the scene's.
+  Dir to_local(Vec3 p, Dir d) const { return Frame::with_tangent(column_.shells.up(p), {1, 0, 0}).to_local(d); }
+  // Whether a way comes through all of the air down to a place where the table of views holds, and not too slant.
   bool seen_from_above(Vec3 from, Dir d, Vec3 end) const {
-    constexpr double kFar = 3e4, kSlant = 0.17;
-    return std::fabs(end.x) < kFar && std::fabs(end.y) < kFar && d.z < -kSlant && SkyTable::covers(end.z, -d) &&
+    constexpr double kSlant = 0.17;
+    return near_origin(end) && d.z < -kSlant && SkyTable::covers(column_.shells.height(end), -d) &&
            column_.shells.height(from) >= bounds_.back();
   }
   void integrate(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const {
@@ -67,7 +72,7 @@ class StratifiedAir final : public Atmosphere {
     bool first = true;
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
       const Vec3 middle = from + d * (0.5 * (piece.near + piece.far));
-      pass(piece, s, d, column_.shells.up(middle));
+      pass(piece, s, middle, d);
       for (size_t b = 0; b < beams_.size(); ++b) {
         BeamAt &near = s.near[b], &far = s.far[b];
         if (first)
@@ -84,9 +89,12 @@ class StratifiedAir final : public Atmosphere {
 
  public:
   void skylight(Vec3 from, Dir d, std::span<float> T, std::span<float> S) const override {
-    if (!sky_->covers(from.z, d)) return path(from, d, std::numeric_limits<double>::infinity(), T, S);
+    const Dir local = to_local(from, d);
+    const double height = column_.shells.height(from);
+    if (!near_origin(from) || !SkyTable::covers(height, local))
+      return integrate(from, d, std::numeric_limits<double>::infinity(), T, S);
     transmittance(from, d, std::numeric_limits<double>::infinity(), T);
-    sky_->radiance(from.z, d, S);
+    sky_->radiance(height, local, S);
   }
   const Light* sky() const override { return sky_->light(); }
   double sky_density(Dir d) const override { return sky_->density(d); }
@@ -97,7 +105,7 @@ class StratifiedAir final : public Atmosphere {
     const float *low = &emission_[2 * l * bins_], *high = low + bins_;
     for (size_t i = 0; i < bins_; ++i) to[i] = 0.5f * (low[i] + high[i]);
     if (!diffuse_) return;
-    const DiffuseSource::Corners corners = corners_of(d, column_.shells.up(from));
+    const DiffuseSource::Corners corners = corners_of(from, d);
     for (size_t c = 0; c < 4; ++c) {
       const float *bottom = diffuse_->at(l, 0, corners.at[c]), *top = diffuse_->at(l, 1, corners.at[c]);
       for (size_t i = 0; i < bins_; ++i) to[i] += corners.weight[c] * 0.5f * (bottom[i] + top[i]);
@@ -189,7 +197,7 @@ class StratifiedAir final : public Atmosphere {
   }
 
   // Depth of the piece and the mean of its source.
-  void pass(const Shells::Piece& piece, Scratch& s, Dir d, Dir up) const {
+  void pass(const Shells::Piece& piece, Scratch& s, Vec3 middle, Dir d) const {
     const size_t l = piece.layer;
     const double low = bounds_[l], thickness = bounds_[l + 1] - low;
     const auto share = [&](double height) {
@@ -205,14 +213,14 @@ class StratifiedAir final : public Atmosphere {
     };
     if (emits_[l]) add(&emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], 1);
     if (!diffuse_) return;
-    const DiffuseSource::Corners corners = corners_of(d, up);
+    const DiffuseSource::Corners corners = corners_of(middle, d);
     for (size_t c = 0; c < 4; ++c)
       if (corners.weight[c] > 0)
         add(diffuse_->at(l, 0, corners.at[c]), diffuse_->at(l, 1, corners.at[c]), corners.weight[c]);
   }
 
-  DiffuseSource::Corners corners_of(Dir d, Dir up) const {
-    const Vec3 local = Frame::with_tangent(up, {1, 0, 0}).to_local(d);
+  DiffuseSource::Corners corners_of(Vec3 at, Dir d) const {
+    const Dir local = to_local(at, d);
     return diffuse_->corners(local.z, azimuth(local));
   }
   void phase_of(size_t b, Dir d, Scratch& s) const {

@@ -22,7 +22,10 @@ double widest_at(double wavelength_um) {
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
   double narrowest = INFINITY;
   for (const Band& b : bands) narrowest = std::min(narrowest, b.high_um() - b.low_um());
-  const double limit = 0.5 * narrowest;
+  double limit = 0.5 * narrowest;
+  if (state.choice.widest_um > 0) limit = std::min(limit, state.choice.widest_um);
+  if (!(state.choice.error > 0))  // even bins of this width are wanted
+    for (const Bin& b : state.bins) limit = std::min(limit, b.high_um - b.low_um);
   AirBins bins;
   SpectralState fine = make_state(bands, std::min({kFinest, limit}));
   bins.intervals = state;

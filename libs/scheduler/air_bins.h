@@ -12,9 +12,10 @@ struct AirBins {
   SpectralState intervals;  // evenly divided, before they are split
   SpectralState state;
 };
-// Intervals at most 10 nm or, beyond 2.58 um, 15 cm-1 wide, and at most half as wide as the narrowest band. The first
-// g-point of an interval is the one that gases absorb least, so reference and knots are transparent. Error: bands
-// beyond what the gases are known for.
+// Intervals at most 10 nm or, beyond 2.58 um, 15 cm-1 wide, at most half as wide as the narrowest band, and no wider
+// than the state's choice or even bins ask for. What is seen in them does not choose them. The first g-point of an
+// interval is the one that gases absorb least, so reference and knots are transparent. Error: bands beyond what the
+// gases are known for.
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
 
 }  // namespace suite

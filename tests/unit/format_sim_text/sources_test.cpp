@@ -43,6 +43,11 @@ TEST(Sources, AirIsReadAsItIsWritten) {
   EXPECT_EQ(s.air->streams, 8);
   EXPECT_EQ(s.air->height_of_scene(), 1200);
   EXPECT_NEAR(s.air->aerosol->profile.depth(), 0.3, 1e-6);
+  // What does nothing once light is scattered once, or without gases.
+  std::string notes;
+  for (const std::string& n : s.air->notes) notes += n + "\n";
+  for (const char* key : {"'streams'", "'ground_albedo'", "'g_points'", "'ppm'"})
+    EXPECT_THAT(notes, testing::HasSubstr(key));
   const double middle[] = {0.55};
   EXPECT_NEAR(s.air->clouds[0].content * 500 * particle_optics(s.air->clouds[0].particles, middle).extinction(0), 5,
               1e-6);
@@ -72,6 +77,13 @@ const BadCase kBad[] = {
     {"atmosphere: {profile: tropical, aerosol: {model: rural, scale_height_m: 1000}}", "depth_550"},
     {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000}]}", "content_g_m3"},
     {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 900, depth_550: 1}]}", "900"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, wind_m_s: 3}}", "wind_m_s"},
+    {"atmosphere: {profile: tropical, aerosol: {model: desert, relative_humidity: 0.5}}", "relative_humidity"},
+    {"atmosphere: {profile: tropical, aerosol: {model: rural, depth_550: 1, scale_height_m: 900, season: fall_winter}}",
+     "season"},
+    {"atmosphere: {profile: tropical, clouds: [{kind: water, base_m: 1000, top_m: 2000, depth_550: 1, "
+     "effective_radius_um: 50}]}",
+     "50"},
     {"atmosphere: {profile: tropical, streams: 7}", "7 streams are not even"},
     {"atmosphere: {profile: tropical, ground_albedo: 1.2}", "the albedo exceeds 1"},
     {"atmosphere: {profile: tropical, g_points: 99}", "99"},

@@ -44,6 +44,15 @@ TEST(AirBins, IntervalsAreNarrowAndSplitWhereGasesAbsorb) {
   }
 }
 
+TEST(AirBins, UsersMakeThemNarrower) {
+  const std::vector<Band> bands{Band::rectangular("wide", 0.7, 0.1)};
+  SpectralState state = make_state(bands, 0.01);
+  state.choice = {1e-3, 0.004, 4};
+  for (const Bin& b : bins_in_air(air(), state, bands).intervals.bins) EXPECT_LE(b.high_um - b.low_um, 0.0040001);
+  state = make_state(bands, 0.005);
+  for (const Bin& b : bins_in_air(air(), state, bands).intervals.bins) EXPECT_LE(b.high_um - b.low_um, 0.0050001);
+}
+
 TEST(AirBins, BandsThatGasesAreNotKnownForAreNamed) {
   const std::vector<Band> bands{Band::rectangular("deep", 0.15, 0.01)};
   EXPECT_NE(message_of([&] { bins_in_air(air(), make_state(bands, 0.01), bands); }).find("gases are known from"),
