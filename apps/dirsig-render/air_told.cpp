@@ -46,7 +46,7 @@ DiffuseReport light_of(const AirSpec& air, const AirColumn& column, const Spectr
   for (const LightSpecPtr& light : sources.lights)
     if (const FarDisk* disk = light->disk()) {
       beams.push_back({normalized(disk->direction), irradiance[beams.size()].data()});
-      tables.emplace_back(column.shells, column.shells.heights()[column.ground], column.extinction, column.bins);
+      tables.push_back(bake_beam_table(air, column));
     }
   DiffuseReport report;
   solve_diffuse_field(air, column, state, beams, tables, &report);

@@ -1,5 +1,6 @@
 #include "continued.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/files.h"
@@ -13,14 +14,14 @@ namespace {
 
 std::string hash_of_file(const std::string& path) { return sha256(read_bytes(path, size_t{1} << 40)); }
 
-// Bins follow from the curves that the simulation names, which may have changed.
-std::string hash_of_bins(const Simulation& sim) {
+// Curves, profiles, images, tracks and whatever else the simulation names; scenes have a hash of their own.
+std::string hash_of_named(const Simulation& sim) {
   std::string all;
-  for (const auto& sensor : sim.sensors)
-    for (const SpectralState& s : sensor->states()) {
-      for (const Bin& b : s.bins) all += strf("%a %a ", b.low_um, b.high_um);
-      for (const double share : s.shares) all += strf("%a ", share);
-    }
+  for (const std::string& file : sim.files) {
+    const bool scene =
+        std::any_of(sim.scenes.begin(), sim.scenes.end(), [&](const SimulationScene& s) { return s.path == file; });
+    if (!scene && std::filesystem::is_regular_file(file)) all += hash_of_file(file);
+  }
   return sha256(all);
 }
 
@@ -32,7 +33,7 @@ StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
   for (const SimulationScene& s : sim.scenes) scenes += hash_of_file(s.path);
   return {{"scene", sim.scenes.size() == 1 ? scenes : sha256(scenes)},
           {"simulation", hash_of_text(sim)},
-          {"spectral bins", hash_of_bins(sim)},
+          {"files named", hash_of_named(sim)},
           {"seed", strf("%llu", static_cast<unsigned long long>(options.pipeline.seed))},
           {"build", hash_of_file("/proc/self/exe")},
           {"engine", Tracer::engine()}};

@@ -59,7 +59,11 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.flag(
       "--air", o.air,
       "print the layers of real air (`atmosphere: {profile: ...}`) and, for each band, what they let through and the "
-      "light at the ground, and stop");
+      "light at the ground, and stop; of a deck (.tp5, .ltn, tape5) in place of a simulation: its paths in our air");
+  cli.option("--against", o.against,
+             "with --air and a deck: what the deck's own program wrote (tape7, .json), and the "
+             "differences from it",
+             "FILE");
   cli.option("--explain", o.explain, "say when a part of a scene is loaded and when it is left out, and stop",
              "FEATURE");
   cli.flag("--load-all", o.load_all, "load what no sensor can see, too, to compare; results agree to rounding");

@@ -11,7 +11,7 @@ struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins, settings;
   std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory,
-                                            memory, ranks, link;
+                                            memory, ranks, link, against;
   std::string part, plan;          // K/N; folder of a state of the whole
   std::vector<std::string> merge;  // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;

@@ -14,6 +14,7 @@
 #include "base/progress.h"
 #include "budget_options.h"
 #include "continued.h"
+#include "deck_told.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -31,6 +32,7 @@
 #include "scheduler/features.h"
 #include "scheduler/moments.h"
 #include "scheduler/prepass.h"
+#include "scheduler/through_tables.h"
 #include "sensor/plugin.h"
 #include "start.h"
 #include "study.h"
@@ -210,6 +212,9 @@ std::optional<int> answer(const RenderOptions& o) {
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
   if (!o.explain.empty()) return print(explain(o.explain));
+  const bool deck = o.air && is_deck(o.simulation);
+  if (!o.against.empty() && !deck) throw UsageError("--against belongs to --air and a deck (.tp5, .ltn, tape5)");
+  if (deck) return print(deck_text(o.simulation, o.against));
   return std::nullopt;
 }
 
@@ -224,24 +229,35 @@ void check_usage(const Cli& cli, const RenderOptions& o) {
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
 }
 
+// Refuses what is asked of air that is not there, or not known apart.
+void check_air_asked(const Simulation& sim, const Sensor& sensor) {
+  const AirSpec* air = sim.sources.air.get();
+  const bool traced = air && air->scattering == AirScattering::traced;
+  const auto refuse = [&](const std::string& what) {
+    throw Error(air ? air->where : Where{}, "sensor '" + sensor.name() + "' asks for " + what,
+                traced ? "traced air brings its light by paths, as any medium: ask for unscattered, adjacency, ..."
+                       : "give `atmosphere: {profile: us_standard}`");
+  };
+  for (const std::string& channel : sensor.channels())
+    if (channel == "path_radiance" && traced) refuse(channel + ", which traced air has not got");
+  for (const std::string& truth : sensor.truth())
+    if (truth.starts_with("air_") && (!air || traced)) refuse("the truth " + truth + ", which needs real air");
+}
+
 // Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
 void check_sensors(Simulation& sim, const Scene& scene) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
   note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors)));
+  look_through_tables(sim.sources, scene, sim.sensors);
   for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
-    for (const std::string& channel : sensor->channels()) {
-      channel_rows().find(channel);
-      if (channel == "path_radiance" && sim.sources.air && sim.sources.air->scattering == AirScattering::traced)
-        throw Error(sim.sources.air->where,
-                    "sensor '" + sensor->name() + "' asks for path_radiance, which traced air has not got",
-                    "its light comes by paths, as that of any medium: ask for unscattered, single_scattering, ...");
-    }
+    for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
+    check_air_asked(sim, *sensor);
     choose_bins_of(*sensor, scene, standing);
   }
 }

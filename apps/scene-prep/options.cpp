@@ -11,8 +11,10 @@ AppInfo scene_prep_info() {
           "  scene-prep scene.yaml -o scene.h5 --report report.json\n"
           "  scene-prep --summary scene.h5\n"
           "  scene-prep scene.h5 --quick-look tower.png --look-at tower --look-from '135 20'\n"
+          "  scene-prep --gases recipe.yaml -o gases.h5\n"
           "  scene-prep --list-issues\n"
-          "Exit codes: 0 written, 1 refused, 2 wrong usage, 3 a bug of ours. Grammar: formats/scene_text/FORMAT.md."};
+          "Exit codes: 0 written, 1 refused, 2 wrong usage, 3 a bug of ours. Grammar: formats/scene_text/FORMAT.md, "
+          "of recipes formats/gas_recipe/FORMAT.md."};
 }
 
 void declare(Cli& cli, ScenePrepOptions& o) {
@@ -39,6 +41,10 @@ void declare(Cli& cli, ScenePrepOptions& o) {
       "[DATASET=]HOW");
   cli.flag("--no-crossing-check", o.quick, "do not look for triangles that cross each other");
   cli.flag("--force", o.force, "prepare again even when inputs, options and version are unchanged");
+  cli.option("--gases", o.gases,
+             "in place of a scene: bake the table of gas absorption of this recipe from line lists, for `atmosphere: "
+             "{gases: FILE.h5}`; without -o only read it and what it names",
+             "RECIPE.yaml");
   cli.flag("--list-issues", o.list_issues, "print every code that a check can bring up");
   cli.flag("--list-importers", o.list_importers, "print what scenes can be made from");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters");

@@ -17,6 +17,7 @@
 #include "formats/obj/obj.h"
 #include "formats/picture/picture.h"
 #include "formats/scene_hdf/scene_hdf.h"
+#include "gases.h"
 #include "importers.h"
 #include "mesh/check.h"
 #include "optics/phase_function.h"
@@ -226,9 +227,15 @@ LookAt parse_look(const ScenePrepOptions& o, const Tracer& tracer, double time) 
   return look;
 }
 
+// Anything of how a scene text is prepared was asked for, but where to and with what values.
+bool goes_with_a_scene(const ScenePrepOptions& o) {
+  return !o.input.empty() || !o.search.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() ||
+         o.strict || o.repair || o.quick || o.force;
+}
+
 // Questions about a scene that has been prepared.
 int inspect(const ScenePrepOptions& o) {
-  if (!o.output.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() || !o.settings.empty() ||
+  if (!o.output.empty() || !o.settings.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() ||
       o.strict || o.repair || o.quick || o.force)
     throw UsageError(
         "--output, --set, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
@@ -261,8 +268,12 @@ int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
   if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
-  if (o.input.empty()) throw UsageError("an input is needed");
   const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();
+  if (!o.gases.empty()) {
+    if (questions || goes_with_a_scene(o)) throw UsageError("--gases takes --output and --set alone");
+    return bake_gases(o);
+  }
+  if (o.input.empty()) throw UsageError("an input is needed");
   return questions ? inspect(o) : prepare(o);
 }
 

@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "formats/air_table/air_table.h"
 #include "formats/hitran/hitran.h"
+#include "formats/particles/particles.h"
 #include "formats/profile/profile.h"
 #include "formats/reptran/reptran.h"
 
@@ -82,7 +83,23 @@ std::shared_ptr<const GasProvider> read_gases(const Params& p, std::vector<std::
   return representative_gases(std::move(read.table));
 }
 
-ParticleSpec read_particles(const Params& p, const char* key, bool aerosol) {
+// A user's own; of an aerosol the extinction over that at 0.55 um.
+std::shared_ptr<const ParticleData> read_optics(const Params& p, bool aerosol, std::vector<std::string>& notes) {
+  const std::string path = file_of(p, "a file of formats/particles");
+  ReadParticles read = read_particles(path);
+  for (const std::string& sentence : read.notes) notes.push_back(path + ": " + sentence);
+  return located(p, [&] {
+    return std::make_shared<const ParticleData>(aerosol ? relative(std::move(read.data)) : std::move(read.data));
+  });
+}
+
+ParticleSpec read_kind(const Params& p, const char* key, bool aerosol, std::vector<std::string>& notes) {
+  if (const auto optics = p.find("optics")) {
+    if (p.has(key)) throw optics->error(strf("both `optics` and `%s`", key), "drop one of the two");
+    ParticleSpec spec;
+    spec.data = read_optics(*optics, aerosol, notes);
+    return spec;
+  }
   std::vector<std::string> known;
   for (const ParticleKind& kind : particle_kinds())
     if (kind.aerosol == aerosol) known.push_back(kind.name);
@@ -99,9 +116,9 @@ ParticleSpec read_particles(const Params& p, const char* key, bool aerosol) {
   return spec;
 }
 
-AirSpec::Aerosol read_aerosol(const Params& p) {
+AirSpec::Aerosol read_aerosol(const Params& p, std::vector<std::string>& notes) {
   AirSpec::Aerosol a;
-  a.boundary = read_particles(p, "model", true);
+  a.boundary = read_kind(p, "model", true, notes);
   const auto depth = p.find("depth_550");
   if (depth && p.has("visibility_km"))
     throw depth->error("both a depth and a visibility are given", "drop one of the two");
@@ -121,19 +138,30 @@ AirSpec::Aerosol read_aerosol(const Params& p) {
   return a;
 }
 
-AirSpec::Cloud read_cloud(const Params& p) {
+// Extinction of a unit of a cloud at 0.55 um; nothing when its particles do not say.
+std::optional<double> green_of(const ParticleSpec& particles) {
+  if (particles.data) return particles.data->green();
+  const double middle[] = {0.55};
+  return particle_optics(particles, middle).extinction(0);
+}
+
+AirSpec::Cloud read_cloud(const Params& p, std::vector<std::string>& notes) {
   AirSpec::Cloud c;
-  c.particles = read_particles(p, "kind", false);
+  c.particles = read_kind(p, "kind", false, notes);
   c.base = p.number_in("base_m", -1000, 30000, "m above sea level");
   c.top = p.number_in("top_m", c.base + 1, 40000, "m above sea level");
   const auto depth = p.find("depth_550"), content = p.find("content_g_m3");
   if (!depth == !content) throw p.error("a cloud has either `depth_550` or `content_g_m3`", "give one of the two");
   if (content) {
+    if (c.particles.data && c.particles.data->relative)
+      throw content->error("a content of particles whose extinction is relative", "give `depth_550`");
     c.content = 1e-3 * content->as_number_in(0, 100, "g/m3");
   } else {
-    const double middle[] = {0.55};
-    c.content =
-        depth->as_number_in(0, 1e5, "") / (particle_optics(c.particles, middle).extinction(0) * (c.top - c.base));
+    const std::optional<double> green = green_of(c.particles);
+    if (!green || !(*green > 0))
+      throw depth->error("a depth at 0.55 um of particles whose extinction there is 0 or unknown",
+                         "give `content_g_m3`, or optics with extinction_relative");
+    c.content = depth->as_number_in(0, 1e5, "") / (*green * (c.top - c.base));
   }
   return c;
 }
@@ -145,7 +173,8 @@ void note_unused(const Params& p, AirSpec& air) {
       if (p.has(key)) air.notes.push_back(strf("atmosphere: '%s' does nothing %s", key, why));
   };
   if (air.scattering != AirScattering::diffuse)
-    unused({"streams", "ground_albedo", "ground_temperature_k"}, "without `scattering: diffuse`");
+    unused({"streams", "ground_albedo", "ground_temperature_k", "adjacency"}, "without `scattering: diffuse`");
+  if (air.scattering == AirScattering::traced) unused({"refraction"}, "with `scattering: traced`");
   if (!air.gases) unused({"g_points", "ppm", "ozone_du"}, "without gases");
 }
 
@@ -158,12 +187,13 @@ std::shared_ptr<const AirSpec> read_air(const Params& p, const LightContext& con
   air->gases = read_gases(p, air->notes);
   air->points.most = static_cast<int>(p.integer("g_points", 1, 16, air->points.most));
   air->molecules = p.boolean("rayleigh", true);
-  if (const auto aerosol = p.find("aerosol")) air->aerosol = read_aerosol(*aerosol);
+  if (const auto aerosol = p.find("aerosol")) air->aerosol = read_aerosol(*aerosol, air->notes);
   if (const auto clouds = p.find("clouds"))
-    for (const Params& cloud : clouds->items()) air->clouds.push_back(read_cloud(cloud));
+    for (const Params& cloud : clouds->items()) air->clouds.push_back(read_cloud(cloud, air->notes));
   if (p.has("scene_height_m")) air->scene_height = p.number_in("scene_height_m", -1000, 20000, "m above sea level");
   if (p.has("ground_height_m")) air->ground_height = p.number_in("ground_height_m", -1000, 20000, "m above sea level");
   if (const auto earth = p.find("shape")) air->round = earth->as_choice({"round", "flat"}) == 0;
+  air->refraction = p.boolean("refraction", false);
   if (const auto scattering = p.find("scattering"))
     air->scattering = static_cast<AirScattering>(scattering->as_choice({"single", "diffuse", "traced"}));
   air->streams = static_cast<int>(p.integer("streams", 4, 64, air->streams));
@@ -173,6 +203,7 @@ std::shared_ptr<const AirSpec> read_air(const Params& p, const LightContext& con
     if (air->ground_albedo.max() > 1) throw albedo->error("the albedo exceeds 1");
   }
   if (p.has("ground_temperature_k")) air->ground_temperature = p.number_in("ground_temperature_k", 1, 2000, "K");
+  air->adjacency = p.boolean("adjacency", true);
   note_unused(p, *air);
   check_air(*air);
   return air;

@@ -1,5 +1,6 @@
 #include <set>
 
+#include "formats/sim_text/air_tables.h"
 #include "formats/sim_text/context.h"
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
@@ -120,6 +121,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
     sim.sensors.push_back(make_sensor_at(p, context));
     sim.sensor_where.push_back(p.where());
     for (const AskedCurve& curve : asked) check_coverage(curve, *sim.sensors.back(), p.where());
+    if (sim.sources.tabled) check_coverage(*sim.sources.tabled, *sim.sensors.back(), p.where());
     if (!names.insert(sim.sensors.back()->name()).second)
       throw p.error("two sensors are named '" + sim.sensors.back()->name() + "'",
                     "give each its own `name`: it names the output files");
@@ -130,6 +132,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
       throw Error(root.at("output").at("previews").where(sensor), "there is no sensor '" + sensor + "'",
                   name_hint(sensor, std::vector<std::string>(names.begin(), names.end())));
   root.reject_unread();
+  sim.files.assign(root.paths().begin(), root.paths().end());
   return sim;
 }
 

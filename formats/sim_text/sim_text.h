@@ -52,6 +52,7 @@ struct SimulationScene {
 struct Simulation {
   std::string path;
   std::vector<std::string> settings;  // applied to the text
+  std::vector<std::string> files;     // that the text names, the scenes' included
   std::vector<SimulationScene> scenes;
   std::string scene_path;  // of the first
   PipelineOptions pipeline;

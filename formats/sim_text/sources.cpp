@@ -5,6 +5,7 @@
 #include "formats/motion/motion.h"
 #include "formats/raster/raster.h"
 #include "formats/sim_text/air.h"
+#include "formats/sim_text/air_tables.h"
 #include "formats/sqt/sqt.h"
 #include "optics/phase_function.h"
 
@@ -186,7 +187,11 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
     s.add(std::move(lights));
   }
   if (const auto air = root.find("atmosphere")) {
-    if (air->has("profile")) {
+    if (air->has("tables")) {
+      s.tabled = read_tabled_air(*air);
+      if (const auto sky = root.find("sky"); sky && s.tabled->sky)
+        throw sky->error("a sky stands beside an atmosphere whose tables have one", "drop one of the two");
+    } else if (air->has("profile")) {
       s.air = read_air(*air, context);
       if (const auto sky = root.find("sky"))
         throw sky->error("a sky stands beside an atmosphere with a profile, which makes its own",

@@ -7,21 +7,7 @@
 
 namespace suite {
 
-namespace {
-
-struct Row {
-  Tape7Axis axis;
-  const char *name, *unit, *shown_unit;
-  double shown_per_unit;
-};
-constexpr Row kRows[] = {{Tape7Axis::view_zenith, "view zenith angle", "rad", "degrees", 1 / kDegree},
-                         {Tape7Axis::range, "range", "m", "m", 1},
-                         {Tape7Axis::observer_height, "observer's height", "m", "m", 1},
-                         {Tape7Axis::end_height, "height of the path's end", "m", "m", 1},
-                         {Tape7Axis::solar_zenith, "solar zenith angle", "rad", "degrees", 1 / kDegree},
-                         {Tape7Axis::relative_azimuth, "relative azimuth", "rad", "degrees", 1 / kDegree}};
-
-std::optional<double> value_of(const Tape7Block& run, Tape7Axis axis) {
+std::optional<double> tape7_value(const Tape7Block& run, Tape7Axis axis) {
   const Tape7Geometry& g = *run.geometry;
   const bool sun = run.mode == Tape7Mode::irradiance;
   switch (axis) {
@@ -41,6 +27,20 @@ std::optional<double> value_of(const Tape7Block& run, Tape7Axis axis) {
   return std::nullopt;
 }
 
+namespace {
+
+struct Row {
+  Tape7Axis axis;
+  const char *name, *unit, *shown_unit;
+  double shown_per_unit;
+};
+constexpr Row kRows[] = {{Tape7Axis::view_zenith, "view zenith angle", "rad", "degrees", 1 / kDegree},
+                         {Tape7Axis::range, "range", "m", "m", 1},
+                         {Tape7Axis::observer_height, "observer's height", "m", "m", 1},
+                         {Tape7Axis::end_height, "height of the path's end", "m", "m", 1},
+                         {Tape7Axis::solar_zenith, "solar zenith angle", "rad", "degrees", 1 / kDegree},
+                         {Tape7Axis::relative_azimuth, "relative azimuth", "rad", "degrees", 1 / kDegree}};
+
 // Range and the height of the end follow from each other and the angle: either as an axis frees the other.
 bool follows(Tape7Axis axis, std::span<const Tape7Axis> axes) {
   const auto has = [&](Tape7Axis a) { return std::find(axes.begin(), axes.end(), a) != axes.end(); };
@@ -57,7 +57,7 @@ void check_alike(const Tape7Block& run, const Tape7Block& first, std::span<const
     throw Error(run.header, "this run is of another type of path than the first of the table", "ITYPE of card 1");
   for (const Row& row : kRows) {
     if (std::find(axes.begin(), axes.end(), row.axis) != axes.end() || follows(row.axis, axes)) continue;
-    const auto a = value_of(first, row.axis), b = value_of(run, row.axis);
+    const auto a = tape7_value(first, row.axis), b = tape7_value(run, row.axis);
     if (a.has_value() != b.has_value() || (a && std::fabs(*a - *b) > 1e-6 * (std::fabs(*a) + std::fabs(*b))))
       throw Error(run.header, strf("the %s of this run differs from that of the first and is no axis", row.name));
   }
@@ -96,7 +96,7 @@ PathTable tape7_path_table(std::span<const Tape7Block> runs, std::span<const Tap
     check_alike(run, runs[0], axes);
     PathRun node;
     for (size_t a = 0; a < axes.size(); ++a) {
-      const auto value = value_of(run, axes[a]);
+      const auto value = tape7_value(run, axes[a]);
       if (!value) throw Error(run.header, "the cards before this run do not tell its " + named[a].name);
       node.at.push_back(*value);
     }

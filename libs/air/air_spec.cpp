@@ -12,12 +12,13 @@ std::vector<AirLevel> air_levels(const AirSpec& spec) {
   const auto add = [&](double h) {
     if (h > bottom && h < top) heights.push_back(h);
   };
+  const int closer = spec.closer * (spec.refraction ? 2 : 1);
   struct Steps {
     double to, step;
   };
   for (double h = 0;
        const Steps& s : {Steps{3e3, 250}, Steps{10e3, 500}, Steps{25e3, 1e3}, Steps{50e3, 2.5e3}, Steps{1e6, 10e3}})
-    for (; h < s.to && h < top; h += s.step / spec.closer) add(h);
+    for (; h < s.to && h < top; h += s.step / closer) add(h);
   for (const AirSpec::Cloud& c : spec.clouds) add(c.base), add(c.top);
   add(spec.height_of_ground());
   if (spec.aerosol && !spec.aerosol->one_kind)
@@ -42,6 +43,9 @@ void check_air(const AirSpec& spec) {
                   "its top lies at least 1 m above its base and below the profile's top");
   if (!(spec.ground_albedo.min() >= 0 && spec.ground_albedo.max() <= 1))
     throw Error(spec.where, "the albedo of the ground is not between 0 and 1");
+  if (spec.refraction && !spec.round)
+    throw Error(spec.where, "refraction bends beams in the air about a round Earth, and this one is flat",
+                "`shape: round`, or no `refraction`");
   if (spec.streams < 4 || spec.streams > 64 || spec.streams % 2)
     throw Error(spec.where, strf("%d streams", spec.streams), "an even number from 4 to 64");
 }

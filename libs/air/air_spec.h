@@ -34,21 +34,23 @@ struct AirSpec {
   };
   std::optional<Aerosol> aerosol;
   struct Cloud {
-    ParticleSpec particles;    // water or ice
+    ParticleSpec particles;    // water or ice, or a user's
     double base = 0, top = 0;  // m above sea level
-    double content = 0;        // kg/m3 of water
+    double content = 0;        // kg/m3 of water; where extinction is relative (particle_data.h), 1/m at 0.55 um
   };
   std::vector<Cloud> clouds;
 
   std::optional<double>
       scene_height;  // of the scene's z = 0 above sea level, m; default: from the scene's origin, or 0
   bool round = true;
-  double radius = 6371e3;  // of curvature at sea level, m
+  double radius = 6371e3;   // of curvature at sea level, m
+  bool refraction = false;  // bends beams from outside about a round Earth
   AirScattering scattering = AirScattering::diffuse;
   int streams = 16;
   // Of the ground as the diffuse field sees it: even, flat, at `ground_height` above sea level.
   Curve ground_albedo = Curve::constant(0.2);
   double ground_temperature = 0;        // K; 0 = the air's at the ground
+  bool adjacency = true;                // with the field: shadows in the air and light of single places are followed
   std::optional<double> ground_height;  // m; default: the scene's z = 0
   int closer = 1;                       // steps of the levels (air_levels) are divided by it
   std::vector<std::string> notes;       // what was not given and where it comes from, a sentence each
@@ -61,11 +63,12 @@ struct AirSpec {
 // The levels that bound its layers, ascending: from the ground, or below it from the lowest level of the profile, to
 // its top; every 250 m up to 3 km, 500 m to 10 km, 1 km to 25 km, 2.5 km to 50 km, 10 km above; and where aerosols and
 // clouds begin and end. Halving all steps (`closer`: 2) changes radiances from the ground up and from space down by
-// less than 0.6 % (0.5 % but at 4.3 um; tests/physics/light/stratified_air_test.cpp).
+// less than 0.6 % (0.5 % but at 4.3 um; tests/physics/light/stratified_air_test.cpp). With refraction they are halved:
+// beams that graze the ground change more within a layer (tests/physics/light/bent_beam_test.cpp).
 std::vector<AirLevel> air_levels(const AirSpec& spec);
 
 // Error, located: a profile that is none (check_profile), a ground outside of it, clouds of no thickness, values out of
-// range.
+// range, refraction about a flat Earth.
 void check_air(const AirSpec& spec);
 
 }  // namespace suite

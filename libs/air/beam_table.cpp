@@ -165,12 +165,18 @@ double BeamTable::bending(double height, double zenith) const {
   return static_cast<double>(depth) * std::sin(zenith) * (1 + shells_.curvature() * height);
 }
 
+// The greatest angle, where the ray just touches the ground; a place below the ground sees nothing below the
+// horizontal.
+double BeamTable::horizon(double height) const {
+  const double k = shells_.curvature();
+  return height > ground_ ? kPi - std::asin(std::min(1.0, (1 + k * ground_) / (1 + k * height))) : kPi / 2;
+}
+
 std::optional<double> BeamTable::seen_from(double height, double cosine) const {
-  const double zenith = std::acos(std::clamp(cosine, -1.0, 1.0)), k = shells_.curvature();
+  const double zenith = std::acos(std::clamp(cosine, -1.0, 1.0));
   double low = 0, high = kPi / 2;
   if (cosine < 0) {
-    // The horizon, where the ray just touches the ground; a place below the ground sees nothing below the horizontal.
-    if (height > ground_) high = kPi - std::asin(std::min(1.0, (1 + k * ground_) / (1 + k * height)));
+    high = horizon(height);
     if (high + bending(height, high) < zenith) return std::nullopt;
   }
   // Bending grows with the angle, by less than it: secants that stay between what is too low and too high.
@@ -193,12 +199,27 @@ std::optional<double> BeamTable::seen(double height, double cosine) const {
   return straight_depth(height, cosine, {0, {&none, 0}}) ? std::optional(cosine) : std::nullopt;
 }
 
-bool BeamTable::depth(double height, double cosine, std::span<float> depth) const {
+bool BeamTable::bent_depth(double height, double cosine, bool spread, std::span<float> depth) const {
   SUITE_CHECK_EQ(depth.size(), bins_ - bent_);
   if (!bent_) return straight_depth(height, cosine, {0, depth});
   const double h = straightened(height);
   const std::optional<double> direction = seen_from(h, cosine);
-  return direction && straight_depth(h, *direction, {0, depth});
+  if (!direction || !straight_depth(h, *direction, {0, depth})) return false;
+  const double a = std::acos(*direction);
+  constexpr double kStep = 2e-3, kHigh = 0.1;  // rad; below kHigh from the zenith nothing is spread
+  if (!spread || a < kHigh) return true;
+  const double low = a - kStep, high = std::min(a + kStep, horizon(h));
+  const double slope = 1 + (bending(h, high) - bending(h, low)) / (high - low);
+  const auto wider = static_cast<float>(std::log(slope * std::sin(a + bending(h, a)) / std::sin(a)));
+  for (float& d : depth) d += wider;
+  return true;
+}
+
+bool BeamTable::depth(double height, double cosine, std::span<float> depth) const {
+  return bent_depth(height, cosine, false, depth);
+}
+bool BeamTable::spread_depth(double height, double cosine, std::span<float> depth) const {
+  return bent_depth(height, cosine, true, depth);
 }
 
 }  // namespace suite

@@ -43,6 +43,10 @@ class BeamTable {
   // Depth per bin of the beam at a height, m; cosine: of the angle between the local vertical there and the true
   // direction to the source. False: in the shadow of the Earth, depth is untouched.
   bool depth(double height, double cosine, std::span<float> depth) const;
+  // The same for what the air scatters: bent rays lie further apart than outside, and what the irradiance across the
+  // beam loses by it is part of the depth. With a and t the angles at which the source is seen and stands, it is
+  // sin(a) da / (sin(t) dt) of that outside (as radiance is kept and n - 1 left out), the slope over 0.2 degrees.
+  bool spread_depth(double height, double cosine, std::span<float> depth) const;
   // The cosine of the angle at which the source is seen; nothing in the shadow of the Earth.
   std::optional<double> seen(double height, double cosine) const;
   size_t bytes() const { return 4 * (up_.size() + low_.size() + extinction_.size()); }
@@ -56,6 +60,8 @@ class BeamTable {
   // Of a direction in the world of straight rays.
   bool straight_depth(double height, double cosine, Part part) const;
   double bending(double height, double zenith) const;
+  double horizon(double height) const;
+  bool bent_depth(double height, double cosine, bool spread, std::span<float> depth) const;
   double straightened(double height) const;
   void tabulate();
   std::optional<double> seen_from(double height, double cosine) const;

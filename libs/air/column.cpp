@@ -5,6 +5,7 @@
 
 #include "air/molecules.h"
 #include "air/particle_phase.h"
+#include "air/refraction.h"
 #include "base/parallel.h"
 #include "spectral/planck.h"
 
@@ -40,11 +41,16 @@ GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const
 class Baker {
  public:
   Baker(const AirSpec& spec, const SpectralState& state)
-      : spec_(spec), state_(state), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, 0} {
+      : spec_(spec), state_(state), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, {}, {}, 0} {
     const double ground = spec.height_of_ground();
     while (column_.ground + 2 < levels_.size() && levels_[column_.ground].height < ground - 1) ++column_.ground;
+    if (spec.refraction)
+      for (const AirLevel& l : levels_)
+        column_.refractivity.push_back(refractivity(state.reference_um, l.pressure, l.temperature));
     column_.extinction.assign(layers() * bins(), 0.0f);
     column_.blackbody.resize(levels_.size() * bins());
+    for (size_t l = 0; l < layers(); ++l)
+      column_.water.push_back(precipitable_water({"", {levels_[l], levels_[l + 1]}}) / (high(l) - low(l)));
     for (size_t i = 0; i < bins(); ++i) middles_.push_back(state.bins[i].center_um());
   }
   AirColumn bake() {
@@ -162,16 +168,29 @@ class Baker {
   std::vector<double> middles_;  // of the bins, um
 };
 
-}  // namespace
-
-AirColumn bake_column(const AirSpec& spec, const SpectralState& state) {
-  check_air(spec);
+// Makes something of an air; what is wrong with it is told where the air stands.
+template <class Make>
+auto located(const AirSpec& spec, const Make& make) {
   try {
-    return Baker(spec, state).bake();
+    return make();
   } catch (const Error& e) {
     if (!e.where().file.empty()) throw;
     throw Error(spec.where, "the atmosphere: " + e.message(), e.hint());
   }
+}
+
+}  // namespace
+
+AirColumn bake_column(const AirSpec& spec, const SpectralState& state) {
+  check_air(spec);
+  return located(spec, [&] { return Baker(spec, state).bake(); });
+}
+
+BeamTable bake_beam_table(const AirSpec& spec, const AirColumn& column) {
+  return located(spec, [&] {
+    return BeamTable(column.shells, column.shells.heights()[column.ground], column.extinction, column.bins,
+                     column.refractivity);
+  });
 }
 
 SpectralState with_gas_points(const AirSpec& spec, const SpectralState& state) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "air/air_spec.h"
+#include "air/beam_table.h"
 #include "air/shells.h"
 #include "optics/phase_function.h"
 #include "spectral/state.h"
@@ -27,6 +28,10 @@ struct AirColumn {
   std::vector<Kind> kinds;
   std::vector<float> blackbody;  // [level][bin], W/(m2 sr um)
 
+  std::vector<double> water;  // vapour in each layer, kg/m3
+  // n - 1 at the levels and the reference wavelength, of dry air; empty = beams are straight.
+  std::vector<double> refractivity;
+
   size_t ground = 0;  // level of the ground that the diffuse field stands on
 
   size_t layers() const { return shells.layers(); }
@@ -35,6 +40,10 @@ struct AirColumn {
 // Bakes air for a state, whose g-points are those of with_gas_points. Error: bands beyond what gases or particles are
 // known for (named); as check_air.
 AirColumn bake_column(const AirSpec& spec, const SpectralState& state);
+
+// How deep places in it lie for a beam from outside, in the shadow of the Earth below the ground's level. Error:
+// density that falls so fast that it would lead light around the Earth.
+BeamTable bake_beam_table(const AirSpec& spec, const AirColumn& column);
 
 // Splits the intervals of a state (with_g_points) where gases absorb, so that a bin is monochromatic for them.
 SpectralState with_gas_points(const AirSpec& spec, const SpectralState& state);

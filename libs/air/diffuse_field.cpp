@@ -271,7 +271,7 @@ std::vector<double> depths_of(const AirColumn& column, const AirBeam& beam, cons
   for (size_t level = 0; level <= column.layers(); ++level) {
     // The beam may have come to the top through the air below, where the sun is under the horizon.
     const double below = level == column.layers() ? 1e-3 : 0;
-    const bool lit = table.depth(column.shells.heights()[level] - below, beam.direction.z, row);
+    const bool lit = table.spread_depth(column.shells.heights()[level] - below, beam.direction.z, row);
     for (size_t i = 0; i < column.bins; ++i) depths[level * column.bins + i] = lit ? row[i] : INFINITY;
   }
   return depths;

@@ -65,5 +65,8 @@ std::vector<double> vertical_depths(const GasPoints& points, std::span<const Air
 const GasProvider& builtin_gases();
 inline std::shared_ptr<const GasProvider> shared_builtin_gases() { return {std::shared_ptr<void>(), &builtin_gases()}; }
 std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum);
+// LOWTRAN's continuum of water in the form of MT_CKD, to go with lines: 0 to 20000 cm-1. At 260 and 296 K it is the
+// same; between them self runs as a power, up to 8 % below LOWTRAN's straight line.
+WaterContinuum builtin_continuum();
 
 }  // namespace suite

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -45,20 +46,20 @@ struct Shape {
   }
 };
 
-Shape shape_of(const LineGas& gas, const SpectralLine& line, double pressure, double temperature, double share) {
+Shape shape_of(const LineGas& gas, const SpectralLine& line, double pressure, double temperature) {
   const double atm = pressure / kAtmosphere, cold = kReference / temperature;
   const double lorentz =
-      std::pow(cold, line.exponent) * atm * ((1 - share) * line.air_width_cm + share * line.self_width_cm);
+      std::pow(cold, line.exponent) * atm * ((1 - gas.share) * line.air_width_cm + gas.share * line.self_width_cm);
   const double boltzmann = std::exp(kSecondRadiation * line.lower_energy_cm * (1 / kReference - 1 / temperature));
   const double stimulated = -std::expm1(-kSecondRadiation * line.wavenumber_cm / temperature) /
                             -std::expm1(-kSecondRadiation * line.wavenumber_cm / kReference);
   const double ratio =
       gas.partition ? gas.partition(line.isotopologue, temperature) : partition_ratio(gas.gas, temperature);
+  const double mass = gas.mass ? gas.mass(line.isotopologue) : molar_mass(gas.gas);
   Shape shape;
   shape.middle = line.wavenumber_cm + line.shift_cm * atm;
   shape.strength = 1e-4 * line.intensity * boltzmann * stimulated / ratio;
-  shape.doppler =
-      line.wavenumber_cm * std::sqrt(2 * kBoltzmann * temperature * kAvogadro / molar_mass(gas.gas)) / kLight;
+  shape.doppler = line.wavenumber_cm * std::sqrt(2 * kBoltzmann * temperature * kAvogadro / mass) / kLight;
   shape.ratio = lorentz / shape.doppler;
   return shape;
 }
@@ -73,13 +74,21 @@ void add_near(std::vector<double>& values, double low, double step, double middl
     values[i] += f(low + static_cast<double>(i) * step - middle);
 }
 
-// Numbers of each g-point's part of `count` sorted values: the mean over it, ends shared by length.
-void mean_over_parts(const std::vector<double>& sorted, float* out) {
+// The weights of `points` g-points: Mlawer's, or sums of neighbours.
+std::vector<double> weights_of(size_t points) {
+  const double sum = std::accumulate(std::begin(kMlawer), std::end(kMlawer), 0.0);
+  std::vector<double> weights(points, 0.0);
+  for (size_t g = 0; g < std::size(kMlawer); ++g) weights[g * points / std::size(kMlawer)] += kMlawer[g] / sum;
+  return weights;
+}
+
+// The mean over each g-point's part of the sorted values, ends shared by length.
+void mean_over_parts(const std::vector<double>& sorted, const std::vector<double>& weights, float* out) {
   const auto count = static_cast<double>(sorted.size());
   double at = 0;
   size_t i = 0;
-  for (size_t g = 0; g < std::size(kMlawer); ++g) {
-    const double end = g + 1 == std::size(kMlawer) ? count : std::min(count, at + kMlawer[g] * count);
+  for (size_t g = 0; g < weights.size(); ++g) {
+    const double end = g + 1 == weights.size() ? count : std::min(count, at + weights[g] * count);
     double sum = 0, position = at;
     while (position < end && i < sorted.size()) {
       const double next = std::min(end, static_cast<double>(i + 1));
@@ -95,30 +104,44 @@ void mean_over_parts(const std::vector<double>& sorted, float* out) {
 void check_bake(std::span<const LineGas> gases, const WaterContinuum* continuum, const LineBake& bake) {
   if (gases.empty() || bake.edges_cm.size() < 2) throw Error("lines without a gas or a band", "one of each at least");
   if (!(bake.step_cm > 0)) throw Error(strf("a step of %g cm-1", bake.step_cm), "it is positive");
-  if (!(bake.share >= 0 && bake.share <= 1)) throw Error(strf("a share of %g", bake.share), "0 to 1");
-  if (!((bake.edges_cm.back() - bake.edges_cm.front()) / bake.step_cm < 1e9))
+  for (const LineGas& gas : gases)
+    if (!(gas.share >= 0 && gas.share <= 1)) throw Error(strf("a share of %g", gas.share), "0 to 1");
+  if (bake.points != 16 && bake.points != 8 && bake.points != 4)
+    throw Error(strf("%zu g-points", bake.points), "16, 8 or 4");
+  double widest = 0;
+  for (size_t i = 1; i < bake.edges_cm.size(); ++i) widest = std::max(widest, bake.edges_cm[i] - bake.edges_cm[i - 1]);
+  if (!((bake.edges_cm.back() - bake.edges_cm.front()) / bake.step_cm < 1e9 && widest / bake.step_cm < 2e7))
     throw Error(strf("bands of %g cm-1 in steps of %g", bake.edges_cm.back() - bake.edges_cm.front(), bake.step_cm),
-                "1e9 steps at most");
+                "1e9 steps in all and 2e7 in a band at most");
+  if (!(static_cast<double>(bake_spectra(gases.size(), bake)) * static_cast<double>(bake.points) < 2e9))
+    throw Error(strf("a table of %zu spectra", bake_spectra(gases.size(), bake)),
+                "2e9 values at most: fewer bands, pressures or temperatures");
   if (continuum) check_continuum(*continuum);
 }
 
-// The k of one gas in all bands at one pressure and temperature.
-void bake_state(GasTable& table, const LineGas& lines, const WaterContinuum* continuum, const LineBake& bake,
-                size_t gas, size_t p, size_t t) {
+// The k of one gas in a band at one pressure and temperature.
+void bake_spectrum(GasTable& table, const LineGas& lines, const WaterContinuum* continuum, double step_cm, float* out,
+                   size_t band, double pressure, double temperature) {
   const bool water = lines.gas == Gas::h2o && continuum;
-  const double pressure = table.pressure[p], temperature = table.temperature[t];
-  const double others = pressure * (1 - bake.share);
-  for (size_t band = 0; band < table.bands(); ++band) {
-    const double low = table.edges_cm[band], width = table.edges_cm[band + 1] - low;
-    const auto count = static_cast<size_t>(std::max(64.0, std::ceil(width / bake.step_cm)));
-    const double step = width / static_cast<double>(count), first = low + 0.5 * step;
-    std::vector<double> k = line_spectrum(lines, first, step, count, pressure, temperature, bake.share, water);
-    if (water)
-      for (size_t i = 0; i < count; ++i)
-        k[i] += others * continuum->foreign_section(first + static_cast<double>(i) * step, temperature);
-    std::sort(k.begin(), k.end());
-    mean_over_parts(k, table.cross_section.data() + table.index(gas, band, p, t));
-  }
+  const double low = table.edges_cm[band], width = table.edges_cm[band + 1] - low;
+  const auto count = static_cast<size_t>(std::max(64.0, std::ceil(width / step_cm)));
+  const double step = width / static_cast<double>(count), first = low + 0.5 * step;
+  std::vector<double> k = line_spectrum(lines, first, step, count, pressure, temperature, water);
+  if (water)
+    for (size_t i = 0; i < count; ++i)
+      k[i] +=
+          pressure * (1 - lines.share) * continuum->foreign_section(first + static_cast<double>(i) * step, temperature);
+  std::sort(k.begin(), k.end());
+  mean_over_parts(k, table.weight, out);
+}
+
+// Water's self continuum in the middle of each band.
+void bake_self(GasTable& table, const WaterContinuum& continuum) {
+  for (size_t band = 0; band < table.bands(); ++band)
+    for (const double temperature : table.temperature) {
+      const double v = 0.5 * (table.edges_cm[band] + table.edges_cm[band + 1]);
+      table.water_self.push_back(static_cast<float>(continuum.self_section(v, temperature)));
+    }
 }
 
 }  // namespace
@@ -144,7 +167,7 @@ double voigt(double x, double y) {
 }
 
 std::vector<double> line_spectrum(const LineGas& gas, double low_cm, double step_cm, size_t count, double pressure,
-                                  double temperature, double share, bool base_left) {
+                                  double temperature, bool base_left) {
   std::vector<double> fine(count, 0.0);
   const double high_cm = low_cm + step_cm * static_cast<double>(count - 1);
   // Wings change slowly: beyond kNear they are drawn on a coarse grid. There the line is held at its value at kNear,
@@ -154,7 +177,7 @@ std::vector<double> line_spectrum(const LineGas& gas, double low_cm, double step
   const auto by_wavenumber = [](const SpectralLine& line, double v) { return line.wavenumber_cm < v; };
   auto line = std::lower_bound(gas.lines.begin(), gas.lines.end(), low_cm - kCut - 1, by_wavenumber);
   for (; line != gas.lines.end() && line->wavenumber_cm <= high_cm + kCut + 1; ++line) {
-    const Shape shape = shape_of(gas, *line, pressure, temperature, share);
+    const Shape shape = shape_of(gas, *line, pressure, temperature);
     const double base = base_left ? shape.at(kCut) : 0.0;
     if (!coarse) {
       add_near(fine, low_cm, step_cm, shape.middle, kCut, [&](double d) { return shape.at(d) - base; });
@@ -175,28 +198,43 @@ std::vector<double> line_spectrum(const LineGas& gas, double low_cm, double step
   return fine;
 }
 
+std::optional<double> narrowest_line(const LineGas& gas, double low_cm, double high_cm, double pressure,
+                                     double temperature) {
+  std::optional<double> narrowest;
+  for (const SpectralLine& line : gas.lines) {
+    if (line.wavenumber_cm < low_cm || line.wavenumber_cm > high_cm) continue;
+    const Shape shape = shape_of(gas, line, pressure, temperature);
+    const double doppler = std::sqrt(std::log(2.0)) * shape.doppler, lorentz = shape.ratio * shape.doppler;
+    const double width = 0.5346 * lorentz + std::sqrt(0.2166 * lorentz * lorentz + doppler * doppler);
+    if (!narrowest || width < *narrowest) narrowest = width;
+  }
+  return narrowest;
+}
+
+size_t bake_spectra(size_t gases, const LineBake& bake) {
+  return gases * (bake.edges_cm.size() - 1) * bake.pressure.size() * bake.temperature.size();
+}
+
 GasTable bake_lines(std::span<const LineGas> gases, const WaterContinuum* continuum, const LineBake& bake) {
   check_bake(gases, continuum, bake);
   GasTable table;
   table.source = bake.source;
   table.edges_cm = bake.edges_cm, table.pressure = bake.pressure, table.temperature = bake.temperature;
-  table.weight.assign(std::begin(kMlawer), std::end(kMlawer));
-  const double sum = std::accumulate(table.weight.begin(), table.weight.end(), 0.0);
-  for (double& w : table.weight) w /= sum;
+  table.weight = weights_of(bake.points);
   for (const LineGas& gas : gases) table.gases.push_back(gas.gas);
-  table.cross_section.assign(
-      gases.size() * table.bands() * table.pressure.size() * table.temperature.size() * table.weight.size(), 0.0f);
-  if (continuum) table.water_self.assign(table.bands() * table.temperature.size(), 0.0f);
+  table.cross_section.assign(bake_spectra(gases.size(), bake) * bake.points, 0.0f);
+  if (continuum) bake_self(table, *continuum);
   check_gas_table(table);
-  for (size_t g = 0; g < gases.size(); ++g)
-    for (size_t p = 0; p < table.pressure.size(); ++p)
-      for (size_t t = 0; t < table.temperature.size(); ++t) bake_state(table, gases[g], continuum, bake, g, p, t);
-  for (size_t band = 0; continuum && band < table.bands(); ++band)
-    for (size_t t = 0; t < table.temperature.size(); ++t) {
-      const double v = 0.5 * (table.edges_cm[band] + table.edges_cm[band + 1]);
-      table.water_self[band * table.temperature.size() + t] =
-          static_cast<float>(continuum->self_section(v, table.temperature[t]));
+  const size_t t = table.temperature.size(), p = table.pressure.size(), bands = table.bands();
+  parallel_for(0, bake_spectra(gases.size(), bake), 1, [&](size_t begin, size_t end) {
+    // In the order of the table: temperatures fastest, gases slowest.
+    for (size_t n = begin; n < end; ++n) {
+      bake_spectrum(table, gases[n / t / p / bands], continuum, bake.step_cm,
+                    table.cross_section.data() + n * bake.points, n / t / p % bands, table.pressure[n / t % p],
+                    table.temperature[n % t]);
+      if (bake.done) bake.done();
     }
+  });
   return table;
 }
 

@@ -82,6 +82,18 @@ GasPoints points_of(const LowtranBand& band, int v, std::span<const AirLevel> le
   return out;
 }
 
+// Water's continuum at a wavenumber, 1e-20 cm2/(molecule cm-1), without the radiation field.
+struct WaterAt {
+  double self_296, self_260, foreign;
+};
+WaterAt water_at(double v) {
+  const auto table = [&](const auto& t) { return interpolated(t, 0, 10, v, ten_to); };
+  // LOWTRAN's correction around 1050 cm-1, and its far wings added to the foreign part.
+  const double dip = 1 - 0.2333 * 40000 / ((v - 1050) * (v - 1050) + 40000);
+  const double wings = 1 / (std::exp(2.75e-4 * v) / (1.025 * 3.159e-8) + std::exp(1.3e-3 * v) / 8.97e-6);
+  return {table(kWaterSelf296) * dip, table(kWaterSelf260) * dip, table(kWaterForeign296) + wings};
+}
+
 // What a wavenumber needs of the smooth absorbers, so that levels only multiply.
 // continuum: of water, instead of LOWTRAN's; may be null and must outlive this.
 class Smooth {
@@ -110,7 +122,7 @@ class Smooth {
     const double density = level.density(), relative = density / kLoschmidt, celsius = level.temperature - kFreezing;
     const double water = relative * level.share(Gas::h2o), p = level.pressure / kOneAtmosphere,
                  t = std::sqrt(kFreezing / level.temperature), oxygen = amount(level, Gas::o2);
-    double k = water_at(level, water, relative);
+    double k = continuum_at(level, water, relative);
     k += nitrogen_ * 1e-3 * level.share(Gas::n2) * relative * p * t;
     const double dt = level.temperature - 220;
     k += oxygen_s_ * oxygen * p * std::max(0.0, 1 + oxygen_a_ * dt + (oxygen_a_ * oxygen_a_ / 2 + oxygen_b_) * dt * dt);
@@ -123,7 +135,7 @@ class Smooth {
   }
 
  private:
-  double water_at(const AirLevel& level, double water, double relative) const {
+  double continuum_at(const AirLevel& level, double water, double relative) const {
     if (continuum_) {
       const double share = level.share(Gas::h2o);
       return level.density() * share * level.pressure *
@@ -137,13 +149,10 @@ class Smooth {
            (kFreezing / 296);
   }
   void water(double v) {
-    const auto table = [&](const auto& t) { return interpolated(t, 0, 10, v, ten_to); };
-    // LOWTRAN's correction around 1050 cm-1, and its far wings added to the foreign part.
-    const double dip = 1 - 0.2333 * 40000 / ((v - 1050) * (v - 1050) + 40000);
-    const double wings = 1 / (std::exp(2.75e-4 * v) / (1.025 * 3.159e-8) + std::exp(1.3e-3 * v) / 8.97e-6);
-    self_296_ = table(kWaterSelf296) * dip * radiation_field(v, 296);
-    self_260_ = table(kWaterSelf260) * dip * radiation_field(v, 260);
-    foreign_ = (table(kWaterForeign296) + wings) * radiation_field(v, 296);
+    const WaterAt water = water_at(v);
+    self_296_ = water.self_296 * radiation_field(v, 296);
+    self_260_ = water.self_260 * radiation_field(v, 260);
+    foreign_ = water.foreign * radiation_field(v, 296);
   }
   static double herzberg(double v) {
     if (v <= 36000) return 0;
@@ -230,6 +239,19 @@ const GasProvider& builtin_gases() {
 }
 std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum) {
   return std::make_unique<Lowtran>(std::move(continuum));
+}
+
+WaterContinuum builtin_continuum() {
+  WaterContinuum c{0, 10, {}, {}, {}};
+  for (size_t i = 0; i < std::size(kWaterSelf296); ++i) {
+    const WaterAt water = water_at(c.step_cm * static_cast<double>(i));
+    c.self.push_back(1e-20 * water.self_296);
+    c.foreign.push_back(1e-20 * water.foreign);
+    // So that it meets both temperatures of the tables.
+    const bool both = water.self_296 > 0 && water.self_260 > 0;
+    c.exponent.push_back(both ? std::log(water.self_260 / water.self_296) / std::log(296.0 / 260) : 0);
+  }
+  return c;
 }
 
 }  // namespace suite

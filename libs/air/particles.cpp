@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "air/particle_data.h"
 #include "air/particle_tables.h"
 #include "air/phase_grid.h"
 #include "base/error.h"
@@ -107,6 +108,11 @@ const Registry<ParticleKind>& particle_kinds() {
 }
 
 ParticleOptics particle_optics(const ParticleSpec& spec, std::span<const double> wavelengths) {
+  if (spec.data) {
+    const std::vector<double>& own = spec.data->wavelengths_um;
+    check_wavelengths(spec.data->name, wavelengths, own.front(), own.back());
+    return spec.data->optics(wavelengths);
+  }
   const ParticleKind& kind = particle_kinds().find(spec.name);
   check_wavelengths(spec.name, wavelengths, kind.low_um, kind.high_um);
   return kind.make(spec, wavelengths);
@@ -151,6 +157,21 @@ std::vector<double> gridded_hg(double asymmetry) {
     throw Error(strf("phase function: the asymmetry %g is outside -0.99 .. 0.99", asymmetry));
   std::vector<double> gridded;
   for (const double c : phase_cosines()) gridded.push_back(hg_value(asymmetry, c));
+  return gridded;
+}
+
+std::vector<double> gridded_moments(std::span<const double> moments) {
+  std::vector<double> gridded;
+  for (const double c : phase_cosines()) {
+    double sum = 0, p = 1, before = 0;
+    for (size_t l = 0; l < moments.size(); ++l) {
+      const double n = static_cast<double>(l);
+      sum += (2 * n + 1) / (4 * kPi) * moments[l] * p;
+      const double next = ((2 * n + 1) * c * p - n * before) / (n + 1);
+      before = p, p = next;
+    }
+    gridded.push_back(sum);
+  }
   return gridded;
 }
 

@@ -16,6 +16,7 @@
 #pragma once
 #include <complex>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,11 +49,14 @@ class ParticleOptics {
   std::vector<float> phase_;
 };
 
+struct ParticleData;  // air/particle_data.h
+
 struct ParticleSpec {
-  std::string name = "rural";       // of particle_kinds()
-  double relative_humidity = 0.7;   // 0 .. 0.99; beyond 0.99 aerosols are fog
-  double wind_m_s = 10;             // of the desert, 0 .. 30
-  double effective_radius_um = 10;  // of drops and ice
+  std::string name = "rural";                          // of particle_kinds()
+  double relative_humidity = 0.7;                      // 0 .. 0.99; beyond 0.99 aerosols are fog
+  double wind_m_s = 10;                                // of the desert, 0 .. 30
+  double effective_radius_um = 10;                     // of drops and ice
+  std::shared_ptr<const ParticleData> data = nullptr;  // what a user brings, in place of all that
 };
 
 struct ParticleKind : RegistryRow<ParticleOptics(const ParticleSpec&, std::span<const double> wavelengths_um)> {
@@ -75,5 +79,7 @@ ParticleOptics sphere_optics(const SizeDistribution& sizes, const std::function<
 std::vector<double> gridded_phase(std::span<const double> angles, std::span<const double> values);
 // Henyey-Greenstein on the grid, |g| <= 0.99.
 std::vector<double> gridded_hg(double asymmetry);
+// The sum of (2 l + 1) / (4 pi) m_l P_l on the grid, 1/sr; it may be negative where the series ends too early.
+std::vector<double> gridded_moments(std::span<const double> moments);
 
 }  // namespace suite

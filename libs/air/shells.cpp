@@ -39,4 +39,11 @@ double Shells::lowest_height(Vec3 from, Dir d, double distance) const {
   return l.turn < end ? l.lowest() : std::min(lowest, l.height_at(end));
 }
 
+double Shells::way_down_to(Vec3 from, Dir d, double height) const {
+  const Line l = line(from, d);
+  const double above = l.above(height), disc = l.discriminant(above);
+  if (!(l.slope < 0) || !(disc >= 0)) return std::numeric_limits<double>::infinity();
+  return l.on_the_way_down(above, std::sqrt(disc));
+}
+
 }  // namespace suite

@@ -50,6 +50,8 @@ class Shells {
   Vec3 above_zero(double height) const { return zero_ + Vec3{0, 0, height}; }
   // Least height on a straight segment; distance may be infinite (minus infinity where a flat world is left downwards).
   double lowest_height(Vec3 from, Dir d, double distance) const;
+  // How far it is from a point in the air down to a height below it, m; infinite when a ray does not come there.
+  double way_down_to(Vec3 from, Dir d, double height) const;
 
   // A part of a segment within one layer. Height rises or falls all along it, as pieces end at the lowest point, too.
   struct Piece {

@@ -196,7 +196,13 @@ std::array<double, 3> Params::as_direction() const {
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   return {v[0] / length, v[1] / length, v[2] / length};
 }
-std::string Params::as_path() const { return resolve_path(file(), as_text()); }
+std::string Params::as_path() const {
+  std::string path = resolve_path(file(), as_text());
+  std::vector<std::string>& all = document_->paths;
+  if (std::find(all.begin(), all.end(), path) == all.end()) all.push_back(path);
+  return path;
+}
+std::span<const std::string> Params::paths() const { return document_->paths; }
 
 std::string Params::text(std::string_view key, const std::string& otherwise) const {
   const auto found = find(key);

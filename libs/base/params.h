@@ -67,6 +67,8 @@ class Params {
   std::array<double, 3> as_vec3() const;
   std::array<double, 3> as_direction() const;  // three numbers, not all 0, made a unit vector
   std::string as_path() const;                 // resolved against the folder of this file
+  // What as_path() has given of this document, each once, in the order of asking.
+  std::span<const std::string> paths() const;
 
   // Shorthands: required, and with a default.
   std::string text(std::string_view key) const { return at(key).as_text(); }

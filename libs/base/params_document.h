@@ -32,6 +32,7 @@ struct Params::Document {
   std::vector<std::string> settings;        // applied so far, or being applied
   std::deque<Node> nodes;
   const Node* root = nullptr;
+  mutable std::vector<std::string> paths;  // asked for, each once
 
   Where where(int line, int column) const {
     if (line < 0) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -23,6 +24,8 @@ class TextLines {
   std::string_view comment() const { return comment_; }  // after '#', of this line
   size_t words() const { return words_.size(); }
   std::string_view word(size_t i) const { return words_[i]; }
+  // Other words of this line than those between separators: parts of line(), which may be empty or touch.
+  void set_words(std::vector<std::string_view> words) { words_ = std::move(words); }
   // Word i as a number. Error when there is no such word, it is not a number, (without allow_nan) not finite or larger
   // than kLargestNumber in size.
   double number(size_t i, const char* what, bool allow_nan = false) const;

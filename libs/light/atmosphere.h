@@ -49,13 +49,29 @@ struct AtmosphereSpec {
   Where where = {};  // in the text
 };
 
+class AirVertices;
+
 class Atmosphere {
  public:
   virtual ~Atmosphere() = default;
   // From a point along a unit direction for `distance` (m, infinity allowed). Points are scene ENU. T: per bin, 0..1.
+  // To infinity, T is that of light which comes from outside, whose true direction, without air, is the given one.
   virtual void transmittance(Vec3 from, Dir direction, double distance, std::span<float> T) const = 0;
   // The same, and the radiance S that the air of the segment sends back to `from`, W/(m2 sr um).
   virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
+
+  // The parts of path(): their sum is S, but where that comes from a table, to its accuracy. False where they are not
+  // known.
+  struct Parts {
+    std::span<float> transmittance;
+    std::span<float> thermal;           // emitted, and scattered no more
+    std::span<float> single, multiple;  // of the beams, scattered once; everything else
+  };
+  virtual bool parts(Vec3, Dir, double, const Parts&) const { return false; }
+  // Water vapour on a way, kg/m2; 0 where it is not known.
+  virtual double water(Vec3, Dir, double) const { return 0; }
+  // Whether T to infinity is that of a bent way, and so not the one of the segment.
+  virtual bool bends() const { return false; }
 
   // The same as path() to infinity, from places where light that is scattered at surfaces goes on; may be less exact
   // and quicker.
@@ -77,6 +93,9 @@ class Atmosphere {
   virtual const Light* sky() const { return nullptr; }
   // 1/sr, with which sky() draws a direction.
   virtual double sky_density(Dir) const { return 0; }
+  // Where its light is that over an even ground: places in the air for paths that find what the scene makes of it
+  // (air_vertices.h). Null = none are needed, or wanted.
+  virtual const AirVertices* vertices() const { return nullptr; }
   // One of them along a ray that goes from a point in a layer in a unit direction. Per bin.
   struct BeamAlong {
     std::span<float> scattered;  // what the layer would send back to `from` if nothing dimmed it, W/(m3 sr um)

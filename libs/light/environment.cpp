@@ -36,18 +36,34 @@ double curvature_radius(double latitude_deg) {
 }
 
 // What the way of following its light leaves out.
-std::string neglected(const AirSpec& air) {
+std::string neglected(const AirSpec& air, const Scene& scene) {
   if (air.scattering == AirScattering::traced) return {};
   const std::string shadows = "shadows that the scene throws into the air";
   if (air.scattering == AirScattering::single)
     return "air: light is scattered once; what is scattered more often, also between ground and air, and " + shadows +
            " are left out";
+  if (air.adjacency && scene.media.empty()) return {};
   return strf(
-             "air: light between ground and air is that of an even ground (albedo %.3g to %.3g); what single places "
-             "send "
-             "into it (adjacency) and ",
-             air.ground_albedo.min(), air.ground_albedo.max()) +
-         shadows + " are left out";
+      "air: light between ground and air is that of an even ground (albedo %.3g to %.3g); what single places "
+      "send into it (adjacency) and %s are left out%s",
+      air.ground_albedo.min(), air.ground_albedo.max(), shadows.c_str(),
+      air.adjacency ? ", as media fill the scene" : "");
+}
+
+constexpr const char* kBent =
+    "refraction: the beams of sun and moon are dimmed as on bent ways; they come from where these truly stand, without "
+    "air, and rays of sight and shadows are straight";
+
+// Below the horizon of a flat Earth nothing shines.
+void check_sun(const SourceSpecs& specs) {
+  const LightSpecPtr sun = specs.sun();
+  if (!specs.air || specs.air->round || !sun || !sun->disk()) return;
+  const double rise = std::asin(normalized(sun->disk()->direction).z) / kDegree;
+  if (!(rise > 0))
+    throw Error(
+        specs.air->where,
+        strf("the sun stands %.3g degrees below the horizon, and the air over a flat Earth has no twilight", -rise),
+        "`shape: round`");
 }
 
 // Air over the scene's place on Earth, where that is known.
@@ -56,9 +72,21 @@ std::shared_ptr<const AirSpec> placed(const std::shared_ptr<const AirSpec>& air,
   if (!air) return air;
   said.insert(said.end(), air->notes.begin(), air->notes.end());
   if (air->gases) said.push_back("gases: " + air->gases->note());
-  if (const std::string left_out = neglected(*air); !left_out.empty()) said.push_back(left_out);
+  if (const std::string left_out = neglected(*air, scene); !left_out.empty()) said.push_back(left_out);
+  if (air->refraction && air->scattering != AirScattering::traced) said.push_back(kBent);
   if (air->scene_height) return air;
   auto here = std::make_shared<AirSpec>(*air);
+  here->scene_height = scene.origin.given ? scene.origin.ellipsoid_height_m : 0;
+  if (scene.origin.given) here->radius = curvature_radius(scene.origin.latitude_deg);
+  return here;
+}
+
+std::shared_ptr<const TabledAirSpec> placed(const std::shared_ptr<const TabledAirSpec>& air, const Scene& scene,
+                                            std::vector<std::string>& said) {
+  if (!air) return air;
+  said.insert(said.end(), air->notes.begin(), air->notes.end());
+  if (air->scene_height) return air;
+  auto here = std::make_shared<TabledAirSpec>(*air);
   here->scene_height = scene.origin.given ? scene.origin.ellipsoid_height_m : 0;
   if (scene.origin.given) here->radius = curvature_radius(scene.origin.latitude_deg);
   return here;
@@ -69,12 +97,14 @@ std::shared_ptr<const AirSpec> placed(const std::shared_ptr<const AirSpec>& air,
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds) {
   std::vector<std::string> said;
   specs.air = placed(specs.air, scene, said);
+  specs.tabled = placed(specs.tabled, scene, said);
   for (LightSpecPtr& light : specs.lights)
     if (auto now = light->resolved({scene, seconds, specs.dut1, said})) light = std::move(now);
   for (size_t i = 0; i < specs.lights.size(); ++i) {
     const LightSpecPtr light = specs.lights[i];  // it may put another one in its place
     light->settle(specs, i, said);
   }
+  check_sun(specs);
   return said;
 }
 
@@ -97,11 +127,21 @@ namespace {
 // The air scatters the beams of the bodies; where it is traced, paths do.
 void bake_air(Environment& e, const SourceSpecs& specs, const SpectralState& state) {
   if (!specs.has_air() || (specs.air && specs.air->scattering == AirScattering::traced)) return;
+  if (specs.tabled) {
+    std::optional<TabledSun> sun;
+    if (e.sun != kNoLight) sun = TabledSun{*e.lights[e.sun]->beam(), specs.lights[e.sun]->disk()->half_angle};
+    e.atmosphere = make_tabled_air(*specs.tabled, state, sun);
+    return;
+  }
   std::vector<Beam> beams;
   for (const auto& light : e.lights)
     if (const auto beam = light->beam()) beams.push_back(*beam);
-  e.atmosphere = specs.air ? make_stratified_air(*specs.air, state, std::move(beams))
-                           : make_layered_atmosphere(*specs.atmosphere, state, std::move(beams));
+  if (!specs.air) {
+    e.atmosphere = make_layered_atmosphere(*specs.atmosphere, state, std::move(beams));
+    return;
+  }
+  if (!e.column) e.column = std::make_shared<const AirColumn>(bake_column(*specs.air, state));
+  e.atmosphere = make_stratified_air(*specs.air, e.column, state, std::move(beams));
 }
 
 }  // namespace

@@ -7,18 +7,21 @@
 #include <vector>
 
 #include "air/air_spec.h"
+#include "air/column.h"
 #include "light/atmosphere.h"
 #include "light/earth.h"
 #include "light/light_spec.h"
+#include "light/tabled_air.h"
 
 namespace suite {
 
 // Sources before they are baked for a state. Dates are those of second 0; what has one goes on with time.
 struct SourceSpecs {
   std::vector<LightSpecPtr> lights = {};  // the index is a light's identity, in the environment as well
-  // Air: quick layers in closed form, or real air (air_spec.h); at most one of them.
+  // Air: quick layers in closed form, real air (air_spec.h), or tables of other programs; at most one of them.
   std::optional<AtmosphereSpec> atmosphere = {};
   std::shared_ptr<const AirSpec> air = {};
+  std::shared_ptr<const TabledAirSpec> tabled = {};
   std::optional<EarthSpec> earth = {};
   double dut1 = 0;  // s, UT1 - UTC, -0.9..0.9
 
@@ -32,7 +35,10 @@ struct SourceSpecs {
   // The first sun; null = none.
   LightSpecPtr sun() const;
   bool any() const { return !lights.empty() || has_air(); }
-  bool has_air() const { return atmosphere || air; }
+  bool has_air() const { return atmosphere || air || tabled; }
+  Where where_air() const {
+    return air ? air->where : tabled ? tabled->where : atmosphere ? atmosphere->where : Where{};
+  }
   // Of the first light that follows from one; null = none does. Dates are all that of second 0.
   const SourceTime* date() const;
   // Something is another one at every moment.
@@ -48,6 +54,7 @@ struct Environment {
   std::vector<LightSpecPtr> specs;                   // what each was baked from
   // Null = none.
   std::shared_ptr<const Atmosphere> atmosphere;
+  std::shared_ptr<const AirColumn> column;  // of real air: what no moment changes
   std::shared_ptr<const Earth> earth;
 
   // Of the sun.
@@ -59,7 +66,7 @@ struct Environment {
 
 // Computes what follows from dates, phases and models: directions, sizes, distances and spectra of Sun and Moon, clear
 // skies, `seconds` after the dates; and where real air lies over the scene. Returns a sentence about each body. What is
-// resolved already stays. Error: as LightSpec::resolved and settle.
+// resolved already stays. Error: as LightSpec::resolved and settle; a sun below the horizon of flat real air.
 std::vector<std::string> resolve_sources(SourceSpecs& specs, const Scene& scene, double seconds = 0);
 
 // Bakes resolved sources. periodic: the scene repeats itself. Error: as the sources' constructors; unknown material of

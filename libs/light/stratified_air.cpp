@@ -7,7 +7,8 @@
 #include "air/column.h"
 #include "air/diffuse_field.h"
 #include "light/air_loops.h"
-#include "light/kinds/sky_table.h"
+#include "light/air_vertices.h"
+#include "light/sky_table.h"
 
 namespace suite {
 
@@ -18,22 +19,26 @@ constexpr float kShadow = 1e4f;  // depth of a beam in the shadow of the Earth
 
 class StratifiedAir final : public Atmosphere {
  public:
-  StratifiedAir(const AirSpec& spec, const SpectralState& state, std::vector<Beam> beams)
-      : column_(bake_column(spec, state)), beams_(std::move(beams)), bins_(column_.bins) {
+  StratifiedAir(const AirSpec& spec, std::shared_ptr<const AirColumn> column, const SpectralState& state,
+                std::vector<Beam> beams)
+      : made_(std::move(column)), column_(*made_), beams_(std::move(beams)), bins_(column_.bins) {
     const std::span<const double> heights = column_.shells.heights();
     bounds_.assign(heights.begin(), heights.end());
     std::vector<AirBeam> from;
     for (const Beam& beam : beams_) {
-      tables_.emplace_back(column_.shells, bounds_[column_.ground], column_.extinction, bins_);
+      tables_.push_back(bake_beam_table(spec, column_));
       from.push_back({beam.direction, beam.irradiance});
     }
     bake_emission();
+    DiffuseReport even;
     if (spec.scattering == AirScattering::diffuse)
-      diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, nullptr);
+      diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &even);
     tabulate_sky();
+    if (diffuse_ && spec.adjacency) place_vertices(state, std::move(even.up));
   }
 
   void transmittance(Vec3 from, Dir d, double distance, std::span<float> T) const override {
+    if (bent(distance)) return arrive(from, d, T);
     std::fill(T.begin(), T.end(), 0.0f);
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
       const float* __restrict k = &column_.extinction[piece.layer * bins_];
@@ -46,9 +51,22 @@ class StratifiedAir final : public Atmosphere {
 
   void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
     const Vec3 end = from + d * distance;
-    if (!seen_from_above(from, d, end)) return integrate(from, d, distance, T, S);
+    if (!seen_from_above(from, d, end)) return integrate(from, d, distance, T, S, kAll);
     transmittance(from, d, distance, T);
     view_->radiance(column_.shells.height(end), to_local(end, -d), S);
+  }
+
+  bool parts(Vec3 from, Dir d, double distance, const Parts& p) const override {
+    integrate(from, d, distance, p.transmittance, p.thermal, {true, false, false});
+    integrate(from, d, distance, p.transmittance, p.single, {false, true, false});
+    integrate(from, d, distance, p.transmittance, p.multiple, {false, false, true});
+    return true;
+  }
+  double water(Vec3 from, Dir d, double distance) const override {
+    double sum = 0;
+    column_.shells.walk(from, d, distance,
+                        [&](const Shells::Piece& piece) { sum += column_.water[piece.layer] * piece.length; });
+    return sum;
   }
 
  private:
@@ -65,26 +83,46 @@ class StratifiedAir final : public Atmosphere {
     return near_origin(end) && d.z < -kSlant && SkyTable::covers(column_.shells.height(end), -d) &&
            column_.shells.height(from) >= bounds_.back();
   }
-  void integrate(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const {
+  // What of the light is wanted.
+  struct Which {
+    bool thermal, single, multiple;
+  };
+  static constexpr Which kAll{true, true, true};
+  void integrate(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S, Which which) const {
     std::fill(T.begin(), T.end(), 1.0f);
     std::fill(S.begin(), S.end(), 0.0f);
     Scratch& s = scratch();
     bool first = true;
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
       const Vec3 middle = from + d * (0.5 * (piece.near + piece.far));
-      pass(piece, s, middle, d);
-      for (size_t b = 0; b < beams_.size(); ++b) {
+      pass(piece, s, middle, d, which);
+      for (size_t b = 0; which.single && b < beams_.size(); ++b) {
         BeamAt &near = s.near[b], &far = s.far[b];
         if (first)
           phase_of(b, d, s), look_up(b, from + d * piece.near, piece.near_height, near);
         else
           std::swap(near, far);
         look_up(b, from + d * piece.far, piece.far_height, far);
-        scatter(b, piece, s, T, S);
+        scattered_once(b, piece.layer, s, s.scattered);
+        if (near.lit == far.lit)
+          scatter(b, near, far, static_cast<float>(piece.length), s.weights(), s, T, S);
+        else
+          scatter_lit(b, piece, from, d, s, T, S);
       }
       air_loops::send(bins_, s.weights(), s.at_near.data(), s.at_far.data(), T.data(), S.data());
       first = false;
     });
+    if (bent(distance)) arrive(from, d, T);
+  }
+  // Whether what comes from the end of a way comes from outside, bent: only beams do.
+  bool bent(double distance) const {
+    return distance == std::numeric_limits<double>::infinity() && !column_.refractivity.empty() && !tables_.empty();
+  }
+  // What arrives of light whose source stands in a direction.
+  void arrive(Vec3 at, Dir d, std::span<float> T) const {
+    if (!tables_[0].depth(column_.shells.height(at), dot(column_.shells.up(at), d), T))
+      return std::fill(T.begin(), T.end(), 0.0f);
+    for (float& t : T) t = exp_falling(t);
   }
 
  public:
@@ -92,12 +130,14 @@ class StratifiedAir final : public Atmosphere {
     const Dir local = to_local(from, d);
     const double height = column_.shells.height(from);
     if (!near_origin(from) || !SkyTable::covers(height, local))
-      return integrate(from, d, std::numeric_limits<double>::infinity(), T, S);
+      return integrate(from, d, std::numeric_limits<double>::infinity(), T, S, kAll);
     transmittance(from, d, std::numeric_limits<double>::infinity(), T);
     sky_->radiance(height, local, S);
   }
+  bool bends() const override { return bent(std::numeric_limits<double>::infinity()); }
   const Light* sky() const override { return sky_->light(); }
   double sky_density(Dir d) const override { return sky_->density(d); }
+  const AirVertices* vertices() const override { return vertices_.get(); }
 
   const Shells& shells() const override { return column_.shells; }
   std::span<const float> extinction(size_t l) const override { return {&column_.extinction[l * bins_], bins_}; }
@@ -131,6 +171,7 @@ class StratifiedAir final : public Atmosphere {
   // What is left of a beam somewhere, per bin.
   struct BeamAt {
     Row depth, light;  // exp(-depth)
+    bool lit = false;  // not in the shadow of the Earth
   };
   // Of one thread.
   struct Scratch {
@@ -138,6 +179,8 @@ class StratifiedAir final : public Atmosphere {
     Row at_near, at_far;            // its source there
     air_loops::Weights weights() { return {depth.data(), keep.data(), even.data(), change.data()}; }
     std::vector<BeamAt> near, far;         // per beam, at the ends of the piece
+    BeamAt edge;                           // where the shadow of the Earth begins
+    Row dark_T, lit_depth, lit_keep;       // up to the lit part of a piece, and of it
     Row scattered;                         // scattering times phase function, 1/(m sr)
     std::vector<std::vector<Row>> phases;  // per beam and kind, 1/sr
   };
@@ -146,7 +189,9 @@ class StratifiedAir final : public Atmosphere {
     if (s.depth.size() != bins_ || s.near.size() != beams_.size() ||
         (!s.phases.empty() && s.phases[0].size() != column_.kinds.size())) {
       s = {};
-      for (Row* row : {&s.depth, &s.keep, &s.even, &s.change, &s.at_near, &s.at_far, &s.scattered}) row->resize(bins_);
+      for (Row* row : {&s.depth, &s.keep, &s.even, &s.change, &s.at_near, &s.at_far, &s.scattered, &s.dark_T,
+                       &s.lit_depth, &s.lit_keep, &s.edge.depth, &s.edge.light})
+        row->resize(bins_);
       s.near.assign(beams_.size(), {Row(bins_), Row(bins_)}), s.far = s.near;
       s.phases.assign(beams_.size(), std::vector<Row>(column_.kinds.size(), Row(bins_)));
     }
@@ -176,13 +221,20 @@ class StratifiedAir final : public Atmosphere {
       emits_.push_back(any(&emission_[2 * l * bins_], kDark) || any(&emission_[(2 * l + 1) * bins_], kDark));
   }
 
+  // up: flux that leaves the even ground, W/(m2 um).
+  void place_vertices(const SpectralState& state, Row up) {
+    for (float& L : up) L /= static_cast<float>(kPi);
+    auto vertices = std::make_unique<const AirVertices>(made_, state, *this, std::move(up));
+    if (vertices->any()) vertices_ = std::move(vertices);
+  }
+
   void tabulate_sky() {
     std::optional<double> symmetric;
     if (beams_.size() == 1) symmetric = azimuth(beams_[0].direction);
     const auto along = [this](Vec3 from, Dir d, double distance, std::span<float> radiance) {
       thread_local Row T;
       T.resize(bins_);
-      integrate(from, d, distance, T, radiance);
+      integrate(from, d, distance, T, radiance, kAll);
     };
     sky_ = std::make_unique<SkyTable>(bins_, beams_.empty(), symmetric, 1000,
                                       [along](double height, Dir d, std::span<float> radiance) {
@@ -197,7 +249,7 @@ class StratifiedAir final : public Atmosphere {
   }
 
   // Depth of the piece and the mean of its source.
-  void pass(const Shells::Piece& piece, Scratch& s, Vec3 middle, Dir d) const {
+  void pass(const Shells::Piece& piece, Scratch& s, Vec3 middle, Dir d, Which which) const {
     const size_t l = piece.layer;
     const double low = bounds_[l], thickness = bounds_[l + 1] - low;
     const auto share = [&](double height) {
@@ -211,8 +263,8 @@ class StratifiedAir final : public Atmosphere {
     const auto add = [&](const float* bottom, const float* top, float weight) {
       air_loops::add_source(bins_, bottom, top, weight, near, far, s.at_near.data(), s.at_far.data());
     };
-    if (emits_[l]) add(&emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], 1);
-    if (!diffuse_) return;
+    if (which.thermal && emits_[l]) add(&emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], 1);
+    if (!diffuse_ || !which.multiple) return;
     const DiffuseSource::Corners corners = corners_of(middle, d);
     for (size_t c = 0; c < 4; ++c)
       if (corners.weight[c] > 0)
@@ -233,12 +285,14 @@ class StratifiedAir final : public Atmosphere {
       if (phase.spectrally_uniform()) std::fill(p.begin(), p.end(), p[0]);
     }
   }
-  void beam_depth(size_t b, Vec3 p, double height, std::span<float> depth) const {
-    if (!tables_[b].depth(height, dot(column_.shells.up(p), beams_[b].direction), depth))
-      std::fill(depth.begin(), depth.end(), kShadow);
+  // False in the shadow of the Earth.
+  bool beam_depth(size_t b, Vec3 p, double height, std::span<float> depth) const {
+    const bool lit = tables_[b].spread_depth(height, dot(column_.shells.up(p), beams_[b].direction), depth);
+    if (!lit) std::fill(depth.begin(), depth.end(), kShadow);
+    return lit;
   }
   void look_up(size_t b, Vec3 p, double height, BeamAt& at) const {
-    beam_depth(b, p, height, at.depth);
+    at.lit = beam_depth(b, p, height, at.depth);
     air_loops::fall(bins_, at.depth.data(), at.light.data());
   }
 
@@ -250,16 +304,38 @@ class StratifiedAir final : public Atmosphere {
         air_loops::multiply_add(bins_, &column_.kinds[k].scattering[layer * bins_], s.phases[b][k].data(), to.data());
     }
   }
-  // Light of a beam that is scattered once in the piece.
-  void scatter(size_t b, const Shells::Piece& piece, Scratch& s, std::span<const float> T, std::span<float> S) const {
-    scattered_once(b, piece.layer, s, s.scattered);
-    const BeamAt &near = s.near[b], &far = s.far[b];
-    air_loops::scatter(bins_, beams_[b].irradiance, s.scattered.data(), static_cast<float>(piece.length), s.weights(),
+  // Light of a beam that is scattered once on a way; s.scattered: how.
+  void scatter(size_t b, const BeamAt& near, const BeamAt& far, float length, const air_loops::Weights& weights,
+               const Scratch& s, std::span<const float> T, std::span<float> S) const {
+    air_loops::scatter(bins_, beams_[b].irradiance, s.scattered.data(), length, weights,
                        {near.depth.data(), near.light.data()}, {far.depth.data(), far.light.data()}, T.data(),
                        S.data());
   }
+  // The same of a piece that goes into the shadow of the Earth or comes out of it: only the part outside is lit.
+  void scatter_lit(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, Scratch& s, std::span<const float> T,
+                   std::span<float> S) const {
+    const bool near_lit = s.near[b].lit;
+    double lit = near_lit ? piece.near : piece.far, dark = near_lit ? piece.far : piece.near;
+    const auto at = [&](double t) { return from + d * t; };
+    for (int i = 0; i < 30; ++i) {
+      const double middle = 0.5 * (lit + dark);
+      const Vec3 p = at(middle);
+      const double cosine = dot(column_.shells.up(p), beams_[b].direction);
+      (tables_[b].seen(column_.shells.height(p), cosine) ? lit : dark) = middle;
+    }
+    look_up(b, at(lit), column_.shells.height(at(lit)), s.edge);
+    const auto share = static_cast<float>(std::fabs(lit - (near_lit ? piece.near : piece.far)) / piece.length);
+    for (size_t i = 0; i < bins_; ++i) {
+      s.lit_depth[i] = share * s.depth[i];
+      s.lit_keep[i] = exp_falling(s.lit_depth[i]);
+      s.dark_T[i] = near_lit ? T[i] : T[i] * exp_falling((1 - share) * s.depth[i]);
+    }
+    scatter(b, near_lit ? s.near[b] : s.edge, near_lit ? s.edge : s.far[b], share * static_cast<float>(piece.length),
+            {s.lit_depth.data(), s.lit_keep.data(), nullptr, nullptr}, s, s.dark_T, S);
+  }
 
-  AirColumn column_;
+  std::shared_ptr<const AirColumn> made_;
+  const AirColumn& column_;
   std::vector<Beam> beams_;
   std::shared_ptr<const DiffuseSource> diffuse_;
   size_t bins_;
@@ -269,13 +345,19 @@ class StratifiedAir final : public Atmosphere {
   std::vector<uint8_t> emits_;     // per layer
   std::vector<uint8_t> scatters_;  // [kind][layer]
   std::unique_ptr<SkyTable> sky_, view_;
+  std::unique_ptr<const AirVertices> vertices_;
 };
 
 }  // namespace
 
+std::unique_ptr<const Atmosphere> make_stratified_air(const AirSpec& spec, std::shared_ptr<const AirColumn> column,
+                                                      const SpectralState& state, std::vector<Beam> beams) {
+  return std::make_unique<StratifiedAir>(spec, std::move(column), state, std::move(beams));
+}
 std::unique_ptr<const Atmosphere> make_stratified_air(const AirSpec& spec, const SpectralState& state,
                                                       std::vector<Beam> beams) {
-  return std::make_unique<StratifiedAir>(spec, state, std::move(beams));
+  return make_stratified_air(spec, std::make_shared<const AirColumn>(bake_column(spec, state)), state,
+                             std::move(beams));
 }
 
 }  // namespace suite

@@ -34,6 +34,9 @@ std::vector<Feature> all_features() {
        "which it is when it shows in some spectral window (--explain temperatures)."}};
   for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
   all.insert(all.end(), {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
+                         {"adjacency",
+                          "Paths that go back to places in real air, for shadows in it and light of single places. "
+                          "Without, or without air, kernels are made that know nothing of it."},
                          {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
                          {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
                          {"bands", "Spectral bins are carried only where a band of the state responds."}});
@@ -81,6 +84,14 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
                               count("emission", warm, "temperatures", "no temperature shows in any window")};
   add_lights(sources, all);
   all.push_back(source("atmosphere", sources.has_air()));
+  const AirSpec* air = sources.air.get();
+  const bool field = air && air->scattering == AirScattering::diffuse;
+  all.push_back({"adjacency", field && air->adjacency && scene.media.empty(),
+                 !air                   ? "no real air in the simulation"
+                 : !field               ? "the air has no field over an even ground"
+                 : !air->adjacency      ? "`adjacency: false`"
+                 : !scene.media.empty() ? "media fill the scene"
+                                        : "in the air of the simulation"});
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

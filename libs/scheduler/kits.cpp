@@ -27,11 +27,6 @@ bool by_geometry(const SourceSpecs& sources) {
          std::any_of(sources.lights.begin(), sources.lights.end(), [](const auto& l) { return l->in_scene(); });
 }
 
-// Air that paths are scattered in; the same at all moments.
-std::shared_ptr<const AirSpec> traced_air(const SourceSpecs& sources) {
-  return sources.air && sources.air->scattering == AirScattering::traced ? sources.air : nullptr;
-}
-
 }  // namespace
 
 Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const std::shared_ptr<const Tracer>& tracer) {
@@ -41,7 +36,7 @@ Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const 
   kit.optics = cache_.get<Optics>({Kind::optics, state}, [&] {
     ++optics_bakes_;
     return std::make_shared<const Optics>(scene_, spectral, shown_materials(*tracer, sources_.written()), heating_,
-                                          window_, traced_air(sources_.at(sources_.on_grid(moment_of(capture)))));
+                                          window_, sources_.at(sources_.on_grid(moment_of(capture))).air);
   });
   const auto lit = lights(state, *kit.optics, tracer, sources_.on_grid(moment_of(capture)));
   kit.environment = {lit, &lit->environment};

@@ -63,6 +63,29 @@ void add_air(const SourceSpecs& sources, std::vector<SeenSpectra>& to) {
   to.push_back(std::move(passes));
 }
 
+// Tables of air at the corners of what their runs cover.
+void add_tables(const std::shared_ptr<const TabledAirSpec>& air, std::vector<SeenSpectra>& to) {
+  using Part = std::vector<TabledRow> TabledRows::*;
+  const auto add = [&](SpectrumRole role, Part part) {
+    SeenSpectra seen{role, {}, {}};
+    // Which there are can be asked of any bin that the tables cover.
+    const auto [low, high] = air->covered_um();
+    SpectralState one;
+    one.bins = {{low + 0.49 * (high - low), low + 0.51 * (high - low)}};
+    TabledRows some = tabled_rows(*air, one);
+    for (TabledRow& row : some.*part) seen.names.push_back(std::move(row.name));
+    seen.over = [air, part](const SpectralState& s) {
+      Rows rows;
+      TabledRows all = tabled_rows(*air, s);
+      for (TabledRow& row : all.*part) rows.push_back(std::move(row.means));
+      return rows;
+    };
+    if (!seen.names.empty()) to.push_back(std::move(seen));
+  };
+  add(SpectrumRole::light, &TabledRows::light);
+  add(SpectrumRole::passes, &TabledRows::passes);
+}
+
 }  // namespace
 
 std::vector<float> blackbody_means(std::span<const Bin> bins, double kelvin) {
@@ -77,6 +100,7 @@ void add_lights(const SourceSpecs& sources, std::vector<SeenSpectra>& to) {
   for (const LightSpecPtr& light : sources.lights) light->add_spectra(sent);
   for (LightSpectra& s : sent) to.push_back({SpectrumRole::light, std::move(s.names), std::move(s.over)});
   if (sources.atmosphere) add_air(sources, to);
+  if (sources.tabled) add_tables(sources.tabled, to);
 }
 
 }  // namespace suite

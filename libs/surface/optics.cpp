@@ -67,11 +67,14 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 }  // namespace
 
 Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const Heating& heating,
-               TimeSpan window, std::shared_ptr<const AirSpec> traced)
-    : state_(std::move(state)), window_(window), traced_(std::move(traced)) {
+               TimeSpan window, std::shared_ptr<const AirSpec> air)
+    : state_(std::move(state)), window_(window) {
+  if (air && air->scattering == AirScattering::traced) traced_ = air;
+  // Places in the air are drawn by what its light does at the knots.
+  const bool lit_air = air && air->scattering == AirScattering::diffuse && air->adjacency;
   if (uses_media(scene) || traced_) bake_media(scene);
   bake_all(scene, used, heating);
-  if (state_.knots.size() > 1 && !spectral_flights_ && one_shape()) {
+  if (state_.knots.size() > 1 && !spectral_flights_ && !lit_air && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
     bake_all(scene, used, heating);
     if (!media_.empty()) bake_media(scene);

@@ -40,11 +40,11 @@ class Optics {
  public:
   // Bakes the materials for which used[i] is true (all when empty). A temperature model that asks for loads where there
   // are none is an Error unless they are pending. Models that bring their own are solved here once, for the times of
-  // the window; the others are asked at hits, with position, normal, instance and triangle. traced: air whose layers
-  // are media like those of the scene; null = none. Error naming the material when one cannot be baked. Keeps a
-  // reference to the scene.
+  // the window; the others are asked at hits, with position, normal, instance and triangle. air: real air, whose
+  // layers are media like those of the scene where it is traced; null = none. Error naming the material when one cannot
+  // be baked. Keeps a reference to the scene.
   Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used = {}, const Heating& heating = {},
-         TimeSpan window = {}, std::shared_ptr<const AirSpec> traced = nullptr);
+         TimeSpan window = {}, std::shared_ptr<const AirSpec> air = nullptr);
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
   // The scene's media, all of them where a ray can meet one, else none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/named_numbers.h"
 #include "thermal/models/rows.h"
 
 namespace suite {
@@ -16,19 +17,7 @@ const Registry<TemperatureRow>& temperature_models() {
 void check_temperature(TemperatureSpec& spec, const Where& where) {
   const TemperatureRow& row = temperature_models().find(spec.model, where);
   const std::string model = "temperature model '" + row.name + "'";
-  const std::vector<std::string> known = names_of(row.parameters);
-  for (const auto& [name, value] : spec.numbers)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error(where, model + " has no parameter '" + name + "'", name_hint(name, known));
-  for (const Parameter& p : row.parameters) {
-    const auto given = spec.numbers.find(p.name);
-    if (given == spec.numbers.end()) {
-      if (p.required) throw Error(where, model + " needs '" + p.name + "'", p.summary);
-      if (!std::isnan(p.otherwise)) spec.numbers[p.name] = p.otherwise;
-    } else {
-      check_range(model, p, given->second, where);
-    }
-  }
+  check_numbers(model, row.parameters, spec.numbers, where);
   if (!row.takes_table && !(spec.times.empty() && spec.kelvins.empty())) throw Error(where, model + " takes no table");
   if (!row.takes_layers && !spec.layers.empty()) throw Error(where, model + " takes no layers");
   if (spec.loads.empty() && spec.load_times.empty()) return;

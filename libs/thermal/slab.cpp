@@ -8,24 +8,23 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "thermal/step_control.h"
+#include "thermal/tr_bdf2.h"
 
 namespace suite {
 
+using namespace tr_bdf2;
+
 namespace {
 
-// TR-BDF2 as a singly diagonally implicit scheme (Hosea & Shampine 1996, table 1): the middle stage at gamma, weights
-// of the result (w, w, d) and of the embedded third-order result.
-constexpr double kRoot2 = 1.41421356237309504880;
-constexpr double kGamma = 2 - kRoot2, kD = kGamma / 2, kW = kRoot2 / 4;
-constexpr double kError1 = (1 - kW) / 3 - kW, kError2 = (3 * kW + 1) / 3 - kW, kError3 = kD / 3 - kD;
 constexpr double kHottest = 1e4;  // K
 
 }  // namespace
 
-void Slab::start(double t, double kelvin) { start(t, std::vector<double>(depth_.size(), kelvin)); }
+void Slab::start(double t, double kelvin) { start(t, std::vector<double>(grid_.depth.size(), kelvin)); }
 
 void Slab::start(double t, std::span<const double> kelvin) {
-  SUITE_CHECK_EQ(kelvin.size(), depth_.size());
+  SUITE_CHECK_EQ(kelvin.size(), grid_.depth.size());
   for (const double T : kelvin)
     if (!(T >= 1 && T <= kHottest)) throw Error(strf("a slab starts at %g K", T), "1 to 10000 K");
   t_ = t;
@@ -54,7 +53,7 @@ void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
   const size_t n = s.T.size();
   const double* T = s.T.data();
   double *heat = s.heat.data(), *flux = s.flux.data(), *gain = s.gain.data();
-  const std::vector<double>*h = heat_coefficients_.data(), *k = flux_coefficients_.data();
+  const std::vector<double>*h = grid_.heat.data(), *k = grid_.conductance.data();
   const double *h0 = h[0].data(), *h1 = h[1].data(), *h2 = h[2].data(), *h3 = h[3].data(), *h4 = h[4].data();
   const double *k0 = k[0].data(), *k1 = k[1].data(), *k2 = k[2].data(), *k3 = k[3].data();
   if (linear_) {
@@ -73,7 +72,7 @@ void Slab::evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const {
       flux[j] = (k0[j] + k1[j] * sum / 2 + k2[j] * (squares + a * b) * (1.0 / 3) + k3[j] * sum * squares / 4) * (a - b);
     }
   }
-  const double* source = source_.data();
+  const double* source = grid_.source.data();
   gain[0] = source[0] - flux[0] + (top.fixed ? 0 : top.flux(T[0]));
 #pragma GCC ivdep
   for (size_t i = 1; i < n - 1; ++i) gain[i] = source[i] + (flux[i - 1] - flux[i]);
@@ -103,9 +102,9 @@ double eliminate(std::span<const double> lower, std::span<const double> diagonal
 void Slab::factor_linear(double scale) {
   const size_t n = T_.size();
   for (size_t i = 0; i < n; ++i) {
-    lower_[i] = i > 0 ? -scale * flux_coefficients_[0][i - 1] : 0;
-    upper_[i] = i + 1 < n ? -scale * flux_coefficients_[0][i] : 0;
-    diagonal_[i] = heat_coefficients_[0][i] - lower_[i] - upper_[i];
+    lower_[i] = i > 0 ? -scale * grid_.conductance[0][i - 1] : 0;
+    upper_[i] = i + 1 < n ? -scale * grid_.conductance[0][i] : 0;
+    diagonal_[i] = grid_.heat[0][i] - lower_[i] - upper_[i];
   }
   if (spec_.bottom.kind == SlabFace::Kind::temperature) diagonal_[n - 1] = 1, lower_[n - 1] = 0;
   top_diagonal_ = eliminate(lower_, diagonal_, upper_, pivot_, up_, down_);
@@ -118,9 +117,9 @@ bool Slab::solve_linear(std::span<const double> history, double scale, const Fac
                         Stage& s) {
   const size_t n = T_.size();
   if (factored_for_ != scale) factor_linear(scale);
-  double below = bottom.fixed ? bottom.kelvin : history[n - 1] + scale * (source_[n - 1] + bottom.constant);
+  double below = bottom.fixed ? bottom.kelvin : history[n - 1] + scale * (grid_.source[n - 1] + bottom.constant);
   right_[n - 1] = below;
-  for (size_t i = n - 1; i-- > 0;) right_[i] = below = history[i] + scale * source_[i] - up_[i] * below;
+  for (size_t i = n - 1; i-- > 0;) right_[i] = below = history[i] + scale * grid_.source[i] - up_[i] * below;
   double T = s.T[0];
   if (top.fixed) {
     T = top.kelvin;
@@ -142,7 +141,7 @@ bool Slab::solve_linear(std::span<const double> history, double scale, const Fac
 void Slab::set_newton_matrix(const Stage& s, double scale, const FaceNow& top, const FaceNow& bottom) {
   const size_t n = s.T.size();
   const double* T = s.T.data();
-  const std::vector<double>*h = heat_coefficients_.data(), *k = flux_coefficients_.data();
+  const std::vector<double>*h = grid_.heat.data(), *k = grid_.conductance.data();
   const double *h0 = h[0].data(), *h1 = h[1].data(), *h2 = h[2].data(), *h3 = h[3].data(), *h4 = h[4].data();
   const double *k0 = k[0].data(), *k1 = k[1].data(), *k2 = k[2].data(), *k3 = k[3].data();
   double *lower = lower_.data(), *diagonal = diagonal_.data(), *upper = upper_.data();
@@ -314,29 +313,13 @@ bool Slab::step(double dt, double* estimate) {
 void Slab::advance(double t) {
   SUITE_CHECK(T_.front() > 0);  // started
   if (!(t >= t_)) throw Error(strf("a slab at %.9g s is asked to go to %.9g s", t_, t), "times ascend");
-  double dt = next_step_;
-  while (t_ < t) {
-    const double left = t - t_;
-    const bool last = dt >= left * (1 - 1e-12);
-    // Near the end two even steps are better than a long one and a crumb.
-    const double now = last ? left : dt > 0.5 * left ? 0.5 * left : dt;
-    double error = 0;
-    const bool solved = attempt(now, error);
-    if (solved && error <= options_.tolerance) {
-      accept(now);
-      if (last) t_ = t;
-      const double factor = std::clamp(0.9 * std::cbrt(options_.tolerance / std::fmax(error, 1e-300)), 0.3, 4.0);
-      // Small gains are not worth a new elimination; a step cut short for the end of the time says nothing.
-      const double wish = factor > 1 && factor < 1.15 ? now : now * factor;
-      if (now == dt || wish > dt || factor < 1) dt = std::fmin(wish, options_.max_step);
-      continue;
-    }
-    ++counters_.rejected;
-    dt = now * (solved ? std::clamp(0.9 * std::cbrt(options_.tolerance / error), 0.1, 0.9) : 0.25);
-    if (dt < options_.min_step)
-      throw Error(strf("a slab finds no step at %.9g s", t_), "its loads or its materials change too violently");
-  }
-  next_step_ = dt;
+  next_step_ = advance_by_error(
+      t_, t, next_step_, {options_.tolerance, options_.max_step, options_.min_step},
+      [this](double dt) {
+        double error = 0;
+        return attempt(dt, error) ? error : INFINITY;
+      },
+      [this](double dt) { accept(dt); }, [this] { ++counters_.rejected; });
 }
 
 }  // namespace suite

@@ -9,24 +9,14 @@
 // TR-BDF2", Appl. Num. Math. 20, 1996; finite volumes after S. V. Patankar, "Numerical heat transfer and fluid flow",
 // 1980, chapter 4; k(T) integral: Kirchhoff 1894.
 #pragma once
-#include <array>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "thermal/loads.h"
+#include "thermal/slab_grid.h"
 
 namespace suite {
-
-struct SlabLayer {
-  double thickness = 0;                   // m, > 0
-  double density = 0;                     // kg/m3, > 0
-  std::array<double, 5> specific_heat{};  // J/(kg K): coefficients of 1, T, T^2, T^3, T^4; positive for 20..1500 K
-  std::array<double, 4> conductivity{};   // W/(m K): coefficients of 1, T, T^2, T^3; positive for 20..1500 K
-  double heat_generation = 0;             // W/m3
-  double contact_resistance = 0;          // m2 K/W to the next layer below, 0 = perfect contact
-  int intervals = 0;                      // of the grid; 0 = chosen from the layer's diffusivity
-};
 
 // One face of the slab.
 struct SlabFace {
@@ -78,7 +68,7 @@ class Slab {
   double at_depth(double z) const;  // K, z in m within the slab (clamped), linear between nodes
   std::span<const double> kelvin() const { return T_; }
   std::span<const double> depths() const {
-    return depth_;
+    return grid_.depth;
   }                                                 // m, of the nodes; a resistive contact has two at one depth
   std::span<const double> heat_capacities() const;  // J/(m2 K) of the nodes at present
 
@@ -106,7 +96,6 @@ class Slab {
     std::vector<double> T, heat, flux, gain;  // K, J/m2 a node; W/m2 an interval; W/m2 a node
   };
   void check() const;
-  void build_grid();
   FaceNow face_at(const SlabFace& face, double t) const;
   double capacity_of(size_t node, double T) const;
   void evaluate(Stage& s, const FaceNow& top, const FaceNow& bottom) const;
@@ -125,12 +114,8 @@ class Slab {
   SlabOptions options_;
   bool linear_ = false;  // constant properties and a bottom without radiation: one elimination a stage
   double t_ = 0, next_step_ = 0;
-  std::vector<double> T_, heat_, depth_;  // K, conserved heat in J/m2, m
-  // Per node: coefficients of the stored heat in T^1..T^5 (J/m2 K^-m) and heat generation (W/m2); per interval:
-  // coefficients of the conductance in T^0..T^3. One array a power.
-  std::array<std::vector<double>, 5> heat_coefficients_;
-  std::array<std::vector<double>, 4> flux_coefficients_;
-  std::vector<double> source_;
+  SlabGrid grid_;
+  std::vector<double> T_, heat_;  // K, conserved heat in J/m2
   Stage now_, middle_, end_;
   // Elimination from the bottom up, for one product of stage weight and step.
   double factored_for_ = -1;

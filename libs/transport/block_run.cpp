@@ -157,7 +157,7 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   double* const sums = sums_.sums(slot, scramble);
   if (plain_) {
     const std::span<const float> light = workspace_.throughputs.light(p);
-    if (!good(light, 0)) return false;
+    if (!good(light, lowest(0))) return false;
     const double before = sums[pipeline_.reference_band_];
     pipeline_.projection_.add(light, {sums, pipeline_.projection_.bands()});
     sums_.note_sample(slot, scramble, sums[pipeline_.reference_band_] - before);
@@ -176,8 +176,11 @@ bool BlockRun::add(uint32_t p, size_t slot, int scramble) {
   return true;
 }
 
+// 0, or where samples may have a sign what no number is below.
+float BlockRun::lowest(size_t channel) const {
+  return pipeline_.is_signed() || pipeline_.channels_.is_signed(channel) ? -3e38f : 0;
+}
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
-// lowest: 0, or of channels with a sign what no number is below.
 bool BlockRun::good(std::span<const float> light, float lowest) {
   unsigned all = 1;
   for (const float L : light) all &= static_cast<unsigned>(L >= lowest) & static_cast<unsigned>(L < 3e38f);
@@ -188,8 +191,7 @@ bool BlockRun::acceptable(uint32_t p, bool lost) {
   bool all = true;
   for (size_t channel = 0; channel < channels.size(); ++channel)
     for (size_t group = 0; group < workspace_.groups; ++group)
-      all = all && good(workspace_.throughputs.light(p, workspace_.sink.target(group, channel, lost)),
-                        channels.is_signed(channel) ? -3e38f : 0);
+      all = all && good(workspace_.throughputs.light(p, workspace_.sink.target(group, channel, lost)), lowest(channel));
   return all;
 }
 

@@ -31,6 +31,7 @@ class BlockRun {
   void start(uint32_t p);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
+  float lowest(size_t channel) const;
   static bool good(std::span<const float> light, float lowest);
   bool acceptable(uint32_t p, bool lost);
   void add_light(uint32_t p, size_t bin, bool lost, double* sums);

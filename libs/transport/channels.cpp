@@ -17,8 +17,18 @@ const Registry<ChannelRow>& channel_rows() {
          when([](const Contribution& c) { return c.order > 1; })}},
        {{"emitted", "what warm surfaces and media sent out, scattered or not", "W/(m2 sr um)",
          when([](const Contribution& c) { return c.light == kFromMatter; })}},
-       {{"path_radiance", "what the air of the simulation adds along the ways of light", "W/(m2 sr um)",
-         when([](const Contribution& c) { return c.light == kFromAir; })}}});
+       {{"direct", "what the sun's and the moon's beams bring that a surface has scattered once", "W/(m2 sr um)",
+         when([](const Contribution& c) { return c.beam && c.order == 1 && !(c.events & by_medium); })}},
+       {{"diffuse", "what surfaces scatter beside that: light of the sky, of lamps, of other surfaces", "W/(m2 sr um)",
+         when([](const Contribution& c) {
+           return c.order > 0 && !(c.events & by_medium) && !(c.beam && c.order == 1);
+         })}},
+       {{"path_radiance", "what the air of the simulation adds on the line of sight, over an even ground",
+         "W/(m2 sr um)", when([](const Contribution& c) { return c.light == kFromAir && c.order == 0; })}},
+       {{"adjacency",
+         "what media scatter on the way; with real air: the difference that the scene makes to the field over an even "
+         "ground, light of single places and shadows, which may be negative",
+         "W/(m2 sr um)", when([](const Contribution& c) { return (c.events & by_medium) != 0; })}}});
   return table;
 }
 

@@ -40,6 +40,7 @@ struct Contribution {
   uint16_t light = kFromMatter;     // index into Environment::lights, or kFromMatter, kFromAir
   uint8_t events = 0;               // kinds of events on the way, a set of EventKind
   bool asked = false;               // an explicit sample; else met by chance
+  bool beam = false;                // of the sun's or the moon's disk
   float scale = 1;                  // shares and densities (shares.h); may be negative where a sink allows it
   Factor factor;                    // stays valid while the sink runs
   const float* radiance = nullptr;  // of the light, per bin, W/(m2 sr um) (times what its density lacks); null = ones

@@ -26,9 +26,10 @@ inline constexpr Blocks kSecond{128, kNodes};  // lobe (the first), second light
 inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than four numbers
 inline constexpr Blocks kLight{512, kNodes* kOwnLights};
 inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
+inline constexpr Blocks kPlace{1120, kFlights};  // places in the air that paths go back to
 
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -38,7 +39,15 @@ static_assert(disjoint(), "two uses of the sample stream share blocks");
 
 // Purposes of hashed numbers: kind * kStride + what the kind counts.
 inline constexpr uint32_t kStride = 1u << 22;
-enum class Hashed : uint32_t { choices, scatter, second, light, flight = light + 256, end = flight + kPerFlight };
+enum class Hashed : uint32_t {
+  choices,
+  scatter,
+  second,
+  light,
+  flight = light + 256,
+  place = flight + kPerFlight,
+  end
+};
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
 // Of Hashed::choices.
 inline constexpr uint32_t kKnot = 1;
@@ -83,6 +92,11 @@ inline std::array<double, 4> at_surface(const SampleStream& stream, uint32_t sam
 inline std::array<double, 4> of_flight(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kFlights) return stream.draw(sample, kFlight.first + kPerFlight * n);
   return hashed(stream, sample, Hashed::flight, 0, n);
+}
+// Numbers for going back to a place on the n-th flight: whether it is that flight, where on it, and whether at all.
+inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sample, uint32_t n) {
+  if (n < kFlights) return stream.draw(sample, kPlace.first + n);
+  return hashed(stream, sample, Hashed::place, 0, n);
 }
 inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
   if (const uint32_t block = block_at_scattering(n, use); block != kHashed) return stream.draw(sample, block);

@@ -35,6 +35,11 @@ class PathKernel final : public PathTracing {
   bool next(TraceRequest& request) override;
   const PathRecord& record(uint32_t p) override {
     records_[p].size = paths_[p].surfaces;
+    if constexpr (Space::kGoesBack)
+      if (Passed& at = passed_[p]; at.again) {
+        at.record.truncated += std::exchange(records_[p].truncated, 0);
+        return at.record;
+      }
     return records_[p];
   }
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
@@ -53,6 +58,7 @@ class PathKernel final : public PathTracing {
     dimensions::Use use;
     int first_number;                 // of those of `use` that it takes
     std::optional<LightSample> only;  // the only sample there is of a collimated light
+    bool beam = false;                // one that the air is given
   };
   std::span<const NodeAt> nodes() const { return nodes_; }
   std::span<const Asked> lights() const { return asked_; }
@@ -75,7 +81,7 @@ class PathKernel final : public PathTracing {
   struct Question {
     uint32_t node;  // in nodes_
     uint16_t light;
-    bool disk, wide;
+    bool disk, wide, beam;
     Dir direction;
     double density;
     float scale;
@@ -95,10 +101,16 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE void escape(uint32_t p);
   void meet_glow(uint32_t p, const Hit& hit);
   void emit(uint32_t p);
+  bool is_first_surface(uint32_t p) const;
+  // kernel_back.h: places on the way.
+  void pass(size_t slot);
+  void go_back(std::span<const uint32_t> stage);
+  bool go_back(uint32_t p);
   // kernel_light.h: questions and their answers.
   void ask();
   void answer();
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
+  void lack(const Question& q, size_t ray, bool blocked);
   SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
   SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
   // The next contribution, of path p as it stands; it counts from contribute() on.
@@ -142,6 +154,18 @@ class PathKernel final : public PathTracing {
   std::vector<FirstMeeting> firsts_;
   std::vector<SensorRay::Receiver> receivers_;
   std::vector<LastAsked> last_;
+  // Where Space::kGoesBack.
+  struct Passed {
+    Path before;                             // as it began the flight under way
+    Path path;                               // and the one that is remembered
+    double sum = 0, weight = 0, length = 0;  // of all flights; of this one; m
+    bool goes_on = false, again = false;     // scratch; it has been back
+    PathRecord record;                       // of the time before
+  };
+  std::vector<Passed> passed_;
+  std::vector<float> throughput_there_;  // [path][bin]
+  std::vector<uint32_t> returned_;       // to such places
+  std::vector<uint32_t> in_stage_;       // paths
   // Of the stage.
   bool first_stage_ = true;
   std::vector<uint32_t> active_, received_;  // paths; those that start at receivers

@@ -30,6 +30,8 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       records_(width),
       firsts_(c.keep_first ? width : 0),
       receivers_(c.receivers ? width : 0),
+      passed_(Space::kGoesBack ? width : 0),
+      throughput_there_(Space::kGoesBack ? width * bins_ : 0),
       rays_(width),
       hits_(width),
       flights_(Space::kFills ? width : 0),
@@ -47,14 +49,15 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
   for (size_t i = 0; i < environment_.lights.size(); ++i) {
     const Light& light = *environment_.lights[i];
-    Asked asked{&light, static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0, std::nullopt};
+    Asked asked{&light, static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0, std::nullopt, false};
     if (!asked.nature.delta) (asked.nature.far ? outside_ : glowing_).push_back(asked);
     if (!options_.explicit_sources || !light.nature().drawn) continue;
+    asked.beam = light.beam().has_value();
     if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
     asked_.push_back(asked);
   }
   if (const Light* sky = options_.explicit_sources ? space_.sky() : nullptr)
-    asked_.push_back({sky, kFromAir, sky->nature(), dimensions::kOfScatter, 0, std::nullopt});
+    asked_.push_back({sky, kFromAir, sky->nature(), dimensions::kOfScatter, 0, std::nullopt, false});
   std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) {
     return Estimator::parallel(a.nature) > Estimator::parallel(b.nature);
   });
@@ -98,6 +101,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   record.received = ray.receiver != SensorRay::Receiver::none;
   path.received = record.received;
   space_.start(p, path);
+  if constexpr (Space::kGoesBack) passed_[p].sum = 0, passed_[p].again = false;
   if (!record.received) return active_.push_back(p);
   receivers_[p] = ray.receiver;
   received_.push_back(p);
@@ -107,12 +111,12 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& request) {
   for (;;) switch (stage_) {
       case Stage::leave:
-        if (active_.empty() && received_.empty()) {
+        if (active_.empty() && received_.empty() && returned_.empty()) {
           first_stage_ = true;
           return false;
         }
         stage_ = Stage::arrive;
-        if (active_.empty()) break;  // all start at receivers
+        if (active_.empty()) break;  // all start at receivers or places in the air
         request_hits(request);
         return true;
       case Stage::arrive:
@@ -148,6 +152,8 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
   for (size_t i = 0; i < active_.size(); ++i) fly_one(i);
   hand_over();
+  if constexpr (Space::kGoesBack)
+    for (size_t i = 0; i < active_.size(); ++i) pass(i);
   for (size_t i = 0; i < active_.size(); ++i)
     if (flights_[i].weakened) throughputs_.attenuate(active_[i], flights_[i].through);
 }
@@ -165,9 +171,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   if (!throughputs_.has_room(p, Space::kDense)) throughputs_.make_room(p);
   const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
   Contribution& c = contribution(p, Space::kEmitter);
+  if constexpr (Space::kGoesBack) passed_[p].before = path;
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, through, emitted);
   const Flight& flight = flights_[slot];
   c.radiance = flight.emitted;
+  if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.
   if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? space_.sky() : nullptr)
     if (const double density = space_.sky_density(path.direction);
@@ -198,6 +206,21 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::arrive() {
   }
   nodes_met_ += nodes_.size();
   for (const uint32_t p : std::exchange(received_, {})) receive(p);
+  for (const uint32_t p : returned_) {
+    const auto slot = static_cast<uint32_t>(active_.size());
+    active_.push_back(p);
+    hits_[slot] = {};
+    nodes_.push_back({p, slot, true});
+  }
+  nodes_met_ += returned_.size();
+  returned_.clear();
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_first_surface(uint32_t p) const {
+  if constexpr (Space::kGoesBack)
+    if (passed_[p].again) return false;
+  return paths_[p].surfaces == paths_[p].received;
 }
 
 // A path meets a surface. False when nothing scatters there.
@@ -205,7 +228,7 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint32_t slot) {
   Path& path = paths_[p];
   const Hit& hit = hits_[slot];
-  const bool first = path.surfaces == path.received;
+  const bool first = is_first_surface(p);
   path.length += hit.distance;
   path.arrival += space_.index(p) * hit.distance;
   const bool scatters = surfaces_.meet(p, hit, -path.direction, path.time, first);
@@ -242,7 +265,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_earth(uint32_t p,
   hit.normal = met->normal;
   hit.step = Earth::step;
   hit.time = path.time;
-  const bool first = path.surfaces == path.received;
+  const bool first = is_first_surface(p);
   path.length += hit.distance;
   path.arrival += hit.distance;
   const bool scatters = surfaces_.meet_earth(p, hit, environment_.earth->material(), first);
@@ -289,6 +312,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
     c.scale = static_cast<float>(met->scale);
     if (options_.explicit_sources && path.last_density > 0 && met->density > 0)
       c.scale *= static_cast<float>(Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
+    c.beam = light.beam;
     c.radiance = met->spectrum;
     if (!c.radiance) c.radiance = memory.data();
     if (c.scale != 0) contribute();

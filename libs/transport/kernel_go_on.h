@@ -15,9 +15,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
     surfaces_.prepare(i, {u[0], u[1]});
   }
   surfaces_.prepare_all(nodes_.size());
+  if constexpr (Space::kGoesBack) in_stage_ = active_;
   active_.assign(onward_.begin(), onward_.end());
   for (size_t i = 0; i < nodes_.size(); ++i)
     if (go_on(i)) active_.push_back(nodes_[i].path);
+  if constexpr (Space::kGoesBack) go_back(in_stage_);
 }
 
 // One path; false when it ends here.
@@ -84,7 +86,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   const NodeAt& node = nodes_[i];
   const Path& path = paths_[node.path];
   const Vec2 u{path.u[0], path.u[1]};
-  const std::span<float> memory = Surfaces::kDense > 0 ? dense(node.path) : std::span<float>{};
+  constexpr bool kDraws = Surfaces::kDense > 0 || Space::kScatters;
+  const std::span<float> memory = kDraws ? dense(node.path) : std::span<float>{};
   bool drawn;
   if constexpr (Space::kScatters) {
     if (node.event) {
@@ -96,7 +99,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   }
   const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
   drawn = surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
-  if (Surfaces::kDense > 0 && drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
+  if (kDraws && drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
   return drawn;
 }
 

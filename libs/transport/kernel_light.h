@@ -50,6 +50,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
   const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
   if (!(sample.scale > 0)) return;
+  if (Space::kGoesBack && node.event && light.index == kFromAir) return;  // the same as over the even ground
   if (!node.event && !surfaces_.takes(p, hit, -path.direction, sample.direction)) return;
   if (!light.nature.far && !glowing_.empty()) last_[p].draws = draws;
   Vec3 origin;
@@ -77,6 +78,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
                                     light.index,
                                     light.nature.disk,
                                     light.nature.wide,
+                                    light.beam,
                                     sample.direction,
                                     delta ? 0 : sample.density * draws,
                                     static_cast<float>(delta ? sample.scale / draws : sample.scale),
@@ -89,14 +91,20 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
   const std::span<const uint8_t> blocked = sight_rays_.blocked();
   for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
+    const Ray& ray = sight_rays_.rays()[i];
+    const bool behind_earth =
+        environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance()[i]);
+    if constexpr (Space::kGoesBack)
+      if (nodes_[q.node].event && q.beam && space_.in_air(nodes_[q.node].path)) {
+        lack(q, i, blocked[i] || behind_earth);  // it shines in the even field already
+        continue;
+      }
     double passes = 1;
     if (blocked[i]) {
       passes = lost_ && !q.wide ? space_.sight().passes(i) : 0;
       if (!(passes > 0)) continue;
     }
-    const Ray& ray = sight_rays_.rays()[i];
-    if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance()[i])) continue;
-    shine(q, i, passes);
+    if (!behind_earth) shine(q, i, passes);
   }
 }
 
@@ -107,7 +115,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   const Path& path = paths_[node.path];
   float density[kMaxKnots] = {};
   if constexpr (Space::kScatters)
-    if (node.event) space_.densities(node.path, scattering_cosine(-path.direction, in), {density, knots()});
+    if (node.event) space_.densities(node.path, -path.direction, in, {density, knots()});
   if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots()});
   double sum = 0;
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
@@ -122,6 +130,29 @@ Factor PathKernel<Surfaces, Space, Throughputs, Estimator>::evaluate(const NodeA
   if constexpr (Space::kScatters)
     if (node.event) return space_.evaluate(node.path, scattering_cosine(-direction, in), dense);
   return surfaces_.evaluate(node.path, -direction, in, dense);
+}
+
+// A beam that the air has been given comes to a place in it in part, or not at all.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::lack(const Question& q, size_t i, bool blocked) {
+  const NodeAt& node = nodes_[q.node];
+  if (!space_.lacks(sight_rays_.rays()[i], sight_rays_.distance()[i], i, blocked, transmission_)) return;
+  const std::span<float> memory = dense(node.path, 2);
+  evaluate(node, q.direction, memory);
+  for (size_t k = 0; k < bins_; ++k) memory[k] *= transmission_[k];
+  const float* radiance = q.spectrum;
+  if (!radiance) {
+    const std::span<float> own = dense(node.path);
+    std::fill(own.begin(), own.end(), 0.0f);
+    environment_.lights[q.light]->add(q.direction, sight_rays_.rays()[i].time, 1, own);
+    radiance = own.data();
+  }
+  Contribution& c = contribution(node.path, q.light);
+  c.asked = c.beam = true;
+  c.scale = static_cast<float>(-q.scale / (q.density > 0 ? q.density : 1));
+  c.factor = {1, memory.data()};
+  c.radiance = radiance;
+  contribute();
 }
 
 // A light that the node asked for arrives; or passes < 1 of it would, had smooth surfaces not bent it.
@@ -165,6 +196,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   Contribution& c = contribution(p, q.light);
   c.events |= node.event ? by_medium : by_surface;
   c.asked = true;
+  c.beam = q.beam;
   c.scale = static_cast<float>(passes * q.scale / denominator);
   c.factor = factor;
   c.radiance = radiance;
@@ -182,7 +214,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.path = p;
   c.light = light;
   c.events = path.events;
-  c.asked = false;
+  c.asked = c.beam = false;
   c.order = path.order();
   c.scale = 1;
   c.factor = {};

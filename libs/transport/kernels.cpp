@@ -1,27 +1,42 @@
 // The kernels that occur, and which of them serves a state.
 #include "transport/estimators/paper.h"
 #include "transport/estimators/standard.h"
+#include "transport/kernel_back.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"
 #include "transport/media/space_field.h"
+#include "transport/space_lit_air.h"
 #include "transport/surfaces_matte.h"
 
 namespace suite {
 
 const char* KernelChoice::name() const {
-  if (matte) return space == Space::air ? "matte in air" : "matte";
-  return space == Space::nothing ? "general" : space == Space::air ? "general in air" : "general in media";
+  switch (space) {
+    case Space::air:
+      return matte ? "matte in air" : "general in air";
+    case Space::lit_air:
+      return matte ? "matte in lit air" : "general in lit air";
+    case Space::field:
+      return "general in media";
+    case Space::nothing:
+      break;
+  }
+  return matte ? "matte" : "general";
 }
 
 KernelChoice choose_kernel(const KernelContext& c) {
+  using Space = KernelChoice::Space;
   KernelChoice choice;
-  if (!c.optics.media().empty())
-    choice.space = KernelChoice::Space::field;
-  else if (c.environment.atmosphere)
-    choice.space = KernelChoice::Space::air;
-  choice.matte = c.options.specialise && !c.receivers && c.options.method == Method::standard &&
-                 choice.space != KernelChoice::Space::field && MatteSurfaces::serve(c.surface, c.optics);
+  const bool media = !c.optics.media().empty(), air = c.environment.atmosphere != nullptr,
+             lit = air && c.environment.atmosphere->vertices() && c.options.explicit_sources &&
+                   c.options.method == Method::standard;
+  if (media)
+    choice.space = Space::field;
+  else if (air)
+    choice.space = lit ? Space::lit_air : Space::air;
+  choice.matte = c.options.specialise && !c.receivers && c.options.method == Method::standard && !media &&
+                 MatteSurfaces::serve(c.surface, c.optics);
   return choice;
 }
 
@@ -46,8 +61,10 @@ std::unique_ptr<PathTracing> make_kernel(const KernelChoice& choice, const Kerne
   using Space = KernelChoice::Space;
   const bool air = choice.space == Space::air;
   auto* const made =
-      choice.matte ? (air ? &make<MatteSurfaces, AirSpace, StandardEstimator>
-                          : &make<MatteSurfaces, NothingSpace, StandardEstimator>)
+      choice.space == Space::lit_air ? (choice.matte ? &make<MatteSurfaces, LitAirSpace, StandardEstimator>
+                                                     : &make<AnySurfaces, LitAirSpace, StandardEstimator>)
+      : choice.matte                 ? (air ? &make<MatteSurfaces, AirSpace, StandardEstimator>
+                                            : &make<MatteSurfaces, NothingSpace, StandardEstimator>)
       : c.options.method == Method::paper
           ? (air ? &make<AnySurfaces, AirSpace, PaperEstimator> : &make<AnySurfaces, NothingSpace, PaperEstimator>)
       : choice.space == Space::field ? &make<AnySurfaces, FieldSpace, StandardEstimator>

@@ -41,10 +41,11 @@ struct KernelContext {
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.
 bool may_lose(const KernelContext& context);
 
-// The kernel that serves a state best: "matte" or "general", and what fills space: "", "air", "media".
+// The kernel that serves a state best: "matte" or "general", and what fills space: "", "air", "lit air" (that knows the
+// scene), "media".
 struct KernelChoice {
   bool matte = false;
-  enum class Space : uint8_t { nothing, air, field } space = Space::nothing;
+  enum class Space : uint8_t { nothing, air, lit_air, field } space = Space::nothing;
   const char* name() const;
 };
 KernelChoice choose_kernel(const KernelContext& context);

@@ -31,6 +31,8 @@ class Pipeline {
   bool may_miss(const Capture& capture) const;
   // The kernel that paths of this state run in: KernelChoice::name().
   const char* kernel() const { return choice_.name(); }
+  // Whether samples may be negative: differences from an even ground (light/air_vertices.h).
+  bool is_signed() const { return choice_.space == KernelChoice::Space::lit_air; }
   const Tracer& tracer() const { return surface_.tracer(); }
 
  private:

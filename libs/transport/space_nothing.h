@@ -26,6 +26,9 @@ struct Flight {
   Factor through;
   bool weakened = false;
   const float* emitted = nullptr;  // light from the way itself, per bin, as seen from its start; null = none
+  // Where Space::kGoesBack: m; `emitted` is a difference to other light.
+  double length = 0;
+  bool difference = false;
 };
 
 // What a space needs to know to be made.
@@ -43,6 +46,7 @@ class NothingSpace {
  public:
   static constexpr bool kScatters = false;  // paths are scattered between surfaces
   static constexpr bool kFills = false;     // flights do anything at all
+  static constexpr bool kGoesBack = false;  // ended paths go back to places on their way (kernel_back.h)
   static constexpr uint32_t kDense = 0;     // spectra that fly() needs
   using Sight = PlainSight;
   explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
@@ -101,7 +105,7 @@ class AirSpace : public NothingSpace {
     return true;
   }
 
- private:
+ protected:
   const Atmosphere& air_;
 };
 

@@ -8,6 +8,7 @@
 //   turn of the chain:  T <- scale a T          light:  L <- L + scale a b T.
 // States of one bin compute with numbers, at once.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -37,6 +38,11 @@ class SpectralThroughputs {
     }
     c.folded = false;
     add_turn(c, p, {weight, weights});
+  }
+  // T <- a spectrum; L stays.
+  void resume(uint32_t p, std::span<const float> T) {
+    settle(p);
+    std::copy(T.begin(), T.end(), &throughput_[size_t{p} * stride_]);
   }
   // T <- T w: scattered, w over its density.
   void scatter(uint32_t p, const Factor& w, const Event&) { multiply(p, w); }

@@ -228,8 +228,7 @@ class ClearSkyLight final : public LightSpec {
   void check_beside(const SourceSpecs& all) const override {
     if (!all.sun()) throw Error(spec_.where, "a clear sky needs a sun", "give `sun`");
     if (all.has_air())
-      throw Error(all.air ? all.air->where : all.atmosphere->where, "a clear sky stands for the atmosphere as well",
-                  "drop one of the two");
+      throw Error(all.where_air(), "a clear sky stands for the atmosphere as well", "drop one of the two");
     for (const LightSpecPtr& light : all.lights)
       if (light.get() != this && light->key() == key())
         throw Error(spec_.where, "a clear sky stands beside another sky", "drop one of the two");

@@ -100,4 +100,8 @@ void AirLight::transmittance(std::span<float> T) const {
   for (size_t i = 0; i < T.size(); ++i) T[i] = std::exp(-passed_[i]);
 }
 
+void AirLight::bend(Vec3 from, Dir direction, std::span<float> T) const {
+  if (air_->bends()) air_->transmittance(from, direction, std::numeric_limits<double>::infinity(), T);
+}
+
 }  // namespace suite

@@ -37,6 +37,8 @@ class AirLight {
             std::span<double> sent, std::span<double> place);
   // exp(-extinction) of the air so far.
   void transmittance(std::span<float> T) const;
+  // The same of a flight that has got outside, where beams are bent; else T stays.
+  void bend(Vec3 from, Dir direction, std::span<float> T) const;
 
  private:
   struct Scattered {

@@ -80,6 +80,8 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
   end_run(live, u.y, emitted);
   if (air_.any()) {
     air_.transmittance(through);
+    if (length == std::numeric_limits<double>::infinity() && !result_.scattered)
+      air_.bend(live.origin, live.direction, through);
     result_.dense = true;
   }
   weigh(live, through);

@@ -90,7 +90,8 @@ void FieldSpace::remember(uint32_t p, Vec3 place) {
   }
 }
 
-void FieldSpace::densities(uint32_t p, double cosine, std::span<float> density) const {
+void FieldSpace::densities(uint32_t p, Dir out, Dir in, std::span<float> density) const {
+  const double cosine = scattering_cosine(out, in);
   const ScatterPlace& e = events_[p];
   const std::vector<size_t>& bins = optics_.state().knots;
   double q[kMaxKnots] = {};
@@ -145,8 +146,8 @@ bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, st
   }
   if (!scatterer) return false;
   const double cosine = scatterer->phase->sample(u.x, live.knot);
-  densities(p, cosine, {on.density, optics_.state().knots.size()});
   on.in = scattered_direction(-live.direction, cosine, u.y);
+  densities(p, -live.direction, on.in, {on.density, optics_.state().knots.size()});
   on.dirac = false;
   on.weight = evaluate(p, cosine, dense);
   return true;

@@ -15,7 +15,7 @@ namespace suite {
 
 class FieldSpace {
  public:
-  static constexpr bool kScatters = true, kFills = true;
+  static constexpr bool kScatters = true, kFills = true, kGoesBack = false;
   static constexpr uint32_t kDense = 2;
   static constexpr uint16_t kEmitter = kFromMatter;
   using Sight = MediaSight;
@@ -40,7 +40,7 @@ class FieldSpace {
 
   // The event that ended the last flight of path p.
   Vec3 place(uint32_t p) const { return events_[p].place; }
-  void densities(uint32_t p, double cosine, std::span<float> density) const;
+  void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // v; dense: memory for a spectrum.
   Factor evaluate(uint32_t p, double cosine, std::span<float> dense);
   // Draws a direction. who: number that chooses the scatterer. Nothing when nothing scatters.

@@ -80,6 +80,7 @@ class TruthPlan {
 void add_place_rows(std::vector<TruthRow>& table);   // place.cpp: location, range, time
 void add_angle_rows(std::vector<TruthRow>& table);   // place.cpp: normals and angles
 void add_matter_rows(std::vector<TruthRow>& table);  // matter.cpp: materials, instances, tags, temperature, reflectance
+void add_air_rows(std::vector<TruthRow>& table);     // air.cpp: parts of the air's light in view
 void add_account_rows(std::vector<TruthRow>& table);  // account.cpp: counts of paths and nodes, visibility, state
 
 // Collectors made of functions, which is what most rows are.

@@ -53,8 +53,8 @@ TEST_F(Evidence, BudgetsOfNothing) {
   EXPECT_FALSE(file_exists(folder_ / "out/map.img"));
 }
 
-// The bins follow from a file that the simulation only names.
-TEST_F(Evidence, StatesOfOtherBins) {
+// Light, and the bins it is carried in, follow from a file that the simulation only names.
+TEST_F(Evidence, StatesOfOtherFiles) {
   const std::string sim = read_text(folder_ / "sim.yaml", 10000);
   std::string named = sim;
   named.replace(named.find("radiance: 1"), 11, "radiance: sky.txt");
@@ -63,7 +63,9 @@ TEST_F(Evidence, StatesOfOtherBins) {
   ASSERT_EQ(run("dirsig-render named.yaml --state -o out").code, 0);
   ASSERT_EQ(run("dirsig-render named.yaml --more 4 -o out").code, 0);
   write_file(folder_ / "sky.txt", std::string_view("8 1\n9.9 1\n10 5\n10.1 1\n14 1\n"));
-  refused("dirsig-render named.yaml --more 4 -o out", "spectral bins");
+  refused("dirsig-render named.yaml --more 4 -o out", "files named");
+  write_file(folder_ / "sky.txt", std::string_view("8 1\n14 1\n"));
+  EXPECT_EQ(run("dirsig-render named.yaml --more 4 -o out").code, 0);
 }
 
 TEST_F(Evidence, FoldersThatCannotBeWritten) {

@@ -104,6 +104,24 @@ TEST(StratifiedAir, FromFarAboveIsFromTheTop) {
   }
 }
 
+// Beams of sun and moon do not know of each other: together they send what each sends alone.
+TEST(StratifiedAir, BeamsAddUp) {
+  AirSpec air = hazy_air();
+  const SpectralState state = bins_at({0.45, 0.8});
+  const Sun sun(state, 50), moon(state, 20, 0.3);
+  const Beam turned{dir_from_angles(20 * kDegree, 2), moon.spectrum.data()};
+  const auto both = make_stratified_air(air, state, {sun.beam, turned}),
+             one = make_stratified_air(air, state, {sun.beam}), other = make_stratified_air(air, state, {turned});
+  for (const Dir d : {normalized(Vec3{0.3, 0.2, 1}), normalized(Vec3{-1, 0.4, 0.3}), normalized(Vec3{0.2, -1, -0.4})}) {
+    const Vec3 from = d.z > 0 ? Vec3{0, 0, 0} : -d * (3e3 / -d.z);
+    const double distance = d.z > 0 ? kFar : 3e3 / -d.z;
+    const Seen a = look(*both, state.size(), from, d, distance), b = look(*one, state.size(), from, d, distance),
+               c = look(*other, state.size(), from, d, distance);
+    // Half as many azimuths on either side of a single beam's plane of symmetry: 1 %.
+    for (size_t i = 0; i < state.size(); ++i) EXPECT_NEAR(a.S[i] / (b.S[i] + c.S[i]), 1, 0.01);
+  }
+}
+
 // Levels twice as close change what is seen from below and from above by less than 0.6 %, where gases are opaque and
 // where they are not, reflected and emitted; the transmittance by less than 0.005. 0.53 % at 4.3 um from space (0.1 K),
 // where the g-points are grouped otherwise, too; all else 0.5 %.
@@ -236,6 +254,7 @@ TEST(StratifiedAir, TheFieldIsThatOfPathsScatteredInTheAir) {
   AirSpec air = hazy_air();
   air.aerosol->profile = air.aerosol->profile.with_depth(0.5);
   air.ground_albedo = Curve::constant(0.3);
+  air.adjacency = false;  // the field by itself: paths would mend what it has wrong
   const CaptureResult field = seen_through(air, AirScattering::diffuse, 0.3, 1024),
                       traced = seen_through(air, AirScattering::traced, 0.3, 6000);
   constexpr double z = 3.8;  // two-sided 1e-3 of 6

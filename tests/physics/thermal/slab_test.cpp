@@ -164,31 +164,10 @@ TEST(Slab, StiffFilmDoesNotDependOnTheStep) {
   }
 }
 
-// Lunar regolith at the equator after P. O. Hayne et al., JGR Planets 122, 2017, table A1 and equations A2-A8: density
-// and conductivity grow with depth, both depend on temperature; night temperatures of the Diviner radiometer.
 SlabSpec regolith(double period) {
   SlabSpec spec;
-  const double H = 0.07, chi = 2.7 / std::pow(350.0, 3);
-  double z = 0;
-  for (double h = 0.001; z < 2; h *= 1.06) {
-    const double fade = std::exp(-(z + h / 2) / H), k = 3.4e-3 - (3.4e-3 - 7.4e-4) * fade;
-    SlabLayer l;
-    l.thickness = h;
-    l.density = 1800 - (1800 - 1100) * fade;
-    l.specific_heat = {-3.6125, 2.7431, 2.3616e-3, -1.2340e-5, 8.9093e-9};
-    l.conductivity = {k, 0, 0, k * chi};
-    l.intervals = 1;
-    spec.layers.push_back(l);
-    z += h;
-  }
-  spec.top = surface(0.95, [period](double t) {
-    // t counts from noon; the albedo grows with the incidence angle (Keihm 1984).
-    const double cosine = std::cos(2 * kPi * t / period);
-    if (cosine <= 0) return SurfaceLoad{};
-    const double angle = std::acos(cosine);
-    const double albedo = 0.12 + 0.06 * std::pow(angle / (kPi / 4), 3) + 0.25 * std::pow(angle / (kPi / 2), 8);
-    return SurfaceLoad{1361 * (1 - albedo) * cosine, 0, 0, 0};
-  });
+  spec.layers = lunar_regolith();
+  spec.top = surface(0.95, [period](double t) { return SurfaceLoad{lunar_sun(t, period), 0, 0, 0}; });
   spec.bottom = flux(0.018);
   return spec;
 }

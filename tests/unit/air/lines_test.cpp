@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -29,8 +30,7 @@ TEST(Lines, VoigtFunction) {
 }
 
 LineGas one_line() {
-  LineGas gas;
-  gas.gas = Gas::co2;
+  LineGas gas{.gas = Gas::co2};
   gas.lines = {{2000, 1e-20, 0.07, 0.09, 0, 0.7, 0, 1}};
   return gas;
 }
@@ -40,7 +40,7 @@ TEST(Lines, KeepTheirIntensity) {
   const LineGas gas = one_line();
   for (const double pressure : {100.0, 101325.0}) {
     const double step = 0.001;
-    const std::vector<double> k = line_spectrum(gas, 1970, step, 60001, pressure, 296, 0);
+    const std::vector<double> k = line_spectrum(gas, 1970, step, 60001, pressure, 296);
     const double sum = std::accumulate(k.begin(), k.end(), 0.0) * step;
     const double cut = 2 * 0.07 * pressure / 101325 / (kPi * 25);
     EXPECT_NEAR(sum / (1e-24 * (1 - cut)), 1, 1e-4) << pressure;
@@ -53,7 +53,8 @@ TEST(Lines, MiddleOfALorentzLine) {
   gas.lines[0].air_width_cm = 0.5;
   gas.partition = [](int, double) { return 1.0; };
   const auto middle = [&](double kelvin, double share) {
-    return line_spectrum(gas, 2000, 0.001, 3, 101325, kelvin, share)[0];
+    gas.share = share;
+    return line_spectrum(gas, 2000, 0.001, 3, 101325, kelvin)[0];
   };
   EXPECT_NEAR(middle(296, 0) / (1e-24 / (kPi * 0.5)), 1, 1e-3);
   EXPECT_NEAR(middle(296, 1) / (1e-24 / (kPi * 0.09)), 1, 1e-3);
@@ -79,7 +80,7 @@ TEST(Lines, TablesKeepMeanAndTransmittance) {
   for (AirLevel& l : levels) l.share(Gas::co2) = 4e-4;
   for (size_t band = 0; band < 2; ++band) {
     const double low = bake.edges_cm[band], step = 0.002;
-    const std::vector<double> k = line_spectrum(gases[0], low + step / 2, step, 5000, 100000, 280, 0);
+    const std::vector<double> k = line_spectrum(gases[0], low + step / 2, step, 5000, 100000, 280);
     double mean = 0;
     for (size_t g = 0; g < table.weight.size(); ++g)
       mean += table.weight[g] * static_cast<double>(table.cross_section[table.index(0, band, 1, 1) + g]);
@@ -95,6 +96,41 @@ TEST(Lines, TablesKeepMeanAndTransmittance) {
   }
   EXPECT_EQ(provider->bands(2000, 2010).size(), 2u);
   EXPECT_EQ(provider->bands(2000, 2005).size(), 1u);
+}
+
+// Fewer points are sums of neighbours: the mean of k stays. Every spectrum is told when it is done.
+TEST(Lines, FewerPointsKeepTheMean) {
+  const std::vector<LineGas> gases = {one_line()};
+  LineBake bake;
+  bake.edges_cm = {1995, 2005};
+  bake.pressure = {10000, 100000};
+  bake.temperature = {220, 280, 300};
+  std::atomic<size_t> told = 0;
+  bake.done = [&] { ++told; };
+  std::vector<double> means;
+  for (const size_t points : {16, 8, 4}) {
+    bake.points = points;
+    const GasTable table = bake_lines(gases, nullptr, bake);
+    ASSERT_EQ(table.weight.size(), points);
+    const float* k = table.cross_section.data() + table.index(0, 0, 1, 2);
+    means.push_back(std::inner_product(table.weight.begin(), table.weight.end(), k, 0.0));
+  }
+  EXPECT_NEAR(means[1] / means[0], 1, 1e-5);
+  EXPECT_NEAR(means[2] / means[0], 1, 1e-5);
+  EXPECT_EQ(told, 3 * bake_spectra(1, bake));
+}
+
+// Doppler's half width of a heavier isotopologue is smaller as the square root of its mass; under pressure the line is
+// as wide as Lorentz's.
+TEST(Lines, TheNarrowest) {
+  LineGas gas = one_line();
+  const double thin = narrowest_line(gas, 1900, 2100, 1e-6, 250).value();
+  // nu sqrt(2 ln 2 R T / M) / c of CO2, 44.01 g/mol.
+  EXPECT_NEAR(thin / (2000 * std::sqrt(2 * std::log(2.0) * 8.314462618 * 250 / 0.04401) / 299792458), 1, 1e-3);
+  gas.mass = [](int isotopologue) { return isotopologue == 1 ? 4 * 0.04401 : 1.0; };
+  EXPECT_NEAR(narrowest_line(gas, 1900, 2100, 1e-6, 250).value() / thin, 0.5, 1e-3);
+  EXPECT_NEAR(narrowest_line(gas, 1900, 2100, 101325, 296).value(), 0.07, 1e-4);
+  EXPECT_FALSE(narrowest_line(gas, 1000, 1999, 101325, 296));
 }
 
 // Without lines water absorbs by its continuum alone: foreign by all other air, self by its own pressure.
@@ -127,6 +163,10 @@ TEST(Lines, RefusesWhatCannotBeBaked) {
   EXPECT_THAT(message_of([&] { bake_lines(gases, nullptr, bake); }), HasSubstr("0 pressures"));
   bake.step_cm = 0;
   EXPECT_THAT(message_of([&] { bake_lines(gases, nullptr, bake); }), HasSubstr("a step of 0 cm-1"));
+  bake.step_cm = 1e-5;
+  EXPECT_THAT(message_of([&] { bake_lines(gases, nullptr, bake); }), HasSubstr("2e7 in a band"));
+  bake.step_cm = 0.01, bake.points = 5;
+  EXPECT_THAT(message_of([&] { bake_lines(gases, nullptr, bake); }), HasSubstr("5 g-points"));
 }
 
 }  // namespace

@@ -53,6 +53,30 @@ TEST(Sources, AirIsReadAsItIsWritten) {
               1e-6);
 }
 
+TEST(Sources, ParticlesOfAUser) {
+  const TempFolder folder;
+  write_file(folder / "p.txt",
+             "wavelength_um extinction_m2_g albedo asymmetry\n0.4 3 0.9 0.7\n0.55 2 0.9 0.7\n2 1 0.9 0.7\n");
+  write_file(folder / "r.txt", "wavelength_um extinction_relative albedo asymmetry\n8 0.3 0.9 0.7\n12 0.2 0.9 0.7\n");
+  const auto air = [&](const std::string& text) {
+    return read("atmosphere: {profile: tropical, " + text + "}", folder / "x.yaml").air;
+  };
+  const auto own =
+      air("aerosol: {optics: p.txt, depth_550: 0.3}, clouds: [{optics: p.txt, base_m: 1000, top_m: 2000, "
+          "depth_550: 4}, {optics: r.txt, base_m: 1000, top_m: 2000, depth_550: 4}]");
+  ASSERT_TRUE(own->aerosol->boundary.data);
+  const double red[] = {2};
+  EXPECT_NEAR(particle_optics(own->aerosol->boundary, red).extinction(0), 0.5, 1e-9);
+  EXPECT_NEAR(own->clouds[0].content * 1000 * 2000, 4, 1e-9);  // kg/m3, m, m2/kg
+  EXPECT_NEAR(own->clouds[1].content * 1000, 4, 1e-9);
+  const auto message = [&](const std::string& text) { return message_of([&] { air(text); }); };
+  EXPECT_THAT(message("aerosol: {optics: p.txt, model: rural}"), testing::HasSubstr("drop one"));
+  EXPECT_THAT(message("aerosol: {optics: p.txt, relative_humidity: 0.5}"), testing::HasSubstr("relative_humidity"));
+  EXPECT_THAT(message("aerosol: {optics: gone.txt}"), testing::HasSubstr("no file"));
+  EXPECT_THAT(message("clouds: [{optics: r.txt, base_m: 1000, top_m: 2000, content_g_m3: 1}]"),
+              testing::HasSubstr("give `depth_550`"));
+}
+
 // The first of them, for one bin at 0.55 um.
 std::shared_ptr<const Light> baked(const SourceSpecs& s) {
   const Tracer tracer(test::scene_of({test::quad(1, 0, 0)}, {test::material("m", test::lambert(0))}));
@@ -88,6 +112,7 @@ const BadCase kBad[] = {
     {"atmosphere: {profile: tropical, ground_albedo: 1.2}", "the albedo exceeds 1"},
     {"atmosphere: {profile: tropical, g_points: 99}", "99"},
     {"atmosphere: {profile: tropical, scattering: twice}", "twice"},
+    {"atmosphere: {profile: tropical, shape: flat, refraction: true}", "round Earth"},
     {"atmosphere: {profile: tropical, heights_m: [0, 1]}", "heights_m"},
     {"{sky: {radiance: 1}, atmosphere: {profile: tropical}}", "makes its own"},
     {"sun: {irradiance: 3}", "the key 'direction' is missing"},

@@ -1,4 +1,4 @@
-#include "light/kinds/sky_table.h"
+#include "light/sky_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,40 @@
+// The readers of the kinds, one a file; weather.h chooses among them.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "base/text_lines.h"
+#include "formats/weather/weather.h"
+
+namespace suite {
+
+inline constexpr size_t kMostWeatherRows = 600000;
+inline constexpr double kFreezing = 273.15;
+
+// Rows as the file has them, in SI, with notes on what its kind means by times and values.
+WeatherTable parse_epw(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_tmy3(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_surfrad(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_bsrn(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_wth(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_csv(std::string_view text, const std::string& file, const WeatherOptions& options);
+
+// A new row at the line where `lines` stands. Error when there are too many.
+WeatherRow& add_row(WeatherTable& table, const TextLines& lines);
+
+// Millimetres of water in so many hours; 99 hours are unknown ones, and nothing in unknown hours is nothing.
+void put_precipitation(WeatherRow& row, double millimetres, double hours);
+
+// "UTC-7 h" and so on, as times of files in local standard time are explained.
+std::string standard_time_note(double utc_offset);
+inline constexpr const char* kHourNote =
+    "radiation and precipitation are means of the hour (or part of it) that ends at the stamp, the rest is of the "
+    "stamp";
+
+// Options that a kind has no use for. Error naming the first of them that is given.
+struct WeatherUses {
+  bool site = false, utc_offset = false, date = false, year = false;
+};
+void refuse_options(const WeatherOptions& options, WeatherUses uses, const std::string& file, const char* kind);
+
+}  // namespace suite

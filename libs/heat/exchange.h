@@ -1,0 +1,66 @@
+// Longwave exchange between elements, all reflections included, and the surface histories it couples.
+//
+// Assumes: grey faces; every element has one temperature and one emissivity.
+// Method: a row of the matrix says where what an element could emit ends: the shares of it that each element absorbs
+// and that leave to the outside (B. Gebhart, "A new method for calculating radiant exchanges", ASHRAE Trans. 65, 1959).
+// By reciprocity the same shares weigh what the element receives, so that one matrix, whose rows sum to 1, gives
+//   received[i] = sum over j of share[i][j] emitted[j],  emitted = sigma T^4,  net flux = emissivity (received -
+//   emitted)
+// for black ends and mirrors alike; a box of one temperature stays at it.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace suite {
+
+class ExchangeMatrix {
+ public:
+  struct Entry {
+    uint32_t end;  // an element, or elements() + number of an outside
+    double share;
+  };
+  // outsides: sky, sun-lit distance, ... whose emitted histories are given.
+  ExchangeMatrix(size_t elements, size_t outsides);
+
+  // The next element's row, in any order, an end possibly more than once. Shares are divided by their sum, so that rows
+  // sum to 1 to rounding. Error: an unknown end, a share that is negative, a sum that is not 1 within 1e-6.
+  void add_row(std::span<const Entry> row);
+  size_t elements() const { return elements_; }
+  size_t outsides() const { return outsides_; }
+  size_t entries() const { return ends_.size(); }
+
+  // emitted: W/m2, `moments` of the first end, then of the next, ..., outsides last; received likewise, of the
+  // elements. All rows must be there.
+  void receive(std::span<const double> emitted, size_t moments, std::span<double> received) const;
+
+ private:
+  size_t elements_, outsides_;
+  std::vector<size_t> begins_;
+  std::vector<uint32_t> ends_;
+  std::vector<float> shares_;    // as many as paths ended: 4 bytes each
+  std::vector<double> factors_;  // of a row's shares, so that these sum to 1
+};
+
+// What the elements answer to histories of received longwave: fills their emitted histories, W/m2.
+using Respond = std::function<void(std::span<const double> received, std::span<double> emitted)>;
+
+struct CouplingOptions {
+  double tolerance = 1e-3;  // K: estimated distance from the coupled state
+  int most_sweeps = 100;
+  size_t memory = 0;  // differences Anderson's method keeps; 0 = plain sweeps, enough where much sky is seen
+};
+struct CouplingResult {
+  int sweeps = 0;
+  double change = 0;    // K, largest of the last sweep
+  double distance = 0;  // K, as estimated from the change and its contraction
+};
+// Waveform relaxation: from the emitted histories of all ends (elements, as guessed, then outsides, as given) the
+// received ones, from these the answer of every element over the whole time, and again, until the histories of the
+// elements are within the tolerance. Error: not within most_sweeps, or an answer that is not positive.
+// Based on: E. Lelarasmee, A. Ruehli, A. Sangiovanni-Vincentelli, IEEE Trans. CAD 1, 1982; Anderson 1965 (anderson.h).
+CouplingResult couple_histories(const ExchangeMatrix& exchange, size_t moments, std::span<double> emitted,
+                                const Respond& respond, const CouplingOptions& options = {});
+
+}  // namespace suite

@@ -1,0 +1,265 @@
+#include "heat/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "spectral/planck.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kTogether = 256;  // elements a piece of parallel work
+
+double emitted_by(double kelvin) { return kStefanBoltzmann * kelvin * kelvin * kelvin * kelvin; }
+
+std::vector<StepLine> lines_of(const SurfaceLoads& loads, const std::vector<double>& values) {
+  const AveragedTable table(loads.air.times, values, AveragedTable::Between::linear, loads.air.repeat);
+  std::vector<StepLine> lines;
+  double t = loads.begin;
+  for (const double dt : loads.steps) {
+    lines.push_back(table.over(t, t + dt));
+    t += dt;
+  }
+  return lines;
+}
+
+// A law that does not ask the surface: its coefficient, and that times the air's temperature, averaged themselves, so
+// that gusts act as they do and not as their mean.
+struct FixedLaw {
+  std::vector<StepLine> coefficient, times_air;
+};
+
+FixedLaw fixed_law(const SurfaceLoads& loads, const FaceTraits& face) {
+  std::vector<double> coefficient, times_air;
+  for (size_t i = 0; i < loads.air.times.size(); ++i) {
+    const double air = loads.air.kelvin[i];
+    coefficient.push_back(face.convection->coefficient({air, air, loads.air.wind[i]}));
+    times_air.push_back(coefficient.back() * air);
+  }
+  return {lines_of(loads, coefficient), lines_of(loads, times_air)};
+}
+
+bool is_fixed(const FaceTraits& face) {
+  return face.convection && !face.convection->asks_surface() && face.wetness == 0;
+}
+
+}  // namespace
+
+struct CoupledSurfaces::Through {
+  const SurfaceLoads& loads;
+  const SurfaceOptions& options;
+  size_t moments = 0;
+  std::vector<StepLine> kelvin = {}, wind = {}, vapour = {};  // by step
+  std::vector<double> gusts = {};                             // by step
+  std::vector<FixedLaw> front = {}, back = {};                // by group; empty for laws that ask the surface
+  std::span<const double> received = {};
+  bool first = true;
+
+  struct Air {
+    double kelvin, wind, gusts, vapour;
+  };
+  Air air_at(size_t step, double fraction) const {
+    return {kelvin[step].at(fraction), wind[step].at(fraction), gusts[step], vapour[step].at(fraction)};
+  }
+  FaceWeather weather(size_t face, size_t moment, const Air& air) const {
+    FaceWeather w;
+    w.absorbed = loads.absorbed[face * moments + moment];
+    w.longwave = received[face * moments + moment];
+    w.source = loads.source.empty() ? 0 : loads.source[face];
+    w.air_kelvin = air.kelvin, w.wind = air.wind, w.gusts = air.gusts, w.vapour_pressure = air.vapour;
+    return w;
+  }
+  // The air at a moment: between the lines of the steps before and after it.
+  FaceWeather weather_at(size_t face, size_t moment) const {
+    const size_t last = loads.steps.size() - 1;
+    const Air before = air_at(moment > 0 ? moment - 1 : 0, moment > 0 ? 1 : 0);
+    const Air after = air_at(std::min(moment, last), moment > last ? 1 : 0);
+    return weather(face, moment,
+                   {(before.kelvin + after.kelvin) / 2, (before.wind + after.wind) / 2,
+                    (before.gusts + after.gusts) / 2, (before.vapour + after.vapour) / 2});
+  }
+  // What acts on a face through a step; its temperature is that at the step's begin.
+  void act(const FaceTraits& traits, const FixedLaw& law, size_t face, size_t step, double now, FaceLines& lines,
+           size_t lane) const {
+    const FaceWeather begin = weather(face, step, air_at(step, 0)), end = weather(face, step + 1, air_at(step, 1));
+    lines.quartic[lane] = traits.emissivity * kStefanBoltzmann;
+    const auto taken = [&](const FaceWeather& w) { return w.absorbed + w.source + traits.emissivity * w.longwave; };
+    if (!law.coefficient.empty()) {
+      lines.linear[lane] = law.coefficient[step];
+      lines.constant[lane] = {taken(begin) + law.times_air[step].begin, taken(end) + law.times_air[step].end};
+      return;
+    }
+    // The tangent at the begin holds through the step; at its end the same temperature would lose what the air of then
+    // takes.
+    const FaceBalance a = balance_at(traits, begin, now);
+    const double end_loss = loss_to_air(traits, end, now);
+    lines.linear[lane] = {a.linear, a.linear};
+    lines.constant[lane] = {a.constant, taken(end) + a.linear * now - end_loss};
+  }
+};
+
+CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange)
+    : groups_(std::move(groups)), exchange_(exchange), step_error_(exchange.elements()) {
+  std::vector<int> seen(exchange.elements(), 0);
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    const SurfaceGroup& group = groups_[g];
+    const size_t count = group.front_rows.size();
+    if (!group.back_rows.empty() && group.back_rows.size() != count)
+      throw Error(strf("surfaces have %zu fronts and %zu open backs", count, group.back_rows.size()),
+                  "as many, or none");
+    if (!group.cosine_up.empty() && group.cosine_up.size() != count)
+      throw Error(strf("surfaces have %zu fronts and %zu tilts", count, group.cosine_up.size()), "as many, or none");
+    for (const auto* rows : {&group.front_rows, &group.back_rows})
+      for (const uint32_t row : *rows) {
+        if (row >= seen.size()) throw Error(strf("a surface has row %u of an exchange of %zu", row, seen.size()));
+        ++seen[row];
+      }
+    back_balance(group.behind);
+    if (group.layers.empty() && (group.behind.kind != BackCondition::Kind::flux || group.behind.value != 0))
+      throw Error("surfaces without heat capacity have something behind them", "layers, or a back that is open");
+    for (size_t first = 0; first < count; first += kTogether) {
+      Part part{g, first, std::min(kTogether, count - first), 0, {}, {}};
+      if (!group.layers.empty())
+        part.batch.emplace(group.layers, part.count, SlabBatchOptions{60, !group.back_rows.empty()});
+      parts_.push_back(std::move(part));
+    }
+  }
+  for (size_t row = 0; row < seen.size(); ++row)
+    if (seen[row] != 1) throw Error(strf("%d surfaces have row %zu of the exchange", seen[row], row), "one each");
+}
+
+void CoupledSurfaces::start(double kelvin) {
+  for (Part& part : parts_)
+    if (part.batch) part.batch->start(0, kelvin);
+}
+
+void CoupledSurfaces::check(const SurfaceLoads& loads) const {
+  const size_t moments = loads.steps.size() + 1, faces = exchange_.elements();
+  if (loads.steps.empty()) throw Error("a span of time without a step");
+  if (loads.absorbed.size() != faces * moments || loads.outside.size() != exchange_.outsides() * moments ||
+      !(loads.source.empty() || loads.source.size() == faces))
+    throw Error(strf("loads of %zu absorbed and %zu outside values", loads.absorbed.size(), loads.outside.size()),
+                strf("%zu faces and %zu outsides at %zu moments", faces, exchange_.outsides(), moments));
+}
+
+void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through, const SlabBatch& batch,
+                           FaceLines& top, FaceLines& bottom) const {
+  const SurfaceGroup& group = groups_[part.group];
+  FaceTraits front = group.front, back = group.back;
+  for (size_t i = 0; i < part.count; ++i) {
+    const size_t element = part.first + i;
+    if (!group.cosine_up.empty()) front.cosine_up = group.cosine_up[element], back.cosine_up = -front.cosine_up;
+    through.act(front, through.front[part.group], group.front_rows[element], step, batch.top(i), top, i);
+    if (!group.back_rows.empty()) {
+      through.act(back, through.back[part.group], group.back_rows[element], step, batch.bottom(i), bottom, i);
+    } else {
+      const FaceBalance behind = back_balance(group.behind);
+      bottom.constant[i] = {behind.constant, behind.constant};
+      bottom.linear[i] = {behind.linear, behind.linear};
+    }
+  }
+}
+
+void CoupledSurfaces::answer(Part& part, const Through& through, std::span<double> emitted) {
+  const SurfaceGroup& group = groups_[part.group];
+  const SurfaceLoads& loads = through.loads;
+  if (!through.options.periodic || through.first) part.next = part.batch;
+  SlabBatch& batch = *part.next;
+  batch.restart(loads.begin);
+  size_t step = 0;
+  const BatchLoads lines = [&](double begin, double, const SlabBatch& now, FaceLines& top, FaceLines& bottom) {
+    if (begin <= loads.begin) step = 0;  // another period
+    fill(part, step++, through, now, top, bottom);
+  };
+  const auto record = [&](size_t moment) {
+    for (size_t i = 0; i < part.count; ++i) {
+      const size_t front = group.front_rows[part.first + i];
+      emitted[front * through.moments + moment] = emitted_by(batch.top(i));
+      step_error_[front] = std::fmax(moment <= 1 ? 0 : step_error_[front], moment == 0 ? 0 : batch.estimate(i));
+      if (group.back_rows.empty()) continue;
+      const size_t back = group.back_rows[part.first + i];
+      emitted[back * through.moments + moment] = emitted_by(batch.bottom(i));
+      step_error_[back] = step_error_[front];
+    }
+  };
+  if (through.options.periodic) {
+    PeriodicOptions past = through.options.past;
+    past.harmonics = past.harmonics && through.first;
+    // Without a memory of sweeps one period each does: the history and its past come together.
+    if (through.options.coupling.memory == 0 && past.enough == 0) past.enough = 1;
+    part.distance =
+        find_periodic(batch, loads.begin, loads.steps, lines, past, [&](size_t k) { record(k + 1); }).distance;
+    for (const auto* rows : {&group.front_rows, &group.back_rows})
+      for (size_t i = part.first; i < std::min(part.first + part.count, rows->size()); ++i)
+        emitted[(*rows)[i] * through.moments] = emitted[((*rows)[i] + 1) * through.moments - 1];
+    return;
+  }
+  record(0);
+  for (size_t k = 0; k < loads.steps.size(); ++k) {
+    batch.step(loads.steps[k], lines);
+    record(k + 1);
+  }
+}
+
+void CoupledSurfaces::answer_massless(const Part& part, const Through& through, std::span<double> emitted) const {
+  const SurfaceGroup& group = groups_[part.group];
+  std::vector<MasslessFace> faces(group.back_rows.empty() ? 1 : 2);
+  faces.front().traits = group.front;
+  if (faces.size() > 1) faces.back().traits = group.back;
+  for (size_t element = part.first; element < part.first + part.count; ++element) {
+    const size_t rows[2] = {group.front_rows[element], faces.size() > 1 ? group.back_rows[element] : 0};
+    for (size_t moment = 0; moment < through.moments; ++moment) {
+      for (size_t f = 0; f < faces.size(); ++f) {
+        if (!group.cosine_up.empty())
+          faces[f].traits.cosine_up = f == 0 ? group.cosine_up[element] : -group.cosine_up[element];
+        faces[f].weather = through.weather_at(rows[f], moment);
+      }
+      const double emits = emitted_by(massless_kelvin(faces));
+      for (size_t f = 0; f < faces.size(); ++f) emitted[rows[f] * through.moments + moment] = emits;
+    }
+  }
+}
+
+SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOptions& options) {
+  check(loads);
+  Through through{loads, options, loads.steps.size() + 1};
+  through.kelvin = lines_of(loads, loads.air.kelvin);
+  through.wind = lines_of(loads, loads.air.wind);
+  through.vapour = lines_of(loads, loads.air.vapour_pressure);
+  const AveragedTable wind(loads.air.times, loads.air.wind, AveragedTable::Between::linear, loads.air.repeat);
+  double t = loads.begin;
+  for (const double dt : loads.steps) {
+    through.gusts.push_back(wind.deviation(t, t + dt));
+    t += dt;
+  }
+  for (const SurfaceGroup& group : groups_) {
+    through.front.push_back(is_fixed(group.front) ? fixed_law(loads, group.front) : FixedLaw{});
+    through.back.push_back(is_fixed(group.back) ? fixed_law(loads, group.back) : FixedLaw{});
+  }
+  SurfaceHistory history;
+  history.moments = through.moments;
+  const size_t own = exchange_.elements() * through.moments;
+  std::vector<double> emitted(own, emitted_by(through.kelvin.front().mean()));
+  emitted.insert(emitted.end(), loads.outside.begin(), loads.outside.end());
+  const Respond respond = [&](std::span<const double> received, std::span<double> answers) {
+    through.received = received;
+    parallel_for(0, parts_.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p)
+        parts_[p].batch ? answer(parts_[p], through, answers) : answer_massless(parts_[p], through, answers);
+    });
+    through.first = false;
+  };
+  history.coupling = couple_histories(exchange_, through.moments, emitted, respond, options.coupling);
+  for (Part& part : parts_) part.batch.swap(part.next);
+  history.received.resize(own);
+  exchange_.receive(emitted, through.moments, history.received);
+  for (size_t i = 0; i < own; ++i) history.kelvin.push_back(std::sqrt(std::sqrt(emitted[i] / kStefanBoltzmann)));
+  history.step_error = step_error_;
+  for (const Part& part : parts_) history.past_distance = std::fmax(history.past_distance, part.distance);
+  return history;
+}
+
+}  // namespace suite

@@ -1,0 +1,87 @@
+// A scene's elements through a span of time: what acts on their faces, conduction behind them, and the longwave
+// exchange that couples them.
+//
+// Assumes: all faces feel the same air; histories are straight between the steps' ends.
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "heat/balance.h"
+#include "heat/exchange.h"
+#include "heat/slab_batch.h"
+
+namespace suite {
+
+// Elements of one construction. A face is a row of the exchange.
+struct SurfaceGroup {
+  std::vector<SlabLayer> layers;     // from the front down; empty: no heat capacity, as leaves
+  FaceTraits front, back;            // back: of faces in back_rows
+  std::vector<double> cosine_up;     // of each front's outward normal, a back's is the opposite; empty = the traits'
+  std::vector<uint32_t> front_rows;  // of each element
+  std::vector<uint32_t> back_rows;   // of each element when its back is open to sky and surfaces; empty: `behind`
+  BackCondition behind;
+};
+
+// Air over time (s), straight between the times, which cover the span unless they repeat.
+struct AirSeries {
+  std::vector<double> times, kelvin, wind, vapour_pressure;  // s, K, m/s, Pa; one a time
+  bool repeat = false;
+};
+
+struct SurfaceLoads {
+  double begin = 0;           // s
+  std::vector<double> steps;  // s
+  AirSeries air;
+  std::vector<double> absorbed;  // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
+  std::vector<double> source;    // W/m2 released at every element's front, by face; empty = none
+  std::vector<double> outside;   // W/m2 emitted by the outsides of the exchange, by outside and moment
+};
+
+struct SurfaceOptions {
+  bool periodic = true;  // the span repeats; otherwise it goes on from the present state
+  PeriodicOptions past;
+  CouplingOptions coupling;
+};
+
+struct SurfaceHistory {
+  size_t moments = 0;
+  std::vector<double> kelvin, received;  // K, W/m2 longwave: by face, then by moment
+  std::vector<double> step_error;        // K, by face: largest estimated error of a step; 0 without heat capacity
+  CouplingResult coupling;
+  double past_distance = 0;  // K, largest estimated distance of a node from the periodic state
+  double kelvin_at(size_t face, size_t moment) const { return kelvin[face * moments + moment]; }
+};
+
+class CoupledSurfaces {
+ public:
+  // The exchange must outlive this. Error: as SlabBatch, and groups whose rows are not those of the exchange, each
+  // once.
+  CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange);
+  // The present state: one temperature (K) everywhere.
+  void start(double kelvin);
+  // Solves the span and leaves the state at its end, from where a span that is not periodic goes on: the past of n days
+  // is a first one that repeats and then each as it was. In parallel over elements, with the same result on any number
+  // of threads. Error: as find_periodic, couple_histories and massless_kelvin; loads of other sizes.
+  SurfaceHistory solve(const SurfaceLoads& loads, const SurfaceOptions& options = {});
+
+ private:
+  struct Part {  // elements of a group that go together
+    size_t group, first, count;
+    double distance = 0;                   // K, from the periodic state
+    std::optional<SlabBatch> batch, next;  // the present state and that of the sweep; none without heat capacity
+  };
+  struct Through;  // what all elements share through a span
+  void check(const SurfaceLoads& loads) const;
+  void fill(const Part& part, size_t step, const Through& through, const SlabBatch& batch, FaceLines& top,
+            FaceLines& bottom) const;
+  void answer(Part& part, const Through& through, std::span<double> emitted);
+  void answer_massless(const Part& part, const Through& through, std::span<double> emitted) const;
+
+  std::vector<SurfaceGroup> groups_;
+  const ExchangeMatrix& exchange_;
+  std::vector<Part> parts_;
+  std::vector<double> step_error_;  // by face
+};
+
+}  // namespace suite

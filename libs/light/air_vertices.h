@@ -1,0 +1,67 @@
+// Places in the air where light is scattered: for what the field over an even ground leaves out, which is shadows that
+// the scene throws into the air, and light that its single places send there (adjacency).
+//
+// With L the radiance in the scene and E that over the even ground, both obey the equation of transfer, so their
+// difference D = L - E obeys it without what is the same in both, the air's emission and the beams from outside:
+//   D(x, d) = integral along the ray up to its end of T(x, y) sum over directions of s(y) P(d, w) D(y, w)
+//             + T(x, end) D(end, d),
+// where D(end, d) = 0 when the ray leaves the scene, what the end sends minus E when it meets something, and, towards a
+// beam's source, minus the beam when something stands in its way. Paths estimate D: they go to a place on a way that
+// they have passed (draw), are scattered there as in any medium, and what they meet counts less what the even ground
+// would have sent (beyond). Nothing is left to be added where the scene is the even ground; where it is not, D is exact
+// in all orders, whatever ground E was made for.
+#pragma once
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "air/column.h"
+#include "light/atmosphere.h"
+#include "optics/medium.h"
+
+namespace suite {
+
+class AirVertices {
+ public:
+  // ground: radiance that the even ground sends up, per bin. air: whose path() and skylight() are E along a way; it and
+  // the column must outlive this.
+  AirVertices(std::shared_ptr<const AirColumn> column, const SpectralState& state, const Atmosphere& air,
+              std::vector<float> ground);
+  // Whether anything is scattered that could be seen.
+  bool any() const { return depth_ > 1e-4; }
+
+  // The probabilities, one a knot, with which light is scattered on a way if nothing is absorbed. length: m, infinity
+  // allowed.
+  using PerKnot = std::array<double, kMaxKnots>;
+  PerKnot chances(Vec3 from, Dir d, double length) const;
+  // A place on the way, drawn as light of a knot would be scattered there. u: in [0, 1). Nothing where nothing
+  // scatters.
+  struct Place {
+    double distance;  // m
+    size_t layer;
+    PerKnot density;  // with which light of each knot would be, 1/m
+  };
+  std::optional<Place> draw(Vec3 from, Dir d, double length, double u, size_t knot) const;
+  // What scatters in a layer: density 1.
+  const BakedMedium& medium(size_t layer) const { return media_[layer]; }
+
+  // A ray from a place in the air has met something after `length` (m, finite). T: of that way; more: E that the end is
+  // to be less by, times -T. scratch: memory. Per bin.
+  void beyond(Vec3 from, Dir d, double length, std::span<float> T, std::span<float> more,
+              std::span<float> scratch) const;
+
+ private:
+  double to_ground(Vec3 from, Dir d) const;
+
+  std::shared_ptr<const AirColumn> column_;
+  const Atmosphere& air_;
+  std::vector<float> ground_;
+  double ground_height_;            // m, of the scene
+  std::vector<BakedMedium> media_;  // one a layer
+  size_t knots_;
+  std::vector<PerKnot> scattering_;  // of each layer, 1/m
+  double depth_ = 0;                 // of all of them, vertically: the largest
+};
+
+}  // namespace suite
