@@ -20,7 +20,7 @@ bool may_be_result(const std::string& file, const std::string& sensor) {
   if (!file.starts_with(sensor)) return false;
   const std::string rest = file.substr(sensor.size());
   if (!rest.starts_with(".") && !rest.starts_with("_")) return false;
-  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr", ".vrt"})
+  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr", ".vrt", ".qml"})
     if (rest.ends_with(ending)) return true;
   for (const char* whole : {".csv", ".rawbh", "_brf.csv", "_fluxes.csv"})
     if (rest == whole) return true;

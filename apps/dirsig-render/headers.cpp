@@ -114,6 +114,24 @@ EnviHeader quality_header(EnviHeader header, const std::string& about) {
   return h;
 }
 
+RasterStyle quality_style() {
+  const std::span<const QualityBit> bits = quality_bits();
+  RasterStyle style{{0}, {}, 1, {}, {{0, "no flag", {}, false}}};
+  for (int sum = 1; sum < 1 << bits.size(); ++sum) {
+    StyleColour c{static_cast<double>(sum), "", {}};
+    std::array<int, 3> mixed{};
+    int held = 0;
+    for (size_t i = 0; i < bits.size(); ++i) {
+      if (!(sum & bits[i].bit)) continue;
+      c.label += (held++ ? " + " : "") + bits[i].name;
+      for (size_t k = 0; k < 3; ++k) mixed[k] += class_colour(i)[k];
+    }
+    for (size_t k = 0; k < 3; ++k) c.rgb[k] = static_cast<uint8_t>(mixed[k] / held);
+    style.classes.push_back(std::move(c));
+  }
+  return style;
+}
+
 EnviHeader truth_header(EnviHeader header, const std::vector<std::string>& names, const SceneNotes& notes,
                         const std::string& about) {
   EnviHeader h = bare(std::move(header));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/envi/envi.h"
+#include "formats/raster/raster_style.h"
 #include "formats/raster/raster_write.h"
 #include "formats/sim_text/sim_text.h"
 
@@ -37,6 +38,8 @@ void add_map(const MapGrid& map, const GeodeticOrigin& origin, EnviHeader& heade
 
 // The header of the flags beside an image: one byte a pixel, the sum of the bits that the header names.
 EnviHeader quality_header(EnviHeader header, const std::string& about);
+// How flags are shown: a colour a bit, mixed where several hold, and nothing where none does.
+RasterStyle quality_style();
 EnviHeader truth_header(EnviHeader header, const std::vector<std::string>& names, const SceneNotes& notes,
                         const std::string& about);
 // What a classification shows: a row of the truth whose numbers have names.

@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "base/stopwatch.h"
 #include "formats/sqt/sqt.h"
+#include "heat.h"
 #include "scene/combine.h"
 #include "scheduler/prepass.h"
 #include "together.h"
@@ -14,11 +15,14 @@ namespace suite {
 namespace {
 
 // What the sensors can see decides what is loaded.
-SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, Ranks* ranks) {
+SceneNeeds needs_of(const Simulation& sim, const JobOptions& options, const RenderOptions& render, Ranks* ranks) {
   SceneNeeds needs;
   needs.windows_um = windows_um(sim.sensors, options.prepasses);
   for (const auto& sensor : sim.sensors)
-    for (const std::string& truth : sensor->truth()) needs.temperatures = needs.temperatures || truth == "temperature";
+    for (const std::string& truth : sensor->truth())
+      needs.temperatures = needs.temperatures || truth.starts_with("temperature");
+  if (sim.heat && sees_heat(sim, render))
+    for (const std::array<double, 2>& window : heat_windows_um()) needs.windows_um.push_back(window);
   // Under a limit all of it can be let go.
   needs.later_from = options.tiles.bytes ? 0 : uint64_t{64} << 20;
   if (ranks) needs.spill = spill_file(*ranks);
@@ -39,11 +43,12 @@ bool seen(const Simulation& sim, const JobOptions& options, TimeSpan life) {
 
 }  // namespace
 
-LoadedScene load_scenes(const Simulation& sim, const JobOptions& options, bool all, Ranks* ranks) {
+LoadedScene load_scenes(const Simulation& sim, const JobOptions& options, const RenderOptions& render, Ranks* ranks) {
+  const bool all = render.load_all;
   LoadedScene out;
   const Stopwatch::time_point first = Stopwatch::now();
   std::vector<ScenePart> parts;
-  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, ranks);
+  const SceneNeeds needs = all ? SceneNeeds{} : needs_of(sim, options, render, ranks);
   for (const SimulationScene& s : sim.scenes) {
     if (!parts.empty() && !all && !seen(sim, options, s.life)) {  // the first gives the others their frame
       note("of " + s.path + ": nothing is loaded, it is not there in any capture");

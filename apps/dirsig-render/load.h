@@ -6,6 +6,7 @@
 #include "cluster/ranks.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
+#include "options.h"
 
 namespace suite {
 
@@ -15,8 +16,10 @@ struct LoadedScene {
   double seconds = 0;
 };
 
-// All scenes as one, without what no sensor can see (all: with it). ranks: those that share what has to be unpacked;
-// may be null. Error: a file that cannot be read, scenes that do not fit each other.
-LoadedScene load_scenes(const Simulation& simulation, const JobOptions& options, bool all, Ranks* ranks);
+// All scenes as one, without what neither a sensor nor the balance of heat can see (--load-all: with it). ranks: those
+// that share what has to be unpacked; may be null. Error: a file that cannot be read, scenes that do not fit each
+// other.
+LoadedScene load_scenes(const Simulation& simulation, const JobOptions& options, const RenderOptions& render,
+                        Ranks* ranks);
 
 }  // namespace suite

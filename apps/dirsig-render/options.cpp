@@ -77,8 +77,28 @@ void declare_questions(Cli& cli, RenderOptions& o) {
 
 }  // namespace
 
+namespace {
+
+// Of simulations of DIRSIG.
+void declare_import(Cli& cli, RenderOptions& o) {
+  cli.option("--path", o.search,
+             "of a simulation of DIRSIG: folder in which named files are also looked for (repeatable)", "DIR");
+  cli.option(
+      "--account", o.account,
+      "of a simulation of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
+      "FILE.json");
+  cli.option("--convert", o.convert,
+             "of a simulation of DIRSIG: write it and its scenes as texts of ours, and the account, into this folder, "
+             "and stop",
+             "FOLDER");
+  cli.flag("--strict", o.strict, "of a simulation of DIRSIG: refuse it when anything is left out, however harmless");
+}
+
+}  // namespace
+
 void declare_render(Cli& cli, RenderOptions& o) {
-  cli.positional("simulation", o.simulation, "simulation text (YAML or JSON)", false);
+  cli.positional("simulation", o.simulation, "simulation text (YAML or JSON), or a simulation of DIRSIG (.sim, .jsim)",
+                 false);
   cli.option("-o,--output", o.output, "folder for the results; made when missing", "FOLDER");
   cli.option(
       "--set", o.settings,
@@ -116,6 +136,10 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--more", o.more,
              "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
   declare_parts(cli, o);
+  cli.option("--heat", o.heat,
+             "take the temperatures of `heat:` from this file (heat.h5 of another run) instead of finding them",
+             "FILE");
+  cli.flag("--heat-only", o.heat_only, "find the temperatures of `heat:`, write FOLDER/heat.h5 and heat.csv, and stop");
   cli.option("--study", o.study,
              "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes "
              "on from them",
@@ -126,6 +150,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run",
              "FILE");
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
+  declare_import(cli, o);
   declare_questions(cli, o);
 }
 

@@ -9,16 +9,16 @@ namespace suite {
 
 struct RenderOptions {
   std::string simulation, output = "out";
-  std::vector<std::string> plugins, settings;
+  std::vector<std::string> plugins, settings, search;
   std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory,
-                                            memory, ranks, link, against;
+                                            memory, ranks, link, against, heat, account, convert;
   std::string part, plan;          // K/N; folder of a state of the whole
   std::vector<std::string> merge;  // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;
   long long study_seeds = 4;
   double target_floor = -1;
   long long seed = -1, more = -1;
-  bool state = false, resume = false, load_all = false;
+  bool state = false, resume = false, load_all = false, heat_only = false, strict = false;
   bool dry_run = false, air = false, list_sensors = false, list_sources = false, list_models = false,
        list_truth = false, list_channels = false;
 };

@@ -223,7 +223,15 @@ void OutputWriter::write_whole(Image& m, const std::string& base) const {
     function(base + "_quality" + ending, q, m.all_quality);
     m.files.insert(m.files.end(), {base + ending, base + "_quality" + ending});
   };
-  if (spec_.geotiff) write(write_float_tiff, ".tif");
+  if (spec_.geotiff) {
+    write(write_float_tiff, ".tif");
+    const bool as_previewed = m.preview->in_kelvin()
+                                  ? m.wishes.quantity == Quantity::brightness_temperature
+                                  : m.wishes.quantity == Quantity::radiance && spec_.units == OutputSpec::Units::w_m2;
+    write_qgis_style(base + ".qml", m.preview->style(m.all, m.values, as_previewed));
+    write_qgis_style(base + "_quality.qml", quality_style());
+    m.files.insert(m.files.end(), {base + ".qml", base + "_quality.qml"});
+  }
   if (spec_.exr) write(write_exr, ".exr");
 }
 

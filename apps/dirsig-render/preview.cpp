@@ -11,7 +11,8 @@ namespace suite {
 
 namespace {
 
-constexpr uint32_t kMost = 15000;  // pixels, which leaves room for a bar on a canvas
+constexpr double kGammaOfScreens = 2.2;  // near sRGB
+constexpr uint32_t kMost = 15000;        // pixels, which leaves room for a bar on a canvas
 
 // The truth column that tells where nothing was hit, and how.
 struct Emptiness {
@@ -98,6 +99,28 @@ void Preview::to_kelvin() {
   const BandThermometer kelvin(bands_[0]);
   for (size_t i = 0; i < values_.size(); ++i)
     values_[i] = any && nothing_[i] ? std::nanf("") : static_cast<float>(kelvin.read(double{values_[i]}).kelvin);
+}
+
+RasterStyle Preview::style(std::span<const float> all, size_t values, bool same_unit) const {
+  PreviewSpec spec = spec_;
+  if (!same_unit) spec.range.reset();
+  std::vector<float> shown;
+  for (size_t i = 0; i < nothing_.size(); ++i)
+    for (const size_t b : chosen_) {
+      const float v = all[i * values + b];
+      shown.push_back(kelvin_ && !(v > 0) ? std::nanf("") : v);  // what sends no heat does not count, as in the picture
+    }
+  RasterStyle style;
+  style.display = chosen_;
+  style.ends = ends_of(shown, nothing_, spec, 0);
+  if (!kelvin_) style.gamma = spec_.gamma > 0 ? spec_.gamma : kGammaOfScreens;
+  constexpr int kSteps = 16;
+  for (int i = 0; kelvin_ && i <= kSteps; ++i) {
+    const double t = static_cast<double>(i) / kSteps, value = style.ends[0] + t * (style.ends[1] - style.ends[0]);
+    const Rgb c = inferno(t);
+    style.ramp.push_back({value, strf("%.6g", value), {c.r, c.g, c.b}});
+  }
+  return style;
 }
 
 double Preview::gamma(double t) const {

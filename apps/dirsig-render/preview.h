@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/picture/picture.h"
+#include "formats/raster/raster_style.h"
 #include "formats/sim_text/sim_text.h"
 #include "headers.h"
 
@@ -21,6 +22,11 @@ class Preview {
   Preview(std::span<const Band> bands, std::span<const size_t> chosen, PreviewSpec spec, uint32_t columns,
           uint32_t rows);
   void append(const CaptureResult& next_rows);
+  // How other programs should show the picture's numbers, `all`: [pixel][value], `values` a pixel, in whatever unit;
+  // the same bands between the same percentiles, or the range that was asked for when the unit is that of the preview.
+  // When all rows are there.
+  RasterStyle style(std::span<const float> all, size_t values, bool same_unit) const;
+  bool in_kelvin() const { return kelvin_; }
   void write(const std::string& path);  // once, when all rows are there
 
  private:

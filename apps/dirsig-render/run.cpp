@@ -15,10 +15,12 @@
 #include "budget_options.h"
 #include "continued.h"
 #include "deck_told.h"
+#include "dirsig_import.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
 #include "guard.h"
+#include "heat.h"
 #include "light/light_rows.h"
 #include "load.h"
 #include "log.h"
@@ -28,6 +30,7 @@
 #include "preview.h"
 #include "rehearse.h"
 #include "scene/combine.h"
+#include "scheduler/air_limits.h"
 #include "scheduler/bins.h"
 #include "scheduler/features.h"
 #include "scheduler/moments.h"
@@ -95,8 +98,10 @@ void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& 
               f.largest > limit ? ", which is more, and is held all the same" : "");
 }
 
-void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options) {
+void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
+             const RenderOptions& o) {
   tell_forecast(scene, sim, options);
+  if (sees_heat(sim, o)) std::fputs(heat_forecast(scene, sim).c_str(), stdout);
   for (const auto& sensor : sim.sensors) {
     std::printf("sensor '%s'\n", sensor->name().c_str());
     for (const SpectralState& s : sensor->states())
@@ -218,7 +223,9 @@ std::optional<int> answer(const RenderOptions& o) {
   return std::nullopt;
 }
 
-void check_usage(const Cli& cli, const RenderOptions& o) {
+void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
+  if (ranks) check_ranks_usage(cli, o);
+  check_import_usage(o);
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))
     throw UsageError("--more wants a number from 0 to 2^30");
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
@@ -245,13 +252,14 @@ void check_air_asked(const Simulation& sim, const Sensor& sensor) {
 }
 
 // Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
-void check_sensors(Simulation& sim, const Scene& scene) {
+void check_sensors(Simulation& sim, const Scene& scene, const JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
-  note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors)));
+  note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
   look_through_tables(sim.sources, scene, sim.sensors);
   for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
+  for (const std::string& sentence : tell_air(sim.sources, scene, sim.sensors, options)) note(sentence);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
@@ -294,10 +302,13 @@ int follow(const std::shared_ptr<const Scene>& scene, const Simulation& sim, Job
   }
 }
 
-Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks) {
-  Simulation sim = read_simulation(o.simulation, callbacks, o.settings);
+Simulation simulation_of(const RenderOptions& o, const SimulationCallbacks& callbacks, bool alone) {
+  Simulation sim = is_of_dirsig(o.simulation) ? import_simulation(o, callbacks, alone)
+                                              : read_simulation(o.simulation, callbacks, o.settings);
   for (const SimulationScene& s : sim.scenes) note_input(s.path);
   if (o.seed >= 0) sim.pipeline.seed = static_cast<uint64_t>(o.seed);
+  if (sim.heat) sim.heat->spec.seed = sim.pipeline.seed;
+  if (!o.heat.empty()) sim.files.push_back(o.heat);
   return sim;
 }
 
@@ -314,14 +325,22 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   return options;
 }
 
+// Temperatures that the weather makes, when all wishes can be met. leads: of all ranks this one keeps what it found, of
+// a run that has results.
+Heating warmed(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
+               const RenderOptions& o, const Facts& facts, bool leads) {
+  if (!o.heat_only) check_wishes(sim, facts);
+  return heating_of(scene, sim, options, o, leads && o.ranks.empty() && o.study.empty() ? o.output : "");
+}
+
 }  // namespace
 
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (const auto code = answer(o)) return *code;
   if (o.simulation.empty()) throw UsageError("a simulation text is required");
-  check_usage(cli, o);
-  if (ranks) check_ranks_usage(cli, o);
+  check_usage(cli, o, ranks);
+  if (!o.convert.empty()) return convert_simulation(o);
 
   std::unique_ptr<OutputWriter> writer;
   SimulationCallbacks callbacks;
@@ -337,24 +356,25 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>& scenes) {
     return read_scene_origin(scenes.front().path).origin;
   };
-  Simulation sim = simulation_of(o, callbacks);
+  Simulation sim = simulation_of(o, callbacks, !ranks);
   JobOptions options = job_options(sim, o);
   const std::vector<int> forecast = ranks_of(cli, o);
   const LinkCosts link = link_of(cli, o);
   if (!o.dry_run) check_memory(sim, options);
 
   // What can be refused is refused before rendering starts.
-  const LoadedScene loaded = load_scenes(sim, options, o.load_all, ranks);
+  const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
-  if (o.dry_run) dry_run(scene, sim, options);
+  if (o.dry_run) dry_run(scene, sim, options, o);
   if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
-  check_sensors(sim, *scene);
+  check_sensors(sim, *scene, options);
   if (o.air) return print(air_text(sim, *scene));
+  const Facts facts(sim, scene);
+  options.heating = warmed(scene, sim, options, o, facts, !ranks || ranks->leads());
+  if (o.heat_only) return 0;
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
-  const Facts facts(sim, scene);
-  check_wishes(sim, facts);
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
   const std::unique_ptr<StateStore> store = join_or_open(o, sim, options, ranks);
   if (ranks && !ranks->leads()) return follow(scene, sim, options);

@@ -1,12 +1,13 @@
 #include "importers.h"
 
 #include "base/files.h"
+#include "dirsig_import.h"
 #include "formats/scene_text/scene_text.h"
 
 namespace suite {
 
 const Registry<ImporterRow>& importers() {
-  static const Registry<ImporterRow> table("importer", "", {scene_text_importer()});
+  static const Registry<ImporterRow> table("importer", "", {dirsig_importer(), scene_text_importer()});
   return table;
 }
 

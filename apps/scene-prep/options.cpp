@@ -18,7 +18,9 @@ AppInfo scene_prep_info() {
 }
 
 void declare(Cli& cli, ScenePrepOptions& o) {
-  cli.positional("input", o.input, "scene text (YAML or JSON), or a prepared scene with --summary", false);
+  cli.positional("input", o.input,
+                 "scene text (YAML or JSON), a scene of DIRSIG (.scene, .cfg), or a prepared scene with --summary",
+                 false);
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
   cli.option(
@@ -29,9 +31,16 @@ void declare(Cli& cli, ScenePrepOptions& o) {
   cli.option("--report", o.report,
              "write the findings as JSON (- = standard output); what each step took is plotted beside it in FILE.html",
              "FILE.json");
+  cli.option("--account", o.account,
+             "of a scene of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
+             "FILE.json");
+  cli.option("--convert", o.convert,
+             "of a scene of DIRSIG: write NAME.yaml, a scene text of ours, and the account into this folder, and stop",
+             "FOLDER");
   cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)",
              "CODE");
-  cli.flag("--strict", o.strict, "warnings refuse the scene too");
+  cli.flag("--strict", o.strict,
+           "warnings refuse the scene too; of a scene of DIRSIG whatever is left out, however harmless");
   cli.flag("--repair", o.repair,
            "weld positions, drop triangles without area and duplicates, make the winding consistent; each is told");
   cli.option(

@@ -8,7 +8,8 @@
 namespace suite {
 
 struct ScenePrepOptions {
-  std::string input, output, gases, report, raycast, explain, export_obj, quick_look, look_at, look_from;
+  std::string input, output, gases, report, raycast, explain, export_obj, quick_look, look_at, look_from, account,
+      convert;
   double look_size = 0;
   long long pixels = 800;
   std::vector<std::string> search, mute, compress, settings;

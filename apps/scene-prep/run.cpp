@@ -74,7 +74,8 @@ bool program_is_newer(const std::string& output) {
 
 // The output was made by this version from the same inputs with the same options.
 bool up_to_date(const ScenePrepOptions& o) {
-  if (o.force || o.output.empty() || !o.report.empty() || !file_exists(o.output) || program_is_newer(o.output))
+  if (o.force || o.output.empty() || !o.report.empty() || !o.account.empty() || !file_exists(o.output) ||
+      program_is_newer(o.output))
     return false;
   try {
     const Provenance p = [&] {
@@ -144,7 +145,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings}, report);
+  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings, o.account, o.strict}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -264,6 +265,22 @@ int inspect(const ScenePrepOptions& o) {
 
 }  // namespace
 
+namespace {
+
+int convert(const ScenePrepOptions& o) {
+  if (!o.output.empty() || !o.report.empty() || !o.account.empty() || !o.settings.empty())
+    throw UsageError("--convert goes without --output, --report, --account and --set");
+  note_input(o.input);
+  const ImporterRow& importer = importer_of(o.input);
+  if (!importer.convert)
+    throw Error(Where{o.input, 0, 0, {}, -1}, "is a scene text already", "--convert is for scenes of other programs");
+  const bool whole = importer.convert(o.input, {o.search, {}, "", o.strict}, o.convert);
+  if (!whole) warn("something of it is lost: the account says what");
+  return whole || !o.strict ? 0 : 1;
+}
+
+}  // namespace
+
 int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
   if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
@@ -274,6 +291,7 @@ int run_scene_prep(const ScenePrepOptions& o) {
     return bake_gases(o);
   }
   if (o.input.empty()) throw UsageError("an input is needed");
+  if (!o.convert.empty()) return convert(o);
   return questions ? inspect(o) : prepare(o);
 }
 

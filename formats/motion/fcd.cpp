@@ -4,13 +4,11 @@
 // nose. What misses a step is not there until its next record: it comes back as another thing of the same id.
 // Based on: SUMO user documentation, "FCDOutput" (Eclipse SUMO 1.20),
 // https://sumo.dlr.de/docs/Simulation/Output/FCDOutput.html
-#include <pugixml.hpp>
-
-#include <algorithm>
 #include <unordered_map>
 
 #include "formats/motion/fields.h"
 #include "formats/motion/track_files.h"
+#include "formats/xml/xml.h"
 
 namespace suite {
 
@@ -19,26 +17,20 @@ namespace {
 class FcdReader {
  public:
   FcdReader(const std::string& text, const std::string& name, const TrackFileOptions& options)
-      : text_(text), name_(name), options_(options) {
-    for (size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) ends_.push_back(at);
-  }
+      : text_(text), name_(name), options_(options) {}
 
   std::vector<MovingThing> run() {
-    pugi::xml_document document;
-    const pugi::xml_parse_result parsed =
-        document.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
-    if (!parsed) throw Error(place(parsed.offset), std::string("this is no XML: ") + parsed.description());
-    const pugi::xml_node root = document.child("fcd-export");
-    if (!root) throw Error({name_, 0, 0, {}, -1}, "there is no element 'fcd-export'");
-    for (const pugi::xml_node step : root.children("timestep")) {
+    const XmlElement root = XmlElement::parse(text_, name_);
+    if (root.name() != "fcd-export") throw Error({name_, 0, 0, {}, -1}, "there is no element 'fcd-export'");
+    root.each_child("timestep", [&](const XmlElement& step) {
       const double time = options_.begins + number(step, "time");
       if (step_ && !(time > time_))
-        throw fault(step, "the times do not ascend", "each timestep later than the one before");
+        throw step.fault("the times do not ascend", "each timestep later than the one before");
       time_ = time;
       ++step_;
       for (const char* kind : {"vehicle", "person", "container"})
-        for (const pugi::xml_node record : step.children(kind)) take(record, kind);
-    }
+        step.each_child(kind, [&](const XmlElement& record) { take(record, kind); });
+    });
     if (things_.empty()) throw Error({name_, 0, 0, {}, -1}, "nothing moves in it");
     for (size_t i = 0; i < things_.size(); ++i) things_[i].track = keyframe_track(std::move(keys_[i]));
     return std::move(things_);
@@ -50,28 +42,16 @@ class FcdReader {
     size_t thing, step;
   };
 
-  Where place(std::ptrdiff_t offset) const {
-    if (offset < 0) return {name_, 0, 0, {}, -1};
-    const auto at = static_cast<size_t>(offset);
-    const auto line = std::lower_bound(ends_.begin(), ends_.end(), at) - ends_.begin();
-    const size_t from = line ? ends_[static_cast<size_t>(line) - 1] + 1 : 0;
-    const size_t to = static_cast<size_t>(line) < ends_.size() ? ends_[static_cast<size_t>(line)] : text_.size();
-    return {name_, static_cast<int>(line) + 1, static_cast<int>(at - from) + 1,
-            text_.substr(from, std::min<size_t>(to - from, 200)), -1};
-  }
-  Error fault(const pugi::xml_node& node, std::string what, std::string hint = {}) const {
-    return Error(place(node.offset_debug()), std::move(what), std::move(hint));
-  }
-  double number(const pugi::xml_node& node, const char* key) const {
-    const pugi::xml_attribute a = node.attribute(key);
-    const auto value = a ? number_of(a.value()) : std::nullopt;
+  double number(const XmlElement& node, const char* key) const {
+    const auto a = node.attribute(key);
+    const auto value = a ? number_of(*a) : std::nullopt;
     if (!value)
-      throw fault(node, a ? std::string(key) + "=\"" + a.value() + "\" is no number" : std::string("no ") + key,
-                  std::string(node.name()) + " needs a number " + key);
+      throw node.fault(a ? std::string(key) + "=\"" + *a + "\" is no number" : std::string("no ") + key,
+                       std::string(node.name()) + " needs a number " + key);
     return *value;
   }
 
-  PoseKey key_of(const pugi::xml_node& node) const {
+  PoseKey key_of(const XmlElement& node) const {
     using Network = TrackFileOptions::Network;
     const double x = number(node, "x"), y = number(node, "y"), heading = number(node, "angle");
     const double z = options_.height + (node.attribute("z") ? number(node, "z") : 0);
@@ -94,20 +74,20 @@ class FcdReader {
              (name == "utm_zone" && options_.network == Network::utm);
     };
     fields.text = [&](const char*) { return strf("%d%c", options_.zone.zone, options_.zone.north ? 'N' : 'S'); };
-    fields.error = [&](std::string what, std::string hint) { return fault(node, std::move(what), std::move(hint)); };
+    fields.error = [&](std::string what, std::string hint) { return node.fault(std::move(what), std::move(hint)); };
     return {time_, fields.pose(options_.motion)};
   }
 
-  void take(const pugi::xml_node& node, const char* kind) {
-    const std::string id = node.attribute("id").value();
-    if (id.empty()) throw fault(node, std::string(kind) + " without an id");
-    const std::string type = node.attribute("type") ? node.attribute("type").value() : kind;
+  void take(const XmlElement& node, const char* kind) {
+    const std::string id = node.attribute("id").value_or("");
+    if (id.empty()) throw node.fault(std::string(kind) + " without an id");
+    const std::string type = node.attribute("type").value_or(kind);
     const auto [latest, fresh] = latest_.try_emplace(kind[0] + id, Latest{});
     if (!fresh && latest->second.step == step_)
-      throw fault(node, "'" + id + "' is there twice at one time", "one record of each at a time");
+      throw node.fault("'" + id + "' is there twice at one time", "one record of each at a time");
     if (fresh || latest->second.step + 1 != step_ || things_[latest->second.thing].type != type) {
       latest->second.thing = things_.size();
-      things_.push_back({id, type, place(node.offset_debug()), nullptr});
+      things_.push_back({id, type, node.where(), nullptr});
       keys_.emplace_back();
     }
     latest->second.step = step_;
@@ -117,7 +97,6 @@ class FcdReader {
   const std::string& text_;
   const std::string& name_;
   const TrackFileOptions& options_;
-  std::vector<size_t> ends_;  // of lines
   std::vector<MovingThing> things_;
   std::vector<std::vector<PoseKey>> keys_;  // of each
   std::unordered_map<std::string, Latest> latest_;

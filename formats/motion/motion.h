@@ -24,6 +24,8 @@ struct MotionContext {
   // Mean elements of a satellite (catalogue number or title) from a file; the application passes the reader of
   // formats/tle.
   std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
+  // The same from the two lines themselves.
+  std::function<OrbitElements(const std::string& lines, const std::string& file)> satellite_lines = nullptr;
   // The path of a file that a node names; null: relative to the text.
   std::function<std::string(const Params&)> resolve = nullptr;
   // What moves may be absent outside the times that its track covers (key `outside`).

@@ -143,10 +143,15 @@ TrackPtr make_spin(const Params& node, const MotionContext& context) {
 TrackPtr make_orbit(const Params& node, const MotionContext& context) {
   if (!context.frame) throw node.error("an orbit needs a scene with an origin on the Earth");
   if (!context.clock) throw node.error("an orbit needs the date of the simulation");
-  SUITE_CHECK(context.satellites != nullptr);
-  const Params tle = node.at("tle");
+  const auto lines = node.find("tle_lines");
+  if (lines && (lines->size() != 2 || !context.satellite_lines))
+    throw lines->error("'tle_lines' are the two lines of an element set");
+  SUITE_CHECK(lines || context.satellites != nullptr);
   return located(node, [&] {
-    const OrbitElements elements = context.satellites(motion_file(tle, context), node.text("satellite"));
+    const OrbitElements elements =
+        lines
+            ? context.satellite_lines((*lines)[0].as_text() + "\n" + (*lines)[1].as_text() + "\n", lines->where().file)
+            : context.satellites(motion_file(node.at("tle"), context), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
     return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
@@ -194,7 +199,9 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
       break;
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
-      const MotionContext inside{std::nullopt, context.clock, context.dut1, context.satellites, context.resolve, false};
+      const MotionContext inside{
+          std::nullopt,    context.clock, context.dut1, context.satellites, context.satellite_lines,
+          context.resolve, false};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }

@@ -9,8 +9,9 @@
 namespace suite {
 
 namespace {
-constexpr double kDark = 1e-9;         // W/(m2 sr um): below this nothing glows
-constexpr double kHottestSlab = 1500;  // K, what a simulated temperature may reach
+constexpr double kDark = 1e-9;           // W/(m2 sr um): below this nothing glows
+constexpr double kHottestWeather = 450;  // K, what sun and sky may make of a surface
+constexpr double kHottestSlab = 1500;    // K, what a simulated temperature may reach
 
 // Whether a model prefers a direction along the surface, from what is written of it.
 bool anisotropic(const ModelSpec& m) {
@@ -113,6 +114,7 @@ void drop_temperatures(Scene& s, Loading& loading) {
     for (const double k : t.spec.kelvins) hottest = std::max(hottest, k);
     if (t.spec.numbers.count("kelvin")) hottest = std::max(hottest, t.spec.numbers.at("kelvin"));
     if (t.spec.model == "slab") hottest = std::max(hottest, kHottestSlab), loading.conducts = true;
+    if (t.spec.model == "heat") hottest = std::max(hottest, kHottestWeather), loading.conducts = true;
   }
   for (const PropertyMap& m : s.property_maps)
     if (m.kind == MapKind::temperature) hottest = INFINITY;  // some map was found to glow
@@ -139,7 +141,7 @@ void drop_temperatures(Scene& s, Loading& loading) {
   }
   for (Material& m : s.materials) m.thermal.clear();
   for (TemperatureBinding& t : s.temperatures)
-    if (t.spec.model != "slab") t.spec.layers.clear();
+    if (t.spec.model != "slab" && t.spec.model != "heat") t.spec.layers.clear();
 }
 }  // namespace
 

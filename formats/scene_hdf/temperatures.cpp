@@ -34,7 +34,8 @@ void write_table(h5::Writer& w, const Scene& s, TemperatureTable) {
   std::vector<uint8_t> repeat;
   std::vector<double> time, kelvin, layers, value, load_time, load;
   std::vector<uint32_t> loads;
-  std::vector<std::string> name;
+  std::vector<std::string> name, text_name, text;
+  std::vector<uint32_t> text_of;
   for (const TemperatureBinding& t : s.temperatures) {
     size.insert(size.end(),
                 {t.material, static_cast<uint32_t>(t.spec.times.size()), static_cast<uint32_t>(t.spec.layers.size()),
@@ -48,6 +49,8 @@ void write_table(h5::Writer& w, const Scene& s, TemperatureTable) {
     for (const SurfaceLoad& l : t.spec.loads)
       load.insert(load.end(), {l.sun_absorbed, l.sky_irradiance, l.air_temperature, l.wind});
     for (const auto& [key, number] : t.spec.numbers) name.push_back(key), value.push_back(number);
+    for (const auto& [key, words] : t.spec.texts)
+      text_of.push_back(static_cast<uint32_t>(loads.size() / 2 - 1)), text_name.push_back(key), text.push_back(words);
   }
   w.put_names(kTable + "/model", pick(s.temperatures, [](const TemperatureBinding& t) { return t.spec.model; }));
   w.put(kTable + "/size", size, "1", 4);
@@ -60,6 +63,10 @@ void write_table(h5::Writer& w, const Scene& s, TemperatureTable) {
   w.put(kTable + "/loads/values", load, "SI", 4);
   w.put_names(kTable + "/numbers/name", name);
   w.put(kTable + "/numbers/value", value, "SI");
+  if (text.empty()) return;
+  w.put(kTable + "/texts/temperature", text_of, "1");
+  w.put_names(kTable + "/texts/name", text_name);
+  w.put_names(kTable + "/texts/text", text);
 }
 
 void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
@@ -75,6 +82,16 @@ void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
   size_t at_load = 0;
   const std::vector<std::string> name = r.get_names(kTable + "/numbers/name");
   const auto value = r.get<double>(kTable + "/numbers/value", "SI", 1, static_cast<long long>(name.size()));
+  std::vector<uint32_t> text_of;
+  std::vector<std::string> text_name, text;
+  if (r.has(kTable + "/texts/text")) {
+    text = r.get_names(kTable + "/texts/text");
+    const auto texts = static_cast<long long>(text.size());
+    text_name = r.get_names(kTable + "/texts/name", texts);
+    text_of = r.get<uint32_t>(kTable + "/texts/temperature", "1", 1, texts);
+    for (const uint32_t of : text_of)
+      if (of >= model.size()) r.fail("a text belongs to no temperature");
+  }
   size_t layer = 0, number = 0;
   for (size_t k = 0; k < model.size(); ++k) {
     TemperatureBinding t;
@@ -92,6 +109,8 @@ void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
     if (rows[2 * k] > load.size() / 4 - at_load) r.fail("a temperature declares more loads than there are");
     for (uint32_t i = 0; i < rows[2 * k]; ++i, ++at_load)
       t.spec.loads.push_back({load[4 * at_load], load[4 * at_load + 1], load[4 * at_load + 2], load[4 * at_load + 3]});
+    for (size_t i = 0; i < text_of.size(); ++i)
+      if (text_of[i] == k) t.spec.texts[text_name[i]] = text[i];
     if (!t.spec.model.empty()) make_temperature_model(t.spec);
     loading.row("layers").stored += 8 * kLayer * t.spec.layers.size();
     loading.row("temperatures").stored += 16 * t.spec.times.size() + 40 * t.spec.loads.size();

@@ -2,6 +2,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/files.h"
+#include "formats/dirsig/dirsig.h"
 #include "formats/envi/envi.h"
 #include "formats/obj/obj.h"
 #include "formats/raster/raster.h"
@@ -19,7 +21,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   const size_t slot = draft_.geometry.size();
   draft_.geometry.push_back(g);
   draft_.geometry[slot].failed = true;
-  std::vector<std::string> kinds{"obj", "terrain", "voxels"};
+  std::vector<std::string> kinds{"obj", "obj_text", "gdb", "terrain", "voxels"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
   for (const std::string& k : kinds)
@@ -28,8 +30,8 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
       kind = k;
     }
   if (kind.empty()) throw p.error("object '" + name + "' has no geometry", name_hint("", kinds));
-  if (kind == "obj")
-    read_obj_geometry(p, g);
+  if (kind == "obj" || kind == "obj_text" || kind == "gdb")
+    read_obj_geometry(p, kind, g);
   else if (kind == "terrain")
     read_terrain(p, g);
   else if (kind == "voxels")
@@ -39,7 +41,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   draft_.geometry[slot] = std::move(g);
 }
 
-void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {
+void Reader::read_obj_geometry(const Params& p, const std::string& kind, DraftGeometry& g) {
   g.kind = DraftGeometry::Kind::mesh;
   if (const auto materials = p.find("materials"))
     for (const std::string& name : materials->keys()) g.materials[name] = reference(materials->at(name));
@@ -62,7 +64,14 @@ void Reader::read_obj_geometry(const Params& p, DraftGeometry& g) {
     if (decimate->has("to")) g.decimate->to = decimate->number_in("to", 0, 1, "of the triangles");
     if (decimate->has("error_m")) g.decimate->error_m = decimate->number_in("error_m", 1e-9, 1e9, "m");
   }
-  g.mesh = read_obj(input(p.at("obj")), report_);
+  if (kind == "obj") {
+    g.mesh = read_obj(input(p.at("obj")), report_);
+  } else if (kind == "gdb") {
+    const std::string path = input(p.at("gdb"));
+    g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
+  } else {
+    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
+  }
 }
 
 namespace {

@@ -43,6 +43,9 @@ MotionContext Reader::motion_context(bool world) {
   context.satellites = [](const std::string& path, const std::string& satellite) {
     return read_tle_of(path, satellite).elements;
   };
+  context.satellite_lines = [](const std::string& lines, const std::string& file) {
+    return parse_tle(lines, file).at(0).elements;
+  };
   context.resolve = [this](const Params& file) { return input(file); };
   return context;
 }

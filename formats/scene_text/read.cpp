@@ -132,10 +132,14 @@ void Reader::run(const Params& root) {
 }  // namespace scene_text
 
 Draft read_scene_text(const std::string& path, const ImportOptions& options, Report& report) {
-  Draft draft;
-  draft.file = path;
   const Params root = Params::parse_file(path, options.settings);
   TrackedInputs inputs(path, options.search);
+  return read_scene_tree(root, inputs, report);
+}
+
+Draft read_scene_tree(const Params& root, TrackedInputs& inputs, Report& report) {
+  Draft draft;
+  draft.file = inputs.file();
   // The root itself must be a map with a version; without it nothing else means anything.
   scene_text::Reader(inputs, report, draft).run(root);
   draft.inputs = inputs.all();

@@ -49,7 +49,7 @@ class Reader {
   void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
-  void read_obj_geometry(const Params& p, DraftGeometry& g);
+  void read_obj_geometry(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_terrain(const Params& p, DraftGeometry& g);
   void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);

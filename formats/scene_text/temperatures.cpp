@@ -1,5 +1,6 @@
 // Temperatures of materials and what a simulation of them needs.
 #include "formats/scene_text/reader.h"
+#include "heat/heated_material.h"
 #include "thermal/models.h"
 
 namespace suite::scene_text {
@@ -67,7 +68,12 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
     spec.loads_repeat = loads->boolean("repeat", false);
   }
   for (const Parameter& parameter : row.parameters)
-    if (const auto value = p.find(parameter.name)) spec.numbers[parameter.name] = value->as_number();
+    if (const auto value = p.find(parameter.name)) {
+      if (parameter.kind == Parameter::Kind::text)
+        spec.texts[parameter.name] = value->as_text();
+      else
+        spec.numbers[parameter.name] = value->as_number();
+    }
   // What the material says of itself holds unless the model says otherwise.
   if (spec.layers.empty())
     for (const auto& [name, value] : m.material.thermal) {
@@ -78,6 +84,7 @@ void Reader::read_temperature(const Params& p, DraftMaterial& m) {
     throw p.error("temperature model '" + spec.model + "' takes no layers");
   check_temperature(spec, p.where());
   make_temperature_model(spec, p.where());
+  if (spec.model == "heat") heated_material(spec, p.where());
 }
 
 }  // namespace suite::scene_text

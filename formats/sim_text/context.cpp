@@ -57,6 +57,9 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   shared->motion.satellites = [](const std::string& path, const std::string& name) {
     return read_tle_of(path, name).elements;
   };
+  shared->motion.satellite_lines = [](const std::string& lines, const std::string& file) {
+    return parse_tle(lines, file).at(0).elements;
+  };
   auto motion = [shared, origin = callbacks.origin, path = sim.path, scenes = sim.scenes]() -> const MotionContext& {
     if (!shared->asked && origin) {
       const GeodeticOrigin at = origin(path, scenes);

@@ -2,6 +2,7 @@
 
 #include "formats/sim_text/air_tables.h"
 #include "formats/sim_text/context.h"
+#include "formats/sim_text/heat.h"
 #include "formats/sim_text/scenes.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sim_text/sources.h"
@@ -90,6 +91,11 @@ std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& con
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
                            std::vector<std::string> settings) {
   const Params root = Params::parse_file(path, settings);
+  return read_simulation_tree(root, path, callbacks, std::move(settings));
+}
+
+Simulation read_simulation_tree(const Params& root, const std::string& path, const SimulationCallbacks& callbacks,
+                                std::vector<std::string> settings) {
   if (!root.has("sensors") && (root.has("materials") || root.has("world")))
     throw root.error("this is the text of a scene, not of a simulation",
                      "prepare it with scene-prep, and name the prepared scene by 'scene:' in a simulation text");
@@ -114,6 +120,7 @@ Simulation read_simulation(const std::string& path, const SimulationCallbacks& c
   read_epoch(root, sim);
   SensorContext context = sensor_context(sim, callbacks);
   context.curve = read_curve_value;
+  sim.heat = read_heat_request(root, sim, context);
   std::set<std::string> names;
   const Params sensors = root.at("sensors");
   for (const Params& p : sensors.items()) {

@@ -21,6 +21,9 @@ MotionContext context_of(const std::string& first) {
   context.satellites = [](const std::string& path, const std::string& satellite) {
     return read_tle_of(path, satellite).elements;
   };
+  context.satellite_lines = [](const std::string& lines, const std::string& file) {
+    return parse_tle(lines, file).at(0).elements;
+  };
   return context;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/params.h"
+#include "heat/heat_balance.h"
 #include "scheduler/scheduler.h"
 #include "sensor/sensors.h"
 
@@ -49,6 +51,15 @@ struct SimulationScene {
   TimeSpan life = kAlways;              // s: of the whole scene
 };
 
+// Temperatures that are to be found from weather.
+struct HeatRequest {
+  std::shared_ptr<const Weather> weather;
+  HeatSpec spec;                                     // its span is still to be chosen unless `span` is given
+  std::optional<TimeSpan> span;                      // s
+  std::vector<std::pair<std::string, Vec3>> probes;  // m, scene ENU
+  Where where;
+};
+
 struct Simulation {
   std::string path;
   std::vector<std::string> settings;  // applied to the text
@@ -63,6 +74,7 @@ struct Simulation {
   std::vector<std::unique_ptr<Sensor>> sensors;
   std::vector<Where> sensor_where;  // of each, in the text
   OutputSpec output;
+  std::optional<HeatRequest> heat;
 };
 
 // What reading needs from the application.
@@ -75,5 +87,10 @@ struct SimulationCallbacks {
 // anything wrong, unread keys included.
 Simulation read_simulation(const std::string& path, const SimulationCallbacks& callbacks,
                            std::vector<std::string> settings = {});
+
+// The same of a text that a program made of other files (Params::parse_made), the settings applied; path: the file that
+// all started from. `files` gets what the text names, the others are the caller's to add.
+Simulation read_simulation_tree(const Params& root, const std::string& path, const SimulationCallbacks& callbacks,
+                                std::vector<std::string> settings);
 
 }  // namespace suite

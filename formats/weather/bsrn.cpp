@@ -1,6 +1,5 @@
 // Months of the Baseline Surface Radiation Network, "station-to-archive" files. Based on: G. Koenig-Langlo and others,
 // "Update of the technical plan for BSRN data management", GCOS-174, 2013 (logical records 0001, 0004 and 0100).
-#include "formats/weather/calendar.h"
 #include "formats/weather/readers.h"
 
 namespace suite {
@@ -29,10 +28,7 @@ void put(WeatherRow& row, Q quantity, const TextLines& lines, size_t word, const
 }  // namespace
 
 WeatherTable parse_bsrn(std::string_view text, const std::string& file, const WeatherOptions& options) {
-  refuse_options(options, {}, file, "BSRN");
-  WeatherTable table;
-  table.file = file;
-  table.meaning.fill(WeatherMeaning::mean);
+  WeatherTable table = table_of_means(file, options, "BSRN");
   TextLines lines(text, file);
   find_record(lines, "0001");
   LocalStamp month;
@@ -50,7 +46,7 @@ WeatherTable parse_bsrn(std::string_view text, const std::string& file, const We
     WeatherRow& row = add_row(table, lines);
     LocalStamp s = month;
     s.day = static_cast<int>(lines.integer(0, "day", 1, 31));
-    if (!is_date(s)) throw lines.error(0, strf("there is no %d-%02d-%02d", s.year, s.month, s.day));
+    check_date(s, lines, 0);
     s.seconds = 60 * static_cast<double>(lines.integer(1, "minute of the day", 0, 1439));
     begins.push_back(instant_of(s, 0));
     put(row, Q::global, lines, 2, "global", -999);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/weather/calendar.h"
-#include "formats/weather/fields.h"
 #include "formats/weather/readers.h"
 
 namespace suite {
@@ -106,26 +104,17 @@ void read_values(WeatherRow& row, const TextLines& lines, size_t& without_infrar
 }  // namespace
 
 WeatherTable parse_epw(std::string_view text, const std::string& file, const WeatherOptions& options) {
-  refuse_options(options, {.year = true}, file, "EPW");
-  WeatherTable table;
-  table.file = file;
-  table.meaning = usual_meanings();
+  WeatherTable table = table_of_hours(file, options, "EPW");
   TextLines lines(text, file);
   const EpwHead head = read_head(table, lines);
-  table.notes.push_back(standard_time_note(head.utc_offset));
-  table.notes.push_back(kHourNote);
-  std::vector<LocalStamp> stamps;
   size_t without_infrared = 0;
-  while (lines.next_raw()) {
-    split_at_commas(lines);
-    if (no_fields(lines)) continue;
-    WeatherRow& row = add_row(table, lines);
-    stamps.push_back(read_stamp(lines, head));
+  read_local_hours(table, lines, head.utc_offset, options.year, [&](WeatherRow& row) {
+    const LocalStamp stamp = read_stamp(lines, head);
     read_values(row, lines, without_infrared);
-  }
+    return stamp;
+  });
   if (without_infrared)
     table.notes.push_back(strf("horizontal infrared of 0 is taken as missing in %zu rows", without_infrared));
-  place_rows(table, std::move(stamps), head.utc_offset, options.year);
   return table;
 }
 

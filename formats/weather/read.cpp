@@ -66,6 +66,26 @@ void refuse_options(const WeatherOptions& options, WeatherUses uses, const std::
   refuse(options.year.has_value(), uses.year, "a year");
 }
 
+void check_date(const LocalStamp& stamp, const TextLines& lines, size_t word) {
+  if (!is_date(stamp)) throw lines.error(word, strf("there is no %d-%02d-%02d", stamp.year, stamp.month, stamp.day));
+}
+
+WeatherTable table_of_means(const std::string& file, const WeatherOptions& options, const char* kind) {
+  refuse_options(options, {}, file, kind);
+  WeatherTable table;
+  table.file = file;
+  table.meaning.fill(WeatherMeaning::mean);
+  return table;
+}
+
+WeatherTable table_of_hours(const std::string& file, const WeatherOptions& options, const char* kind) {
+  refuse_options(options, {.year = true}, file, kind);
+  WeatherTable table;
+  table.file = file;
+  table.meaning = usual_meanings();
+  return table;
+}
+
 Weather parse_weather(std::string_view text, const std::string& file, const WeatherOptions& options) {
   return Weather(kind_of(text, file)(text, file, options), options.longwave);
 }

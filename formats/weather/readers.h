@@ -4,6 +4,8 @@
 #include <string_view>
 
 #include "base/text_lines.h"
+#include "formats/weather/calendar.h"
+#include "formats/weather/fields.h"
 #include "formats/weather/weather.h"
 
 namespace suite {
@@ -31,10 +33,32 @@ inline constexpr const char* kHourNote =
     "radiation and precipitation are means of the hour (or part of it) that ends at the stamp, the rest is of the "
     "stamp";
 
-// Options that a kind has no use for. Error naming the first of them that is given.
+// Options that a kind has a use for; the others are refused. Error naming the first of those that is given.
 struct WeatherUses {
   bool site = false, utc_offset = false, date = false, year = false;
 };
 void refuse_options(const WeatherOptions& options, WeatherUses uses, const std::string& file, const char* kind);
+
+// A date and time of UTC; error at the word of the day where there is no such date.
+void check_date(const LocalStamp& stamp, const TextLines& lines, size_t word);
+
+// A table without rows yet, of a kind whose values are means over even steps of UTC, or that has usual_meanings() and
+// takes a year. Error as refuse_options.
+WeatherTable table_of_means(const std::string& file, const WeatherOptions& options, const char* kind);
+WeatherTable table_of_hours(const std::string& file, const WeatherOptions& options, const char* kind);
+// Of a file whose rows stand in local standard time, for hours that end at the stamp: rows as read_row(row) takes them
+// from each line, split at commas, and read_row returns the stamp of.
+template <class ReadRow>
+void read_local_hours(WeatherTable& table, TextLines& lines, double utc_offset, std::optional<int> year,
+                      ReadRow&& read_row) {
+  table.notes.push_back(standard_time_note(utc_offset));
+  table.notes.push_back(kHourNote);
+  std::vector<LocalStamp> stamps;
+  while (lines.next_raw()) {
+    split_at_commas(lines);
+    if (!no_fields(lines)) stamps.push_back(read_row(add_row(table, lines)));
+  }
+  place_rows(table, std::move(stamps), utc_offset, year);
+}
 
 }  // namespace suite

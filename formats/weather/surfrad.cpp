@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "formats/weather/calendar.h"
 #include "formats/weather/readers.h"
 
 namespace suite {
@@ -78,10 +77,7 @@ void settle_longitude(WeatherTable& table, const std::vector<Zenith>& zeniths) {
 }  // namespace
 
 WeatherTable parse_surfrad(std::string_view text, const std::string& file, const WeatherOptions& options) {
-  refuse_options(options, {}, file, "SURFRAD");
-  WeatherTable table;
-  table.file = file;
-  table.meaning.fill(WeatherMeaning::mean);
+  WeatherTable table = table_of_means(file, options, "SURFRAD");
   TextLines lines(text, file);
   lines.next_raw();
   lines.next();
@@ -97,7 +93,7 @@ WeatherTable parse_surfrad(std::string_view text, const std::string& file, const
     s.year = static_cast<int>(lines.integer(0, "year", 1973, 2198));
     s.month = static_cast<int>(lines.integer(2, "month", 1, 12));
     s.day = static_cast<int>(lines.integer(3, "day", 1, 31));
-    if (!is_date(s)) throw lines.error(3, strf("there is no %d-%02d-%02d", s.year, s.month, s.day));
+    check_date(s, lines, 3);
     s.seconds = 3600 * lines.number_in(4, "hour", 0, 24) + 60 * lines.number_in(5, "minute", 0, 59);
     WeatherRow& row = add_row(table, lines);
     ends.push_back(instant_of(s, 0));

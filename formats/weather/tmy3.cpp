@@ -1,7 +1,5 @@
 // Typical meteorological years of NREL. Based on: S. Wilcox & W. Marion, "Users manual for TMY3 data sets",
 // NREL/TP-581-43156, 2008, tables 1-1 to 1-3.
-#include "formats/weather/calendar.h"
-#include "formats/weather/fields.h"
 #include "formats/weather/readers.h"
 
 namespace suite {
@@ -59,10 +57,7 @@ LocalStamp read_stamp(const TextLines& lines) {
 }  // namespace
 
 WeatherTable parse_tmy3(std::string_view text, const std::string& file, const WeatherOptions& options) {
-  refuse_options(options, {.year = true}, file, "TMY3");
-  WeatherTable table;
-  table.file = file;
-  table.meaning = usual_meanings();
+  WeatherTable table = table_of_hours(file, options, "TMY3");
   TextLines lines(text, file);
   lines.next_raw();
   split_at_commas(lines);
@@ -75,22 +70,16 @@ WeatherTable parse_tmy3(std::string_view text, const std::string& file, const We
   for (Column& column : columns) column.index = find(lines, column.name);
   const size_t direction = find(lines, "Wdir (degrees)"), rain = find(lines, "Lprecip depth (mm)"),
                rain_hours = find(lines, "Lprecip quantity (hr)");
-  table.notes.push_back(standard_time_note(utc_offset));
-  table.notes.push_back(kHourNote);
-  std::vector<LocalStamp> stamps;
-  while (lines.next_raw()) {
-    split_at_commas(lines);
-    if (no_fields(lines)) continue;
-    WeatherRow& row = add_row(table, lines);
-    stamps.push_back(read_stamp(lines));
+  read_local_hours(table, lines, utc_offset, options.year, [&](WeatherRow& row) {
+    const LocalStamp stamp = read_stamp(lines);
     for (const Column& c : columns)
       if (const double v = lines.number(c.index, c.name); v > kNone) row.value(c.quantity) = c.scale * v + c.offset;
     if (lines.number(direction, "wind direction") > kNone)
       row.value(Q::wind_from) = azimuth_from_compass_deg(lines.number_in(direction, "wind direction", 0, 360));
     const double depth = lines.number(rain, "precipitation"), hours = lines.number(rain_hours, "its hours");
     if (depth > kNone) put_precipitation(row, depth, hours);
-  }
-  place_rows(table, std::move(stamps), utc_offset, options.year);
+    return stamp;
+  });
   return table;
 }
 

@@ -2,8 +2,6 @@
 // leaves some columns and units open; FORMAT.md says what is assumed.
 #include <cmath>
 
-#include "formats/weather/calendar.h"
-#include "formats/weather/fields.h"
 #include "formats/weather/readers.h"
 
 namespace suite {

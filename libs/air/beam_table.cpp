@@ -51,7 +51,7 @@ BeamTable::BeamTable(const Shells& shells, double ground, std::span<const float>
       bins_(bins + bent_),
       nodes_(nodes) {
   SUITE_CHECK_EQ(extinction.size(), shells.layers() * bins);
-  SUITE_CHECK_LE(size_t{2}, nodes);
+  SUITE_CHECK_LE(size_t{4}, nodes);
   if (!(1 + shells_.curvature() * ground_ > 0)) throw Error(strf("the ground lies at %g m, below the centre", ground));
   // Layers hold as much as before, and of bending -n' / n r n for a ray of n r sin(theta) = 1.
   for (size_t l = 0; l < shells.layers(); ++l) {
@@ -107,14 +107,23 @@ double BeamTable::straightened(double height) const {
   return to[i - 1] + (height - heights_[i - 1]) * (to[i] - to[i - 1]) / (heights_[i] - heights_[i - 1]);
 }
 
-void BeamTable::add_nodes(const std::vector<float>& table, size_t row, double x, double factor, Part part) const {
+// The cubic through the four nodes about a place.
+BeamTable::Nodes BeamTable::nodes_at(const std::vector<float>& table, size_t row, double x, double factor) const {
   const double at = std::clamp(x, 0.0, 1.0) * static_cast<double>(nodes_ - 1);
-  const size_t i = std::min(static_cast<size_t>(at), nodes_ - 2);
-  const float* const a = &table[(row * nodes_ + i) * bins_ + part.first];
-  const float* const b = a + bins_;
-  const double w = at - static_cast<double>(i);
-  const float wa = static_cast<float>(factor * (1 - w)), wb = static_cast<float>(factor * w);
-  for (size_t bin = 0; bin < part.depth.size(); ++bin) part.depth[bin] += wa * a[bin] + wb * b[bin];
+  const size_t first = std::clamp<size_t>(static_cast<size_t>(at), 1, nodes_ - 3) - 1;
+  const double a = at - static_cast<double>(first), b = a - 1, c = a - 2, d = a - 3, f = factor / 6;
+  return {&table[(row * nodes_ + first) * bins_],
+          {static_cast<float>(-f * b * c * d), static_cast<float>(3 * f * a * c * d),
+           static_cast<float>(-3 * f * a * b * d), static_cast<float>(f * a * b * c)}};
+}
+
+void BeamTable::add_nodes(const Nodes& nodes, Part part) const {
+  const float* const a = nodes.first + part.first;
+  const float *const b = a + bins_, *const c = b + bins_, *const d = c + bins_;
+  const auto [wa, wb, wc, wd] = nodes.weight;
+  float* __restrict const depth = part.depth.data();
+  for (size_t bin = 0; bin < part.depth.size(); ++bin)
+    depth[bin] += wa * a[bin] + wb * b[bin] + wc * c[bin] + wd * d[bin];
 }
 
 void BeamTable::add_up(double height, double cosine, float factor, Part part) const {
@@ -125,11 +134,12 @@ void BeamTable::add_up(double height, double cosine, float factor, Part part) co
   const double below = (top - height) * (1 + 0.5 * k * (top + height)), root = std::sqrt(slope * slope + 2 * k * below);
   const float way = factor * static_cast<float>(2 * below / (slope + root));
   const float* const e = &extinction_[l * bins_ + part.first];
-  for (size_t bin = 0; bin < part.depth.size(); ++bin) part.depth[bin] += way * e[bin];
+  float* __restrict const depth = part.depth.data();
+  for (size_t bin = 0; bin < part.depth.size(); ++bin) depth[bin] += way * e[bin];
   if (l + 1 == shells_.layers()) return;
   const double there = std::min(1.0, root / (1 + k * top)), s = scale_[l + 1];
   const double x = k > 0 ? std::asinh(there / s) * stretch_[l + 1] : 1;
-  add_nodes(up_, l + 1, x, static_cast<double>(factor) / std::sqrt(there * there + s * s), part);
+  add_nodes(nodes_at(up_, l + 1, x, static_cast<double>(factor) / std::sqrt(there * there + s * s)), part);
 }
 
 void BeamTable::add_lowest(double height, float factor, Part part) const {
@@ -137,7 +147,7 @@ void BeamTable::add_lowest(double height, float factor, Part part) const {
   if (l == shells_.layers()) return;
   const double top = shells_.heights()[l + 1];
   const double x = std::sqrt((top - height) / (top - std::min(top, bottom(l))));
-  add_nodes(low_, l, x, static_cast<double>(factor), part);
+  add_nodes(nodes_at(low_, l, x, static_cast<double>(factor)), part);
 }
 
 bool BeamTable::straight_depth(double height, double cosine, Part part) const {

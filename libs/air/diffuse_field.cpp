@@ -33,10 +33,12 @@ DiffuseSource::Axes axes_of(const AirColumn& column, std::span<const AirBeam> be
 class BinSolver {
  public:
   BinSolver(const AirSpec& spec, const AirColumn& column, const SpectralState& state, std::span<const AirBeam> beams,
-            const std::vector<std::vector<double>>& depths, DiffuseSource& to, DiffuseReport* report)
+            const std::vector<std::vector<double>>& depths, const std::vector<std::vector<float>>& phases,
+            DiffuseSource& to, DiffuseReport* report)
       : column_(column),
         beams_(beams),
         depths_(depths),
+        phases_(phases),
         to_(to),
         report_(report),
         ground_albedo_(state.sample(spec.ground_albedo)),
@@ -180,9 +182,7 @@ class BinSolver {
     for (size_t c = 0; c < cosines.size(); ++c)
       for (size_t a = 0; a < to_.axes().azimuths; ++a) {
         const bool rising = cosines[c] < 0;  // the light, seen from above
-        const double sine = std::sqrt(std::max(0.0, 1 - cosines[c] * cosines[c]));
-        const Dir d{sine * std::cos(to_.azimuth(a)), sine * std::sin(to_.azimuth(a)), cosines[c]};
-        phases_of(b, d);
+        phases_of(b, to_.direction(c, a));
         double light = rising ? solver_.ground_radiance() : 0;
         const size_t count = layers_.size();
         for (size_t step = 0; step < count; ++step) {
@@ -191,17 +191,10 @@ class BinSolver {
         }
       }
   }
-  void phases_of(size_t b, Dir d) {
+  void phases_of(size_t b, size_t direction) {
     phase_.assign(column_.kinds.size(), 0);
-    if (beams_.empty()) return;
-    row_.resize(column_.bins);
-    for (size_t k = 0; k < phase_.size(); ++k) {
-      const PhaseFunction& phase = *column_.kinds[k].phase;
-      const bool uniform = phase.spectrally_uniform();
-      phase.eval(std::clamp(dot(beams_[b].direction, d), -1.0, 1.0),
-                 uniform ? std::span(row_).first(1) : std::span(row_));
-      phase_[k] = row_[uniform ? 0 : bin_];
-    }
+    for (size_t k = 0; !beams_.empty() && k < phase_.size(); ++k)
+      phase_[k] = phases_[b][(direction * phase_.size() + k) * column_.bins + bin_];
   }
   // Light enters a layer and leaves it; both ends get their part of the peak.
   double through(size_t n, size_t direction, bool rising, double cosine, double light) {
@@ -245,6 +238,7 @@ class BinSolver {
   const AirColumn& column_;
   std::span<const AirBeam> beams_;
   const std::vector<std::vector<double>>& depths_;  // per beam [level][bin]
+  const std::vector<std::vector<float>>& phases_;   // per beam, as of phases_of
   DiffuseSource& to_;
   DiffuseReport* report_;
   const std::vector<float> ground_albedo_;
@@ -261,7 +255,6 @@ class BinSolver {
   std::vector<double> ground_, own_;
   std::vector<double> cosines_;  // of order times azimuth of the table, for a beam
   size_t cosines_of_ = static_cast<size_t>(-1);
-  std::vector<float> row_;
 };
 
 // Depth of a beam at the levels over the scene's origin, infinite in the shadow of the Earth; [level][bin].
@@ -277,6 +270,26 @@ std::vector<double> depths_of(const AirColumn& column, const AirBeam& beam, cons
   return depths;
 }
 
+// Phase functions between a beam and the directions of the table; [direction][kind][bin], 1/sr.
+std::vector<float> phases_of(const AirColumn& column, const AirBeam& beam, const DiffuseSource& source) {
+  const std::vector<double>& cosines = source.axes().cosines;
+  std::vector<float> phases(source.directions() * column.kinds.size() * column.bins);
+  for (size_t c = 0; c < cosines.size(); ++c)
+    for (size_t a = 0; a < source.axes().azimuths; ++a) {
+      const double sine = std::sqrt(std::max(0.0, 1 - cosines[c] * cosines[c])), azimuth = source.azimuth(a);
+      const Dir d{sine * std::cos(azimuth), sine * std::sin(azimuth), cosines[c]};
+      for (size_t k = 0; k < column.kinds.size(); ++k) {
+        const PhaseFunction& phase = *column.kinds[k].phase;
+        const std::span<float> row{&phases[(source.direction(c, a) * column.kinds.size() + k) * column.bins],
+                                   column.bins};
+        const bool uniform = phase.spectrally_uniform();
+        phase.eval(std::clamp(dot(beam.direction, d), -1.0, 1.0), uniform ? row.first(1) : row);
+        if (uniform) std::fill(row.begin(), row.end(), row[0]);
+      }
+    }
+  return phases;
+}
+
 }  // namespace
 
 std::shared_ptr<const DiffuseSource> solve_diffuse_field(const AirSpec& spec, const AirColumn& column,
@@ -286,12 +299,14 @@ std::shared_ptr<const DiffuseSource> solve_diffuse_field(const AirSpec& spec, co
   std::vector<std::vector<double>> depths;
   for (size_t b = 0; b < beams.size(); ++b) depths.push_back(depths_of(column, beams[b], tables[b]));
   auto source = std::make_shared<DiffuseSource>(column.layers(), column.bins, axes_of(column, beams));
+  std::vector<std::vector<float>> phases;
+  for (const AirBeam& beam : beams) phases.push_back(phases_of(column, beam, *source));
   if (report)
     for (auto* row : {&report->direct, &report->down, &report->up, &report->top_up, &report->spherical_albedo,
                       &report->ground_albedo})
       row->assign(column.bins, 0.0f);
   parallel_for(0, column.bins, 4, [&](size_t begin, size_t end) {
-    BinSolver solver(spec, column, state, beams, depths, *source, report);
+    BinSolver solver(spec, column, state, beams, depths, phases, *source, report);
     for (size_t bin = begin; bin < end; ++bin) solver.solve(bin);
   });
   return source;

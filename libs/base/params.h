@@ -31,6 +31,10 @@ class Params {
   // in them are told as "--set PATH". Error: no such place, malformed.
   static Params parse_file(const std::string& path, std::span<const std::string> settings = {});
   static Params parse_text(std::string_view yaml, const std::string& file_name);
+  // A text that a program made of others: places are those of `origins`, one a line, and file names are relative to
+  // the folder of file_name. Settings as above.
+  static Params parse_made(std::string_view yaml, const std::string& file_name, std::vector<Where> origins,
+                           std::span<const std::string> settings = {});
   // The same from strict JSON that a program wrote into another file: some ten times faster, but places name the file
   // only. Error: malformed JSON, duplicate key, nesting above 200.
   static Params parse_json(std::string_view json, const std::string& file_name);

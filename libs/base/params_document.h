@@ -29,6 +29,7 @@ struct Params::Document {
   std::string file;
   std::shared_ptr<const std::string> text;  // the whole, which every place shares
   std::vector<size_t> lines;                // where each begins, and the end
+  std::vector<Where> origins;               // of a text that a program made: where each line comes from
   std::vector<std::string> settings;        // applied so far, or being applied
   std::deque<Node> nodes;
   const Node* root = nullptr;
@@ -39,6 +40,7 @@ struct Params::Document {
       const std::string& setting = settings[static_cast<size_t>(-line) - 1];
       return Where{"--set " + setting.substr(0, setting.find('=')), 0, column, setting, -1};
     }
+    if (line >= 1 && line <= static_cast<int>(origins.size())) return origins[static_cast<size_t>(line) - 1];
     Where w{file, line, column, {}, -1};
     if (line < 1 || line >= static_cast<int>(lines.size())) return w;
     const size_t begin = lines[static_cast<size_t>(line) - 1];

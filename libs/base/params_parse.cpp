@@ -188,8 +188,14 @@ Params Params::parse_file(const std::string& path, std::span<const std::string> 
 }
 
 Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
+  return parse_made(yaml, file_name, {});
+}
+
+Params Params::parse_made(std::string_view yaml, const std::string& file_name, std::vector<Where> origins,
+                          std::span<const std::string> settings) {
   auto document = std::make_shared<Document>();
   document->file = file_name;
+  document->origins = std::move(origins);
   document->keep(yaml);
   const std::string& text = *document->text;
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
@@ -203,6 +209,7 @@ Params Params::parse_text(std::string_view yaml, const std::string& file_name) {
   }
   parse_into(*document, text, 0);
   if (!document->root) throw Error(Where{file_name, 0, 0, {}, -1}, "is empty", "a YAML map is expected");
+  for (const std::string& setting : settings) apply(*document, setting);
   const Node* root = document->root;
   return Params(std::move(document), root);
 }

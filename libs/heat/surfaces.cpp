@@ -36,7 +36,7 @@ FixedLaw fixed_law(const SurfaceLoads& loads, const FaceTraits& face) {
   std::vector<double> coefficient, times_air;
   for (size_t i = 0; i < loads.air.times.size(); ++i) {
     const double air = loads.air.kelvin[i];
-    coefficient.push_back(face.convection->coefficient({air, air, loads.air.wind[i]}));
+    coefficient.push_back(face.convection->coefficient({air, air, loads.air.wind[i], 1, true, loads.air.pressure}));
     times_air.push_back(coefficient.back() * air);
   }
   return {lines_of(loads, coefficient), lines_of(loads, times_air)};
@@ -47,6 +47,20 @@ bool is_fixed(const FaceTraits& face) {
 }
 
 }  // namespace
+
+FaceTraits SurfaceGroup::front_of(size_t element) const {
+  FaceTraits face = front;
+  if (!cosine_up.empty()) face.cosine_up = cosine_up[element];
+  if (!front_emissivity.empty()) face.emissivity = front_emissivity[element];
+  return face;
+}
+
+FaceTraits SurfaceGroup::back_of(size_t element) const {
+  FaceTraits face = back;
+  if (!cosine_up.empty()) face.cosine_up = -cosine_up[element];
+  if (!back_emissivity.empty()) face.emissivity = back_emissivity[element];
+  return face;
+}
 
 struct CoupledSurfaces::Through {
   const SurfaceLoads& loads;
@@ -69,6 +83,7 @@ struct CoupledSurfaces::Through {
     w.absorbed = loads.absorbed[face * moments + moment];
     w.longwave = received[face * moments + moment];
     w.source = loads.source.empty() ? 0 : loads.source[face];
+    w.pressure = loads.air.pressure;
     w.air_kelvin = air.kelvin, w.wind = air.wind, w.gusts = air.gusts, w.vapour_pressure = air.vapour;
     return w;
   }
@@ -102,7 +117,11 @@ struct CoupledSurfaces::Through {
 };
 
 CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange)
-    : groups_(std::move(groups)), exchange_(exchange), step_error_(exchange.elements()) {
+    : groups_(std::move(groups)),
+      exchange_(exchange),
+      step_error_(exchange.elements()),
+      behind_(step_error_),
+      stored_(step_error_) {
   std::vector<int> seen(exchange.elements(), 0);
   for (size_t g = 0; g < groups_.size(); ++g) {
     const SurfaceGroup& group = groups_[g];
@@ -110,8 +129,10 @@ CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const Exchang
     if (!group.back_rows.empty() && group.back_rows.size() != count)
       throw Error(strf("surfaces have %zu fronts and %zu open backs", count, group.back_rows.size()),
                   "as many, or none");
-    if (!group.cosine_up.empty() && group.cosine_up.size() != count)
-      throw Error(strf("surfaces have %zu fronts and %zu tilts", count, group.cosine_up.size()), "as many, or none");
+    for (const auto* each : {&group.cosine_up, &group.front_emissivity, &group.back_emissivity})
+      if (!each->empty() && each->size() != count)
+        throw Error(strf("surfaces have %zu fronts and %zu tilts or emissivities", count, each->size()),
+                    "as many, or none");
     for (const auto* rows : {&group.front_rows, &group.back_rows})
       for (const uint32_t row : *rows) {
         if (row >= seen.size()) throw Error(strf("a surface has row %u of an exchange of %zu", row, seen.size()));
@@ -148,10 +169,9 @@ void CoupledSurfaces::check(const SurfaceLoads& loads) const {
 void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through, const SlabBatch& batch,
                            FaceLines& top, FaceLines& bottom) const {
   const SurfaceGroup& group = groups_[part.group];
-  FaceTraits front = group.front, back = group.back;
   for (size_t i = 0; i < part.count; ++i) {
     const size_t element = part.first + i;
-    if (!group.cosine_up.empty()) front.cosine_up = group.cosine_up[element], back.cosine_up = -front.cosine_up;
+    const FaceTraits front = group.front_of(element), back = group.back_of(element);
     through.act(front, through.front[part.group], group.front_rows[element], step, batch.top(i), top, i);
     if (!group.back_rows.empty()) {
       through.act(back, through.back[part.group], group.back_rows[element], step, batch.bottom(i), bottom, i);
@@ -179,7 +199,12 @@ void CoupledSurfaces::answer(Part& part, const Through& through, std::span<doubl
       const size_t front = group.front_rows[part.first + i];
       emitted[front * through.moments + moment] = emitted_by(batch.top(i));
       step_error_[front] = std::fmax(moment <= 1 ? 0 : step_error_[front], moment == 0 ? 0 : batch.estimate(i));
-      if (group.back_rows.empty()) continue;
+      if (group.back_rows.empty()) {
+        if (moment <= 1) behind_[front] = 0;
+        if (moment > 0)
+          behind_[front] -= loads.steps[moment - 1] * back_balance(group.behind).flux(batch.bottom_mean(i));
+        continue;
+      }
       const size_t back = group.back_rows[part.first + i];
       emitted[back * through.moments + moment] = emitted_by(batch.bottom(i));
       step_error_[back] = step_error_[front];
@@ -197,24 +222,34 @@ void CoupledSurfaces::answer(Part& part, const Through& through, std::span<doubl
         emitted[(*rows)[i] * through.moments] = emitted[((*rows)[i] + 1) * through.moments - 1];
     return;
   }
+  const SlabBatch before = batch;
   record(0);
   for (size_t k = 0; k < loads.steps.size(); ++k) {
     batch.step(loads.steps[k], lines);
     record(k + 1);
+  }
+  // Heat capacities may depend on temperature.
+  const auto heat = [&](const SlabBatch& of, size_t element, size_t node) {
+    double sum = 0, power = 1;
+    for (const std::vector<double>& coefficients : of.grid().heat)
+      sum += coefficients[node] * (power *= of.kelvin(element, node));
+    return sum;
+  };
+  for (size_t i = 0; i < part.count; ++i) {
+    double& stored = stored_[group.front_rows[part.first + i]] = 0;
+    for (size_t n = 0; n < batch.nodes(); ++n) stored += heat(batch, i, n) - heat(before, i, n);
   }
 }
 
 void CoupledSurfaces::answer_massless(const Part& part, const Through& through, std::span<double> emitted) const {
   const SurfaceGroup& group = groups_[part.group];
   std::vector<MasslessFace> faces(group.back_rows.empty() ? 1 : 2);
-  faces.front().traits = group.front;
-  if (faces.size() > 1) faces.back().traits = group.back;
   for (size_t element = part.first; element < part.first + part.count; ++element) {
+    faces.front().traits = group.front_of(element);
+    if (faces.size() > 1) faces.back().traits = group.back_of(element);
     const size_t rows[2] = {group.front_rows[element], faces.size() > 1 ? group.back_rows[element] : 0};
     for (size_t moment = 0; moment < through.moments; ++moment) {
       for (size_t f = 0; f < faces.size(); ++f) {
-        if (!group.cosine_up.empty())
-          faces[f].traits.cosine_up = f == 0 ? group.cosine_up[element] : -group.cosine_up[element];
         faces[f].weather = through.weather_at(rows[f], moment);
       }
       const double emits = emitted_by(massless_kelvin(faces));
@@ -258,6 +293,7 @@ SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOp
   exchange_.receive(emitted, through.moments, history.received);
   for (size_t i = 0; i < own; ++i) history.kelvin.push_back(std::sqrt(std::sqrt(emitted[i] / kStefanBoltzmann)));
   history.step_error = step_error_;
+  history.behind = behind_, history.stored = options.periodic ? std::vector<double>(stored_.size(), 0.0) : stored_;
   for (const Part& part : parts_) history.past_distance = std::fmax(history.past_distance, part.distance);
   return history;
 }

@@ -15,17 +15,23 @@ namespace suite {
 
 // Elements of one construction. A face is a row of the exchange.
 struct SurfaceGroup {
-  std::vector<SlabLayer> layers;     // from the front down; empty: no heat capacity, as leaves
-  FaceTraits front, back;            // back: of faces in back_rows
-  std::vector<double> cosine_up;     // of each front's outward normal, a back's is the opposite; empty = the traits'
-  std::vector<uint32_t> front_rows;  // of each element
-  std::vector<uint32_t> back_rows;   // of each element when its back is open to sky and surfaces; empty: `behind`
+  std::vector<SlabLayer> layers;  // from the front down; empty: no heat capacity, as leaves
+  FaceTraits front, back;         // back: of faces in back_rows
+  std::vector<double> cosine_up;  // of each front's outward normal, a back's is the opposite; empty = the traits'
+  std::vector<double> front_emissivity, back_emissivity;  // of each; empty = the traits'
+  std::vector<uint32_t> front_rows;                       // of each element
+  std::vector<uint32_t> back_rows;  // of each element when its back is open to sky and surfaces; empty: `behind`
   BackCondition behind;
+
+  // Of one element.
+  FaceTraits front_of(size_t element) const;
+  FaceTraits back_of(size_t element) const;
 };
 
 // Air over time (s), straight between the times, which cover the span unless they repeat.
 struct AirSeries {
   std::vector<double> times, kelvin, wind, vapour_pressure;  // s, K, m/s, Pa; one a time
+  double pressure = 101325;                                  // Pa, mean
   bool repeat = false;
 };
 
@@ -48,6 +54,9 @@ struct SurfaceHistory {
   size_t moments = 0;
   std::vector<double> kelvin, received;  // K, W/m2 longwave: by face, then by moment
   std::vector<double> step_error;        // K, by face: largest estimated error of a step; 0 without heat capacity
+  // J/m2 over the span, by front face: what went to what lies behind, and what the layers took up (of a span that
+  // repeats nothing); 0 of backs.
+  std::vector<double> behind, stored;
   CouplingResult coupling;
   double past_distance = 0;  // K, largest estimated distance of a node from the periodic state
   double kelvin_at(size_t face, size_t moment) const { return kelvin[face * moments + moment]; }
@@ -81,7 +90,7 @@ class CoupledSurfaces {
   std::vector<SurfaceGroup> groups_;
   const ExchangeMatrix& exchange_;
   std::vector<Part> parts_;
-  std::vector<double> step_error_;  // by face
+  std::vector<double> step_error_, behind_, stored_;  // by face
 };
 
 }  // namespace suite

@@ -61,7 +61,8 @@ WeatherSeries series_of(const WeatherTable& table, Q quantity, const std::shared
   }
   if (quantity == Q::wind_from) unwrap(values);
   if (table.meaning_of(quantity) == WeatherMeaning::mean)
-    return WeatherSeries::of_means(begins, ends, values, pace_of(quantity, sun));
+    return WeatherSeries::of_means(begins, ends, values,
+                                   table.airless() ? WeatherSeries::Pace{} : pace_of(quantity, sun));
   ends.insert(ends.begin(), begins.front());
   values.insert(values.begin(), values.front());
   return WeatherSeries::of_instants(ends, values, table.step + kStampSlack);

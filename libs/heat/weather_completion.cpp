@@ -36,10 +36,13 @@ bool any(const WeatherTable& table, Q q) {
 std::string name(Q q) { return std::string(weather_info(q).name); }
 
 void check_ranges(const WeatherTable& table) {
+  const bool airless = table.airless();
   for (size_t i = 0; i < table.rows.size(); ++i)
     for (size_t k = 0; k < kWeatherQuantities; ++k) {
       const WeatherQuantityInfo& info = weather_info(weather_quantity(k));
       const double v = table.rows[i].values[k];
+      const Q q = weather_quantity(k);
+      if (airless && v == 0 && (q == Q::pressure || q == Q::longwave_down)) continue;
       if (!std::isnan(v) && !(v >= info.low && v <= info.high))
         throw Error(
             table.where(i),
@@ -231,6 +234,16 @@ void complete_longwave(WeatherTable& table, LongwaveModel model) {
 
 void complete_weather(WeatherTable& table, LongwaveModel model, const SunTable& sun) {
   check_ranges(table);
+  if (table.airless()) {
+    meaning_of_light(table);
+    count_missing(table);
+    settle(table);
+    table.notes.push_back(
+        "the pressure is 0: there is no air, nothing is checked against the Earth's sun or modelled in place of what "
+        "is "
+        "missing");
+    return;
+  }
   const WeatherMeaning light = meaning_of_light(table);
   refuse_night_sun(table, light, sun);
   count_missing(table);

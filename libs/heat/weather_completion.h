@@ -17,6 +17,8 @@ namespace suite {
 //    than half an hour from noon, too, where 200 hours of it are there;
 //  - the third of global, direct and diffuse from two; direct and diffuse from global alone (Erbs et al. 1982);
 //  - downwelling longwave by `model`, without clouds where no cover is given.
+// Of a body without air (WeatherTable::airless) the ranges alone, where pressure and longwave may be 0: neither the
+// Earth's sun nor models of its air say anything of it.
 void complete_weather(WeatherTable& table, LongwaveModel model, const SunTable& sun);
 
 }  // namespace suite

@@ -4,6 +4,8 @@
 
 namespace suite {
 
+using Q = WeatherQuantity;
+
 const WeatherQuantityInfo& weather_info(WeatherQuantity quantity) {
   // Wider than the records of the Earth: -89.2 to 56.7 C, 870 to 1085 hPa at sea level and 330 hPa on Everest, 113 m/s,
   // and for radiation the noise of instruments at night and edges of clouds.
@@ -24,6 +26,10 @@ const WeatherQuantityInfo& weather_info(WeatherQuantity quantity) {
                                                                     {"opaque_cover", "1", 0, 1},
                                                                     {"snow_depth", "m", 0, 30}};
   return kInfo[static_cast<size_t>(quantity)];
+}
+
+bool WeatherTable::airless() const {
+  return !rows.empty() && std::ranges::all_of(rows, [](const WeatherRow& r) { return r.value(Q::pressure) == 0; });
 }
 
 double WeatherTable::begin(size_t row) const {
@@ -63,7 +69,6 @@ void set_stamps(WeatherTable& table, const std::vector<Instant>& ends) {
 }
 
 std::array<WeatherMeaning, kWeatherQuantities> usual_meanings() {
-  using Q = WeatherQuantity;
   std::array<WeatherMeaning, kWeatherQuantities> meaning{};
   for (const Q q :
        {Q::global, Q::direct_normal, Q::diffuse, Q::shortwave_up, Q::longwave_down, Q::longwave_up, Q::precipitation})

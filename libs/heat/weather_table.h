@@ -67,6 +67,8 @@ struct WeatherTable {
 
   WeatherMeaning& meaning_of(WeatherQuantity q) { return meaning[static_cast<size_t>(q)]; }
   WeatherMeaning meaning_of(WeatherQuantity q) const { return meaning[static_cast<size_t>(q)]; }
+  // Whether the pressure is 0 in every row: a body without air. Its sun is not the Earth's.
+  bool airless() const;
   // Where the interval of a row begins; that of the one before ends there when no row is missing between them.
   double begin(size_t row) const;
   Where where(size_t row) const { return {file, rows[row].line, 0, {}, -1}; }

@@ -23,13 +23,27 @@ inline void weigh(size_t n, const float* __restrict extinction, float length, co
   }
 }
 
-// Adds a share of a source that runs from `low` to `high` over a layer, seen at two places in it (0..1).
-inline void add_source(size_t n, const float* __restrict low, const float* __restrict high, float share, float near,
-                       float far, float* __restrict at_near, float* __restrict at_far) {
+// A source that runs from low to high over a layer, as the sum of a few with weights, seen at two places in it (0..1).
+struct Sources {
+  const float *low[4], *high[4];
+  float weight[4];
+};
+inline void see_sources(size_t n, const Sources& s, float near, float far, float* __restrict at_near,
+                        float* __restrict at_far) {
+  const auto& [low, high, w] = s;
   for (size_t i = 0; i < n; ++i) {
-    const float rise = share * (high[i] - low[i]), bottom = share * low[i];
-    at_near[i] += bottom + near * rise;
-    at_far[i] += bottom + far * rise;
+    const float bottom = w[0] * low[0][i] + w[1] * low[1][i] + w[2] * low[2][i] + w[3] * low[3][i];
+    const float top = w[0] * high[0][i] + w[1] * high[1][i] + w[2] * high[2][i] + w[3] * high[3][i];
+    at_near[i] = bottom + near * (top - bottom);
+    at_far[i] = bottom + far * (top - bottom);
+  }
+}
+inline void add_source(size_t n, const float* __restrict low, const float* __restrict high, float near, float far,
+                       float* __restrict at_near, float* __restrict at_far) {
+  for (size_t i = 0; i < n; ++i) {
+    const float rise = high[i] - low[i];
+    at_near[i] += low[i] + near * rise;
+    at_far[i] += low[i] + far * rise;
   }
 }
 
@@ -55,14 +69,40 @@ inline void fall(size_t n, const float* __restrict depth, float* __restrict ligh
 struct Beams {
   const float *depth, *light;
 };
-// Light of a beam that is scattered once on a way; scattered: 1/(m sr).
-inline void scatter(size_t n, const float* __restrict irradiance, const float* __restrict scattered, float length,
-                    const Weights& w, const Beams& near, const Beams& far, const float* __restrict T,
-                    float* __restrict S) {
+// Light of a beam that is scattered once on a way; scattered: its irradiance above the air times 1/(m sr).
+inline void scatter(size_t n, const float* __restrict scattered, float length, const Weights& w, const Beams& near,
+                    const Beams& far, const float* __restrict T, float* __restrict S) {
   const float* __restrict depth = w.depth, * __restrict keep = w.keep, * __restrict d0 = near.depth, * __restrict d1 = far.depth, * __restrict e0 = near.light, * __restrict e1 = far.light;
   for (size_t i = 0; i < n; ++i)
-    S[i] += T[i] * irradiance[i] * scattered[i] * length *
-            mean_of_change(e0[i], e1[i] * keep[i], depth[i] + (d1[i] - d0[i]));
+    S[i] += T[i] * scattered[i] * length * mean_of_change(e0[i], e1[i] * keep[i], depth[i] + (d1[i] - d0[i]));
+}
+
+// A beam over a thin way: what is left of it at the near end, and how its depth changes up to the far end, by a part
+// of the extinction (m) and one of its depth at the near end.
+struct ThinBeam {
+  const float *light, *depth, *scattered;
+  float way, share;
+};
+inline constexpr float kThin = 0.25f;  // of a depth for which the series hold, within 2e-6
+// Mean of exp(-x s) over s in 0..1, for |x| up to kThin.
+inline float mean_of_thin(float x) { return 1 - x * (0.5f - x * (1 / 6.0f - x * (1 / 24.0f - x * (1 / 120.0f)))); }
+// Light of a beam that is scattered once on a thin way.
+inline void scatter_thin(size_t n, const float* __restrict extinction, float length, const ThinBeam& beam,
+                         const float* __restrict T, float* __restrict S) {
+  const float* __restrict light = beam.light, * __restrict depth = beam.depth, * __restrict scattered = beam.scattered;
+  const float way = length + beam.way, share = beam.share;
+  for (size_t i = 0; i < n; ++i)
+    S[i] += T[i] * light[i] * scattered[i] * length * mean_of_thin(extinction[i] * way + depth[i] * share);
+}
+// weigh() and send() of a thin way at once.
+inline void send_thin(size_t n, const float* __restrict extinction, float length, const float* __restrict at_near,
+                      const float* __restrict at_far, float* __restrict T, float* __restrict S) {
+  for (size_t i = 0; i < n; ++i) {
+    const float x = extinction[i] * length, even = x * mean_of_thin(x);
+    const float rising = 1 - x * (2 / 3.0f - x * (0.25f - x * (1 / 15.0f - x * (1 / 72.0f - x * (1 / 420.0f)))));
+    S[i] += T[i] * (at_near[i] * even + (at_far[i] - at_near[i]) * (0.5f * x * rising));
+    T[i] -= T[i] * even;
+  }
 }
 
 }  // namespace suite::air_loops

@@ -9,7 +9,10 @@
 // beam's source, minus the beam when something stands in its way. Paths estimate D: they go to a place on a way that
 // they have passed (draw), are scattered there as in any medium, and what they meet counts less what the even ground
 // would have sent (beyond). Nothing is left to be added where the scene is the even ground; where it is not, D is exact
-// in all orders, whatever ground E was made for.
+// in all orders, whatever ground E was made for, but for what is not asked: air whose scattering depth is less than
+// kLeastDepth from the ground up at every knot (D / cos of the view is then less than 1e-4 of the brightest thing in
+// the scene), and flights on which a path scatters less than 1e-5 of what it still carries (transport/kernel_back.h;
+// each less than 1e-5 of the same).
 #pragma once
 #include <array>
 #include <optional>
@@ -29,7 +32,8 @@ class AirVertices {
   AirVertices(std::shared_ptr<const AirColumn> column, const SpectralState& state, const Atmosphere& air,
               std::vector<float> ground);
   // Whether anything is scattered that could be seen.
-  bool any() const { return depth_ > 1e-4; }
+  static constexpr double kLeastDepth = 1e-4;
+  bool any() const { return depth_ > kLeastDepth; }
 
   // The probabilities, one a knot, with which light is scattered on a way if nothing is absorbed. length: m, infinity
   // allowed.

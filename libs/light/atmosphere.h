@@ -79,6 +79,11 @@ class Atmosphere {
     path(from, direction, std::numeric_limits<double>::infinity(), T, S);
   }
 
+  // S of skylight() alone. scratch: per bin.
+  virtual void sky_radiance(Vec3 from, Dir direction, std::span<float> scratch, std::span<float> S) const {
+    skylight(from, direction, scratch, S);
+  }
+
   // The layers; above the last height, or without any, there is no air.
   virtual const Shells& shells() const = 0;
   // Extinction of a layer, per bin, 1/m.

@@ -10,6 +10,7 @@ namespace suite {
 namespace {
 
 constexpr size_t kAzimuths = 144;  // around, of nodes
+constexpr float kSame = 0.002f;    // of a step of heights
 
 // Draws from the table of a sky, and leaves the radiance to the air.
 class AskedSky final : public Light {
@@ -37,6 +38,16 @@ class AskedSky final : public Light {
  private:
   Sky sky_;
 };
+
+template <size_t kRows>
+void sum(const float* const* rows, const float* shares, std::span<float> to) {
+  float* __restrict const out = to.data();
+  for (size_t i = 0; i < to.size(); ++i) {
+    float s = 0;
+    for (size_t r = 0; r < kRows; ++r) s += shares[r] * rows[r][i];
+    out[i] = s;
+  }
+}
 
 }  // namespace
 
@@ -91,16 +102,21 @@ void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
   const double place = (height - kLowest) / step_;
   const auto low = std::min(static_cast<size_t>(place), floors_.size() - 2);
   const auto rise = static_cast<float>(place - static_cast<double>(low));
-  const auto add = [&](size_t index, float share, bool first) {
+  const float* rows[8];
+  float share[8];
+  const auto take = [&](size_t index, float part, size_t first) {
     const float *table = floor(index), *a = table + (r * columns_ + c) * bins_,
-                *b = table + (r * columns_ + next) * bins_, *e = a + columns_ * bins_, *f = b + columns_ * bins_;
-    for (size_t i = 0; i < bins_; ++i) {
-      const float sum = share * (weight[0] * a[i] + weight[1] * b[i] + weight[2] * e[i] + weight[3] * f[i]);
-      to[i] = first ? sum : to[i] + sum;
-    }
+                *b = table + (r * columns_ + next) * bins_;
+    const float* const corners[4] = {a, b, a + columns_ * bins_, b + columns_ * bins_};
+    for (size_t i = 0; i < 4; ++i) rows[first + i] = corners[i], share[first + i] = part * weight[i];
   };
-  add(low, 1 - rise, true);
-  if (rise > 0) add(low + 1, rise, false);
+  if (rise < kSame || rise > 1 - kSame) {
+    take(rise < kSame ? low : low + 1, 1, 0);
+    return sum<4>(rows, share, to);
+  }
+  take(low, 1 - rise, 0);
+  take(low + 1, rise, 4);
+  sum<8>(rows, share, to);
 }
 
 void SkyTable::make_light() {

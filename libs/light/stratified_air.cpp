@@ -7,6 +7,7 @@
 #include "air/column.h"
 #include "air/diffuse_field.h"
 #include "light/air_loops.h"
+#include "light/air_scratch.h"
 #include "light/air_vertices.h"
 #include "light/sky_table.h"
 
@@ -15,6 +16,8 @@ namespace suite {
 namespace {
 
 using Row = std::vector<float>;
+using Scratch = AirScratch;
+using BeamAt = AirScratch::BeamAt;
 constexpr float kShadow = 1e4f;  // depth of a beam in the shadow of the Earth
 
 class StratifiedAir final : public Atmosphere {
@@ -30,6 +33,7 @@ class StratifiedAir final : public Atmosphere {
       from.push_back({beam.direction, beam.irradiance});
     }
     bake_emission();
+    if (tables_.empty() && column_.refractivity.empty()) tables_.push_back(bake_beam_table(spec, column_));
     DiffuseReport even;
     if (spec.scattering == AirScattering::diffuse)
       diffuse_ = solve_diffuse_field(spec, column_, state, from, tables_, &even);
@@ -39,6 +43,7 @@ class StratifiedAir final : public Atmosphere {
 
   void transmittance(Vec3 from, Dir d, double distance, std::span<float> T) const override {
     if (bent(distance)) return arrive(from, d, T);
+    if (distance == std::numeric_limits<double>::infinity() && outwards(from, d, T)) return;
     std::fill(T.begin(), T.end(), 0.0f);
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
       const float* __restrict k = &column_.extinction[piece.layer * bins_];
@@ -52,7 +57,7 @@ class StratifiedAir final : public Atmosphere {
   void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
     const Vec3 end = from + d * distance;
     if (!seen_from_above(from, d, end)) return integrate(from, d, distance, T, S, kAll);
-    transmittance(from, d, distance, T);
+    if (!outwards(end, -d, T)) transmittance(from, d, distance, T);
     view_->radiance(column_.shells.height(end), to_local(end, -d), S);
   }
 
@@ -92,31 +97,45 @@ class StratifiedAir final : public Atmosphere {
     std::fill(T.begin(), T.end(), 1.0f);
     std::fill(S.begin(), S.end(), 0.0f);
     Scratch& s = scratch();
-    bool first = true;
+    for (size_t b = 0; b < beams_.size(); ++b) begin_phases(b, d, s), s.near[b].known = false;
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
-      const Vec3 middle = from + d * (0.5 * (piece.near + piece.far));
-      pass(piece, s, middle, d, which);
+      const float* const k = extinction_of(piece);
+      const auto length = static_cast<float>(piece.length);
+      const bool thin = greatest_[piece.layer] * piece.length < double{air_loops::kThin};
+      pass(piece, s, from + d * (0.5 * (piece.near + piece.far)), d, which);
+      if (!thin) air_loops::weigh(bins_, k, length, s.weights());
       for (size_t b = 0; which.single && b < beams_.size(); ++b) {
         BeamAt &near = s.near[b], &far = s.far[b];
-        if (first)
-          phase_of(b, d, s), look_up(b, from + d * piece.near, piece.near_height, near);
-        else
-          std::swap(near, far);
-        look_up(b, from + d * piece.far, piece.far_height, far);
+        if (!near.known) look_up(b, from + d * piece.near, piece.near_height, near);
         scattered_once(b, piece.layer, s, s.scattered);
+        if (thin && scatter_thin(b, piece, from, d, s, T, S)) continue;
+        if (thin) air_loops::weigh(bins_, k, length, s.weights());
+        look_up(b, from + d * piece.far, piece.far_height, far);
         if (near.lit == far.lit)
-          scatter(b, near, far, static_cast<float>(piece.length), s.weights(), s, T, S);
+          scatter(near, far, length, s.weights(), s, T, S);
         else
           scatter_lit(b, piece, from, d, s, T, S);
+        std::swap(near, far);
       }
-      air_loops::send(bins_, s.weights(), s.at_near.data(), s.at_far.data(), T.data(), S.data());
-      first = false;
+      if (thin)
+        air_loops::send_thin(bins_, k, length, s.at_near.data(), s.at_far.data(), T.data(), S.data());
+      else
+        air_loops::send(bins_, s.weights(), s.at_near.data(), s.at_far.data(), T.data(), S.data());
     });
     if (bent(distance)) arrive(from, d, T);
   }
   // Whether what comes from the end of a way comes from outside, bent: only beams do.
   bool bent(double distance) const {
     return distance == std::numeric_limits<double>::infinity() && !column_.refractivity.empty() && !tables_.empty();
+  }
+  // Transmittance of a straight way out of the air that rises well, from the table of the beams. False: another way.
+  bool outwards(Vec3 from, Dir d, std::span<float> T) const {
+    constexpr double kLevel = 0.05;
+    const double cosine = dot(column_.shells.up(from), d);
+    if (!column_.refractivity.empty() || cosine < kLevel) return false;
+    tables_[0].depth(column_.shells.height(from), cosine, T);
+    for (float& t : T) t = exp_falling(t);
+    return true;
   }
   // What arrives of light whose source stands in a direction.
   void arrive(Vec3 at, Dir d, std::span<float> T) const {
@@ -133,6 +152,12 @@ class StratifiedAir final : public Atmosphere {
       return integrate(from, d, std::numeric_limits<double>::infinity(), T, S, kAll);
     transmittance(from, d, std::numeric_limits<double>::infinity(), T);
     sky_->radiance(height, local, S);
+  }
+  void sky_radiance(Vec3 from, Dir d, std::span<float> scratch, std::span<float> S) const override {
+    const Dir local = to_local(from, d);
+    const double height = column_.shells.height(from);
+    if (near_origin(from) && SkyTable::covers(height, local)) return sky_->radiance(height, local, S);
+    integrate(from, d, std::numeric_limits<double>::infinity(), scratch, S, kAll);
   }
   bool bends() const override { return bent(std::numeric_limits<double>::infinity()); }
   const Light* sky() const override { return sky_->light(); }
@@ -154,47 +179,20 @@ class StratifiedAir final : public Atmosphere {
   size_t beams() const override { return beams_.size(); }
   void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
     Scratch& s = scratch();
-    phase_of(b, d, s);
+    begin_phases(b, d, s);
     beam_depth(b, from, column_.shells.height(from), along.depth);
     // Growth of the depth over a way so short that it stays in the layer.
     const double step = 1e-2 * (bounds_[l + 1] - bounds_[l]);
     const Vec3 on = from + d * step;
     beam_depth(b, on, column_.shells.height(on), along.slope);
     scattered_once(b, l, s, along.scattered);
-    for (size_t i = 0; i < bins_; ++i) {
-      along.slope[i] = (along.slope[i] - along.depth[i]) / static_cast<float>(step);
-      along.scattered[i] *= beams_[b].irradiance[i];
-    }
+    for (size_t i = 0; i < bins_; ++i) along.slope[i] = (along.slope[i] - along.depth[i]) / static_cast<float>(step);
   }
 
  private:
-  // What is left of a beam somewhere, per bin.
-  struct BeamAt {
-    Row depth, light;  // exp(-depth)
-    bool lit = false;  // not in the shadow of the Earth
-  };
-  // Of one thread.
-  struct Scratch {
-    Row depth, keep, even, change;  // of the piece
-    Row at_near, at_far;            // its source there
-    air_loops::Weights weights() { return {depth.data(), keep.data(), even.data(), change.data()}; }
-    std::vector<BeamAt> near, far;         // per beam, at the ends of the piece
-    BeamAt edge;                           // where the shadow of the Earth begins
-    Row dark_T, lit_depth, lit_keep;       // up to the lit part of a piece, and of it
-    Row scattered;                         // scattering times phase function, 1/(m sr)
-    std::vector<std::vector<Row>> phases;  // per beam and kind, 1/sr
-  };
   Scratch& scratch() const {
     thread_local Scratch s;
-    if (s.depth.size() != bins_ || s.near.size() != beams_.size() ||
-        (!s.phases.empty() && s.phases[0].size() != column_.kinds.size())) {
-      s = {};
-      for (Row* row : {&s.depth, &s.keep, &s.even, &s.change, &s.at_near, &s.at_far, &s.scattered, &s.dark_T,
-                       &s.lit_depth, &s.lit_keep, &s.edge.depth, &s.edge.light})
-        row->resize(bins_);
-      s.near.assign(beams_.size(), {Row(bins_), Row(bins_)}), s.far = s.near;
-      s.phases.assign(beams_.size(), std::vector<Row>(column_.kinds.size(), Row(bins_)));
-    }
+    s.fit(bins_, beams_.size(), column_.kinds.size());
     return s;
   }
 
@@ -206,6 +204,10 @@ class StratifiedAir final : public Atmosphere {
     };
     for (const AirColumn::Kind& kind : column_.kinds)
       for (size_t l = 0; l < column_.layers(); ++l) scatters_.push_back(any(&kind.scattering[l * bins_], 0));
+    for (size_t l = 0; l < column_.layers(); ++l) {
+      const float* const k = &column_.extinction[l * bins_];
+      greatest_.push_back(static_cast<double>(*std::max_element(k, k + bins_)));
+    }
     emission_.resize(2 * column_.layers() * bins_);
     for (size_t l = 0; l < column_.layers(); ++l)
       for (size_t i = 0; i < bins_; ++i) {
@@ -248,42 +250,49 @@ class StratifiedAir final : public Atmosphere {
                                        });
   }
 
-  // Depth of the piece and the mean of its source.
+  const float* extinction_of(const Shells::Piece& piece) const { return &column_.extinction[piece.layer * bins_]; }
+  // The source of a piece at its ends.
   void pass(const Shells::Piece& piece, Scratch& s, Vec3 middle, Dir d, Which which) const {
     const size_t l = piece.layer;
     const double low = bounds_[l], thickness = bounds_[l + 1] - low;
     const auto share = [&](double height) {
       return static_cast<float>(std::clamp((height - low) / thickness, 0.0, 1.0));
     };
-    const float length = static_cast<float>(piece.length), near = share(piece.near_height),
-                far = share(piece.far_height);
-    air_loops::weigh(bins_, &column_.extinction[l * bins_], length, s.weights());
-    std::fill(s.at_near.begin(), s.at_near.end(), 0.0f);
-    std::fill(s.at_far.begin(), s.at_far.end(), 0.0f);
-    const auto add = [&](const float* bottom, const float* top, float weight) {
-      air_loops::add_source(bins_, bottom, top, weight, near, far, s.at_near.data(), s.at_far.data());
-    };
-    if (which.thermal && emits_[l]) add(&emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], 1);
-    if (!diffuse_ || !which.multiple) return;
-    const DiffuseSource::Corners corners = corners_of(middle, d);
-    for (size_t c = 0; c < 4; ++c)
-      if (corners.weight[c] > 0)
-        add(diffuse_->at(l, 0, corners.at[c]), diffuse_->at(l, 1, corners.at[c]), corners.weight[c]);
+    const float near = share(piece.near_height), far = share(piece.far_height);
+    if (diffuse_ && which.multiple) {
+      const DiffuseSource::Corners corners = corners_of(middle, d);
+      air_loops::Sources sources;
+      for (size_t c = 0; c < 4; ++c) {
+        sources.low[c] = diffuse_->at(l, 0, corners.at[c]), sources.high[c] = diffuse_->at(l, 1, corners.at[c]);
+        sources.weight[c] = corners.weight[c];
+      }
+      air_loops::see_sources(bins_, sources, near, far, s.at_near.data(), s.at_far.data());
+    } else {
+      std::fill(s.at_near.begin(), s.at_near.end(), 0.0f);
+      std::fill(s.at_far.begin(), s.at_far.end(), 0.0f);
+    }
+    if (which.thermal && emits_[l])
+      air_loops::add_source(bins_, &emission_[2 * l * bins_], &emission_[(2 * l + 1) * bins_], near, far,
+                            s.at_near.data(), s.at_far.data());
   }
 
   DiffuseSource::Corners corners_of(Vec3 at, Dir d) const {
     const Dir local = to_local(at, d);
     return diffuse_->corners(local.z, azimuth(local));
   }
-  void phase_of(size_t b, Dir d, Scratch& s) const {
-    // Light comes along -beam and goes on along -d.
-    const double cosine = std::clamp(dot(beams_[b].direction, d), -1.0, 1.0);
-    for (size_t k = 0; k < column_.kinds.size(); ++k) {
-      const PhaseFunction& phase = *column_.kinds[k].phase;
-      Row& p = s.phases[b][k];
-      phase.eval(cosine, phase.spectrally_uniform() ? std::span(p).first(1) : std::span(p));
-      if (phase.spectrally_uniform()) std::fill(p.begin(), p.end(), p[0]);
-    }
+  // Light comes along -beam and goes on along -d: angles for phase functions, which are looked up where they matter.
+  void begin_phases(size_t b, Dir d, Scratch& s) const {
+    s.cosines[b] = std::clamp(dot(beams_[b].direction, d), -1.0, 1.0);
+    for (Row& p : s.phases[b]) p.clear();
+  }
+  const Row& phase_of(size_t b, size_t kind, Scratch& s) const {
+    Row& p = s.phases[b][kind];
+    if (!p.empty()) return p;
+    p.resize(bins_);
+    const PhaseFunction& phase = *column_.kinds[kind].phase;
+    phase.eval(s.cosines[b], phase.spectrally_uniform() ? std::span(p).first(1) : std::span(p));
+    if (phase.spectrally_uniform()) std::fill(p.begin(), p.end(), p[0]);
+    return p;
   }
   // False in the shadow of the Earth.
   bool beam_depth(size_t b, Vec3 p, double height, std::span<float> depth) const {
@@ -292,24 +301,47 @@ class StratifiedAir final : public Atmosphere {
     return lit;
   }
   void look_up(size_t b, Vec3 p, double height, BeamAt& at) const {
+    at.known = true;
     at.lit = beam_depth(b, p, height, at.depth);
     air_loops::fall(bins_, at.depth.data(), at.light.data());
   }
 
-  // Scattering times phase function, summed over the kinds.
-  void scattered_once(size_t b, size_t layer, const Scratch& s, std::span<float> to) const {
+  // Scattering times phase function, summed over the kinds, times the irradiance of the beam above the air.
+  void scattered_once(size_t b, size_t layer, Scratch& s, std::span<float> to) const {
     std::fill(to.begin(), to.end(), 0.0f);
     for (size_t k = 0; k < column_.kinds.size(); ++k) {
       if (scatters_[k * column_.layers() + layer])
-        air_loops::multiply_add(bins_, &column_.kinds[k].scattering[layer * bins_], s.phases[b][k].data(), to.data());
+        air_loops::multiply_add(bins_, &column_.kinds[k].scattering[layer * bins_], phase_of(b, k, s).data(),
+                                to.data());
     }
+    for (size_t i = 0; i < bins_; ++i) to[i] *= beams_[b].irradiance[i];
   }
   // Light of a beam that is scattered once on a way; s.scattered: how.
-  void scatter(size_t b, const BeamAt& near, const BeamAt& far, float length, const air_loops::Weights& weights,
-               const Scratch& s, std::span<const float> T, std::span<float> S) const {
-    air_loops::scatter(bins_, beams_[b].irradiance, s.scattered.data(), length, weights,
-                       {near.depth.data(), near.light.data()}, {far.depth.data(), far.light.data()}, T.data(),
-                       S.data());
+  void scatter(const BeamAt& near, const BeamAt& far, float length, const air_loops::Weights& weights, const Scratch& s,
+               std::span<const float> T, std::span<float> S) const {
+    air_loops::scatter(bins_, s.scattered.data(), length, weights, {near.depth.data(), near.light.data()},
+                       {far.depth.data(), far.light.data()}, T.data(), S.data());
+  }
+  // The same of a thin piece under a straight beam that comes down well; s.near: where it begins. False: not so.
+  // With d = (D - M / (R c^2)) / c, D the depth over a height and M its first moment, the beam's depth grows by
+  // -k dh / c and by d (c_near / c - 1 + dh / (R c^2)): within 2e-4 of what is scattered
+  // (tests/physics/light/thin_air_test.cpp).
+  bool scatter_thin(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, Scratch& s, std::span<const float> T,
+                    std::span<float> S) const {
+    constexpr double kLow = 0.2, kTurn = 0.01;
+    const Dir beam = beams_[b].direction;
+    const double near = dot(column_.shells.up(from + d * piece.near), beam),
+                 far = dot(column_.shells.up(from + d * piece.far), beam);
+    const double rise = piece.far_height - piece.near_height, way = -rise / far;
+    const double share = near / far - 1 + rise * column_.shells.curvature() / (far * far);
+    if (!column_.refractivity.empty() || near < kLow || far < kLow || std::fabs(share) > kTurn) return false;
+    if (greatest_[piece.layer] * (piece.length + std::fabs(way)) > 0.8 * double{air_loops::kThin}) return false;
+    air_loops::scatter_thin(bins_, extinction_of(piece), static_cast<float>(piece.length),
+                            {s.near[b].light.data(), s.near[b].depth.data(), s.scattered.data(),
+                             static_cast<float>(way), static_cast<float>(share)},
+                            T.data(), S.data());
+    s.near[b].known = false;
+    return true;
   }
   // The same of a piece that goes into the shadow of the Earth or comes out of it: only the part outside is lit.
   void scatter_lit(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, Scratch& s, std::span<const float> T,
@@ -330,7 +362,7 @@ class StratifiedAir final : public Atmosphere {
       s.lit_keep[i] = exp_falling(s.lit_depth[i]);
       s.dark_T[i] = near_lit ? T[i] : T[i] * exp_falling((1 - share) * s.depth[i]);
     }
-    scatter(b, near_lit ? s.near[b] : s.edge, near_lit ? s.edge : s.far[b], share * static_cast<float>(piece.length),
+    scatter(near_lit ? s.near[b] : s.edge, near_lit ? s.edge : s.far[b], share * static_cast<float>(piece.length),
             {s.lit_depth.data(), s.lit_keep.data(), nullptr, nullptr}, s, s.dark_T, S);
   }
 
@@ -343,6 +375,7 @@ class StratifiedAir final : public Atmosphere {
   std::vector<BeamTable> tables_;
   std::vector<float> emission_;    // [layer][end][bin]
   std::vector<uint8_t> emits_;     // per layer
+  std::vector<double> greatest_;   // extinction of all bins, per layer
   std::vector<uint8_t> scatters_;  // [kind][layer]
   std::unique_ptr<SkyTable> sky_, view_;
   std::unique_ptr<const AirVertices> vertices_;

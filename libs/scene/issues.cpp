@@ -1,5 +1,5 @@
 // One row a finding: code, severity, summary, hint. SP0 text, SP1 materials and curves, SP2 geometry files, SP3 mesh
-// quality, SP4 assembly, SP5 maps, SP6 media.
+// quality, SP4 assembly, SP5 maps, SP6 media, SP7 imports.
 #include "scene/issues.h"
 
 namespace suite {
@@ -97,6 +97,12 @@ constexpr Row kRows[] = {
     {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
     {"SP504", error, "a terrain cannot be put in place", ""},
     {"SP505", warning, "the scene's origin is far from its terrain", "correct 'origin'"},
+    {"SP701", warning, "an imported file says what is lost here", "--account FILE.json tells every line of the import"},
+    {"SP702", info, "an imported file says what has no effect here", ""},
+    {"SP703", info, "an imported file says what is approximated here",
+     "--account FILE.json tells every line of the import"},
+    {"SP704", error, "a strict import leaves out what an imported file says",
+     "leave out --strict, or take it out of the file"},
 };
 }  // namespace
 

@@ -13,9 +13,11 @@ struct AirBins {
   SpectralState state;
 };
 // Intervals at most 10 nm or, beyond 2.58 um, 15 cm-1 wide, at most half as wide as the narrowest band, and no wider
-// than the state's choice or even bins ask for. What is seen in them does not choose them. The first g-point of an
-// interval is the one that gases absorb least, so reference and knots are transparent. Error: bands beyond what the
-// gases are known for.
+// than the state's choice asks for. Even bins (choice.error = 0) stay as they are, wider than half a band, where
+// one g-point does for them (GasReduction) or where every band responds in all of them alike, so that their g-points
+// are those of the bands; others are divided evenly. What is seen in them does not choose
+// them. The first g-point of an interval is the one that gases absorb least, so reference and knots are transparent.
+// Error: bands beyond what the gases are known for.
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
 
 }  // namespace suite

@@ -61,10 +61,21 @@ void add_lights(const SourceSpecs& sources, std::vector<FeatureUse>& to) {
   }
 }
 
+FeatureUse adjacency(const Scene& scene, const AirSpec* air, const PipelineOptions& options) {
+  const char* missing = !air                                        ? "no real air in the simulation"
+                        : air->scattering != AirScattering::diffuse ? "the air has no field over an even ground"
+                        : !air->adjacency                           ? "`adjacency: false`"
+                        : !scene.media.empty()                      ? "media fill the scene"
+                        : options.method == Method::paper           ? "the paper's estimator"
+                        : !goes_back(options)                       ? "lights are not asked"
+                                                                    : nullptr;
+  return {"adjacency", !missing, missing ? missing : "in the air of the simulation"};
+}
+
 }  // namespace
 
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
-                                    std::span<const std::unique_ptr<Sensor>> sensors) {
+                                    std::span<const std::unique_ptr<Sensor>> sensors, const PipelineOptions& options) {
   size_t fitted = 0, warm = scene.temperatures.size();
   for (const Material& m : scene.materials) fitted += m.surface.bundle != nullptr, warm += m.temperature_k > 0;
   std::set<std::string> truth;
@@ -84,14 +95,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
                               count("emission", warm, "temperatures", "no temperature shows in any window")};
   add_lights(sources, all);
   all.push_back(source("atmosphere", sources.has_air()));
-  const AirSpec* air = sources.air.get();
-  const bool field = air && air->scattering == AirScattering::diffuse;
-  all.push_back({"adjacency", field && air->adjacency && scene.media.empty(),
-                 !air                   ? "no real air in the simulation"
-                 : !field               ? "the air has no field over an even ground"
-                 : !air->adjacency      ? "`adjacency: false`"
-                 : !scene.media.empty() ? "media fill the scene"
-                                        : "in the air of the simulation"});
+  all.push_back(adjacency(scene, sources.air.get(), options));
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

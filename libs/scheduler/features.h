@@ -10,6 +10,7 @@
 #include "light/environment.h"
 #include "scene/scene.h"
 #include "sensor/sensor.h"
+#include "transport/options.h"
 
 namespace suite {
 
@@ -20,7 +21,8 @@ struct FeatureUse {
 };
 // One entry a feature, always the same ones in the same order. scene: as it was loaded.
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
-                                    std::span<const std::unique_ptr<Sensor>> sensors);
+                                    std::span<const std::unique_ptr<Sensor>> sensors,
+                                    const PipelineOptions& options = {});
 // The same as lines of text.
 std::string text_of(const std::vector<FeatureUse>& features);
 // What a feature is and what it costs when it is not used; nothing for a name that is none.

@@ -63,10 +63,9 @@ class Job {
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
     saving_.store = options_.store;
-    if (!before.empty()) run_all(before, {{}, true});
+    if (!before.empty()) run_all(before, {.pending = true});
     report_.stopped = executor().any(report_.stopped);
-    if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped)
-      run_all(some, {options_.loads ? options_.loads() : LoadsAt{}});
+    if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped) run_all(some, heating());
     if (progress_) progress_->finish();
     if (!report_.stopped && options_.store) options_.store->finish();
     if (!report_.stopped && !options_.share) doubt_after();
@@ -99,6 +98,12 @@ class Job {
     for (const Item& item : items) kits_->expect(item.state.spectral);
     for (std::span<const Item> left = items; !left.empty() && !report_.stopped;) left = run_batch(left);
     report_.optics_bakes += kits_->optics_bakes(), report_.light_bakes += kits_->light_bakes();
+  }
+
+  Heating heating() const {
+    Heating heating = options_.heating;
+    if (options_.loads) heating.loads = options_.loads();
+    return heating;
   }
 
   Executor& executor() { return options_.executor ? *options_.executor : local_; }

@@ -35,6 +35,8 @@ struct JobOptions {
   // Asked once, when the pre-passes have accepted their results and before materials are baked for the sensors: what
   // heats surfaces whose temperature models ask for it. Empty = nothing does.
   std::function<LoadsAt()> loads = {};
+  // What is known already of surfaces whose temperatures ask for loads.
+  Heating heating = {};
   PipelineOptions pipeline;
   std::optional<Periodic> periodic;  // the scene repeats itself horizontally
   Budget budget;

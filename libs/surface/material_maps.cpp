@@ -148,7 +148,7 @@ double kelvin_of(const MaterialMaps& maps, const MapPlace& place, double time) {
   if (maps.temperature)
     if (const auto mapped = value_at(*maps.temperature, place)) return *mapped;
   if (!maps.field) return maps.constant_k;
-  return maps.field->kelvin({place.position, place.normal, place.instance, place.triangle}, time);
+  return maps.field->kelvin({place.position, place.normal, place.instance, place.triangle, maps.material}, time);
 }
 
 // Blackbody radiance of a material; returns its temperature, 0 when it does not emit.

@@ -50,7 +50,8 @@ struct MaterialMaps {
   std::vector<std::unique_ptr<const ScatterModel>> variants;  // curve_index: of the family; null = not in the map
   std::unique_ptr<const BakedCube> cube;
   std::vector<const BakedMaterial*> parts;  // mixture
-  std::unique_ptr<const TemperatureField> field;
+  std::shared_ptr<const TemperatureField> field;
+  uint32_t material = kNone;                        // index of the material they are of
   double constant_k = 0;                            // 0 = none
   bool needs_uv = false;                            // some map is placed by texture coordinates
   std::shared_ptr<const BlackbodyTable> blackbody;  // when map or field

@@ -38,8 +38,9 @@ std::shared_ptr<const BlackbodyTable> table_for(const PropertyMap* map, double l
 std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, const LoadsAt& loads) {
   std::shared_ptr<const TemperatureModel> model = make_temperature_model(spec);
   if (model->needs_loads() && !loads)
-    throw Error("temperature model '" + spec.model + "' must be told what heats the surface, which nothing here does",
-                "give a constant, tabulated or mapped temperature");
+    throw Error(
+        "temperature model '" + spec.model + "' must be told what heats the surface, which nothing here does",
+        "give the simulation a `heat:` and a `weather:`, or the material a constant, tabulated or mapped temperature");
   return field_of(std::move(model), loads);
 }
 
@@ -213,14 +214,17 @@ void Optics::bake_one(const Scene& scene, size_t index, const Heating& heating) 
   for (const TemperatureBinding& t : scene.temperatures)
     if (t.material == index && !t.spec.model.empty() && !waits(t.spec, heating)) spec = &t.spec, any = true;
   if (!any) return;
-  maps->constant_k = m.temperature_k;
+  maps->constant_k = m.temperature_k, maps->material = static_cast<uint32_t>(index);
   if (maps->temperature || spec) {
     any_emission_ = true;
     double low = INFINITY, high = 0;
     if (spec && !spec->loads.empty()) {
       auto solved = std::make_unique<SolvedField>(*spec, window_.begin, window_.end);
-      low = solved->coldest(), high = solved->hottest();
+      low = solved->range()[0], high = solved->range()[1];
       maps->field = std::move(solved);
+    } else if (spec && heating.field && make_temperature_model(*spec)->needs_loads()) {
+      maps->field = heating.field;
+      low = heating.field->range()[0], high = heating.field->range()[1];
     } else if (spec) {
       maps->field = field_for(*spec, heating.loads);
       range_of(*spec, low, high);

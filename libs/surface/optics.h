@@ -26,6 +26,8 @@ struct BakedMaterial {
 
 // What is known of surfaces whose temperature models ask for loads and bring none of their own.
 struct Heating {
+  // The temperatures themselves, of all that ask for loads; null = they follow from loads.
+  std::shared_ptr<const TemperatureField> field = nullptr;
   LoadsAt loads = {};    // what heats them; empty = nothing says so
   bool pending = false;  // it is yet to be found: until then they do not glow
 };

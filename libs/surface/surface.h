@@ -20,6 +20,8 @@ struct Interaction {
   struct Own {
     BakedMaterial made;
     LocalMaterial memory;
+    HeatedPlace place;                        // for `field`
+    const TemperatureField* field = nullptr;  // of the temperature, if one has it
   };
   std::unique_ptr<Own> own;
 };

@@ -10,14 +10,21 @@ namespace suite {
 
 const Registry<TemperatureRow>& temperature_models() {
   static const Registry<TemperatureRow> table(
-      "temperature model", "", {constant_temperature_row(), tabulated_temperature_row(), slab_temperature_row()});
+      "temperature model", "",
+      {constant_temperature_row(), tabulated_temperature_row(), slab_temperature_row(), heat_temperature_row()});
   return table;
 }
 
 void check_temperature(TemperatureSpec& spec, const Where& where) {
   const TemperatureRow& row = temperature_models().find(spec.model, where);
   const std::string model = "temperature model '" + row.name + "'";
-  check_numbers(model, row.parameters, spec.numbers, where);
+  std::vector<Parameter> numbers, texts;
+  for (const Parameter& p : row.parameters) (p.kind == Parameter::Kind::text ? texts : numbers).push_back(p);
+  check_numbers(model, numbers, spec.numbers, where);
+  const std::vector<std::string> known = names_of(texts);
+  for (const auto& [name, text] : spec.texts)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(where, model + " has no text '" + name + "'", name_hint(name, known));
   if (!row.takes_table && !(spec.times.empty() && spec.kelvins.empty())) throw Error(where, model + " takes no table");
   if (!row.takes_layers && !spec.layers.empty()) throw Error(where, model + " takes no layers");
   if (spec.loads.empty() && spec.load_times.empty()) return;

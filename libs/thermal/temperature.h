@@ -1,6 +1,8 @@
 // Kelvin at a place and time: what the renderer asks. Models are described by a TemperatureSpec, made from the one
 // table in models.h, and immutable afterwards; what they need from above (loads) is passed in as a function.
 #pragma once
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -26,6 +28,7 @@ struct TemperatureSpec {
   std::vector<double> load_times = {};
   std::vector<SurfaceLoad> loads = {};
   bool loads_repeat = false;
+  std::map<std::string, std::string> texts = {};  // e.g. "back" -> "open"; the row lists the names
 };
 
 class TemperatureModel {
@@ -46,6 +49,7 @@ struct HeatedPlace {
   // not known.
   static constexpr uint32_t kNoPart = UINT32_MAX;
   uint32_t instance = kNoPart, triangle = kNoPart;
+  uint32_t material = kNoPart;  // index, after overrides and maps
 };
 
 // Temperatures over a scene.
@@ -53,6 +57,10 @@ class TemperatureField {
  public:
   virtual ~TemperatureField() = default;
   virtual double kelvin(const HeatedPlace& place, double time) const = 0;  // s
+  // K, standard error of what kelvin() gives; NaN where nobody knows.
+  virtual double error(const HeatedPlace& /*place*/, double /*time*/) const { return NAN; }
+  // What kelvin() may give, for tables that have to cover it.
+  virtual std::array<double, 2> range() const { return {2, 2000}; }
 };
 
 // A model over a scene whose loads differ from place to place. Every question is answered anew: a slab is simulated for
@@ -71,8 +79,7 @@ class SolvedField final : public TemperatureField {
   SolvedField(const TemperatureSpec& spec, double begin, double end);
   // Times outside the span see its nearer end.
   double kelvin(const HeatedPlace& place, double time) const override;
-  double coldest() const { return coldest_; }
-  double hottest() const { return hottest_; }
+  std::array<double, 2> range() const override { return {coldest_, hottest_}; }
 
  private:
   std::vector<double> times_, kelvins_;

@@ -135,6 +135,12 @@ class Tracer {
     return hit.position + hit.normal * double{dot(direction, hit.normal) >= 0 ? hit.step : -hit.step};
   }
 
+  // The hit that a ray would have on a triangle of an object of a mesh, at barycentrics u and v of its vertices 1 and
+  // 2; distance 0. time: s.
+  Hit on_triangle(uint32_t object, uint32_t triangle, double u, double v, double time) const;
+  // The same on an exact surface: a point of it and the normal there (any length), in its local frame, with its UV.
+  Hit on_exact(uint32_t object, Vec3 local, Vec3 normal, Vec2 uv, double time) const;
+
   const Scene& scene() const;
   // Of a hit, or as each() numbers them.
   TracedObject object(uint32_t number) const {

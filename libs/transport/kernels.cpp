@@ -29,8 +29,7 @@ KernelChoice choose_kernel(const KernelContext& c) {
   using Space = KernelChoice::Space;
   KernelChoice choice;
   const bool media = !c.optics.media().empty(), air = c.environment.atmosphere != nullptr,
-             lit = air && c.environment.atmosphere->vertices() && c.options.explicit_sources &&
-                   c.options.method == Method::standard;
+             lit = air && c.environment.atmosphere->vertices() && goes_back(c.options);
   if (media)
     choice.space = Space::field;
   else if (air)

@@ -37,6 +37,11 @@ struct PipelineOptions {
   bool specialise = true;      // use kernels made for what a state really contains (off only for comparisons)
 };
 
+// Whether paths go back to places in real air, for shadows in it and the light of single places (kernel_back.h).
+inline bool goes_back(const PipelineOptions& options) {
+  return options.explicit_sources && options.method == Method::standard;
+}
+
 // Error when a value is out of its range.
 void check(const PipelineOptions& options);
 

@@ -98,7 +98,7 @@ class AirSpace : public NothingSpace {
   double sky_density(Dir d) const { return air_.sky_density(d); }
   // What comes along a ray from outside. scratch, radiance: per bin.
   void sky_radiance(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
-    air_.skylight(ray.origin, ray.direction, scratch, radiance);
+    air_.sky_radiance(ray.origin, ray.direction, scratch, radiance);
   }
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);

@@ -3,7 +3,8 @@
 # The decisions of transport stand once: where paths end by chance, what contributions share, where lights are asked,
 # which numbers are drawn, and where the tracer is called. Kinds of lights are named by their own files, by the table that
 # collects their rows, and by the suns that a capture brings itself, by the sky of the air (sky_table), which
-# is drawn as a table is; the solar spectrum, which decks are lit by, is no light but stands among them. Prints the list.
+# is drawn as a table is; the solar spectrum, which decks are lit by, is no light but stands among them, as does the
+# spectrum of clear skies; the balance of heat weighs with both. Prints the list.
 set -u
 cd "$1" || exit 2
 failed=0
@@ -28,7 +29,7 @@ places "explicit light"      1 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 places "calls of the tracer" 4 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
-places "kinds of lights"      7 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
+places "kinds of lights"     10 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # The list would notice a second one: this test's own text has one of each pattern more.
 extra=$(grep -cE 'std::clamp\(brightness, kLeast, 1\.0\)' <<<'  return std::clamp(brightness, kLeast, 1.0);')

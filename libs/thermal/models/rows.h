@@ -7,5 +7,6 @@ namespace suite {
 TemperatureRow constant_temperature_row();
 TemperatureRow tabulated_temperature_row();
 TemperatureRow slab_temperature_row();
+TemperatureRow heat_temperature_row();
 
 }  // namespace suite

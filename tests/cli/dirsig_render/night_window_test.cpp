@@ -1,13 +1,9 @@
 // A thermal image at night through humid air, through both programs: the numbers of expect.md of the sample, and what
 // the air takes from a difference of temperature on the ground.
-#include <gtest/gtest.h>
-
 #include <cstdio>
 
-#include "base/files.h"
-#include "formats/envi/envi.h"
 #include "spectral/planck.h"
-#include "support/run_command.h"
+#include "support/sample_kit.h"
 
 namespace suite {
 namespace {
@@ -20,34 +16,14 @@ struct BandOf {
 constexpr BandOf kBandsOf[kBands] = {
     {"short window", 8.4, 8.8}, {"ozone", 9.4, 9.9}, {"window", 10.3, 11.3}, {"long window", 11.5, 12.5}};
 
-class NightWindow : public testing::Test {
+class NightWindow : public SampleScene {
  protected:
-  void SetUp() override {
-    run_command("cp -r " SUITE_SOURCE_DIR "/sample_scenes/night_window/. " + folder_.path());
-    ASSERT_EQ(run("scene-prep scene.yaml -o scene.h5").code, 0);
-  }
-  CommandResult run(const std::string& command) {
-    return run_command("cd '" + folder_.path() + "' && " SUITE_BIN_DIR "/" + command + " -q");
-  }
-  // Pictures of a quarter of the columns and rows.
-  void render(const std::string& to, const std::string& options) {
-    std::string sets;
-    for (const char* sensor : {"0", "1"})
-      for (const char* value : {"columns=24", "rows=18", "pitch_um=40"})
-        sets += std::string(" --set sensors.") + sensor + "." + value;
-    const CommandResult r = run("dirsig-render sim.yaml -o " + to + " " + options + sets);
-    ASSERT_EQ(r.code, 0) << r.err;
-  }
-  // Kelvin in a pixel of such a picture.
-  double kelvin(const std::string& picture, int column, int row, size_t band) {
-    return EnviImage(folder_ / picture).read_lines(row, 1)[static_cast<size_t>(column) * kBands + band];
-  }
-  TempFolder folder_;
+  NightWindow() : SampleScene("night_window") {}
 };
 
 struct Place {
   const char* name;
-  int column, row;
+  size_t column, row;
 };
 constexpr Place kLake{"lake", 2, 9}, kPond{"pond", 17, 13}, kGrass{"grass", 11, 10}, kRoof{"roof", 15, 5};
 
@@ -56,7 +32,7 @@ double radiance(const BandOf& band, double kelvin) { return planck_band_radiance
 // Lake and pond differ in nothing but 8 K: of the difference of their radiances the zenith transmittance comes through,
 // whatever else the air adds.
 TEST_F(NightWindow, DifferencesShrinkByTheTransmittance) {
-  render("out", "--paths 256");
+  render_small("out", "--paths 256");
   const CommandResult told = run("dirsig-render sim.yaml --air");
   ASSERT_EQ(told.code, 0) << told.err;
   const size_t sensor = told.out.find("sensor 'space'");
@@ -67,8 +43,8 @@ TEST_F(NightWindow, DifferencesShrinkByTheTransmittance) {
     const size_t row = told.out.find(std::string("  ") + band.name, sensor);
     ASSERT_NE(row, std::string::npos) << told.out;
     ASSERT_EQ(std::sscanf(told.out.c_str() + row + 2 + std::string(band.name).size(), "%*g um %lg", &transmittance), 1);
-    const double seen = radiance(band, kelvin("out/space.img", kPond.column, kPond.row, b)) -
-                        radiance(band, kelvin("out/space.img", kLake.column, kLake.row, b));
+    const double seen = radiance(band, value("out/space.img", kPond.column, kPond.row, b)) -
+                        radiance(band, value("out/space.img", kLake.column, kLake.row, b));
     const double sent = 0.985 * (radiance(band, 309) - radiance(band, 301));
     EXPECT_NEAR(seen / sent, transmittance, 0.02 * transmittance) << band.name;
   }
@@ -76,7 +52,7 @@ TEST_F(NightWindow, DifferencesShrinkByTheTransmittance) {
 
 // The table of expect.md, from 2 km and from space.
 TEST_F(NightWindow, ShowsWhatIsExpected) {
-  render("out", "--paths 256");
+  render_small("out", "--paths 256");
   struct Row {
     Place place;
     double low[kBands], space[kBands];
@@ -86,12 +62,12 @@ TEST_F(NightWindow, ShowsWhatIsExpected) {
                        Row{kGrass, {294.1, 294.2, 294.3, 294.1}, {289.9, 274.3, 292.4, 291.1}},
                        Row{kRoof, {281.1, 279.4, 278.3, 285.7}, {277.9, 262.4, 277.8, 283.8}}})
     for (size_t b = 0; b < kBands; ++b) {
-      EXPECT_NEAR(kelvin("out/low.img", r.place.column, r.place.row, b), r.low[b], 0.6) << r.place.name << b;
-      EXPECT_NEAR(kelvin("out/space.img", r.place.column, r.place.row, b), r.space[b], 0.6) << r.place.name << b;
+      EXPECT_NEAR(value("out/low.img", r.place.column, r.place.row, b), r.low[b], 0.6) << r.place.name << b;
+      EXPECT_NEAR(value("out/space.img", r.place.column, r.place.row, b), r.space[b], 0.6) << r.place.name << b;
     }
   // Without air the lake is its own.
-  render("bare", "--paths 16 --set atmosphere=null");
-  EXPECT_NEAR(kelvin("bare/space.img", kLake.column, kLake.row, 2), 300, 0.3);
+  render_small("bare", "--paths 16 --set atmosphere=null");
+  EXPECT_NEAR(value("bare/space.img", kLake.column, kLake.row, 2), 300, 0.3);
 }
 
 }  // namespace

@@ -138,5 +138,34 @@ TEST_F(PreviewTest, KeysDecide) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'tir'"));
 }
 
+// Beside a GeoTIFF stands a style for QGIS: the preview's bands and ends, in the unit of the numbers.
+TEST_F(PreviewTest, StylesShowWhatThePreviewShows) {
+  const auto number = [](const std::string& text, const std::string& after) {
+    const size_t at = text.find(after);
+    return at == std::string::npos ? NAN : std::stod(text.substr(at + after.size()));
+  };
+  render("--set 'output={also: [geotiff]}'");
+  const std::string eye = read_text(folder_ / "out/eye.qml"), heat = read_text(folder_ / "out/heat.qml");
+  EXPECT_THAT(eye, HasSubstr("redBand=\"1\" greenBand=\"2\" blueBand=\"3\""));
+  EXPECT_NEAR(number(eye, "<minValue>"), 0, 1e-6);
+  EXPECT_NEAR(number(eye, "<maxValue>"), 0.8 * 1000 / M_PI, 1);
+  EXPECT_THAT(eye, HasSubstr("gamma=\"2.2\""));
+  const Raster radiance = read_raster(folder_ / "out/heat.tif");
+  float low = INFINITY, high = 0;
+  for (const float v : radiance.values)
+    if (v > 0) low = std::min(low, v), high = std::max(high, v);
+  EXPECT_THAT(heat, HasSubstr("singlebandpseudocolor"));
+  EXPECT_NEAR(number(heat, "classificationMin=\"") / low, 1, 1e-6);
+  EXPECT_NEAR(number(heat, "classificationMax=\"") / high, 1, 1e-6);
+  EXPECT_GT(high, 1.1 * low);
+  EXPECT_THAT(read_text(folder_ / "out/eye_quality.qml"), HasSubstr("label=\"heavy_tail + failures\""));
+  // A range holds where the numbers have its unit.
+  render("--set 'output={also: [geotiff], previews: {eye: {range: [10, 20], bands: [green], gamma: 3}}}'");
+  EXPECT_EQ(number(read_text(folder_ / "out/eye.qml"), "<maxValue>"), 20);
+  EXPECT_THAT(read_text(folder_ / "out/eye.qml"), HasSubstr("gamma=\"3\""));
+  render("--set 'output={also: [geotiff], units: W/(cm2 sr um), previews: {eye: {range: [10, 20]}}}'");
+  EXPECT_NEAR(number(read_text(folder_ / "out/eye.qml"), "<maxValue>"), 0.8 * 0.1 / M_PI, 1e-4);
+}
+
 }  // namespace
 }  // namespace suite

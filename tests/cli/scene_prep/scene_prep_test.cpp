@@ -287,7 +287,7 @@ TEST_F(ScenePrep, UsageAndPlaces) {
   const CommandResult picture = run("picture.png");
   EXPECT_EQ(picture.code, 1);
   EXPECT_THAT(picture.err,
-              HasSubstr("picture.png: error: is nothing that a scene can be made from; known: a scene text"));
+              HasSubstr("picture.png: error: is nothing that a scene can be made from; known: a scene of DIRSIG"));
 }
 
 TEST_F(ScenePrep, CityAndForestInSmall) {

@@ -5,23 +5,15 @@
 //            END {printf "%.10g %.10g %.10g %.12g %.12g %.12g\n", g, b, d, i/n, t/n, s/n}' FILE
 // Four days are tests/data/weather/denver_four_days.epw. The whole year, USA_CO_Denver.Intl.AP.725650_TMY3.epw (where
 // it is from: the README there), is read where SUITE_WEATHER_DATA names its folder.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 
 #include "base/files.h"
 #include "formats/weather/weather.h"
 #include "spectral/planck.h"
+#include "support/weather_kit.h"
 
 namespace suite {
 namespace {
-
-using Q = WeatherQuantity;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 struct Sums {
   double global, direct, diffuse;        // Wh/m2

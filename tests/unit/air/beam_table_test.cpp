@@ -59,12 +59,12 @@ Worst worst(const Shells& shells, size_t nodes) {
 TEST(BeamTable, AgreesWithExactSums) {
   const Worst round = worst(Shells::round({0, 0, -kRadius}, kRadius, kHeights), 64);
   std::printf("largest error: %.1e of the depth, %.1e of transmittance\n", round.depth, round.transmittance);
-  EXPECT_LT(round.depth, 2e-3);
-  EXPECT_LT(round.transmittance, 5e-4);
+  EXPECT_LT(round.depth, 2e-5);
+  EXPECT_LT(round.transmittance, 2e-6);
   EXPECT_GT(round.lit, 50000);
   EXPECT_GT(round.shadowed, 20000);
   // Fewer nodes are seen to be worse.
-  EXPECT_GT(worst(Shells::round({0, 0, -kRadius}, kRadius, kHeights), 12).depth, 1e-2);
+  EXPECT_GT(worst(Shells::round({0, 0, -kRadius}, kRadius, kHeights), 12).depth, 2e-3);
   EXPECT_LT(worst(Shells::flat(kHeights), 64).depth, 1e-6);
 }
 

@@ -227,6 +227,17 @@ Params with(const TempFolder& folder, const std::vector<std::string>& settings) 
   write_file(folder / "s.yaml", std::string_view(kText));
   return Params::parse_file(folder / "s.yaml", settings);
 }
+TEST(Params, MadeTextsPointIntoWhatTheyWereMadeOf) {
+  const Params made = Params::parse_made("a: x\nb: 2\n", "dir/of.scene",
+                                         {Where{"one.mat", 7, 3, {}, -1}, Where{"two.odb", 9, 1, {}, -1}},
+                                         std::vector<std::string>{"b=3"});
+  EXPECT_EQ(made.at("a").where().file, "one.mat");
+  EXPECT_EQ(made.at("a").where().line, 7);
+  EXPECT_EQ(made.at("a").as_path(), "dir/x");
+  EXPECT_EQ(made.number("b"), 3);
+  EXPECT_EQ(made.at("b").where().file, "--set b");
+}
+
 }  // namespace
 
 TEST(Settings, ReplaceAddAndTakeOutValues) {

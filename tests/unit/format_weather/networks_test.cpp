@@ -1,19 +1,9 @@
 // Files of SURFRAD and BSRN, written here after their grammars.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "formats/weather/weather.h"
-#include "support/message_of.h"
+#include "support/weather_kit.h"
 
 namespace suite {
 namespace {
-
-using Q = WeatherQuantity;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr Geodetic kAlamosa{37.70, -105.92, 2317};
 

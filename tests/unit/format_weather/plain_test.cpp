@@ -1,21 +1,11 @@
 // Plain CSV with units, and DIRSIG's .wth.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "base/files.h"
 #include "formats/weather/weather.h"
-#include "support/message_of.h"
 #include "support/temp_folder.h"
+#include "support/weather_kit.h"
 
 namespace suite {
 namespace {
-
-using Q = WeatherQuantity;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr const char* kTable =
     "# a night in Denver\nsite: 39.83 -104.65 1650\n"

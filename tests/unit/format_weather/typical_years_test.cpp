@@ -1,20 +1,10 @@
 // EnergyPlus and TMY3 files: each trap of theirs.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "base/files.h"
 #include "formats/weather/weather.h"
-#include "support/message_of.h"
+#include "support/weather_kit.h"
 
 namespace suite {
 namespace {
-
-using Q = WeatherQuantity;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr const char* kDenver = SUITE_TEST_DATA "/weather/denver_four_days.epw";
 constexpr const char* kSandPoint = SUITE_TEST_DATA "/weather/sand_point_four_days.csv";

@@ -1,22 +1,12 @@
 // Weather from tables: what is completed, refused and said.
 #include "heat/weather.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "heat/sun_table.h"
 #include "spectral/planck.h"
-#include "support/message_of.h"
+#include "support/weather_kit.h"
 
 namespace suite {
 namespace {
-
-using Q = WeatherQuantity;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 // Hours of UTC from midnight on, 40 N 105 W, each with 10 C, half humid, 2 m/s of west wind.
 WeatherTable hours(size_t n, const char* begin = "2003-06-10T00:00:00Z") {

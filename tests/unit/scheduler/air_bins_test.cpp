@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "scheduler/air_bins.h"
 #include "support/message_of.h"
@@ -51,6 +52,50 @@ TEST(AirBins, UsersMakeThemNarrower) {
   for (const Bin& b : bins_in_air(air(), state, bands).intervals.bins) EXPECT_LE(b.high_um - b.low_um, 0.0040001);
   state = make_state(bands, 0.005);
   for (const Bin& b : bins_in_air(air(), state, bands).intervals.bins) EXPECT_LE(b.high_um - b.low_um, 0.0050001);
+}
+
+// Bands side by side, 4 nm wide, and bins of the same width.
+struct SideBySide {
+  std::vector<Band> bands;
+  SpectralState state;
+};
+SideBySide side_by_side(Band (*make)(std::string, double, double)) {
+  SideBySide s;
+  for (int i = 0; i < 60; ++i) s.bands.push_back(make("b" + std::to_string(i), 0.522 + 0.004 * i, 0.004));
+  s.state = make_state(s.bands, 0.004);
+  return s;
+}
+
+TEST(AirBins, EvenBinsOfEvenBandsStayWhole) {
+  const SideBySide s = side_by_side(Band::rectangular);
+  ASSERT_EQ(s.state.size(), 60u);
+  const AirBins bins = bins_in_air(air(), s.state, s.bands);
+  EXPECT_EQ(bins.intervals.bins, s.state.bins);
+  EXPECT_GT(bins.state.size(), 80u);  // gases split some of them
+  // Where bins are to be chosen, all are halves.
+  SpectralState chosen = s.state;
+  chosen.choice = {1e-3, 0, 4};
+  EXPECT_GE(bins_in_air(air(), chosen, s.bands).intervals.size(), 119u);
+}
+
+TEST(AirBins, EvenBinsOfOtherBandsStayWholeWhereGasesAreAlike) {
+  SideBySide s = side_by_side(Band::triangular);
+  s.state = make_state(s.bands, 0.006);
+  const AirBins bins = bins_in_air(air(), s.state, s.bands);
+  size_t whole = 0, halves = 0;
+  for (size_t i = 0, at = 0; i < s.state.size(); ++i) {
+    const Bin &b = s.state.bins[i], &first = bins.intervals.bins[at++];
+    EXPECT_EQ(first.low_um, b.low_um);
+    if (first.high_um == b.high_um) {
+      ++whole;
+      continue;
+    }
+    ++halves;
+    EXPECT_EQ(bins.intervals.bins[at++].high_um, b.high_um);
+    EXPECT_GT(b.high_um, 0.565);  // nothing but ozone below
+  }
+  EXPECT_GT(whole, 10u);
+  EXPECT_GT(halves, 5u);
 }
 
 TEST(AirBins, BandsThatGasesAreNotKnownForAreNamed) {

@@ -41,6 +41,21 @@ TEST(Features, WhatIsThereIsNamed) {
   for (const char* name : {"sun", "sky", "truth", "motion"}) EXPECT_FALSE(used(name)) << name;
 }
 
+// What the estimator does not do is not said to be used.
+TEST(Features, AdjacencyIsThatOfTheEstimator) {
+  const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  SourceSpecs sources;
+  sources.air = std::make_shared<const AirSpec>();
+  PipelineOptions paper, blind;
+  paper.method = Method::paper, blind.explicit_sources = false;
+  EXPECT_THAT(text_of(features_of(*scene, sources, {})),
+              testing::HasSubstr("adjacency            used      in the air of the simulation\n"));
+  EXPECT_THAT(text_of(features_of(*scene, sources, {}, paper)),
+              testing::HasSubstr("adjacency            left out  the paper's estimator\n"));
+  EXPECT_THAT(text_of(features_of(*scene, sources, {}, blind)),
+              testing::HasSubstr("adjacency            left out  lights are not asked\n"));
+}
+
 TEST(Features, EachIsExplained) {
   const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
   const std::vector<FeatureUse> uses = features_of(*scene, {}, {});

@@ -1,0 +1,211 @@
+#include "heat.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/files.h"
+#include "base/outputs.h"
+#include "base/progress.h"
+#include "base/run_app.h"
+#include "base/stopwatch.h"
+#include "formats/heat_hdf/heat_hdf.h"
+#include "heat/heat_field.h"
+#include "heat_told.h"
+#include "motion/scene_frame.h"
+#include "scheduler/prepass.h"
+#include "spectral/planck.h"
+#include "surface/cut_out.h"
+
+namespace suite {
+
+namespace {
+
+constexpr double kHottest = 450;   // K, what weather may make of a surface
+constexpr double kGlowing = 1e-3;  // W/(m2 sr um): light below that is nothing beside that of the day
+
+bool waits_for_heat(const Scene& scene) {
+  return std::ranges::any_of(scene.temperatures, [](const TemperatureBinding& t) { return t.spec.model == "heat"; });
+}
+
+// From the first capture's begin to the last one's end.
+TimeSpan captured(const Simulation& sim) {
+  TimeSpan span{INFINITY, -INFINITY};
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        span = {std::min(span.begin, c.window.begin), std::max(span.end, c.window.end)};
+  return span;
+}
+
+// Seconds of the simulation at the midnight of the sun before a time: where the hour angle is half a turn.
+double midnight_before(double t, double longitude_deg, const Clock& clock) {
+  const Utc utc = clock.utc(t);
+  const double local = utc.hour * 3600.0 + utc.minute * 60.0 + utc.second + longitude_deg * 240;
+  return t - (local - std::floor(local / 86400) * 86400);
+}
+
+// Whole minutes, so that the same day is the same span.
+TimeSpan span_of(const Simulation& sim, double longitude_deg) {
+  const HeatRequest& heat = *sim.heat;
+  const TimeSpan seen = captured(sim);
+  if (heat.span) {
+    if (!heat.spec.periodic && (seen.begin < heat.span->begin || seen.end > heat.span->end))
+      throw Error(heat.where,
+                  strf("temperatures are found from %g to %g s, captures are taken from %g to %g s", heat.span->begin,
+                       heat.span->end, seen.begin, seen.end),
+                  "let 'from' and 'to' cover them");
+    return *heat.span;
+  }
+  const double begin = std::round(midnight_before(seen.begin, longitude_deg, Clock(*sim.epoch)) / 60) * 60;
+  if (seen.end > begin + 86400)
+    throw Error(
+        heat.where,
+        strf("the captures take %g hours, which are more than one day of temperatures", (seen.end - seen.begin) / 3600),
+        "give heat 'from' and 'to'");
+  return {begin, begin + 86400};
+}
+
+PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                     size_t elements) {
+  PreparedHeat p;
+  p.spec = sim.heat->spec;
+  const Geodetic site = sim.heat->weather->site();
+  p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
+  p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
+  p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
+  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, elements, p.spec.span.begin);
+  p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
+  return p;
+}
+
+HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
+  const Weather& weather = *sim.heat->weather;
+  const Clock clock(*sim.epoch);
+  const GeodeticOrigin& o = scene.origin;
+  const auto frame = std::make_shared<const SceneFrame>(
+      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
+  return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
+          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
+}
+
+struct Found {
+  HeatResult result;
+  WeatherLoads weather;
+};
+
+Found find(const PreparedHeat& p, const Scene& scene, const Simulation& sim) {
+  std::unique_ptr<Progress> bar;
+  HeatProgress progress;
+  progress.begin = [&](const std::string& stage, double whole) {
+    if (bar) bar->finish();
+    bar = std::make_unique<Progress>("heat: " + stage, whole, "face");
+  };
+  progress.done = [&](double more) { bar->add(more); };
+  for (const std::string& sentence : sim.heat->weather->notes()) note("weather: " + sentence);
+  Found found{{}, weather_loads(weather_of(sim, scene), p.spec)};
+  found.result = solve_heat(*p.tracer, *p.elements, *p.faces, p.optics, found.weather, p.spec, progress);
+  if (bar) bar->finish();
+  return found;
+}
+
+std::vector<std::string> tell(const HeatResult& h, const PreparedHeat& p, double seconds) {
+  const std::vector<std::string> sentences = heat_sentences(h, p, seconds);
+  for (const std::string& sentence : sentences) note("heat: " + sentence);
+  for (const std::string& sentence : h.notes) warn("heat: " + sentence);
+  return sentences;
+}
+
+void keep(const HeatResult& h, const WeatherLoads& weather, const PreparedHeat& p, const Scene& scene,
+          const Simulation& sim, const std::vector<std::string>& sentences, const std::string& folder) {
+  make_folders_of({in_folder(folder, "heat.h5")});
+  std::vector<std::string> names;
+  for (const Material& m : scene.materials) names.push_back(m.id);
+  write_heat(in_folder(folder, "heat.h5"), h, *p.elements, *p.faces, names, command_line());
+  write_file(in_folder(folder, "heat.csv"), heat_table(h, p, scene, sim));
+  write_file(in_folder(folder, "heat.html"), heat_page(h, p, weather, scene, sim, sentences));
+  if (const std::string probes = heat_probes(h, p, weather, scene, sim); !probes.empty())
+    write_file(in_folder(folder, "heat_probes.csv"), probes);
+}
+
+}  // namespace
+
+bool sees_heat(const Simulation& sim, const RenderOptions& options) {
+  if (options.heat_only) return true;
+  for (const auto& sensor : sim.sensors) {
+    for (const SpectralState& s : sensor->states())
+      if (planck_radiance(s.high_um, kHottest) > kGlowing) return true;
+    for (const std::string& truth : sensor->truth())
+      if (truth.starts_with("temperature")) return true;
+  }
+  return false;
+}
+
+std::vector<std::array<double, 2>> heat_windows_um() {
+  const SpectralState sun = sunlight_state(), glow = infrared_state();
+  return {{sun.low_um, sun.high_um}, {glow.low_um, glow.high_um}};
+}
+
+Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                   const RenderOptions& options, const std::string& folder) {
+  if (!waits_for_heat(*scene)) {
+    if (sim.heat && sees_heat(sim, options))
+      warn("the simulation has `heat`, and no material of the scene waits for it ('temperature: {model: heat}')");
+    return {};
+  }
+  if (!sees_heat(sim, options)) {
+    note("no band sees the warmth of weather: temperatures are not found");
+    return {.pending = true};
+  }
+  if (!sim.heat) {
+    for (const TemperatureBinding& t : scene->temperatures)
+      if (t.spec.model == "heat")
+        throw Error(Where{sim.path, 0, 0, {}, -1},
+                    "the temperature of material '" + scene->materials[t.material].id +
+                        "' follows from weather, which is not given",
+                    "add 'weather: FILE' and 'heat: {}'");
+  }
+  const Stopwatch::time_point begun = Stopwatch::now();
+  const size_t budget = options.heat.empty() ? sim.heat->spec.elements : heat_budget(options.heat);
+  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, budget));
+  auto result = std::make_shared<HeatResult>();
+  if (options.heat.empty()) {
+    Found found = find(*p, *scene, sim);
+    *result = std::move(found.result);
+    const std::vector<std::string> sentences = tell(*result, *p, seconds_since(begun));
+    if (!folder.empty()) keep(*result, found.weather, *p, *scene, sim, sentences, folder);
+  } else {
+    *result = read_heat(options.heat, *p->elements, *p->faces);
+    if (result->span.begin != p->spec.span.begin || result->span.end != p->spec.span.end)
+      warn(strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
+                options.heat.c_str(), result->span.begin, result->span.end, p->spec.span.begin, p->spec.span.end));
+    tell(*result, *p, seconds_since(begun));
+  }
+  // The field keeps what it looks things up in.
+  struct Held final : TemperatureField {
+    std::shared_ptr<PreparedHeat> prepared;
+    HeatField field;
+    Held(std::shared_ptr<PreparedHeat> all, std::shared_ptr<const HeatResult> found)
+        : prepared(all), field(all->elements, std::move(found)) {}
+    double kelvin(const HeatedPlace& place, double time) const override { return field.kelvin(place, time); }
+    double error(const HeatedPlace& place, double time) const override { return field.error(place, time); }
+    std::array<double, 2> range() const override { return field.range(); }
+  };
+  return {.field = std::make_shared<const Held>(p, result)};
+}
+
+std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim) {
+  if (!sim.heat || !waits_for_heat(*scene)) return {};
+  const PreparedHeat p = prepare(scene, sim, {}, sim.heat->spec.elements);
+  const double faces = static_cast<double>(p.faces->size());
+  const double moments = std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1;
+  // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every four paths at half
+  // of the moments straight.
+  const double points = std::max(double{HeatSpec::kBlocks}, p.spec.paths / 4.0);
+  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments / 2);
+  const double bytes =
+      faces * (moments * (8 * 4 + 4 * 4) + p.spec.paths * 8.0 + 4.0 * (kSkyPatches + HeatSpec::kBlocks * 30 + 2 * 24));
+  return strf("heat: %zu elements (%zu faces, %.3g m2 at most), %.0f moments, some %s rays, %s\n", p.elements->size(),
+              p.faces->size(), p.elements->largest(), moments, human_count(rays).c_str(), human_bytes(bytes).c_str());
+}
+
+}  // namespace suite

@@ -1,0 +1,169 @@
+#include "heat_told.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/progress.h"
+#include "heat/heat_fluxes.h"
+#include "page/page.h"
+
+namespace suite {
+
+namespace {
+
+double moment_time(const HeatResult& h, size_t k) { return h.span.begin + h.step * static_cast<double>(k); }
+
+// Means over the fronts of one material at one moment, weighed by area.
+struct MaterialMoment {
+  double area = 0, kelvin = 0, coldest = INFINITY, warmest = 0, error = 0, sunlight = 0, infrared = 0;
+};
+using MaterialTable = std::map<uint32_t, std::vector<MaterialMoment>>;
+
+MaterialTable means_of(const HeatResult& h, const PreparedHeat& p) {
+  MaterialTable table;
+  for (uint32_t e = 0; e < p.elements->size(); ++e) {
+    std::vector<MaterialMoment>& rows = table[(*p.elements)[e].material];
+    rows.resize(h.moments);
+    const double a = (*p.elements)[e].area;
+    for (size_t k = 0; k < h.moments; ++k) {
+      MaterialMoment& m = rows[k];
+      const double T = double{h.kelvin[e * h.moments + k]};
+      m.area += a, m.kelvin += a * T, m.coldest = std::min(m.coldest, T), m.warmest = std::max(m.warmest, T);
+      m.sunlight += a * double{h.absorbed[e * h.moments + k]}, m.infrared += a * double{h.received[e * h.moments + k]};
+      m.error += a * std::pow(h.error_at(e, moment_time(h, k)), 2);
+    }
+  }
+  for (auto& [material, rows] : table)
+    for (MaterialMoment& m : rows) {
+      m.kelvin /= m.area, m.sunlight /= m.area, m.infrared /= m.area;
+      m.error = std::sqrt(m.error / m.area);
+    }
+  return table;
+}
+
+std::string moment_text(const HeatResult& h, size_t k, const Simulation& sim) {
+  const double t = moment_time(h, k);
+  return strf("%.3f,%s", t, to_iso8601(Clock(*sim.epoch).utc(t), 0).c_str());
+}
+
+}  // namespace
+
+std::vector<std::string> heat_sentences(const HeatResult& h, const PreparedHeat& p, double seconds) {
+  std::vector<std::string> out;
+  double worst = 0, sum = 0, area = 0, steps = 0;
+  std::vector<double> by_face;
+  for (size_t f = 0; f < p.faces->size(); ++f) {
+    double square = 0;
+    for (size_t k = 0; k < kHeatParts; ++k)
+      square += std::pow(double{h.path_error[f * kHeatParts + k]}, 2) / kHeatParts;
+    by_face.push_back(std::sqrt(square));
+    worst = std::max(worst, by_face.back());
+    const double a = (*p.elements)[p.faces->element(f)].area;
+    sum += a * square, area += a;
+    steps = std::max(steps, double{h.step_error[f]});
+  }
+  std::sort(by_face.begin(), by_face.end());
+  out.push_back(strf("%zu elements (%zu faces) of %.4g m2, %s rays, %d sweeps, %.1f s", p.elements->size(),
+                     p.faces->size(), p.elements->total_area(), human_count(h.rays).c_str(), h.sweeps, seconds));
+  out.push_back(
+      strf("standard error by the paths %.2g K (root mean square over the area), half of the faces below %.2g K, "
+           "the worst %.2g K; by a step in "
+           "time up to %.2g K, by the sweeps %.1g K, by the past %.1g K",
+           std::sqrt(sum / area), by_face[by_face.size() / 2], worst, steps, h.sweep_error, h.past_error));
+  const auto& b = h.balance;
+  const double scale = 1 / p.elements->total_area();
+  out.push_back(
+      strf("mean of the span in W/m2: sunlight %.2f + infrared %.2f + sources %.2f = emitted %.2f + to the air "
+           "%.2f + to "
+           "what is behind %.2f + stored %.2f + %.3f that is left",
+           b.sunlight * scale, b.infrared * scale, b.source * scale, b.emitted * scale, b.to_air * scale,
+           b.behind * scale, b.stored * scale, b.residual() * scale));
+  out.push_back(
+      strf("elements of %.3g m2 at most; air, sky and beam are those of the weather everywhere; beyond the scene "
+           "the ground is "
+           "as warm as the air, with an albedo of %g",
+           p.elements->largest(), p.spec.ground_albedo));
+  return out;
+}
+
+std::string heat_table(const HeatResult& h, const PreparedHeat& p, const Scene& scene, const Simulation& sim) {
+  const MaterialTable table = means_of(h, p);
+  std::string out =
+      "time_s,time_utc,material,area_m2,temperature_k,coldest_k,warmest_k,path_error_k,absorbed_sunlight_w_m2,"
+      "received_infrared_w_m2,air_k\n";
+  for (size_t k = 0; k < h.moments; ++k)
+    for (const auto& [material, rows] : table) {
+      const MaterialMoment& m = rows[k];
+      out += moment_text(h, k, sim) + strf(",%s,%.6g,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.3f\n",
+                                           scene.materials[material].id.c_str(), m.area, m.kelvin, m.coldest, m.warmest,
+                                           m.error, m.sunlight, m.infrared, double{h.air_kelvin[k]});
+    }
+  return out;
+}
+
+std::string heat_probes(const HeatResult& h, const PreparedHeat& p, const WeatherLoads& weather, const Scene& scene,
+                        const Simulation& sim) {
+  if (sim.heat->probes.empty()) return {};
+  std::string out =
+      "time_s,time_utc,probe,material,temperature_k,path_error_k,absorbed_sunlight_w_m2,absorbed_infrared_w_m2,"
+      "source_w_m2,emitted_w_m2,to_air_w_m2,into_surface_w_m2\n";
+  for (const auto& [name, place] : sim.heat->probes) {
+    const uint32_t element = nearest_element(*p.elements, place);
+    const std::vector<HeatFluxes> fluxes = fluxes_of(h, *p.elements, p.optics, weather, element);
+    for (size_t k = 0; k < fluxes.size(); ++k) {
+      const HeatFluxes& f = fluxes[k];
+      out += moment_text(h, k, sim) + strf(",%s,%s,%.4f,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
+                                           scene.materials[(*p.elements)[element].material].id.c_str(), f.kelvin,
+                                           f.error, f.sunlight, f.infrared, f.source, f.emitted, f.to_air, f.into());
+    }
+  }
+  return out;
+}
+
+std::string heat_page(const HeatResult& h, const PreparedHeat& p, const WeatherLoads& weather, const Scene& scene,
+                      const Simulation& sim, const std::vector<std::string>& sentences) {
+  Page page{"Temperatures from weather", sentences, {}, {}};
+  for (const std::string& note : h.notes) page.paragraphs.push_back(note);
+  std::vector<double> hours;
+  for (size_t k = 0; k < h.moments; ++k) hours.push_back((moment_time(h, k) - h.span.begin) / 3600);
+  const std::string axis = "hours after " + to_iso8601(Clock(*sim.epoch).utc(h.span.begin), 0);
+  const auto plot = [&](const std::string& title, const std::string& unit) {
+    page.plots.push_back({title, axis, unit, false, false, {}});
+    return page.plots.size() - 1;
+  };
+  const size_t warm = plot("Means of materials; bands from the coldest to the warmest element", "K"),
+               sun = plot("Sunlight absorbed, means of materials", "W/m2"),
+               infrared = plot("Infrared received, means of materials", "W/m2");
+  PageTable materials{
+      "Materials", {"material", "area, m2", "coldest, K", "warmest, K", "standard error by the paths, K"}, {}};
+  for (const auto& [material, rows] : means_of(h, p)) {
+    const std::string& name = scene.materials[material].id;
+    PlotSeries T{name, hours, {}, {}, {}}, light{name, hours, {}, {}, {}}, glow = light;
+    MaterialMoment all = rows.front();
+    for (const MaterialMoment& m : rows) {
+      T.y.push_back(m.kelvin), T.low.push_back(m.coldest), T.high.push_back(m.warmest);
+      light.y.push_back(m.sunlight), glow.y.push_back(m.infrared);
+      all.coldest = std::min(all.coldest, m.coldest), all.warmest = std::max(all.warmest, m.warmest);
+      all.error = std::max(all.error, m.error);
+    }
+    page.plots[warm].series.push_back(T), page.plots[sun].series.push_back(light);
+    page.plots[infrared].series.push_back(glow);
+    materials.rows.push_back(
+        {name, strf("%.4g", all.area), strf("%.2f", all.coldest), strf("%.2f", all.warmest), strf("%.3f", all.error)});
+  }
+  page.plots[warm].series.push_back({"air", hours, weather.air_kelvin, {}, {}});
+  if (!sim.heat->probes.empty()) {
+    const size_t probes = plot("Probes; bands of two standard errors by the paths", "K");
+    for (const auto& [name, place] : sim.heat->probes) {
+      PlotSeries T{name, hours, {}, {}, {}};
+      for (const HeatFluxes& f : fluxes_of(h, *p.elements, p.optics, weather, nearest_element(*p.elements, place)))
+        T.y.push_back(f.kelvin), T.low.push_back(f.kelvin - 2 * f.error), T.high.push_back(f.kelvin + 2 * f.error);
+      page.plots[probes].series.push_back(T);
+    }
+  }
+  page.tables.push_back(std::move(materials));
+  return html_of(page);
+}
+
+}  // namespace suite

@@ -1,0 +1,18 @@
+// The temperatures of a scene's elements in a file: found once, used by many runs. See FORMAT.md.
+#pragma once
+#include <string>
+
+#include "heat/heat_balance.h"
+
+namespace suite {
+
+// Whole or not at all. made_by: the command line. Error: not writable.
+void write_heat(const std::string& path, const HeatResult& result, const Elements& elements, const HeatFaces& faces,
+                const std::vector<std::string>& materials, const std::string& made_by);
+
+// Error: no such file, damaged, or of another scene, other materials or another number of elements.
+HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces);
+// The number of elements that it was asked for, which the elements have to be made with.
+size_t heat_budget(const std::string& path);
+
+}  // namespace suite

@@ -1,0 +1,81 @@
+#include "formats/sim_text/heat.h"
+
+#include "formats/weather/weather.h"
+
+namespace suite {
+
+namespace {
+
+Weather read_the_weather(const Params& p) {
+  const bool map = p.kind() == Params::Kind::map;
+  WeatherOptions options;
+  if (map) {
+    if (const auto model = p.find("longwave"))
+      options.longwave =
+          model->as_choice({"clark_allen", "brutsaert"}) ? LongwaveModel::brutsaert : LongwaveModel::clark_allen;
+    if (const auto year = p.find("year")) options.year = static_cast<int>(year->as_integer(1972, 2199));
+    if (const auto offset = p.find("utc_offset_h")) options.utc_offset = 3600 * offset->as_number_in(-14, 14, "h");
+    if (const auto date = p.find("date")) options.date = parse_iso8601(date->as_text());
+    if (const auto site = p.find("site")) {
+      const std::vector<double> v = site->as_numbers();
+      if (v.size() != 3) throw site->error("a site is [latitude, longitude, height m]");
+      options.site = Geodetic{v[0], v[1], v[2]};
+      try {
+        check_geodetic(*options.site);
+      } catch (const Error& e) {
+        throw site->error(e.message(), e.hint());
+      }
+    }
+  }
+  return read_weather(map ? p.at("file").as_path() : p.as_path(), options);
+}
+
+}  // namespace
+
+std::optional<HeatRequest> read_heat_request(const Params& root, const Simulation& sim, const SensorContext& context) {
+  const auto heat = root.find("heat");
+  const auto weather = root.find("weather");
+  if (!heat && !weather) return std::nullopt;
+  if (!heat) throw weather->error("weather is there for the balance of heat, which is not asked for", "add 'heat: {}'");
+  if (!weather)
+    throw heat->error("the balance of heat needs weather", "add 'weather: FILE' (EPW, TMY3, SURFRAD, BSRN, CSV)");
+  if (!sim.epoch)
+    throw heat->error("weather is dated, and second 0 of the simulation is not",
+                      "give 'epoch: DATE', or the sun a date");
+  if (sim.periodic)
+    throw heat->error("the temperatures of a scene that repeats itself are not found", "drop one of them");
+  HeatRequest out;
+  out.where = heat->where();
+  out.weather = std::make_shared<const Weather>(read_the_weather(*weather));
+  HeatSpec& s = out.spec;
+  s.elements = static_cast<size_t>(heat->integer("elements", 1, 10'000'000, 20000));
+  s.paths = static_cast<uint32_t>(heat->integer("paths", HeatSpec::kBlocks, 1 << 16, 64));
+  s.paths = (s.paths + HeatSpec::kBlocks - 1) / HeatSpec::kBlocks * HeatSpec::kBlocks;
+  s.step = heat->number_in("step_s", 1, 3600, "s", 600);
+  s.tolerance = heat->number_in("tolerance_k", 1e-7, 1, "K", 0.01);
+  s.ground_albedo = heat->number_in("ground_albedo", 0, 1, "", 0.2);
+  s.seed = sim.pipeline.seed;
+  if (const auto probes = heat->find("probes"))
+    for (const std::string& name : probes->keys()) {
+      const std::vector<double> v = probes->at(name).as_numbers();
+      if (v.size() != 3) throw probes->at(name).error("a probe stands at three numbers: east, north, up");
+      out.probes.emplace_back(name, Vec3{v[0], v[1], v[2]});
+    }
+  const auto from = heat->find("from"), to = heat->find("to");
+  if (static_cast<bool>(from) != static_cast<bool>(to))
+    throw heat->error("a span of time has 'from' and 'to'", "give both, or none: the day of the captures");
+  if (from) {
+    out.span = TimeSpan{context.time(*from), context.time(*to)};
+    if (!(out.span->end - out.span->begin >= 2 * s.step))
+      throw to->error(strf("the span of %g s is shorter than two steps", out.span->end - out.span->begin),
+                      "a later 'to' or a smaller step_s");
+  }
+  const double length = out.span ? out.span->end - out.span->begin : 86400;
+  s.periodic = heat->boolean("repeats", length <= 90000);
+  if (!s.periodic && length < 86400)
+    throw heat->error("a span that does not repeat begins with a whole day",
+                      "make it a day or longer, or 'repeats: true'");
+  return out;
+}
+
+}  // namespace suite

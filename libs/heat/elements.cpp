@@ -1,0 +1,390 @@
+#include "heat/elements.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "scene/primitives.h"
+
+namespace suite {
+
+namespace {
+
+constexpr int kLooks = 16;          // points of a cell that are looked at
+constexpr uint32_t kAttempts = 64;  // to find a point of a material, or past a stretch
+
+// What an area grows by under a transform.
+double stretch_of(const Affine3& m, Vec3 unit_normal) { return length(m.normal(unit_normal)); }
+
+// No stretch is larger.
+double most_stretch(const Affine3& m) {
+  const Vec3 x{m.a[0], m.a[3], m.a[6]}, y{m.a[1], m.a[4], m.a[7]}, z{m.a[2], m.a[5], m.a[8]};
+  return std::sqrt(dot(cross(x, y), cross(x, y)) + dot(cross(y, z), cross(y, z)) + dot(cross(z, x), cross(z, x)));
+}
+
+bool keeps_shape(const Affine3& m) {
+  const double a = stretch_of(m, {1, 0, 0}), b = stretch_of(m, {0, 1, 0}), c = stretch_of(m, {0, 0, 1});
+  const double d = stretch_of(m, normalized(Vec3{1, 1, 1}));
+  return std::max({a, b, c, d}) < (1 + 1e-9) * std::min({a, b, c, d});
+}
+
+// Place along a curve that keeps neighbours together (Morton 1966).
+uint64_t along_curve(Vec3 p, const Box3& box) {
+  uint64_t code = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size = std::max(box.high[axis] - box.low[axis], 1e-300);
+    const auto k = static_cast<uint64_t>(std::clamp((p[axis] - box.low[axis]) / size, 0.0, 1.0) * 2097151);
+    for (int bit = 0; bit < 21; ++bit) code |= (k >> bit & 1) << (3 * bit + axis);
+  }
+  return code;
+}
+
+}  // namespace
+
+namespace {
+
+// Of a surface without end: around all that has one, half of its size further on each side, at least 100 m.
+Box3 reach_of(const Primitive& primitive, const Affine3& to_local, const Box3& bounds) {
+  Box3 reach = primitive_box(primitive);
+  if (!reach.empty()) return reach;
+  const Box3 world = bounds.empty() ? Box3{{0, 0, 0}, {0, 0, 0}} : bounds;
+  const double more = std::max(100.0, 0.5 * length(world.size()));
+  for (int corner = 0; corner < 8; ++corner)
+    reach.grow(to_local.point({corner & 1 ? world.high.x + more : world.low.x - more,
+                               corner & 2 ? world.high.y + more : world.low.y - more,
+                               corner & 4 ? world.high.z : world.low.z}));
+  return reach;
+}
+
+double size_of(const Affine3& m) { return std::pow(std::fabs(m.determinant()), 2.0 / 3); }
+
+}  // namespace
+
+// What the scene has of the materials.
+struct Elements::Seen {
+  struct Kind {  // instances of one mesh with one override
+    uint32_t mesh = kNone, override = kNone;
+    std::vector<uint32_t> material_of_part;
+    double local_area = 0;
+    std::vector<Slot> slots;
+    std::vector<double> areas;
+  };
+  std::map<std::pair<uint32_t, uint32_t>, Kind> kinds;
+  std::vector<std::pair<Slot, uint32_t>> exact;  // with the primitive
+  double area = 0;
+};
+
+Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time)
+    : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()) {
+  SUITE_CHECK(budget > 0 && heated.size() == tracer.scene().materials.size());
+  Seen seen;
+  gather(seen, heated);
+  if (seen.kinds.empty() && seen.exact.empty())
+    throw Error("no surface at rest has a temperature that the heat balance is to find",
+                "give a material in view 'temperature: {model: heat}'");
+  const double target = seen.area / static_cast<double>(budget);
+  group_meshes(seen, target);
+  for (const auto& [slot, primitive] : seen.exact) {
+    const uint32_t grid = make_grid(slot, tracer.scene().primitives[primitive], target);
+    add_group({slot}, nullptr, grid, grids_[grid].cells);
+  }
+  make_elements(heated);
+}
+
+// Of what hangs on a node: it may only come and go.
+bool Elements::at_rest(uint32_t number) const {
+  const std::optional<TimeSpan> window = tracer_.window();
+  if (!window) return true;
+  constexpr int kTimes = 16;
+  const Affine3 first = tracer_.to_world(number, window->begin);
+  for (int k = 1; k <= kTimes; ++k)
+    if (tracer_.to_world(number, window->begin + (window->end - window->begin) * k / kTimes) != first) return false;
+  return true;
+}
+
+void Elements::gather(Seen& seen, const std::vector<bool>& heated) {
+  const Scene& scene = tracer_.scene();
+  // Materials that are heated, or that a class map may turn into one.
+  std::vector<bool> wanted = heated;
+  for (const MapBinding& b : scene.map_bindings)
+    for (const uint32_t m : scene.class_maps[b.class_map].materials)
+      if (m != kNone && heated[m]) wanted[b.material] = true;
+  const auto is_wanted = [&](uint32_t m) { return m != kNone && wanted[m]; };
+  const auto any = [&](const TracedObject& o) {
+    if (o.material_override != kNone) return is_wanted(o.material_override);
+    if (o.primitive != kNone) return is_wanted(scene.primitives[o.primitive].material);
+    return std::ranges::any_of(scene.meshes[o.mesh].parts, [&](const Part& p) { return is_wanted(p.material); });
+  };
+  tracer_.each("surfaces whose temperatures are to be found", any, [&](uint32_t number, const TracedObject& o) {
+    if (o.node != kNone && !at_rest(number)) {
+      ++moving_;
+      return;
+    }
+    if (slot_of_.contains(o.instance)) return;
+    slot_of_[o.instance] = 0;
+    const Affine3 place = tracer_.to_world(number, time_);
+    const Slot slot{number, o.instance, 0, place, place.inverse()};
+    if (o.primitive != kNone) {
+      seen.exact.emplace_back(slot, o.primitive);
+      const Primitive& primitive = scene.primitives[o.primitive];
+      const PrimitiveFaces faces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds()));
+      for (size_t f = 0; f < faces.size(); ++f) seen.area += faces.area(f) * size_of(place);
+      return;
+    }
+    Seen::Kind& kind = seen.kinds[{o.mesh, o.material_override}];
+    const Mesh& mesh = scene.meshes[o.mesh];
+    if (kind.slots.empty()) {
+      mesh.require();
+      kind.mesh = o.mesh, kind.override = o.material_override;
+      for (const Part& p : mesh.parts) {
+        const uint32_t m = o.material_override != kNone ? o.material_override : p.material;
+        kind.material_of_part.push_back(is_wanted(m) ? m : kNone);
+      }
+      kind.local_area = MeshCells(mesh, kind.material_of_part, 1).total_area();
+    }
+    kind.slots.push_back(slot);
+    kind.areas.push_back(kind.local_area * size_of(place));
+    seen.area += kind.areas.back();
+  });
+}
+
+void Elements::add_group(std::vector<Slot> slots, const MeshCells* mesh, uint32_t grid, uint32_t cells) {
+  Group group;
+  group.first_slot = static_cast<uint32_t>(slots_.size()), group.slots = static_cast<uint32_t>(slots.size());
+  group.first_cell = static_cast<uint32_t>(group_of_cell_.size());
+  group.mesh = mesh, group.grid = grid;
+  double sum = 0;
+  for (Slot& s : slots) {
+    s.group = static_cast<uint32_t>(groups_.size());
+    slot_of_[s.instance] = static_cast<uint32_t>(slots_.size());
+    slots_.push_back(s);
+    if (slots.size() > 1) group.until.push_back(sum += size_of(s.to_world));
+  }
+  group_of_cell_.insert(group_of_cell_.end(), cells, static_cast<uint32_t>(groups_.size()));
+  groups_.push_back(std::move(group));
+}
+
+void Elements::group_meshes(Seen& seen, double target) {
+  for (auto& [key, kind] : seen.kinds) {
+    const Mesh& mesh = tracer_.scene().meshes[kind.mesh];
+    std::map<int, const MeshCells*> by_size;
+    const auto cells_for = [&](double wanted) {
+      const int power = std::max(0, static_cast<int>(std::lround(std::log2(std::max(wanted, 1.0)))));
+      const MeshCells*& cells = by_size[power];
+      if (!cells) {
+        meshes_.push_back(std::make_unique<MeshCells>(
+            mesh, kind.material_of_part,
+            kind.slots.size() == 1 ? std::max(wanted, 1.0) : std::exp2(static_cast<double>(power))));
+        cells = meshes_.back().get();
+      }
+      return cells;
+    };
+    std::vector<size_t> small;
+    for (size_t i = 0; i < kind.slots.size(); ++i) {
+      if (kind.areas[i] < target / 2) {
+        small.push_back(i);
+        continue;
+      }
+      const MeshCells* cells = cells_for(kind.areas[i] / target);
+      add_group({kind.slots[i]}, cells, kNone, static_cast<uint32_t>(cells->size()));
+    }
+    if (small.empty()) continue;
+    const MeshCells* whole = cells_for(1);
+    std::vector<std::pair<uint64_t, size_t>> order;
+    for (const size_t i : small) order.emplace_back(along_curve(kind.slots[i].to_world.b, tracer_.bounds()), i);
+    std::sort(order.begin(), order.end());
+    std::vector<Slot> together;
+    double area = 0;
+    for (size_t k = 0; k < order.size(); ++k) {
+      together.push_back(kind.slots[order[k].second]);
+      area += kind.areas[order[k].second];
+      if (area < target && k + 1 < order.size()) continue;
+      add_group(std::move(together), whole, kNone, static_cast<uint32_t>(whole->size()));
+      together.clear(), area = 0;
+    }
+  }
+}
+
+uint32_t Elements::make_grid(const Slot& slot, const Primitive& primitive, double target) {
+  Grid grid{PrimitiveFaces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds())), {}, 0};
+  const double scale = size_of(slot.to_world);
+  for (size_t f = 0; f < grid.faces.size(); ++f) {
+    const auto [along_a, along_b] = grid.faces.lengths(f);
+    const double wanted = std::max(1.0, grid.faces.area(f) * scale / target);
+    const double columns = std::sqrt(wanted * along_a / along_b);
+    Grid::Face part;
+    part.columns = static_cast<uint32_t>(std::clamp(std::lround(std::min(columns, wanted)), 1L, 10000L));
+    part.rows = static_cast<uint32_t>(std::clamp(std::lround(wanted / part.columns), 1L, 10000L));
+    part.first = grid.cells;
+    grid.cells += part.columns * part.rows;
+    grid.parts.push_back(part);
+  }
+  grids_.push_back(std::move(grid));
+  return static_cast<uint32_t>(grids_.size() - 1);
+}
+
+Elements::Local Elements::local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const {
+  const uint32_t inside = cell - group.first_cell;
+  Local at;
+  if (group.mesh) {
+    const MeshCells::Point p = group.mesh->point(inside, u[0], u[1], u[2]);
+    at.triangle = p.triangle, at.u = p.u, at.v = p.v;
+    return at;
+  }
+  const Grid& grid = grids_[group.grid];
+  size_t face = grid.parts.size() - 1;
+  while (grid.parts[face].first > inside) --face;
+  const Grid::Face& part = grid.parts[face];
+  const uint32_t k = inside - part.first;
+  const PrimitiveFaces::Point p =
+      grid.faces.point(face, (k % part.columns + u[0]) / part.columns, (k / part.columns + u[1]) / part.rows);
+  at.position = p.position, at.normal = p.normal, at.uv = p.uv, at.stretch = p.stretch / grid.faces.most_stretch();
+  return at;
+}
+
+// Points whose surroundings are stretched more are kept more often.
+Hit Elements::cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt) const {
+  const Group& group = groups_[group_of_cell_[cell]];
+  for (;; ++attempt) {
+    const std::array<double, 4> u = draw.stream.draw(draw.sample, draw.first_block + attempt);
+    uint32_t slot = group.first_slot;
+    if (group.slots > 1) {
+      const double x = draw.stream.hashed(draw.sample, draw.first_block + attempt) * group.until.back();
+      slot += static_cast<uint32_t>(
+          std::min<std::ptrdiff_t>(std::upper_bound(group.until.begin(), group.until.end(), x) - group.until.begin(),
+                                   static_cast<std::ptrdiff_t>(group.slots) - 1));
+    }
+    const Slot& s = slots_[slot];
+    const Local p = local_point(group, cell, u);
+    const bool last = attempt + 1 >= kAttempts;
+    if (group.mesh) return tracer_.on_triangle(s.object, p.triangle, p.u, p.v, time_);
+    const double kept = p.stretch * stretch_of(s.to_world, p.normal) / most_stretch(s.to_world);
+    if (last || (p.stretch == 1 && keeps_shape(s.to_world)) || u[3] < kept)
+      return tracer_.on_exact(s.object, p.position, p.normal, p.uv, time_);
+  }
+}
+
+Hit Elements::point(size_t element, const PointDraw& draw) const {
+  const HeatElement& e = elements_[element];
+  for (uint32_t attempt = 0;; ++attempt) {
+    const Hit hit = cell_point(e.cell, draw, attempt);
+    if (e.share == 1 || attempt + 1 >= kAttempts || lookup_.at(tracer_.object(hit.object), hit) == e.material)
+      return hit;
+  }
+}
+
+namespace {
+
+// What of a cell is of one material, from the points that were looked at.
+struct Found {
+  uint32_t material = kNone;
+  int points = 0;
+  Vec3 centre, normal;
+};
+
+}  // namespace
+
+void Elements::make_elements(const std::vector<bool>& heated) {
+  const size_t cells = group_of_cell_.size();
+  std::vector<std::vector<Found>> found(cells);
+  std::vector<double> areas(cells);
+  parallel_for(0, cells, 256, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) {
+      const auto cell = static_cast<uint32_t>(c);
+      const Group& group = groups_[group_of_cell_[cell]];
+      const SampleStream stream(0x68656174, 0, c);
+      double stretch = 0;
+      for (uint32_t k = 0; k < kLooks; ++k) {
+        uint32_t attempt = 0;
+        const Hit hit = cell_point(cell, {stream, k, 0}, attempt);
+        const TracedObject object = tracer_.object(hit.object);
+        const Affine3& place = slots_[slot_of_.at(object.instance)].to_world;
+        stretch += stretch_of(place, normalized(slots_[slot_of_.at(object.instance)].to_local.normal(hit.normal)));
+        const uint32_t m = lookup_.at(object, hit);
+        auto at = std::ranges::find(found[c], m, &Found::material);
+        if (at == found[c].end()) at = found[c].insert(at, Found{m, 0, {}, {}});
+        ++at->points, at->centre += hit.position, at->normal += hit.normal;
+      }
+      double local = 0;
+      if (group.mesh) {
+        local = group.mesh->area(cell - group.first_cell);
+      } else {
+        const Grid& grid = grids_[group.grid];
+        size_t face = grid.parts.size() - 1;
+        while (grid.parts[face].first > cell - group.first_cell) --face;
+        local = grid.faces.area(face) / (1.0 * grid.parts[face].columns * grid.parts[face].rows);
+      }
+      areas[c] = local * stretch / kLooks;
+      if (group.slots > 1) areas[c] = local * group.until.back();
+    }
+  });
+  first_element_.push_back(0);
+  for (size_t c = 0; c < cells; ++c) {
+    for (const Found& f : found[c]) {
+      if (f.material == kNone || !heated[f.material]) continue;
+      HeatElement e;
+      e.material = f.material, e.cell = static_cast<uint32_t>(c);
+      e.share = double{1} * f.points / kLooks;
+      e.area = areas[c] * e.share;
+      e.centre = f.centre / f.points;
+      const double facing = length(f.normal);
+      e.normal = facing > 1e-6 * f.points ? f.normal / facing : Dir{0, 0, 1};
+      elements_.push_back(e);
+      total_area_ += e.area;
+    }
+    first_element_.push_back(static_cast<uint32_t>(elements_.size()));
+  }
+}
+
+std::optional<uint32_t> Elements::cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const {
+  const auto found = slot_of_.find(instance);
+  if (found == slot_of_.end() || slots_.empty()) return std::nullopt;
+  const Slot& slot = slots_[found->second];
+  const Group& group = groups_[slot.group];
+  if (group.mesh) {
+    const uint32_t inside = group.mesh->whole(triangle) ? group.mesh->cell_of(triangle, {})
+                                                        : group.mesh->cell_of(triangle, slot.to_local.point(position));
+    if (inside == kNone) return std::nullopt;
+    return group.first_cell + inside;
+  }
+  const Grid& grid = grids_[group.grid];
+  const PrimitiveFaces::Place p = grid.faces.place(slot.to_local.point(position));
+  const Grid::Face& part = grid.parts[p.face];
+  const auto column = std::min(part.columns - 1, static_cast<uint32_t>(p.a * part.columns));
+  const auto row = std::min(part.rows - 1, static_cast<uint32_t>(p.b * part.rows));
+  return group.first_cell + part.first + row * part.columns + column;
+}
+
+std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material) const {
+  const std::optional<uint32_t> cell = cell_at(place.instance, place.triangle, place.position);
+  if (!cell) return std::nullopt;
+  std::optional<uint32_t> best;
+  for (uint32_t e = first_element_[*cell]; e < first_element_[*cell + 1]; ++e) {
+    if (elements_[e].material == material) return e;
+    if (!best || elements_[e].area > elements_[*best].area) best = e;
+  }
+  return best;
+}
+
+std::optional<uint32_t> Elements::at(const Hit& hit, uint32_t material) const {
+  return at(HeatedPlace{hit.position, hit.normal, tracer_.object(hit.object).instance, hit.triangle}, material);
+}
+
+double Elements::largest() const {
+  double most = 0;
+  for (const HeatElement& e : elements_) most = std::fmax(most, e.area);
+  return most;
+}
+
+uint64_t Elements::fingerprint() const {
+  uint64_t key = mix64(elements_.size());
+  for (const HeatElement& e : elements_)
+    key = hash_of(key, e.material, std::bit_cast<uint64_t>(e.area),
+                  std::bit_cast<uint64_t>(e.centre.x + 3 * e.centre.y + 7 * e.centre.z));
+  return key;
+}
+
+}  // namespace suite

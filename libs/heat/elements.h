@@ -1,0 +1,112 @@
+// Elements: pieces of the scene's surface that have one temperature each, made of a material, an instance and a cell of
+// its triangles or of its exact surface.
+//
+// Assumes: what is at rest in the tracer it is made from, be it there all the time or not. Instances that are more than
+// the budget are put together with their neighbours of the same kind.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "heat/mesh_cells.h"
+#include "heat/primitive_faces.h"
+#include "math/sampling.h"
+#include "surface/material_lookup.h"
+#include "trace/tracer.h"
+
+namespace suite {
+
+struct HeatElement {
+  uint32_t material = kNone;  // index, after overrides and class maps
+  uint32_t cell = 0;
+  double area = 0;   // m2, of the part of the cell that is of this material
+  double share = 1;  // that part
+  Vec3 centre;       // m, mean of its points
+  Dir normal;        // of its front, mean; unit
+};
+
+// Numbers of the choice of a point; one block of four numbers (math/sampling.h) an attempt.
+struct PointDraw {
+  const SampleStream& stream;
+  uint32_t sample = 0, first_block = 0;
+};
+
+class Elements {
+ public:
+  // heated: by material, whether it has elements. budget: about how many there will be, at least one an instance group.
+  // Surfaces without end are cut off half the scene's size around it; beyond they are as warm as at the edge. Keeps a
+  // reference to the tracer. time: s, within its window. Error: nothing of these materials is at rest.
+  Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time);
+
+  size_t size() const { return elements_.size(); }
+  const HeatElement& operator[](size_t i) const { return elements_[i]; }
+  // Uniform over the element, as a ray would have hit it.
+  Hit point(size_t element, const PointDraw& draw) const;
+  // The element of a material at a place; nothing where none is (what moves). Where the cell has none
+  // of this material, as at the edges of maps, the largest one of the cell.
+  std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;
+  std::optional<uint32_t> at(const Hit& hit, uint32_t material) const;
+
+  size_t budget() const { return budget_; }  // as asked
+  double total_area() const { return total_area_; }
+  size_t instances() const { return slots_.size(); }
+  size_t moving() const { return moving_; }  // instances of these materials that move: they have none
+  double largest() const;                    // m2, of an element
+  // Two tracers of one scene, and files, fit when this is equal: materials, areas and places of all elements.
+  uint64_t fingerprint() const;
+
+ private:
+  struct Slot {  // an instance
+    uint32_t object, instance, group;
+    Affine3 to_world, to_local;
+  };
+  struct Group {  // instances that share elements
+    uint32_t first_slot = 0, slots = 0, first_cell = 0;
+    const MeshCells* mesh = nullptr;  // or
+    uint32_t grid = kNone;            // number of the grid of an exact surface
+    std::vector<double> until;        // areas of the slots, summed up; empty for one
+  };
+  struct Grid {  // on an exact surface
+    PrimitiveFaces faces;
+    struct Face {
+      uint32_t columns, rows, first;  // cells: first + row * columns + column
+    };
+    std::vector<Face> parts;
+    uint32_t cells = 0;
+  };
+  struct Seen;  // while they are made
+  struct Local {
+    Vec3 position, normal;
+    uint32_t triangle = 0;
+    double u = 0, v = 0, stretch = 1;
+    Vec2 uv;
+  };
+  bool at_rest(uint32_t number) const;
+  void gather(Seen& seen, const std::vector<bool>& heated);
+  void group_meshes(Seen& seen, double target);
+  void add_group(std::vector<Slot> slots, const MeshCells* mesh, uint32_t grid, uint32_t cells);
+  uint32_t make_grid(const Slot& slot, const Primitive& primitive, double target);
+  void make_elements(const std::vector<bool>& heated);
+  Local local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const;
+  Hit cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt) const;
+  std::optional<uint32_t> cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const;
+
+  const Tracer& tracer_;
+  size_t budget_;
+  double time_;
+  MaterialLookup lookup_;
+  std::vector<std::unique_ptr<MeshCells>> meshes_;
+  std::vector<Grid> grids_;
+  std::vector<Slot> slots_;
+  std::vector<Group> groups_;
+  std::unordered_map<uint32_t, uint32_t> slot_of_;  // by instance
+  std::vector<uint32_t> group_of_cell_;
+  std::vector<uint32_t> first_element_;  // by cell; cells + 1
+  std::vector<HeatElement> elements_;
+  double total_area_ = 0;
+  size_t moving_ = 0;
+};
+
+}  // namespace suite

@@ -1,0 +1,181 @@
+#include "heat/exchange_paths.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "heat/heat_walk.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kWave = 128;              // faces
+constexpr uint64_t kPurpose = 0x6c6f6e67;  // of the random numbers
+
+struct Going {
+  uint32_t slot;  // of its end
+  uint8_t bin;
+  double weight;
+  double until = 0, left = 1;  // it ends where no more than `until` of what set out would be left
+};
+
+// Faces that go together.
+class Wave {
+ public:
+  Wave(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+       const PathOptions& options, ExchangePaths& out)
+      : tracer_(tracer),
+        elements_(elements),
+        faces_(faces),
+        options_(options),
+        surface_(tracer, *optics.glow),
+        out_(out),
+        W_(optics.glow->state().size()),
+        walk_(optics.glow->state()) {}
+
+  void run(size_t begin, size_t end) {
+    going_.clear(), rays_.clear();
+    for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
+    for (int n = 0; !going_.empty(); ++n) {
+      hits_.resize(rays_.size());
+      tracer_.nearest(rays_, hits_, false, trace_);
+      size_t kept = 0;
+      for (size_t i = 0; i < going_.size(); ++i) {
+        Going path = going_[i];
+        Ray ray = rays_[i];
+        if (!go_on(path, ray, hits_[i], n)) continue;
+        going_[kept] = path, rays_[kept] = ray;
+        ++kept;
+      }
+      going_.resize(kept), rays_.resize(kept);
+    }
+  }
+  double rays() const { return static_cast<double>(trace_.rays); }
+  double unfinished() const { return unfinished_; }
+
+ private:
+  SampleStream stream(uint32_t slot) const {
+    const uint32_t each = options_.blocks * options_.paths, face = slot / each, block = slot % each / options_.paths;
+    return SampleStream(options_.seed, kPurpose, face, block);
+  }
+  uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
+
+  void start(uint32_t face) {
+    const uint32_t each = options_.blocks * options_.paths;
+    double emissivity = 0;
+    for (uint32_t k = 0; k < each; ++k) {
+      const uint32_t slot = face * each + k;
+      const SampleStream numbers = stream(slot);
+      const Hit hit = elements_.point(faces_.element(face), {numbers, sample(slot), kPointBlock});
+      const std::array<double, 4> u = numbers.draw(sample(slot), 0);
+      const Dir normal = faces_.is_back(face) ? -hit.normal : hit.normal;
+      const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere({u[0], u[1]})));
+      surface_.interact(hit, d, at_, hit.time);
+      if (at_.baked && at_.baked->model)
+        at_.baked->model->total(at_.frame.to_local(d), W_);
+      else
+        std::fill(W_.begin(), W_.end(), 0.0f);
+      double sum = 0;
+      for (float& w : W_) sum += 1 - std::min(1.0f, w);
+      out_.weights[slot] = 0, out_.ends[slot] = face;
+      emissivity += sum / static_cast<double>(W_.size());
+      if (!(sum > 0)) continue;
+      double left = u[2] * sum;
+      uint8_t bin = 0;
+      while (bin + 1u < W_.size() && left >= 1 - std::min(1.0f, W_[bin])) left -= 1 - std::min(1.0f, W_[bin]), ++bin;
+      going_.push_back({slot, bin, sum / static_cast<double>(W_.size()), u[3]});
+      rays_.push_back({tracer_.leave(hit, d), d, hit.time, slot});
+    }
+    out_.emissivity[face] = emissivity / each;
+    if (emissivity == 0) {  // it neither emits nor takes anything: whatever its row is
+      out_.weights[face * each] = 1;
+    }
+  }
+
+  void finish(const Going& path, uint32_t end) {
+    out_.ends[path.slot] = end;
+    out_.weights[path.slot] = static_cast<float>(path.weight);
+  }
+
+  // False when the path has ended.
+  bool go_on(Going& path, Ray& ray, const Hit& hit, int n) {
+    if (!hit.hit()) {
+      finish(path, ray.direction.z > 0 ? faces_.outside_ring(HeatFaces::ring(ray.direction)) : faces_.outside_below());
+      return false;
+    }
+    surface_.interact(hit, -ray.direction, at_, ray.time);
+    if (!at_.baked || !at_.baked->model) {  // nothing that light takes notice of
+      ray.origin = tracer_.leave(hit, ray.direction);
+      return true;
+    }
+    const Dir out = at_.frame.to_local(-ray.direction);
+    at_.baked->model->total(out, W_);
+    const double kept = std::min(1.0f, W_[path.bin]);
+    const SampleStream numbers = stream(path.slot);
+    const std::array<double, 4> u = numbers.draw(sample(path.slot), static_cast<uint32_t>(1 + n));
+    const bool last = n >= kMostReflections;
+    path.left *= kept;
+    if (path.left <= path.until || last) {
+      if (last) unfinished_ += path.weight;
+      finish(path, faces_.end_at(hit, ray.direction, at_.material));
+      return false;
+    }
+    const auto in = walk_.reflect(*at_.baked->model, out, {u[0], u[1]}, u[2], path.bin);
+    if (!in) {  // drawn in vain: the others of its kind make up for it
+      finish({path.slot, path.bin, 0}, faces_.outside_below());
+      return false;
+    }
+    path.weight *= in->weight / kept;
+    const Dir d = at_.frame.to_world(in->direction);
+    ray.origin = tracer_.leave(hit, d), ray.direction = d;
+    return true;
+  }
+
+  const Tracer& tracer_;
+  const Elements& elements_;
+  const HeatFaces& faces_;
+  const PathOptions& options_;
+  Surface surface_;
+  ExchangePaths& out_;
+  Interaction at_;
+  std::vector<float> W_;
+  OneBinWalk walk_;
+  TraceStatistics trace_;
+  std::vector<Going> going_;
+  std::vector<Ray> rays_;
+  std::vector<Hit> hits_;
+  double unfinished_ = 0;
+};
+
+}  // namespace
+
+ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                             const HeatOptics& optics, const PathOptions& options,
+                             const std::function<void(size_t)>& progress) {
+  ExchangePaths out;
+  out.blocks = options.blocks, out.paths = options.paths;
+  const size_t each = size_t{options.blocks} * options.paths;
+  SUITE_CHECK(each > 0 && faces.size() * each < UINT32_MAX);
+  out.ends.resize(faces.size() * each), out.weights.resize(faces.size() * each);
+  out.emissivity.resize(faces.size());
+  for (size_t f = 0; f < faces.size(); ++f) out.area.push_back(elements[faces.element(f)].area);
+  std::atomic<uint64_t> rays{0}, unfinished{0};
+  constexpr double kUnit = 1e6;
+  // Waves are always the same: rays that go together may decide the last bits of a hit.
+  parallel_for(0, (faces.size() + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
+    const FlushDenormals denormals;
+    const AtWork work(tracer);
+    Wave wave(tracer, elements, faces, optics, options, out);
+    for (size_t w = first; w < last; ++w) wave.run(w * kWave, std::min(faces.size(), (w + 1) * kWave));
+    rays += static_cast<uint64_t>(wave.rays());
+    unfinished += static_cast<uint64_t>(wave.unfinished() * kUnit);
+    if (progress) progress(std::min(faces.size(), last * kWave) - first * kWave);
+  });
+  out.rays = static_cast<double>(rays);
+  out.unfinished = static_cast<double>(unfinished) / kUnit / static_cast<double>(faces.size() * each);
+  return out;
+}
+
+}  // namespace suite

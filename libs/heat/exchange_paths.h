@@ -1,0 +1,48 @@
+// The exchange of thermal infrared by paths: from every face, reflected by the true optics until they are absorbed or
+// have left, however often that takes.
+//
+// Method: a path starts at a point of its face in a direction drawn as a Lambert surface emits, in one of the bins of
+// the infrared drawn as the face emits in that direction; where it meets a surface it is absorbed with that surface's
+// emissivity there, else goes on as the surface reflects; one number a path, stratified over those of a face, says when
+// it is absorbed, so that in cavities that reflect much the shares hardly scatter. So ends what the face emits, and by
+// reciprocity what it absorbs comes from there (exchange.h). Every end weighs the emissivity of its beginning.
+//
+// Assumes: shares of the bins in what is emitted are those of 300 K; media are passed by.
+#pragma once
+#include "heat/exchange.h"
+#include "heat/heat_faces.h"
+#include "surface/surface.h"
+
+namespace suite {
+
+struct PathOptions {
+  uint32_t blocks = 8;  // independent ones, for errors
+  uint32_t paths = 8;   // of a face in each
+  uint64_t seed = 1;
+};
+
+struct ExchangePaths {
+  uint32_t blocks = 0, paths = 0;
+  std::vector<uint32_t> ends;      // [face][block][path]: a face or an outside
+  std::vector<float> weights;      // the same; of a face they do not sum to anything in particular
+  std::vector<double> emissivity;  // by face, hemispheric
+  std::vector<double> area;        // m2, by face
+  double rays = 0;
+  double unfinished = 0;  // share of the weight that was absorbed where it was after kMostReflections
+
+  // Of all paths, from both ends of what two faces exchange, so that what one gives the other takes and rows still sum
+  // to 1 (where faces see so few others that both cannot be had, the latter). exchange_reciprocity.cpp has the method.
+  ExchangeMatrix matrix(size_t outsides) const;
+  // The paths of one block.
+  ExchangePaths block(uint32_t number) const;
+  size_t faces() const { return emissivity.size(); }
+};
+
+inline constexpr int kMostReflections = 100000;
+
+// In parallel over faces, the same on any number of threads. progress: is told faces that are done; may be empty.
+ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                             const HeatOptics& optics, const PathOptions& options,
+                             const std::function<void(size_t)>& progress = {});
+
+}  // namespace suite

@@ -1,0 +1,29 @@
+#include "heat/heat_faces.h"
+
+namespace suite {
+
+HeatFaces::HeatFaces(const Elements& elements, const HeatOptics& optics)
+    : elements_(elements), has_heat_(optics.has_heat), fronts_(elements.size()), back_(elements.size(), kNone) {
+  for (uint32_t e = 0; e < elements.size(); ++e) element_.push_back(e);
+  for (uint32_t e = 0; e < elements.size(); ++e)
+    if (optics.heated[elements[e].material].back_open) {
+      back_[e] = count();
+      element_.push_back(e);
+    }
+  own_.resize(optics.has_heat.size(), kNone);
+  for (uint32_t m = 0; m < own_.size(); ++m)
+    if (!optics.has_heat[m]) {
+      own_[m] = static_cast<uint32_t>(materials_.size());
+      materials_.push_back(m);
+    }
+}
+
+uint32_t HeatFaces::end_at(const Hit& hit, Dir direction, uint32_t material) const {
+  if (!has_heat_[material]) return outside_material(material);
+  const std::optional<uint32_t> element = elements_.at(hit, material);
+  if (!element) return outside_moving();
+  const bool front = dot(direction, hit.normal) < 0;
+  return front || back_[*element] == kNone ? *element : back_[*element];
+}
+
+}  // namespace suite

@@ -1,0 +1,44 @@
+// The faces of elements, which are the rows of the exchange, and the ends of light: faces, parts of the sky, what has a
+// temperature of its own.
+#pragma once
+#include <vector>
+
+#include "heat/elements.h"
+#include "heat/heat_optics.h"
+
+namespace suite {
+
+class HeatFaces {
+ public:
+  // Fronts of all elements in their order, then the backs of those that are open. Keeps a reference to the elements.
+  HeatFaces(const Elements& elements, const HeatOptics& optics);
+
+  size_t size() const { return element_.size(); }
+  uint32_t element(size_t face) const { return element_[face]; }
+  bool is_back(size_t face) const { return face >= fronts_; }
+  uint32_t back_of(uint32_t element) const { return back_[element]; }  // kNone: not open
+
+  // Outsides, numbered after the faces.
+  static constexpr uint32_t kRings = 16;  // of the sky, in which level ground receives equal shares of an even sky
+  // Ring of a direction above the horizon.
+  static uint32_t ring(Dir d) { return std::min(kRings - 1, static_cast<uint32_t>(kRings * d.z * d.z)); }
+  uint32_t outside_ring(uint32_t ring) const { return count() + ring; }
+  uint32_t outside_below() const { return count() + kRings; }       // beyond the scene, below the horizon
+  uint32_t outside_moving() const { return count() + kRings + 1; }  // what moves, comes or goes
+  uint32_t outside_material(uint32_t m) const { return count() + kRings + 2 + own_[m]; }
+  size_t outsides() const { return kRings + 2 + materials_.size(); }
+  // Materials with temperatures of their own, in the order of their outsides.
+  const std::vector<uint32_t>& materials() const { return materials_; }
+
+  // Where light ends that is absorbed at a hit of a material, coming along a direction.
+  uint32_t end_at(const Hit& hit, Dir direction, uint32_t material) const;
+
+ private:
+  uint32_t count() const { return static_cast<uint32_t>(element_.size()); }
+  const Elements& elements_;
+  std::vector<bool> has_heat_;
+  size_t fronts_;
+  std::vector<uint32_t> element_, back_, own_, materials_;
+};
+
+}  // namespace suite

@@ -1,0 +1,21 @@
+// Every flux of an element's front through the span, from a result: what a probe tells.
+#pragma once
+#include "heat/heat_balance.h"
+
+namespace suite {
+
+// W/m2 at one moment; into the element = sunlight + infrared + source - emitted - to_air.
+struct HeatFluxes {
+  double kelvin = 0, error = 0;  // K; standard error by the paths
+  double sunlight = 0, infrared = 0, emitted = 0, to_air = 0, source = 0;
+  double into() const { return sunlight + infrared + source - emitted - to_air; }
+};
+
+// By moment.
+std::vector<HeatFluxes> fluxes_of(const HeatResult& result, const Elements& elements, const HeatOptics& optics,
+                                  const WeatherLoads& weather, uint32_t element);
+
+// The element whose middle is nearest to a place (m, ENU).
+uint32_t nearest_element(const Elements& elements, Vec3 place);
+
+}  // namespace suite

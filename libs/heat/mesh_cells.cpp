@@ -1,0 +1,163 @@
+#include "heat/mesh_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace suite {
+
+namespace {
+
+constexpr double kFold = 0.3;     // of a normal's component: more from one facet to the next is a fold
+constexpr int kMostSplit = 1000;  // of a side: a million cells of one triangle
+
+// Parts of a triangle cut s x s: rows by u, in a row upright and turned ones in turn.
+uint32_t part_of(int s, double u, double v) {
+  const int i = std::clamp(static_cast<int>(u * s), 0, s - 1), j = std::clamp(static_cast<int>(v * s), 0, s - 1 - i);
+  const bool turned = (u * s - i) + (v * s - j) > 1 && j < s - 1 - i;
+  const int before = s * s - (s - i) * (s - i);
+  return static_cast<uint32_t>(before + 2 * j + (turned ? 1 : 0));
+}
+
+struct SubTriangle {
+  int i, j;
+  bool turned;
+};
+SubTriangle part_at(int s, int number) {
+  int i = 0;
+  for (int row = 2 * s - 1; number >= row; ++i, row -= 2) number -= row;
+  return {i, number / 2, number % 2 == 1};
+}
+
+}  // namespace
+
+std::array<Vec3, 3> MeshCells::corners(uint32_t triangle) const {
+  std::array<Vec3, 3> out;
+  for (size_t c = 0; c < 3; ++c) {
+    const float* f = &mesh_.positions[3 * size_t{mesh_.indices[3 * size_t{triangle} + c]}];
+    out[c] = mesh_.origin + Vec3{f[0], f[1], f[2]};
+  }
+  return out;
+}
+
+MeshCells::MeshCells(const Mesh& mesh, const std::vector<uint32_t>& material_of_part, double wanted)
+    : mesh_(mesh), cell_(mesh.triangle_count(), kNone), split_(mesh.triangle_count(), 0), first_{0} {
+  SUITE_CHECK_EQ(material_of_part.size(), mesh.parts.size());
+  std::vector<std::vector<Facet>> by_material;
+  std::vector<uint32_t> known;
+  for (size_t p = 0; p < mesh.parts.size(); ++p) {
+    if (material_of_part[p] == kNone) continue;
+    auto at = std::find(known.begin(), known.end(), material_of_part[p]);
+    if (at == known.end()) {
+      known.push_back(material_of_part[p]), by_material.emplace_back();
+      at = known.end() - 1;
+    }
+    std::vector<Facet>& facets = by_material[static_cast<size_t>(at - known.begin())];
+    for (uint32_t k = 0; k < mesh.parts[p].triangle_count; ++k) {
+      const uint32_t t = mesh.parts[p].first_triangle + k;
+      const auto [a, b, c] = corners(t);
+      const Vec3 n = cross(b - a, c - a);
+      const double twice = length(n);
+      if (!(twice > 0)) continue;
+      facets.push_back({(a + b + c) / 3, n / twice, twice / 2, t});
+      total_ += twice / 2;
+    }
+  }
+  const double target = total_ / std::max(wanted, 1.0);
+  for (size_t m = 0; m < known.size(); ++m) {
+    std::vector<Facet>& facets = by_material[m];
+    for (const Facet& f : facets)
+      if (f.area > 1.5 * target) cut(f, target, known[m]);
+    std::erase_if(facets, [&](const Facet& f) { return f.area > 1.5 * target; });
+    gather(facets, 0, facets.size(), target, known[m]);
+  }
+}
+
+void MeshCells::add_cell(double area, uint32_t material) {
+  first_.push_back(static_cast<uint32_t>(order_.size()));
+  areas_.push_back(area);
+  materials_.push_back(material);
+}
+
+void MeshCells::cut(const Facet& facet, double target, uint32_t material) {
+  const int s = std::clamp(static_cast<int>(std::lround(std::sqrt(facet.area / target))), 1, kMostSplit);
+  cell_[facet.triangle] = static_cast<uint32_t>(areas_.size());
+  split_[facet.triangle] = static_cast<uint16_t>(s);
+  const double part = facet.area / s / s;
+  for (int k = 0; k < s * s; ++k) {
+    order_.push_back(facet.triangle);
+    until_.push_back(part);
+    part_.push_back(static_cast<uint32_t>(k));
+    add_cell(part, material);
+  }
+}
+
+// Halves by area along the longest extent of place, or of direction where that is longer.
+void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, double target, uint32_t material) {
+  if (begin == end) return;
+  double area = 0;
+  Box3 place, facing;
+  for (size_t i = begin; i < end; ++i)
+    area += facets[i].area, place.grow(facets[i].centre), facing.grow(facets[i].normal);
+  const Vec3 size = place.size(), turn = facing.size();
+  // A right angle counts for more than the width of what is cut.
+  const double width = std::max({size.x, size.y, size.z});
+  if (end - begin == 1 || area <= 1.5 * target) {
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) {
+      cell_[facets[i].triangle] = static_cast<uint32_t>(areas_.size());
+      split_[facets[i].triangle] = 1;
+      order_.push_back(facets[i].triangle);
+      until_.push_back(sum += facets[i].area);
+    }
+    part_.push_back(0);
+    return add_cell(sum, material);
+  }
+  int axis = 0;
+  double longest = -1;
+  for (int k = 0; k < 6; ++k)
+    if (const double extent = k < 3 ? size[k] : 1.5 * width * turn[k - 3]; extent > longest) longest = extent, axis = k;
+  const auto key = [&](const Facet& f) { return axis < 3 ? f.centre[axis] : f.normal[axis - 3]; };
+  const auto from = facets.begin() + static_cast<std::ptrdiff_t>(begin),
+             to = facets.begin() + static_cast<std::ptrdiff_t>(end);
+  std::sort(from, to, [&](const Facet& a, const Facet& b) {
+    return key(a) != key(b) ? key(a) < key(b) : a.triangle < b.triangle;
+  });
+  // In the middle, but through folds where there are any.
+  double before = 0, widest = axis < 3 ? INFINITY : kFold;
+  size_t middle = begin + 1, fold = 0;
+  for (size_t i = begin + 1; i < end; ++i) {
+    before += facets[i - 1].area;
+    if (before - facets[i - 1].area / 2 < area / 2) middle = i;
+    if (const double jump = key(facets[i]) - key(facets[i - 1]);
+        jump > widest && before > 0.1 * area && before < 0.9 * area)
+      widest = jump, fold = i;
+  }
+  if (fold > 0) middle = fold;
+  gather(facets, begin, middle, target, material);
+  gather(facets, middle, end, target, material);
+}
+
+MeshCells::Point MeshCells::point(size_t cell, double x, double y, double z) const {
+  const auto begin = until_.begin() + first_[cell], end = until_.begin() + first_[cell + 1];
+  const auto at = std::min(std::upper_bound(begin, end, x * *(end - 1)), end - 1);
+  const uint32_t triangle = order_[static_cast<size_t>(at - until_.begin())];
+  const double root = std::sqrt(y), u = 1 - root, v = z * root;
+  const int s = split_[triangle];
+  if (s <= 1) return {triangle, u, v};
+  const SubTriangle part = part_at(s, static_cast<int>(part_[cell]));
+  return part.turned ? Point{triangle, (part.i + 1 - u) / s, (part.j + 1 - v) / s}
+                     : Point{triangle, (part.i + u) / s, (part.j + v) / s};
+}
+
+uint32_t MeshCells::cell_of(uint32_t triangle, Vec3 local) const {
+  if (split_[triangle] <= 1) return cell_[triangle];
+  const auto [a, b, c] = corners(triangle);
+  const Vec3 e1 = b - a, e2 = c - a, p = local - a;
+  const double d11 = dot(e1, e1), d12 = dot(e1, e2), d22 = dot(e2, e2), p1 = dot(p, e1), p2 = dot(p, e2);
+  const double scale = 1 / (d11 * d22 - d12 * d12);
+  const double u = std::clamp((d22 * p1 - d12 * p2) * scale, 0.0, 1.0);
+  const double v = std::clamp((d11 * p2 - d12 * p1) * scale, 0.0, 1.0 - u);
+  return cell_[triangle] + part_of(split_[triangle], u, v);
+}
+
+}  // namespace suite

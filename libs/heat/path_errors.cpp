@@ -1,0 +1,229 @@
+#include "heat/path_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "spectral/planck.h"
+
+namespace suite {
+
+namespace {
+
+constexpr size_t kTogether = 256;
+constexpr double kBase = 300;  // K, about which differences are followed: they may be negative, temperatures not
+
+// Means over the parts of the span.
+class Parts {
+ public:
+  explicit Parts(size_t moments) : moments_(moments) {}
+  size_t part(size_t moment) const { return std::min(kHeatParts - size_t{1}, moment * kHeatParts / moments_); }
+  template <class Value>
+  std::vector<double> means(const Value& value) const {
+    std::vector<double> sum(kHeatParts, 0), count(kHeatParts, 0);
+    for (size_t k = 0; k < moments_; ++k) sum[part(k)] += value(k), count[part(k)] += 1;
+    for (size_t p = 0; p < kHeatParts; ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : 0;
+    return sum;
+  }
+
+ private:
+  size_t moments_;
+};
+
+double cube(double T) { return T * T * T; }
+
+class Errors {
+ public:
+  explicit Errors(const SolvedSurfaces& s)
+      : s_(s),
+        blocks_(s.exchange.blocks),
+        moments_(s.history.moments),
+        parts_(moments_),
+        faces_(s.exchange.faces()),
+        deviation_(faces_ * blocks_ * kHeatParts),
+        slope_(faces_ * kHeatParts) {
+    weather_by_part();
+    receive_by_block();
+    parallel_for(0, faces_, 64, [&](size_t begin, size_t end) {
+      for (size_t f = begin; f < end; ++f) deviations_of(f);
+    });
+  }
+
+  std::vector<float> follow() {
+    std::vector<float> out(faces_ * kHeatParts, 0.0f);
+    for (const SurfaceGroup& group : s_.groups) {
+      const size_t count = group.front_rows.size();
+      parallel_for(0, (count + kTogether - 1) / kTogether, 1, [&](size_t begin, size_t end) {
+        for (size_t p = begin; p < end; ++p) {
+          const size_t first = p * kTogether, n = std::min(kTogether, count - first);
+          slopes(group, first, n);
+          group.layers.empty() ? massless(group, first, n, out) : conduct(group, first, n, out);
+        }
+      });
+    }
+    return out;
+  }
+
+ private:
+  void weather_by_part() {
+    const auto& w = s_.weather;
+    direct_ = parts_.means([&](size_t k) { return w.direct[k]; });
+    diffuse_ = parts_.means([&](size_t k) { return w.diffuse[k] / kPi; });
+    below_ = parts_.means([&](size_t k) { return s_.ground_albedo * w.global[k] / kPi; });
+  }
+
+  // What every block's exchange alone would bring, of what all emit: means over the parts.
+  void receive_by_block() {
+    const size_t outsides = s_.loads.outside.size() / moments_;
+    std::vector<double> emits;
+    for (uint32_t end = 0; end < faces_ + outsides; ++end) {
+      const std::vector<double> means = parts_.means([&](size_t m) { return emitted(end, m); });
+      emits.insert(emits.end(), means.begin(), means.end());
+    }
+    const size_t each = faces_ * kHeatParts;
+    received_.resize(blocks_ * each);
+    for (uint32_t b = 0; b < blocks_; ++b)
+      s_.exchange.block(b).matrix(outsides).receive(emits, kHeatParts, {&received_[b * each], each});
+  }
+
+  // Of a face's loads: each block's minus the mean of all.
+  void deviations_of(size_t f) {
+    const auto& e = s_.exchange;
+    const auto& sun = s_.sun;
+    std::vector<double> load(blocks_ * kHeatParts, 0);
+    const double per_part = static_cast<double>(moments_ - 1) / kHeatParts;
+    for (size_t b = 0; b < blocks_; ++b) {
+      for (size_t p = 0; p < kHeatParts; ++p)
+        load[b * kHeatParts + p] =
+            e.emissivity[f] * received_[(b * faces_ + f) * kHeatParts + p] +
+            double{sun.beam_of_block[(f * blocks_ + b) * kHeatParts + p]} / per_part * direct_[p] +
+            double{sun.diffuse_of_block[f * blocks_ + b]} * diffuse_[p] +
+            double{sun.below_of_block[f * blocks_ + b]} * below_[p];
+    }
+    for (size_t p = 0; p < kHeatParts; ++p) {
+      double mean = 0;
+      for (size_t b = 0; b < blocks_; ++b) mean += load[b * kHeatParts + p] / static_cast<double>(blocks_);
+      for (size_t b = 0; b < blocks_; ++b)
+        deviation_[(f * blocks_ + b) * kHeatParts + p] = static_cast<float>(load[b * kHeatParts + p] - mean);
+    }
+  }
+
+  double emitted(uint32_t end, size_t m) const {
+    if (end >= faces_) return s_.loads.outside[(end - faces_) * moments_ + m];
+    const double T = s_.history.kelvin[end * moments_ + m];
+    return kStefanBoltzmann * T * cube(T);
+  }
+
+  double air(const std::vector<double>& values, size_t part) const {
+    const double t = s_.loads.begin + (static_cast<double>(part) + 0.5) / kHeatParts *
+                                          (s_.weather.moments.back() - s_.weather.moments.front());
+    const auto& times = s_.loads.air.times;
+    const auto k = std::min(static_cast<size_t>(std::upper_bound(times.begin(), times.end(), t) - times.begin()),
+                            times.size() - 1);
+    return values[k];
+  }
+
+  // W/(m2 K) that a face gives back, by part.
+  void slopes(const SurfaceGroup& group, size_t first, size_t n) {
+    const auto of = [&](uint32_t face, const FaceTraits& traits) {
+      const std::vector<double> T = parts_.means([&](size_t m) { return s_.history.kelvin[face * moments_ + m]; });
+      for (size_t p = 0; p < kHeatParts; ++p) {
+        FaceWeather w;
+        w.air_kelvin = air(s_.loads.air.kelvin, p), w.wind = air(s_.loads.air.wind, p);
+        w.vapour_pressure = air(s_.loads.air.vapour_pressure, p), w.pressure = s_.loads.air.pressure;
+        slope_[face * kHeatParts + p] = static_cast<float>(balance_at(traits, w, T[p]).linear +
+                                                           4 * traits.emissivity * kStefanBoltzmann * cube(T[p]));
+      }
+    };
+    for (size_t i = first; i < first + n; ++i) {
+      of(group.front_rows[i], group.front_of(i));
+      if (!group.back_rows.empty()) of(group.back_rows[i], group.back_of(i));
+    }
+  }
+
+  double deviation(uint32_t face, size_t block, size_t part) const {
+    return double{deviation_[(face * blocks_ + block) * kHeatParts + part]};
+  }
+  double slope(uint32_t face, size_t part) const { return double{slope_[face * kHeatParts + part]}; }
+
+  void add(std::vector<float>& out, uint32_t face, size_t part, double kelvin) const {
+    const auto n = static_cast<double>(blocks_);
+    float& to = out[face * kHeatParts + part];
+    to = static_cast<float>(std::sqrt(double{to} * double{to} + kelvin * kelvin / (n * (n - 1))));
+  }
+
+  void massless(const SurfaceGroup& group, size_t first, size_t n, std::vector<float>& out) const {
+    for (size_t i = first; i < first + n; ++i) {
+      const uint32_t front = group.front_rows[i];
+      for (size_t b = 0; b < blocks_; ++b)
+        for (size_t p = 0; p < kHeatParts; ++p) {
+          double flux = deviation(front, b, p), loss = slope(front, p);
+          if (!group.back_rows.empty())
+            flux += deviation(group.back_rows[i], b, p), loss += slope(group.back_rows[i], p);
+          if (!(loss > 0)) continue;
+          add(out, front, p, flux / loss);
+          if (!group.back_rows.empty()) add(out, group.back_rows[i], p, flux / loss);
+        }
+    }
+  }
+
+  void conduct(const SurfaceGroup& group, size_t first, size_t n, std::vector<float>& out) const {
+    const double length = s_.weather.moments.back() - s_.weather.moments.front();
+    const std::vector<double> steps(kHeatParts, length / kHeatParts);
+    const FaceBalance behind = back_balance(group.behind);
+    for (size_t b = 0; b < blocks_; ++b) {
+      std::vector<SlabLayer> layers = group.layers;
+      for (SlabLayer& layer : layers) layer.heat_generation = 0;
+      SlabBatch batch(layers, n, {60, !group.back_rows.empty()});
+      batch.start(0, kBase);
+      const auto line = [&](FaceLines& lines, size_t i, double slope, double flux) {
+        lines.linear[i] = {slope, slope};
+        lines.constant[i] = {flux + slope * kBase, flux + slope * kBase};
+        lines.quartic[i] = 0;
+      };
+      const BatchLoads loads = [&](double begin, double, const SlabBatch&, FaceLines& top, FaceLines& bottom) {
+        const auto p = std::min(kHeatParts - size_t{1}, static_cast<size_t>(begin / length * kHeatParts + 0.5));
+        for (size_t i = 0; i < n; ++i) {
+          const uint32_t front = group.front_rows[first + i];
+          line(top, i, slope(front, p), deviation(front, b, p));
+          if (group.back_rows.empty()) {
+            line(bottom, i, behind.linear, 0);
+          } else {
+            const uint32_t back = group.back_rows[first + i];
+            line(bottom, i, slope(back, p), deviation(back, b, p));
+          }
+        }
+      };
+      // The second period, from which the slow part of what the first one left is removed.
+      PeriodicOptions past;
+      past.enough = 2, past.harmonics = false;
+      std::vector<double> tops(kHeatParts * n), bottoms(kHeatParts * n);
+      find_periodic(batch, 0, steps, loads, past, [&](size_t step) {
+        const size_t p = std::min(step, kHeatParts - size_t{1});
+        for (size_t i = 0; i < n; ++i) tops[p * n + i] = batch.top(i), bottoms[p * n + i] = batch.bottom(i);
+      });
+      for (size_t p = 0; p < kHeatParts; ++p)
+        for (size_t i = 0; i < n; ++i) {
+          add(out, group.front_rows[first + i], p, tops[p * n + i] - kBase);
+          if (!group.back_rows.empty()) add(out, group.back_rows[first + i], p, bottoms[p * n + i] - kBase);
+        }
+    }
+  }
+
+  const SolvedSurfaces& s_;
+  size_t blocks_, moments_;
+  Parts parts_;
+  size_t faces_;
+  std::vector<float> deviation_, slope_;
+  std::vector<double> direct_, diffuse_, below_;
+  std::vector<double> received_;  // W/m2, by block, face and part
+};
+
+}  // namespace
+
+std::vector<float> path_errors(const SolvedSurfaces& solved) {
+  Errors errors(solved);
+  return errors.follow();
+}
+
+}  // namespace suite

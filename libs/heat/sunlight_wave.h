@@ -1,0 +1,95 @@
+// Faces that go together when sunlight is traced: the working memory of one thread.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "heat/heat_walk.h"
+#include "heat/sunlight.h"
+
+namespace suite {
+
+class SunlightWave {
+ public:
+  SunlightWave(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+               const SunCourse& course, const PathOptions& options, uint32_t joins, Sunlight& out);
+  void beam(size_t begin, size_t end);       // straight from the sun
+  void scattered(size_t begin, size_t end);  // along paths
+  uint64_t rays() const { return trace_.rays; }
+
+ private:
+  // A point of a face through the day.
+  struct Watch {
+    uint32_t face, block;
+    Hit hit;
+    Dir normal;                // of the face's side
+    double disk_x, disk_y;     // where on the sun's disk it looks, radii
+    std::vector<uint8_t> lit;  // by moment
+    std::vector<float> takes;  // by moment: what it absorbs of a beam of 1 that is not hidden
+  };
+  struct Edge {  // between two moments that differ
+    size_t watch, moment;
+    double low, high;
+    uint8_t lit_low;
+  };
+  struct Going {
+    uint32_t slot;
+    int knot = 0;
+    bool mirrored = false;  // the last surface sent it on without scattering: the sun could not be asked for there
+    uint32_t spectrum;      // number of its throughput
+    std::array<double, kMaxKnots> ratios;  // density at each knot over that at its own, of the path so far
+  };
+  struct Join {
+    uint32_t face, block, moment;
+    double value;
+  };
+  SampleStream stream(uint32_t slot, uint64_t purpose) const;
+  uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
+  static Dir on_disk(const Frame& sun, double x, double y, double radius) {
+    return normalized(sun.z + radius * (sun.x * x + sun.y * y));
+  }
+  Dir towards_sun(const Watch& watch, double t) const;
+  Dir towards_sun(const Watch& watch, uint32_t moment) const {
+    return on_disk(suns_[moment], watch.disk_x, watch.disk_y, course_.angular_radius);
+  }
+  void beam_of(size_t begin, size_t end);
+  // Every fourth path of a block has a point that looks at the sun through the whole day, and one there is at least.
+  uint32_t watches_of_block() const { return std::max(1u, options_.paths / 4); }
+  void look(std::vector<Watch>& watches);
+  void find_edges(std::vector<Watch>& watches, std::vector<Edge>& edges);
+  void add_beam(const Watch& watch, std::span<const Edge> edges);
+  float taken(const Watch& watch, uint32_t moment, Dir d);
+  void start(uint32_t face);
+  bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n);
+  void ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t n);
+  void answer_sun();
+  void add_to_beam(uint32_t face, uint32_t block, uint32_t moment, double value);
+  double mean_ratio(const Going& path) const;
+  void leave(const Going& path, Dir d);
+  void meet_sun(const Going& path, Dir d);
+  std::span<float> throughput(const Going& path) { return {&spectra_[size_t{path.spectrum} * bins_], bins_}; }
+
+  const Tracer& tracer_;
+  const Elements& elements_;
+  const HeatFaces& faces_;
+  const SunCourse& course_;
+  const PathOptions& options_;
+  uint32_t joins_;
+  Sunlight& out_;
+  Surface surface_;
+  size_t bins_, knots_;
+  double step_;                  // s, between moments
+  std::vector<uint32_t> sunny_;  // moments with the sun up
+  std::vector<Frame> suns_;      // by moment: z to the middle of the sun
+  Interaction at_;
+  std::vector<float> W_, w_, p_;
+  TraceStatistics trace_;
+  std::vector<Going> going_;
+  std::vector<float> spectra_;
+  std::vector<Ray> rays_, sights_;
+  std::vector<Hit> hits_;
+  std::vector<Join> asked_;
+  std::vector<double> reach_;
+  std::vector<uint8_t> blocked_;
+};
+
+}  // namespace suite

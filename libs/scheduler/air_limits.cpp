@@ -1,0 +1,170 @@
+#include "scheduler/air_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/primitives.h"
+#include "scheduler/doubts.h"
+#include "scheduler/moments.h"
+
+namespace suite {
+
+namespace {
+
+bool endless(const Scene& scene) {
+  return scene.bounds.empty() || std::any_of(scene.primitives.begin(), scene.primitives.end(),
+                                             [](const Primitive& p) { return primitive_box(p).empty(); });
+}
+
+std::string even_ground(const AirSpec& air) {
+  return strf("an even ground (albedo %.3g to %.3g)", air.ground_albedo.min(), air.ground_albedo.max());
+}
+
+// Where single places are followed: what stands for the ground that the scene has not got.
+std::optional<std::string> beyond(const AirSpec& air, const SourceSpecs& written, const Scene& scene,
+                                  const JobOptions& job) {
+  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
+  const Vec3 size = scene.bounds.size();
+  const double reach = 0.5 * std::min(size.x, size.y), share = share_from_beyond(reach);
+  if (share < kMostFromBeyond) return std::nullopt;
+  return strf(
+      "air: beyond the scene, which reaches %.3g km from its middle, %s goes on; of the light that molecules receive "
+      "from the ground over the middle some %.0f %% come from there (less of what lies lower)",
+      reach * 1e-3, even_ground(air).c_str(), 100 * share);
+}
+
+// Traced air goes on below where no matter ends it.
+std::optional<std::string> open_below(const SourceSpecs& written, const Scene& scene, const JobOptions& job) {
+  if (written.earth || job.periodic || endless(scene)) return std::nullopt;
+  const Vec3 size = scene.bounds.size();
+  const double reach = 0.5 * std::min(size.x, size.y);
+  if (share_from_beyond(reach) < kMostFromBeyond) return std::nullopt;
+  return strf(
+      "air: the scene reaches %.3g km from its middle; beyond it nothing ends the lowest air, which goes on downwards "
+      "and "
+      "sends light back as a bright ground would (5 %% of a hazy horizon under a low sun, round a dark scene that "
+      "reaches "
+      "15 km): lay `earth` or a plane without end under it",
+      reach * 1e-3);
+}
+
+// The lowest of sun and moon over all captures: degrees from the zenith.
+struct Lowest {
+  double zenith = 0;
+  std::string body;
+};
+Lowest lowest_body(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
+  SourceSpecs bodies;
+  for (const LightSpecPtr& light : written.lights)
+    if (light->disk() || light->date()) bodies.lights.push_back(light);
+  bodies.dut1 = written.dut1;
+  SourcesInTime in_time(bodies, scene);
+  Lowest lowest;
+  for (const auto& sensor : sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        for (const LightSpecPtr& light : in_time.at(in_time.on_grid(moment_of(c))).lights)
+          if (const FarDisk* disk = light->disk()) {
+            const double zenith = angle_between(normalized(disk->direction), {0, 0, 1});
+            if (zenith > lowest.zenith) lowest = {zenith, light->key()};
+          }
+  return lowest;
+}
+
+// Seen from space against another program (tests/physics/light/air_views_test.cpp), and what is too much of all light
+// over white ground in air that absorbs nothing (air_identities_test.cpp).
+std::string low(const Lowest& body) {
+  struct Size {
+    double below_deg;
+    const char* seen;
+    const char* energy;
+  };
+  constexpr Size sizes[] = {{72, "2", "0.8"}, {81, "2", "3.5"}, {85.1, "3", "11"}, {88.1, "3.5", "46"}};
+  const double degrees = body.zenith / kDegree;
+  std::string text = strf(
+      "air: the %s stands up to %.3g degrees from the zenith; light that is scattered more than once is that of a flat "
+      "Earth's layers, which low beams through round air bring too much light: ",
+      body.body.c_str(), degrees);
+  for (const Size& s : sizes)
+    if (degrees < s.below_deg)
+      return text + strf("seen from space up to %s %% (0.55 um, through haze), at worst %s %% (0.32 um, white ground)",
+                         s.seen, s.energy);
+  return text + "how much, has not been measured below 2 degrees";
+}
+
+// Whether a ray from high up goes down into the air and out of it again.
+bool along_limb(const Shells& shells, const Ray& ray) {
+  constexpr double kHigh = 1e4;  // m
+  const double lowest = shells.lowest_height(ray.origin, ray.direction, std::numeric_limits<double>::infinity());
+  return shells.height(ray.origin) > kHigh && dot(shells.up(ray.origin), ray.direction) < 0 &&
+         lowest > shells.heights().front() && lowest < shells.heights().back();
+}
+
+bool looks_along_limb(const Sensor& sensor, const Shells& shells) {
+  for (const Task& task : sensor.tasks())
+    for (const Capture& c : task.captures) {
+      const size_t across = c.columns - 1, along = c.rows - 1;
+      for (const size_t column : {size_t{0}, across / 2, across})
+        for (const size_t row : {size_t{0}, along / 2, along}) {
+          const SensorRay ray = middle_ray(sensor, c, row * c.columns + column);
+          if (ray.receiver == SensorRay::Receiver::none && along_limb(shells, ray.ray)) return true;
+        }
+    }
+  return false;
+}
+
+bool sees_sunlight(const Sensor& sensor) {
+  constexpr double kThermal = 4;  // um
+  const auto states = sensor.states();
+  return std::any_of(states.begin(), states.end(), [](const SpectralState& state) {
+    return std::any_of(state.bins.begin(), state.bins.end(), [](const Bin& b) { return b.low_um < kThermal; });
+  });
+}
+
+}  // namespace
+
+double share_from_beyond(double reach, double scale) {
+  // Middles of equal shares of what scatters.
+  constexpr int kParts = 256;
+  double sum = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const double height = -scale * std::log((i + 0.5) / kParts);
+    sum += height / std::hypot(height, reach);
+  }
+  return sum / kParts;
+}
+
+std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene, Sensors sensors,
+                                  const JobOptions& job) {
+  std::vector<std::string> said;
+  if (!written.air) return said;
+  if (written.air->scattering == AirScattering::traced)
+    if (const auto sentence = open_below(written, scene, job)) said.push_back(*sentence);
+  if (written.air->scattering != AirScattering::diffuse) return said;
+  SourceSpecs first = written;
+  resolve_sources(first, scene);
+  const AirSpec& air = *first.air;
+  if (air.adjacency && scene.media.empty()) {
+    if (!goes_back(job.pipeline))
+      said.push_back("air: this estimator goes back to no place in the air: light between ground and air is that of " +
+                     even_ground(air) + "; what single places send into it (adjacency) and shadows in it are left out");
+    else if (const auto sentence = beyond(air, written, scene, job))
+      said.push_back(*sentence);
+  }
+  if (!air.round) return said;
+  const Lowest body = lowest_body(written, scene, sensors);
+  if (body.zenith > kLowSun) said.push_back(low(body));
+  if (body.body.empty()) return said;
+  const double radius = air.radius + air.height_of_scene();
+  const Shells shells = Shells::round(
+      {0, 0, -radius}, radius,
+      {air.height_of_ground() - air.height_of_scene(), air.profile.levels.back().height - air.height_of_scene()});
+  for (const auto& sensor : sensors)
+    if (sees_sunlight(*sensor) && looks_along_limb(*sensor, shells))
+      said.push_back("air: sensor '" + sensor->name() +
+                     "' looks along the limb, where the light that is scattered more than once, of a flat Earth, makes "
+                     "it 2 to 7 % too bright (at 0.55 um through haze, lowest points from 5 to 60 km)");
+  return said;
+}
+
+}  // namespace suite

@@ -1,0 +1,30 @@
+"""Scenes, simulations and results of the remote-sensing suite in Python.
+
+Write a Scene and a Simulation, have the programs prepare and render them, read the results as xarray:
+
+    scene.prepare("lawn.h5"); result = simulation.render("out"); result["camera"].radiance
+
+The programs check what is written; what they refuse is an InputError with file, line and message.
+"""
+from .chips import write_chips
+from .envi import EnviHeader, FormatError, open_envi, read_header, read_values
+from .errors import (Finding, InputError, Interrupted, ProgramBug, ProgramError, ProgramMissing, ProgramWarning,
+                     UsageError)
+from .netcdf import write_netcdf
+from .programs import Run, find_program, run_program, version
+from .results import Result
+from .scene import (Material, Medium, Object, Origin, Placement, PreparedScene, Report, Scene, box, check_scene, cylinder, disk,
+                    layer, mesh, plane, prepare_scene, sphere, terrain)
+from .simulation import (Atmosphere, Band, Fisheye, FrameCamera, Lamp, Moon, Orthographic, Output, Points, Sensor, Simulation,
+                         Sky, Sun, bands, render)
+from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
+
+__version__ = "0.1.0"
+__all__ = [
+    "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FormatError", "FrameCamera",
+    "InputError", "Interrupted", "Keys", "Lamp", "Material", "Medium", "Moon", "Object", "OpenKeys", "Origin", "Orthographic",
+    "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError", "ProgramMissing", "ProgramWarning",
+    "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun", "UsageError", "bands", "box", "check_scene",
+    "cylinder", "disk", "find_program", "layer", "mesh", "open_envi", "plane", "prepare_scene", "read_header", "read_values",
+    "render", "run_program", "sphere", "terrain", "version", "write_chips", "write_netcdf",
+]

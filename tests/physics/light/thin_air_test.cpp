@@ -1,0 +1,111 @@
+// Short ways and ways out of real air, which are computed by series and from tables, against sums over many steps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "light/stratified_air.h"
+
+namespace suite {
+namespace {
+
+SpectralState three_bins() {
+  const std::vector<Band> bands{Band::rectangular("blue", 0.45, 0.01), Band::rectangular("green", 0.55, 0.01),
+                                Band::rectangular("infrared", 0.86, 0.01)};
+  return make_state(bands, 1);
+}
+
+AirSpec hazy_air() {
+  AirSpec air;
+  air.profile = standard_profile("us_standard");
+  air.aerosol = AirSpec::Aerosol{};
+  air.scattering = AirScattering::single;
+  return air;
+}
+
+struct Lit {
+  explicit Lit(double zenith_deg)
+      : state(three_bins()),
+        sun(state.size(), 1),
+        air(make_stratified_air(hazy_air(), state, {{dir_from_angles(zenith_deg * kDegree, 0.3), sun.data()}})) {}
+  SpectralState state;
+  std::vector<float> sun;
+  std::unique_ptr<const Atmosphere> air;
+};
+
+// Light that a way within one layer sends back, in steps; and what it would be if the beam were everywhere as at its
+// beginning.
+struct Summed {
+  std::vector<double> stepped, even;
+};
+Summed summed(const Lit& lit, Vec3 from, Dir d, double length) {
+  constexpr int kSteps = 200;
+  const size_t n = lit.state.size(), layer = lit.air->shells().layer_of(lit.air->shells().height(from));
+  Summed sums{std::vector<double>(n), std::vector<double>(n)};
+  std::vector<float> scattered(n), depth(n), slope(n), first(n);
+  lit.air->beam(0, layer, from, d, {scattered, first, slope});
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = (i + 0.5) * length / kSteps;
+    lit.air->beam(0, layer, from + d * s, d, {scattered, depth, slope});
+    for (size_t bin = 0; bin < n; ++bin) {
+      const double step = scattered[bin] * length / kSteps, way = double{lit.air->extinction(layer)[bin]} * s;
+      sums.stepped[bin] += step * std::exp(-way - double{depth[bin]});
+      sums.even[bin] += step * std::exp(-way - double{first[bin]});
+    }
+  }
+  return sums;
+}
+
+TEST(ThinAir, ShortWaysAreSumsOfTheirSteps) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  double worst = 0, without_change = 0;
+  for (const double zenith_deg : {5.0, 40.0, 77.0}) {
+    const Lit lit(zenith_deg);
+    std::vector<float> T(lit.state.size()), S(T.size());
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 from{2e3 * (u(random) - 0.5), 0, 1 + 240 * u(random)};
+      const double z = i % 2 ? 0.05 * (2 * u(random) - 1) : 2 * u(random) - 1;  // many nearly level
+      const Dir d = dir_from_angles(std::acos(z), 2 * kPi * u(random));
+      const double to_bound = d.z > 0 ? (248 - from.z) / d.z : (0.1 - from.z) / d.z;
+      const double length = std::min(to_bound, std::pow(10, 3.5 * u(random)));
+      lit.air->path(from, d, length, T, S);
+      const Summed expected = summed(lit, from, d, length);
+      for (size_t bin = 0; bin < T.size(); ++bin) {
+        worst = std::max(worst, std::fabs(double{S[bin]} / expected.stepped[bin] - 1));
+        without_change = std::max(without_change, std::fabs(expected.even[bin] / expected.stepped[bin] - 1));
+        EXPECT_NEAR(T[bin], std::exp(-double{lit.air->extinction(0)[bin]} * length), 1e-6);
+      }
+    }
+  }
+  std::printf("short ways: %.1e at worst, %.1e if the beam did not change\n", worst, without_change);
+  EXPECT_LT(worst, 2e-4);
+  EXPECT_GT(without_change, 1e-2);
+}
+
+TEST(ThinAir, WaysOutAreThoseOfAllTheirLayers) {
+  const Lit lit(40);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> u(0, 1);
+  std::vector<float> T(lit.state.size()), exact(T.size()), beside(T.size());
+  double worst = 0, off = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 from{0, 1e4 * u(random), std::pow(10, 4.3 * u(random)) - 1};
+    const double cosine = i % 2 ? 0.051 + 0.1 * u(random) : 0.051 + 0.949 * u(random);
+    const Dir d = dir_from_angles(std::acos(cosine), 1);
+    lit.air->transmittance(from, d, std::numeric_limits<double>::infinity(), T);
+    lit.air->transmittance(from, d, 1e8, exact);
+    lit.air->transmittance(from, dir_from_angles(std::acos(cosine) + 1e-3, 1), 1e8, beside);
+    for (size_t bin = 0; bin < T.size(); ++bin) {
+      worst = std::max(worst, std::fabs(double{T[bin]} - double{exact[bin]}));
+      off = std::max(off, std::fabs(double{T[bin]} - double{beside[bin]}));
+    }
+  }
+  std::printf("ways out: %.1e of transmittance at worst; a milliradian beside: %.1e\n", worst, off);
+  EXPECT_LT(worst, 5e-6);
+  EXPECT_GT(off, 1e-3);
+}
+
+}  // namespace
+}  // namespace suite

@@ -1,0 +1,81 @@
+// `temperature: {model: heat}` of a scene text: what comes of it, and faults at their places.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/files.h"
+#include "formats/scene_text/scene_text.h"
+#include "heat/heated_material.h"
+#include "scene/bake.h"
+#include "scene/issues.h"
+#include "support/temp_folder.h"
+
+namespace suite {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class HeatInScenes : public testing::Test {
+ protected:
+  HeatInScenes() { write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 2 3\n"); }
+  // A material with more keys, which begin on line 4.
+  Scene bake(const std::string& more) {
+    write_file(folder_ / "s.yaml", "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2,\n    " + more +
+                                       "}\nobjects:\n  tri: {obj: tri.obj}\nworld:\n  - {place: tri}\n");
+    report_ = Report(scene_issues());
+    return bake_scene(read_scene_text(folder_ / "s.yaml", {}, report_), report_);
+  }
+  std::string told(const std::string& more) {
+    bake(more);
+    return report_.text();
+  }
+  TempFolder folder_;
+  Report report_{scene_issues()};
+};
+
+constexpr const char* kLayer =
+    "{thickness_m: 0.1, density_kg_m3: 2000, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.5}";
+
+TEST_F(HeatInScenes, KeysArrive) {
+  const std::string layers = std::string("thermal: {layers: [") + kLayer + "]}, ";
+  const Scene s = bake(layers +
+                       "temperature: {model: heat, convection: tarp, roughness: rough, wetness: 0.2, back: "
+                       "air, back_k: 294, back_film_w_m2_k: 8, source_w_m2: 12, emissivity: 0.9}");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  const HeatedMaterial m = heated_material(s.temperatures.at(0).spec);
+  EXPECT_EQ(m.layers.at(0).density, 2000);
+  EXPECT_EQ(m.behind.film, 8);
+  EXPECT_EQ(m.front.wetness, 0.2);
+  EXPECT_EQ(m.source, 12);
+  EXPECT_EQ(m.emissivity, 0.9);
+  // Numbers of the material are its one layer.
+  const Scene one = bake(
+      "thermal: {thickness_m: 0.1, density_kg_m3: 2000, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.5}, "
+      "temperature: {model: heat}");
+  ASSERT_TRUE(report_.ok()) << report_.text();
+  EXPECT_EQ(heated_material(one.temperatures.at(0).spec).layers.at(0).thickness, 0.1);
+}
+
+TEST_F(HeatInScenes, Messages) {
+  const std::vector<std::pair<std::string, std::string>> table{
+      {"temperature: {model: heat, back: opne}", "did you mean 'open'?"},
+      {"temperature: {model: heat, back: ground, back_k: 290}", "without heat capacity"},
+      {"temperature: {model: heat, convection: mcadam}", "did you mean 'mcadams'?"},
+      {"temperature: {model: heat, convection: none, wetness: 0.5}", "asks for air"},
+      {"temperature: {model: heat, wetness: 2}", "wetness"},
+      {"temperature: {model: heat, emissivity: 1.5}", "emissivity"},
+      {"temperature: {model: heat, wetnes: 0.5}", "wetnes"},
+      {"temperature: {model: heat, thickness_m: 0.1}", "the one layer needs"},
+      {"temperature: {model: heat, table: [[0, 280], [1, 290]]}", "takes no table"},
+      {"thermal: {layers: [{thickness_m: 0.1, density_kg_m3: 2000, specific_heat_j_kg_k: 900, conductivity_w_m_k: "
+       "-1}]}, temperature: {model: heat}",
+       "conductivity"},
+      {"thermal: {layers: [{thickness_m: 0, density_kg_m3: 2000, specific_heat_j_kg_k: 900, conductivity_w_m_k: "
+       "1}]}, temperature: {model: heat}",
+       "thickness_m"}};
+  for (const auto& [text, says] : table)
+    EXPECT_THAT(told(text), AllOf(HasSubstr("s.yaml:4:"), HasSubstr(says))) << text;
+}
+
+}  // namespace
+}  // namespace suite

@@ -1,0 +1,136 @@
+// Elements: points and places, the budget, what moves, instances that share.
+#include "heat/elements.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "motion/track.h"
+#include "support/heated_scene_kit.h"
+#include "support/message_of.h"
+
+namespace suite {
+namespace {
+
+using namespace test;
+
+HeatedScene mixed() {
+  HeatedScene s;
+  const uint32_t a = s.heated(0.9, heat()), b = s.heated(0.5, heat({}, {{"back", "open"}})), own = s.given(1, 290);
+  s.plane(0, 0, a);
+  s.mesh(dome(6), shifted({0, 0, 3}));
+  Affine3 skewed = shifted({5, 0, 1});
+  skewed.a = {2, 0.3, 0, 0, 1, 0, 0, 0, -0.5};
+  s.mesh(box({0, 0, 0}, {1, 1, 1}, b, true), skewed);
+  s.exact(PrimitiveKind::sphere, {0.7}, b, skewed);
+  s.exact(PrimitiveKind::cylinder, {0.5, 2, 1}, a, shifted({-5, 3, 0.1}));
+  s.exact(PrimitiveKind::cone, {0.5, 0.2, 1, 1}, b, shifted({-5, -3, 0.1}));
+  s.exact(PrimitiveKind::sinusoid, {4, 3, 0.2, 3, 1, 0}, a, shifted({0, 8, 1}));
+  s.exact(PrimitiveKind::disk, {1, 0.4}, own, shifted({0, -8, 1}));
+  return s;
+}
+
+TEST(Elements, PointsAreWhereTheirElementIs) {
+  for (const size_t budget : {1u, 50u, 3000u}) {
+    const HeatKit kit(mixed(), budget);
+    const Elements& elements = *kit.elements;
+    size_t astray = 0, asked = 0;
+    double sum = 0;
+    for (size_t e = 0; e < elements.size(); ++e) {
+      const SampleStream stream(1, 2, e);
+      for (uint32_t k = 0; k < 8; ++k, ++asked) {
+        const Hit hit = elements.point(e, {stream, k, 0});
+        const auto found = elements.at(hit, elements[e].material);
+        ASSERT_TRUE(found.has_value());
+        astray += *found != e;
+      }
+      sum += elements[e].area;
+      EXPECT_EQ(elements[e].share, 1);
+    }
+    EXPECT_NEAR(sum, elements.total_area(), 1e-9 * sum);
+    EXPECT_LE(astray, asked / 500) << "of " << asked << " with a budget of " << budget;
+    // At least one a face of what is heated; nothing has more than some times its part.
+    EXPECT_LE(elements.size(), 2 * budget + 30);
+    EXPECT_GE(2 * elements.size(), budget);
+  }
+}
+
+// Areas under transforms that do not keep shapes: of the box in closed form, of the ellipsoid by quadrature.
+TEST(Elements, AreasUnderSkewedPlacements) {
+  Affine3 skewed;
+  skewed.a = {2, 0, 0, 0, 1, 0, 0, 0, 0.5};
+  const auto area = [&](bool sphere) {
+    HeatedScene s;
+    const uint32_t m = s.heated(0.9, heat());
+    if (sphere)
+      s.exact(PrimitiveKind::sphere, {1}, m, skewed);
+    else
+      s.mesh(box({0, 0, 0}, {1, 1, 1}, m, true), skewed);
+    return HeatKit(std::move(s), 2000).elements->total_area();
+  };
+  EXPECT_NEAR(area(false), 2 * (2 * 1 + 2 * 0.5 + 1 * 0.5), 1e-6);
+  double exact = 0;
+  constexpr int n = 2000;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 64; ++j) {
+      const double z = 2 * (i + 0.5) / n - 1, s = std::sqrt(1 - z * z), phi = 2 * kPi * (j + 0.5) / 64;
+      exact += length(skewed.normal({s * std::cos(phi), s * std::sin(phi), z})) * 4 * kPi / (n * 64);
+    }
+  EXPECT_NEAR(area(true), exact, 2e-3 * exact);
+}
+
+// Many small instances of one mesh share elements with their neighbours; what moves has none.
+TEST(Elements, InstancesShareAndWhatMovesHasNone) {
+  HeatedScene s;
+  const uint32_t m = s.heated(0.9, heat());
+  const Mesh leaf = quad(0.05, 0, m);
+  s.mesh(quad(10, 0, m));
+  s.mesh(leaf, shifted({0, 0, 1}));
+  auto scene = s.scene();
+  Placement p = scene->groups[0].placements.back();
+  for (int k = 1; k < 400; ++k) {
+    p.to_parent.b = {0.2 * (k % 20), 0.2 * (k / 20), 1};
+    scene->groups[0].placements.push_back(p);
+  }
+  const HeatKit still(s, 100);
+  EXPECT_EQ(still.elements->instances(), 401u);
+  EXPECT_EQ(still.elements->moving(), 0u);
+  EXPECT_LT(still.elements->size(), 120u);
+  EXPECT_NEAR(still.elements->total_area(), 400 + 400 * 0.01, 1e-6);
+
+  scene->tracks.push_back({"t", keyframe_track({{0, {{}, {}}}, {86400, {{}, {0, 0, 1}}}})});
+  scene->groups[0].placements.back().track = 0;
+  const HeatKit moved(s, 100);
+  EXPECT_EQ(moved.elements->moving(), 1u);
+  EXPECT_NEAR(moved.elements->total_area(), 400 + 399 * 0.01, 1e-6);
+  EXPECT_NE(moved.elements->fingerprint(), still.elements->fingerprint());
+}
+
+// What only comes and goes is at rest while it is there.
+TEST(Elements, WhatComesAndGoesHasSome) {
+  HeatedScene s;
+  const uint32_t m = s.heated(0.9, heat());
+  s.mesh(quad(10, 0, m));
+  s.mesh(quad(1, 0, m), shifted({0, 0, 1}));
+  auto scene = s.scene();
+  scene->schedules.push_back({"leaves", {0, 43200}, {}, {}, {}});
+  scene->groups[0].placements.back().schedule = 0;
+  const HeatKit kit(s, 100);
+  EXPECT_EQ(kit.elements->moving(), 0u);
+  EXPECT_NEAR(kit.elements->total_area(), 404, 1e-6);
+}
+
+TEST(Elements, SameSceneSameFingerprint) {
+  const HeatKit a(mixed(), 200), b(mixed(), 200), finer(mixed(), 400);
+  EXPECT_EQ(a.elements->fingerprint(), b.elements->fingerprint());
+  EXPECT_NE(a.elements->fingerprint(), finer.elements->fingerprint());
+}
+
+TEST(Elements, RefuseScenesWithoutAny) {
+  HeatedScene s;
+  s.plane(1, 1, s.given(1, 300));
+  EXPECT_NE(message_of([&] { HeatKit(s, 10); }).find("temperature: {model: heat}"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace suite

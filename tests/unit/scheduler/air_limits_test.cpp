@@ -1,0 +1,115 @@
+// What is told of air that is solved for an even ground: each limit where it matters and only there.
+#include "scheduler/air_limits.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/radiometry_kit.h"
+
+namespace suite {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+struct Told {
+  double half_width = 1e3, sun_zenith_deg = 30;
+  Vec3 from{0, 0, 7e5};
+  Dir towards{0, 0, -1};
+  double um = 0.55;
+  AirSpec air = {};
+  std::optional<EarthSpec> earth = {};
+  JobOptions job = {};
+
+  std::vector<std::string> said() const {
+    SourceSpecs sources;
+    auto own = std::make_shared<AirSpec>(air);
+    own->profile = standard_profile("us_standard");
+    sources.air = std::move(own);
+    sources.earth = earth;
+    sources.add(SunSpec{{dir_from_angles(sun_zenith_deg * kDegree, 0), 0, Curve::constant(1)}});
+    auto scene = test::scene_of({test::quad(half_width, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+    scene->bounds = scene_bounds(*scene);
+    std::vector<std::unique_ptr<Sensor>> sensors;
+    sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>{{from, towards, 0}},
+                                                        std::vector<Band>{Band::rectangular("b", um, 0.01)}, 4));
+    return tell_air(sources, *scene, sensors, job);
+  }
+};
+
+TEST(AirLimits, ShareOfTheGroundBeyond) {
+  EXPECT_NEAR(share_from_beyond(0), 1, 1e-12);
+  // Far out it is the mean height over the reach.
+  EXPECT_NEAR(share_from_beyond(1e6), 8000 / 1e6, 0.01 * 0.008);
+  EXPECT_NEAR(share_from_beyond(2e3, 1000), share_from_beyond(16e3), 1e-12);
+}
+
+TEST(AirLimits, TheGroundBeyondTheScene) {
+  EXPECT_THAT(Told{}.said(), Contains(HasSubstr("the scene, which reaches 1 km from its middle, an even ground (albedo "
+                                                "0.2 to 0.2) goes on; of the light that molecules receive from the "
+                                                "ground over the middle some 90 %")));
+  EXPECT_THAT(Told{.half_width = 3e5}.said(), IsEmpty());
+  EXPECT_THAT(Told{.earth = EarthSpec{}}.said(), IsEmpty());
+  JobOptions repeated;
+  repeated.periodic = Periodic{};
+  EXPECT_THAT(Told{.job = repeated}.said(), IsEmpty());
+  AirSpec even;
+  even.adjacency = false;  // told with the sources
+  EXPECT_THAT(Told{.air = even}.said(), IsEmpty());
+  AirSpec traced;
+  traced.scattering = AirScattering::traced;
+  EXPECT_THAT((Told{.half_width = 3e5, .sun_zenith_deg = 80, .air = traced}).said(), IsEmpty());
+  EXPECT_THAT((Told{.air = traced, .earth = EarthSpec{}}).said(), IsEmpty());
+  EXPECT_THAT(Told{.air = traced}.said(), Contains(HasSubstr("nothing ends the lowest air")));
+}
+
+TEST(AirLimits, EstimatorsThatDoNotGoBack) {
+  JobOptions paper, blind;
+  paper.pipeline.method = Method::paper, blind.pipeline.explicit_sources = false;
+  for (const JobOptions& job : {paper, blind}) {
+    const std::vector<std::string> said = Told{.job = job}.said();
+    ASSERT_THAT(said, SizeIs(1));
+    EXPECT_THAT(said[0], HasSubstr("(adjacency) and shadows in it are left out"));
+  }
+}
+
+TEST(AirLimits, LowSuns) {
+  const auto low = [](double zenith_deg) { return Told{.half_width = 3e5, .sun_zenith_deg = zenith_deg}.said(); };
+  EXPECT_THAT(low(59), IsEmpty());
+  EXPECT_THAT(low(70), Contains(HasSubstr("the sun stands up to 70 degrees from the zenith")));
+  EXPECT_THAT(low(70), Contains(HasSubstr("at worst 0.8 %")));
+  EXPECT_THAT(low(80), Contains(HasSubstr("at worst 3.5 %")));
+  EXPECT_THAT(low(95), Contains(HasSubstr("has not been measured")));
+  AirSpec flat;
+  flat.round = false;
+  EXPECT_THAT((Told{.half_width = 3e5, .sun_zenith_deg = 80, .air = flat}).said(), IsEmpty());
+}
+
+TEST(AirLimits, ViewsAlongTheLimb) {
+  const double radius = 6371e3, at = radius + 7e5;
+  const auto towards = [&](double lowest) {  // nadir angle of a line that comes down to this height
+    const double sine = (radius + lowest) / at;
+    return Dir{sine, 0, -std::sqrt(1 - sine * sine)};
+  };
+  Told limb{.half_width = 3e5};
+  for (const double lowest : {5e3, 6e4}) {
+    limb.towards = towards(lowest);
+    EXPECT_THAT(limb.said(), Contains(HasSubstr("sensor 'rays' looks along the limb"))) << lowest;
+  }
+  for (const double lowest : {-1e3, 3e5}) {
+    limb.towards = towards(lowest);
+    EXPECT_THAT(limb.said(), IsEmpty()) << lowest;
+  }
+  limb.towards = towards(5e3), limb.um = 10;  // the sun's light does not matter
+  EXPECT_THAT(limb.said(), IsEmpty());
+  // From a mountain, a little down: the horizon.
+  EXPECT_THAT((Told{.half_width = 3e5, .from = {0, 0, 2e3}, .towards = normalized(Vec3{1, 0, -0.001})}).said(),
+              IsEmpty());
+}
+
+}  // namespace
+}  // namespace suite
