@@ -4,6 +4,7 @@
 
 #include "air/diffuse_field.h"
 #include "scheduler/moments.h"
+#include "scheduler/scene_albedo.h"
 
 namespace suite {
 
@@ -78,10 +79,18 @@ std::string state_text(const AirSpec& air, const SpectralState& state, std::span
   return text;
 }
 
+// Air over the ground that it asks for.
+std::shared_ptr<const AirSpec> over_ground(const std::shared_ptr<const AirSpec>& air,
+                                           const std::shared_ptr<const Scene>& scene, const SpectralState& state) {
+  if (!asks_for_scene(air)) return air;
+  const Tracer tracer(scene);
+  return over_scene(air, tracer, Optics(*scene, state, used_materials(tracer), {.pending = true}), 0);
+}
+
 }  // namespace
 
-std::string air_text(const Simulation& sim, const Scene& scene) {
-  SourcesInTime in_time(sim.sources, scene);
+std::string air_text(const Simulation& sim, const std::shared_ptr<const Scene>& scene) {
+  SourcesInTime in_time(sim.sources, *scene);
   const SourceSpecs& sources = in_time.at(0);
   if (!sources.air)
     throw Error("the simulation has no real air to tell of", "give `atmosphere: {profile: us_standard}`");
@@ -89,7 +98,8 @@ std::string air_text(const Simulation& sim, const Scene& scene) {
   for (const auto& sensor : sim.sensors)
     for (size_t s = 0; s < sensor->states().size(); ++s)
       text += "sensor '" + sensor->name() + "', " + sensor->states()[s].text() + "\n" +
-              state_text(*sources.air, sensor->states()[s], sensor->bands(s), sources);
+              state_text(*over_ground(sources.air, scene, sensor->states()[s]), sensor->states()[s], sensor->bands(s),
+                         sources);
   return text;
 }
 

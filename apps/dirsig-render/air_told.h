@@ -1,5 +1,6 @@
 // The real air of a simulation in numbers, without rendering (--air).
 #pragma once
+#include <memory>
 #include <string>
 
 #include "formats/sim_text/sim_text.h"
@@ -8,6 +9,6 @@ namespace suite {
 
 // The layers' profile and, for each sensor and band at second 0, depths, transmittance and light at the ground.
 // Sensors have their bins. Error: a simulation without real air.
-std::string air_text(const Simulation& sim, const Scene& scene);
+std::string air_text(const Simulation& sim, const std::shared_ptr<const Scene>& scene);
 
 }  // namespace suite

@@ -1,5 +1,7 @@
 #include "heat.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,6 +78,28 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
   p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, elements, p.spec.span.begin);
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
   return p;
+}
+
+double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1; }
+
+// What finding temperatures takes at once: histories of loads and answers, paths with the matrix from both ends, shares
+// of sky and sun, blocks, and the nodes of the slabs.
+double bytes_of(const PreparedHeat& p) {
+  constexpr double kNodes = 2 * 70 * 8;
+  const double a_face = moments_of(p) * (8 * 4 + 4 * 4) + p.spec.paths * 32.0 +
+                        4.0 * (kSkyPatches + HeatSpec::kBlocks * (kHeatParts * 4 + 2)) + kNodes;
+  return static_cast<double>(p.faces->size()) * a_face;
+}
+
+// Refuses more than there is room for, before anything is traced.
+void check_size(const PreparedHeat& p, const Simulation& sim) {
+  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double paths = static_cast<double>(p.faces->size()) * p.spec.paths;
+  if (bytes_of(p) > there || paths >= 4294967295.0)
+    throw Error(sim.heat->where,
+                strf("%zu faces of elements with %u paths each take %s, and this machine has %s", p.faces->size(),
+                     p.spec.paths, human_bytes(bytes_of(p)).c_str(), human_bytes(there).c_str()),
+                "fewer elements or paths (2^32 paths at most), or a larger step_s");
 }
 
 HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
@@ -169,6 +193,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, budget));
   auto result = std::make_shared<HeatResult>();
   if (options.heat.empty()) {
+    check_size(*p, sim);
     Found found = find(*p, *scene, sim);
     *result = std::move(found.result);
     const std::vector<std::string> sentences = tell(*result, *p, seconds_since(begun));
@@ -197,15 +222,13 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   if (!sim.heat || !waits_for_heat(*scene)) return {};
   const PreparedHeat p = prepare(scene, sim, {}, sim.heat->spec.elements);
   const double faces = static_cast<double>(p.faces->size());
-  const double moments = std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1;
   // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every four paths at half
   // of the moments straight.
   const double points = std::max(double{HeatSpec::kBlocks}, p.spec.paths / 4.0);
-  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments / 2);
-  const double bytes =
-      faces * (moments * (8 * 4 + 4 * 4) + p.spec.paths * 8.0 + 4.0 * (kSkyPatches + HeatSpec::kBlocks * 30 + 2 * 24));
-  return strf("heat: %zu elements (%zu faces, %.3g m2 at most), %.0f moments, some %s rays, %s\n", p.elements->size(),
-              p.faces->size(), p.elements->largest(), moments, human_count(rays).c_str(), human_bytes(bytes).c_str());
+  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p) / 2);
+  return strf("heat: %zu elements (%zu faces, %.3g m2 at most), %.0f moments, some %s rays, some %s\n",
+              p.elements->size(), p.faces->size(), p.elements->largest(), moments_of(p), human_count(rays).c_str(),
+              human_bytes(bytes_of(p)).c_str());
 }
 
 }  // namespace suite

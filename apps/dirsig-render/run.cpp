@@ -369,7 +369,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene, options);
-  if (o.air) return print(air_text(sim, *scene));
+  if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
   options.heating = warmed(scene, sim, options, o, facts, !ranks || ranks->leads());
   if (o.heat_only) return 0;

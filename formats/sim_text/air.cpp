@@ -198,12 +198,16 @@ std::shared_ptr<const AirSpec> read_air(const Params& p, const LightContext& con
     air->scattering = static_cast<AirScattering>(scattering->as_choice({"single", "diffuse", "traced"}));
   air->streams = static_cast<int>(p.integer("streams", 4, 64, air->streams));
   if (air->streams % 2) throw p.at("streams").error(strf("%d streams are not even", air->streams));
-  if (const auto albedo = p.find("ground_albedo")) {
+  if (const auto albedo = p.find("ground_albedo");
+      albedo && albedo->kind() == Params::Kind::scalar && albedo->as_text() == "scene") {
+    air->ground_of_scene = true;
+  } else if (albedo) {
     air->ground_albedo = context.positive(*albedo, "albedo", "0 to 1");
     if (air->ground_albedo.max() > 1) throw albedo->error("the albedo exceeds 1");
   }
   if (p.has("ground_temperature_k")) air->ground_temperature = p.number_in("ground_temperature_k", 1, 2000, "K");
   air->adjacency = p.boolean("adjacency", true);
+  air->ground_of_any_scene = !p.has("ground_albedo") && air->adjacency && air->scattering == AirScattering::diffuse;
   note_unused(p, *air);
   check_air(*air);
   return air;

@@ -66,8 +66,8 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
     throw heat->error("a span of time has 'from' and 'to'", "give both, or none: the day of the captures");
   if (from) {
     out.span = TimeSpan{context.time(*from), context.time(*to)};
-    if (!(out.span->end - out.span->begin >= 2 * s.step))
-      throw to->error(strf("the span of %g s is shorter than two steps", out.span->end - out.span->begin),
+    if (!(out.span->end - out.span->begin >= kHeatParts * s.step))
+      throw to->error(strf("the span of %g s is shorter than %u steps", out.span->end - out.span->begin, kHeatParts),
                       "a later 'to' or a smaller step_s");
   }
   const double length = out.span ? out.span->end - out.span->begin : 86400;

@@ -15,7 +15,7 @@ namespace suite {
 
 enum class AirScattering {
   single,   // once, along every segment
-  diffuse,  // and the rest from a field solved once for a flat, even ground
+  diffuse,  // and the rest from a field solved once for an even ground
   traced,   // every time, by paths that are scattered in the air as in any medium: the reference for the others
 };
 
@@ -47,8 +47,10 @@ struct AirSpec {
   bool refraction = false;  // bends beams from outside about a round Earth
   AirScattering scattering = AirScattering::diffuse;
   int streams = 16;
-  // Of the ground as the diffuse field sees it: even, flat, at `ground_height` above sea level.
+  // Of the ground as the diffuse field sees it: even, at `ground_height` above sea level.
   Curve ground_albedo = Curve::constant(0.2);
+  // Its albedo is found from the scene for each state (scheduler/scene_albedo.h): must be, or where there is one.
+  bool ground_of_scene = false, ground_of_any_scene = false;
   double ground_temperature = 0;        // K; 0 = the air's at the ground
   bool adjacency = true;                // with the field: shadows in the air and light of single places are followed
   std::optional<double> ground_height;  // m; default: the scene's z = 0

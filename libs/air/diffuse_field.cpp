@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "air/discrete_ordinates.h"
+#include "air/ordinate_angles.h"
 #include "base/parallel.h"
 #include "math/falling.h"
 #include "spectral/planck.h"
@@ -14,30 +16,17 @@ namespace {
 
 constexpr double kPeak = 1e-4;  // a forward peak below it does not matter
 constexpr double kThin = 1e-7;  // as does scattering of such a depth
-// Of the table; 19 azimuths over a half circle are carried for 1300 bins in 60 layers, never fewer than 9 (18 around).
-constexpr size_t kMostBytes = 256u << 20;
-
-// Directions of the table: denser towards the horizon, where ways are long.
-DiffuseSource::Axes axes_of(const AirColumn& column, std::span<const AirBeam> beams) {
-  DiffuseSource::Axes axes;
-  axes.cosines = {-1,    -0.9, -0.78, -0.65, -0.5, -0.36, -0.24, -0.14, -0.06, -0.015,
-                  0.015, 0.06, 0.14,  0.24,  0.36, 0.5,   0.65,  0.78,  0.9,   1};
-  if (beams.empty()) return axes;
-  const size_t one = column.layers() * 2 * axes.cosines.size() * column.bins * sizeof(float);
-  if (beams.size() == 1) axes.symmetric = azimuth(beams[0].direction);
-  axes.azimuths = std::clamp<size_t>(kMostBytes / one, axes.symmetric ? 9 : 18, axes.symmetric ? 19 : 36);
-  return axes;
-}
 
 // One bin at a time; one of these a thread.
 class BinSolver {
  public:
   BinSolver(const AirSpec& spec, const AirColumn& column, const SpectralState& state, std::span<const AirBeam> beams,
-            const std::vector<std::vector<double>>& depths, const std::vector<std::vector<float>>& phases,
+            const BeamDepths& depths, const std::vector<std::vector<float>>& phases, const RoundWays& ways,
             DiffuseSource& to, DiffuseReport* report)
       : column_(column),
         beams_(beams),
-        depths_(depths),
+        depths_(depths.of_beams),
+        suns_(depths.of_suns),
         phases_(phases),
         to_(to),
         report_(report),
@@ -49,7 +38,11 @@ class BinSolver {
         ground_temperature_(spec.ground_temperature),
         state_(state),
         ground_(to.axes().cosines.size()),
-        own_(2 * layers_.size() * to.directions()) {}
+        own_(2 * layers_.size() * to.directions()),
+        even_(layers_.size(), ground_.size()),
+        gain_(layers_.size(), ground_.size()) {
+    if (ways.round) round_.emplace(*ways.round, *ways.flat, static_cast<size_t>(spec.streams));
+  }
 
   void solve(size_t bin) {
     bin_ = bin;
@@ -58,15 +51,16 @@ class BinSolver {
     for (size_t b = 0; b < std::max<size_t>(1, beams_.size()); ++b) {
       set_beam(b);
       solver_.solve(problem_);
-      report();
       for (size_t n = 0; n < layers_.size(); ++n)
         for (int end = 0; end < 2; ++end) tabulate(b, n, end);
+      report(round_ ? bend(b) : RoundFluxes{});
       if (peaked_) add_peak(b);
       for (size_t n = 0; n < layers_.size(); ++n)
         for (int end = 0; end < 2; ++end)
           for (size_t d = 0; d < to_.directions(); ++d)
             to_.at(from_top(n), end, d)[bin_] += static_cast<float>(own(n, end, d));
     }
+    if (to_.low_sun()) relight();
     // What lies below the ground is as its lowest layer.
     for (size_t l = 0; l < column_.ground; ++l)
       for (size_t d = 0; d < to_.directions(); ++d)
@@ -130,9 +124,12 @@ class BinSolver {
       problem_.ground_emission = 0;
       for (DiffuseLayer& l : layers_) l.planck_top = l.planck_bottom = 0;
     }
-    const double cosine = beams_[b].direction.z;
+    problem_.beam = beam_through(depths_[b], beams_[b].direction.z, beams_[b].irradiance[bin_]);
+  }
+  // of_levels: depth of a beam at the levels.
+  DiffuseBeam beam_through(const std::vector<double>& of_levels, double cosine, float irradiance) {
     depth_.resize(layers_.size() + 1);
-    for (size_t n = 0; n <= layers_.size(); ++n) depth_[n] = depths_[b][(column_.layers() - n) * column_.bins + bin_];
+    for (size_t n = 0; n <= layers_.size(); ++n) depth_[n] = of_levels[(column_.layers() - n) * column_.bins + bin_];
     secants_.assign(layers_.size(), 1 / std::max(cosine, 0.05));
     tops_.assign(layers_.size(), -1);
     for (size_t n = 0; n < layers_.size(); ++n) {
@@ -141,7 +138,24 @@ class BinSolver {
       if (!std::isfinite(depth_[n])) tops_[n] = 0;
     }
     if (std::isfinite(depth_[0])) tops_[0] = std::exp(-depth_[0]);
-    problem_.beam = {beams_[b].irradiance[bin_], cosine, secants_, tops_};
+    return {irradiance, cosine, secants_, tops_};
+  }
+  // Mean of the diffuse light of all directions in a layer.
+  double mean_light(size_t n) const {
+    const DiffusePlace middle{static_cast<int>(n), 0.5};
+    return solver_.fluxes(middle).mean_intensity - solver_.beam(middle) / (4 * kPi);
+  }
+  // How bright the layers are under other heights of the only beam.
+  void relight() {
+    std::vector<double> here(layers_.size());
+    for (size_t n = 0; n < here.size(); ++n) here[n] = mean_light(n);
+    for (size_t s = 0; s < to_.suns().zenith.size(); ++s) {
+      solver_.set_beam(beam_through(suns_[s], std::cos(to_.suns().zenith[s]), beams_[0].irradiance[bin_]));
+      for (size_t n = 0; n < here.size(); ++n)
+        to_.factor(s, from_top(n))[bin_] =
+            here[n] > 0 ? static_cast<float>(std::clamp(mean_light(n) / here[n], 0.0, 1e4)) : 1.0f;
+      for (size_t l = 0; l < column_.ground; ++l) to_.factor(s, l)[bin_] = to_.factor(s, column_.ground)[bin_];
+    }
   }
   // Source at an end of the n-th layer from the top, in the making.
   double& own(size_t n, int end, size_t direction) {
@@ -169,11 +183,50 @@ class BinSolver {
     for (size_t c = 0; c < ground_.size(); ++c) {
       double* const row = &own(n, end, to_.direction(c, 0));
       std::fill_n(row, azimuths, solver_.ground_radiance() * ground_[c]);
+      even_.at(above_ground(n), end, c) = static_cast<float>(row[0] + air_[c * orders]);
       for (size_t m = 0; m < orders; ++m)
         for (size_t a = 0; a < azimuths; ++a) row[a] += air_[c * orders + m] * cosines_[m * azimuths + a];
       for (size_t a = 0; a < azimuths; ++a) row[a] *= scale;
     }
   }
+
+  // Adds what the Earth's being round makes of it; in the scaled medium.
+  RoundFluxes bend(size_t b) {
+    const size_t count = layers_.size(), orders = static_cast<size_t>(solver_.streams());
+    scaled_.resize(count * orders), layers_in_round_.resize(count);
+    std::vector<double> of_beam(orders);
+    associated_legendre(0, beams_.empty() ? 1 : beams_[b].direction.z, of_beam);
+    for (size_t n = 0; n < count; ++n) {
+      const auto layer = static_cast<int>(n);
+      const double peak = std::min(moments_[n].back(), 1 - 1e-6);
+      double* const chi = &scaled_[n * orders];
+      for (size_t l = 0; l < orders; ++l) chi[l] = (moments_[n][l] - peak) / (1 - peak);
+      const double albedo = solver_.single_albedo(layer) * (1 - peak);
+      layers_in_round_[above_ground(n)] = {
+          at(column_.extinction, from_top(n)) * solver_.depth_scale(layer), albedo, {chi, orders}};
+      for (int end = 0; end < 2; ++end) {
+        const DiffusePlace place{layer, end == 0 ? 1.0 : 0.0};
+        const double beam = beams_.empty() ? 0 : albedo * solver_.beam(place) / (4 * kPi);
+        for (size_t c = 0; c < ground_.size(); ++c) {
+          const double* const of_way = round_->legendre(c);
+          double phase = 0;
+          for (size_t l = 0; l < orders; ++l) phase += static_cast<double>(2 * l + 1) * chi[l] * of_beam[l] * of_way[l];
+          even_.at(above_ground(n), end, c) += static_cast<float>(beam * phase + solver_.emission(place));
+        }
+      }
+    }
+    even_.ground = solver_.ground_radiance();
+    const RoundFluxes fluxes = round_->solve(layers_in_round_, even_, problem_.ground_albedo, gain_);
+    for (size_t n = 0; n < count; ++n)
+      for (int end = 0; end < 2; ++end)
+        for (size_t c = 0; c < ground_.size(); ++c) {
+          const double gain = solver_.depth_scale(static_cast<int>(n)) * double{gain_.at(above_ground(n), end, c)};
+          double* const row = &own(n, end, to_.direction(c, 0));
+          for (size_t a = 0; a < to_.axes().azimuths; ++a) row[a] += gain;
+        }
+    return fluxes;
+  }
+  size_t above_ground(size_t n) const { return layers_.size() - 1 - n; }
 
   // Adds what the forward peak, which the scaled medium lets pass, scatters: of diffuse light, found on its way through
   // the layers, and of the beam.
@@ -183,7 +236,7 @@ class BinSolver {
       for (size_t a = 0; a < to_.axes().azimuths; ++a) {
         const bool rising = cosines[c] < 0;  // the light, seen from above
         phases_of(b, to_.direction(c, a));
-        double light = rising ? solver_.ground_radiance() : 0;
+        double light = rising ? solver_.ground_radiance() + gain_.ground : 0;
         const size_t count = layers_.size();
         for (size_t step = 0; step < count; ++step) {
           const size_t n = rising ? count - 1 - step : step;
@@ -224,21 +277,25 @@ class BinSolver {
     return leaves;
   }
 
-  void report() {
+  // gained: by the Earth's being round.
+  void report(const RoundFluxes& gained) {
     if (!report_) return;
     const DiffuseFluxes ground = solver_.fluxes({static_cast<int>(layers_.size()) - 1, 1}),
                         top = solver_.fluxes({0, 0});
     const auto add = [&](std::vector<float>& to, double value) { to[bin_] += static_cast<float>(value); };
-    add(report_->direct, ground.direct), add(report_->down, ground.down), add(report_->up, ground.up);
-    add(report_->top_up, top.up);
+    add(report_->direct, ground.direct), add(report_->down, ground.down + gained.down);
+    add(report_->up, ground.up + kPi * gain_.ground);
+    const double above = column_.shells.curvature() * (height(column_.layers()) - height(column_.ground)),
+                 wider = 1 + above / (1 + column_.shells.curvature() * height(column_.ground));
+    add(report_->top_up, (top.up + gained.top_up) * wider * wider);
     report_->spherical_albedo[bin_] = static_cast<float>(solver_.spherical_albedo());
     report_->ground_albedo[bin_] = ground_albedo_[bin_];
   }
 
   const AirColumn& column_;
   std::span<const AirBeam> beams_;
-  const std::vector<std::vector<double>>& depths_;  // per beam [level][bin]
-  const std::vector<std::vector<float>>& phases_;   // per beam, as of phases_of
+  const std::vector<std::vector<double>>&depths_, &suns_;  // per beam, and other height of it, [level][bin]
+  const std::vector<std::vector<float>>& phases_;          // per beam, as of phases_of
   DiffuseSource& to_;
   DiffuseReport* report_;
   const std::vector<float> ground_albedo_;
@@ -253,42 +310,13 @@ class BinSolver {
   bool peaked_ = false;
   std::vector<double> depth_, secants_, tops_, air_, phase_;
   std::vector<double> ground_, own_;
+  std::optional<RoundLight> round_;
+  AirSources even_, gain_;  // means over azimuth, over scaled depth: all sources; what a round Earth adds
+  std::vector<double> scaled_;
+  std::vector<RoundLayer> layers_in_round_;
   std::vector<double> cosines_;  // of order times azimuth of the table, for a beam
   size_t cosines_of_ = static_cast<size_t>(-1);
 };
-
-// Depth of a beam at the levels over the scene's origin, infinite in the shadow of the Earth; [level][bin].
-std::vector<double> depths_of(const AirColumn& column, const AirBeam& beam, const BeamTable& table) {
-  std::vector<double> depths((column.layers() + 1) * column.bins);
-  std::vector<float> row(column.bins);
-  for (size_t level = 0; level <= column.layers(); ++level) {
-    // The beam may have come to the top through the air below, where the sun is under the horizon.
-    const double below = level == column.layers() ? 1e-3 : 0;
-    const bool lit = table.spread_depth(column.shells.heights()[level] - below, beam.direction.z, row);
-    for (size_t i = 0; i < column.bins; ++i) depths[level * column.bins + i] = lit ? row[i] : INFINITY;
-  }
-  return depths;
-}
-
-// Phase functions between a beam and the directions of the table; [direction][kind][bin], 1/sr.
-std::vector<float> phases_of(const AirColumn& column, const AirBeam& beam, const DiffuseSource& source) {
-  const std::vector<double>& cosines = source.axes().cosines;
-  std::vector<float> phases(source.directions() * column.kinds.size() * column.bins);
-  for (size_t c = 0; c < cosines.size(); ++c)
-    for (size_t a = 0; a < source.axes().azimuths; ++a) {
-      const double sine = std::sqrt(std::max(0.0, 1 - cosines[c] * cosines[c])), azimuth = source.azimuth(a);
-      const Dir d{sine * std::cos(azimuth), sine * std::sin(azimuth), cosines[c]};
-      for (size_t k = 0; k < column.kinds.size(); ++k) {
-        const PhaseFunction& phase = *column.kinds[k].phase;
-        const std::span<float> row{&phases[(source.direction(c, a) * column.kinds.size() + k) * column.bins],
-                                   column.bins};
-        const bool uniform = phase.spectrally_uniform();
-        phase.eval(std::clamp(dot(beam.direction, d), -1.0, 1.0), uniform ? row.first(1) : row);
-        if (uniform) std::fill(row.begin(), row.end(), row[0]);
-      }
-    }
-  return phases;
-}
 
 }  // namespace
 
@@ -296,17 +324,17 @@ std::shared_ptr<const DiffuseSource> solve_diffuse_field(const AirSpec& spec, co
                                                          const SpectralState& state, std::span<const AirBeam> beams,
                                                          std::span<const BeamTable> tables, DiffuseReport* report) {
   if (column.kinds.empty()) return nullptr;
-  std::vector<std::vector<double>> depths;
-  for (size_t b = 0; b < beams.size(); ++b) depths.push_back(depths_of(column, beams[b], tables[b]));
-  auto source = std::make_shared<DiffuseSource>(column.layers(), column.bins, axes_of(column, beams));
+  auto source = std::make_shared<DiffuseSource>(column.layers(), column.bins, diffuse_axes(column, beams));
+  const BeamDepths depths = beam_depths(column, beams, tables, *source);
   std::vector<std::vector<float>> phases;
-  for (const AirBeam& beam : beams) phases.push_back(phases_of(column, beam, *source));
+  for (const AirBeam& beam : beams) phases.push_back(beam_phases(column, beam, *source));
   if (report)
     for (auto* row : {&report->direct, &report->down, &report->up, &report->top_up, &report->spherical_albedo,
                       &report->ground_albedo})
       row->assign(column.bins, 0.0f);
+  const RoundWays ways(column, source->axes().cosines);
   parallel_for(0, column.bins, 4, [&](size_t begin, size_t end) {
-    BinSolver solver(spec, column, state, beams, depths, phases, *source, report);
+    BinSolver solver(spec, column, state, beams, depths, phases, ways, *source, report);
     for (size_t bin = begin; bin < end; ++bin) solver.solve(bin);
   });
   return source;

@@ -1,23 +1,17 @@
-// The diffuse field of a column of air, solved once per state and moment by discrete ordinates.
+// The diffuse field of a column of air, solved once per state and moment by discrete ordinates in flat layers, with
+// what a round Earth changes (round_light.h) where the column's is.
 #pragma once
 #include <memory>
 #include <span>
 
-#include "air/beam_table.h"
-#include "air/column.h"
-#include "air/diffuse_source.h"
+#include "air/diffuse_setup.h"
 
 namespace suite {
 
-// A beam from outside: towards its source; irradiance per bin above the air.
-struct AirBeam {
-  Dir direction;
-  const float* irradiance;
-};
 // What it came to, for reports and truth; per bin.
 struct DiffuseReport {
   std::vector<float> direct, down, up;  // W/(m2 um) through a level area at the ground
-  std::vector<float> top_up;            // leaving the air
+  std::vector<float> top_up;            // leaving the air, over as much of the ground's area
   std::vector<float> spherical_albedo, ground_albedo;
 };
 

@@ -13,8 +13,7 @@ namespace suite {
 
 namespace {
 
-constexpr int kLooks = 16;          // points of a cell that are looked at
-constexpr uint32_t kAttempts = 64;  // to find a point of a material, or past a stretch
+constexpr uint32_t kAttempts = 4096;  // to find a point of a material, or past a stretch
 
 // What an area grows by under a transform.
 double stretch_of(const Affine3& m, Vec3 unit_normal) { return length(m.normal(unit_normal)); }
@@ -336,6 +335,7 @@ void Elements::make_elements(const std::vector<bool>& heated) {
       total_area_ += e.area;
     }
     first_element_.push_back(static_cast<uint32_t>(elements_.size()));
+    shared_cells_ += found[c].size() > 1;
   }
 }
 

@@ -53,7 +53,9 @@ class Elements {
   double total_area() const { return total_area_; }
   size_t instances() const { return slots_.size(); }
   size_t moving() const { return moving_; }  // instances of these materials that move: they have none
-  double largest() const;                    // m2, of an element
+  static constexpr int kLooks = 64;  // points of a cell of a class map that are looked at, to find its materials
+  size_t shared_cells() const { return shared_cells_; }  // that hold several materials
+  double largest() const;                                // m2, of an element
   // Two tracers of one scene, and files, fit when this is equal: materials, areas and places of all elements.
   uint64_t fingerprint() const;
 
@@ -106,7 +108,7 @@ class Elements {
   std::vector<uint32_t> first_element_;  // by cell; cells + 1
   std::vector<HeatElement> elements_;
   double total_area_ = 0;
-  size_t moving_ = 0;
+  size_t moving_ = 0, shared_cells_ = 0;
 };
 
 }  // namespace suite

@@ -38,19 +38,9 @@ class Wave {
   void run(size_t begin, size_t end) {
     going_.clear(), rays_.clear();
     for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
-    for (int n = 0; !going_.empty(); ++n) {
-      hits_.resize(rays_.size());
-      tracer_.nearest(rays_, hits_, false, trace_);
-      size_t kept = 0;
-      for (size_t i = 0; i < going_.size(); ++i) {
-        Going path = going_[i];
-        Ray ray = rays_[i];
-        if (!go_on(path, ray, hits_[i], n)) continue;
-        going_[kept] = path, rays_[kept] = ray;
-        ++kept;
-      }
-      going_.resize(kept), rays_.resize(kept);
-    }
+    fly(
+        tracer_, going_, rays_, hits_, trace_,
+        [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); }, [] {});
   }
   double rays() const { return static_cast<double>(trace_.rays); }
   double unfinished() const { return unfinished_; }
@@ -86,7 +76,7 @@ class Wave {
       uint8_t bin = 0;
       while (bin + 1u < W_.size() && left >= 1 - std::min(1.0f, W_[bin])) left -= 1 - std::min(1.0f, W_[bin]), ++bin;
       going_.push_back({slot, bin, sum / static_cast<double>(W_.size()), u[3]});
-      rays_.push_back({tracer_.leave(hit, d), d, hit.time, slot});
+      rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers, sample(slot), hit.time), slot});
     }
     out_.emissivity[face] = emissivity / each;
     if (emissivity == 0) {  // it neither emits nor takes anything: whatever its row is
@@ -100,7 +90,7 @@ class Wave {
   }
 
   // False when the path has ended.
-  bool go_on(Going& path, Ray& ray, const Hit& hit, int n) {
+  bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
     if (!hit.hit()) {
       finish(path, ray.direction.z > 0 ? faces_.outside_ring(HeatFaces::ring(ray.direction)) : faces_.outside_below());
       return false;
@@ -114,7 +104,7 @@ class Wave {
     at_.baked->model->total(out, W_);
     const double kept = std::min(1.0f, W_[path.bin]);
     const SampleStream numbers = stream(path.slot);
-    const std::array<double, 4> u = numbers.draw(sample(path.slot), static_cast<uint32_t>(1 + n));
+    const std::array<double, 4> u = numbers.draw(sample(path.slot), 1 + n);
     const bool last = n >= kMostReflections;
     path.left *= kept;
     if (path.left <= path.until || last) {

@@ -38,8 +38,6 @@ struct ExchangePaths {
   size_t faces() const { return emissivity.size(); }
 };
 
-inline constexpr int kMostReflections = 100000;
-
 // In parallel over faces, the same on any number of threads. progress: is told faces that are done; may be empty.
 ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                              const HeatOptics& optics, const PathOptions& options,

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "heat/heat_walk.h"
 #include "heat/path_errors.h"
 #include "spectral/planck.h"
 
@@ -127,7 +128,7 @@ std::vector<std::string> lateral_notes(const Scene& scene, const Elements& eleme
 }
 
 void add_notes(const Tracer& tracer, const Elements& elements, const HeatOptics& optics, const ExchangePaths& exchange,
-               const Sunlight& sun, HeatResult& result) {
+               const Sunlight& sun, bool dry_air, HeatResult& result) {
   auto& notes = result.notes;
   if (elements.moving() > 0)
     notes.push_back(strf("%zu instances move: they give shade, and count as warm as the air", elements.moving()));
@@ -140,8 +141,19 @@ void add_notes(const Tracer& tracer, const Elements& elements, const HeatOptics&
   if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
   if (exchange.unfinished > 1e-6)
     notes.push_back(
-        strf("%.2g of the infrared was still being reflected after %d reflections and counts as absorbed there",
+        strf("%.2g of the infrared was still being reflected after %u reflections and counts as absorbed there",
              exchange.unfinished, kMostReflections));
+  if (sun.unfinished > 1e-6)
+    notes.push_back(strf("%.2g of the light of paths was still being reflected after %u reflections, and is left out",
+                         sun.unfinished, kMostReflections));
+  if (elements.shared_cells() > 0)
+    notes.push_back(
+        strf("%zu cells hold several materials of class maps; one with less than %.1f %% of a cell may have no "
+             "element there, and is then as warm as the largest of the others",
+             elements.shared_cells(), 100.0 / Elements::kLooks));
+  const auto is_wet = [](const HeatedMaterial& m) { return m.front.wetness > 0; };
+  if (dry_air && std::any_of(optics.heated.begin(), optics.heated.end(), is_wet))
+    notes.push_back("the weather has no humidity: wet surfaces evaporate into dry air");
   for (const HeatOptics::Assumed& a : optics.assumed) {
     if (a.sunlight < 0.01 && a.infrared < 0.01) continue;
     notes.push_back(
@@ -294,10 +306,6 @@ SurfaceLoads face_loads(const Tracer& tracer, const Elements& elements, const He
   return loads;
 }
 
-}  // namespace
-
-namespace {
-
 // Above this share plain sweeps over all histories are slow, below it they need one period each.
 constexpr double kCavity = 0.8;
 
@@ -326,7 +334,6 @@ void keep(const SurfaceHistory& h, const SurfaceLoads& loads, const ExchangePath
   result.sweeps = h.coupling.sweeps, result.sweep_error = h.coupling.distance;
   if (spec.periodic) result.past_error = h.past_distance;
   result.rays = exchange.rays + sun.rays, result.unfinished = exchange.unfinished;
-  result.notes = weather.notes;
 }
 
 }  // namespace
@@ -369,7 +376,7 @@ HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const Heat
 
   keep(h, loads, exchange, sun, weather, spec, result);
   result.assumed = optics.assumed;
-  add_notes(tracer, elements, optics, exchange, sun, result);
+  add_notes(tracer, elements, optics, exchange, sun, !weather.humid, result);
   sum_balance(elements, groups, loads, h, result);
   done(1);
   stage("errors", 1);

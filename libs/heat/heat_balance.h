@@ -88,7 +88,7 @@ struct WeatherLoads {
   std::vector<double> direct, diffuse, global, longwave, air_kelvin;  // W/m2, K, by moment; light as means around it
   std::vector<std::vector<float>> sky;                                // by moment: radiance of each patch, W/(m2 sr)
   SunCourse course;
-  std::vector<std::string> notes;
+  bool humid = true;  // the file says how moist the air is; else it is dry
 };
 // Error: weather that does not cover the span, or lacks what is asked (with the line of the file).
 WeatherLoads weather_loads(const HeatWeather& weather, const HeatSpec& spec);

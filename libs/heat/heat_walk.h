@@ -3,14 +3,47 @@
 #include <optional>
 #include <vector>
 
+#include "math/sampling.h"
 #include "math/warps.h"
 #include "optics/scatter_model.h"
 #include "spectral/state.h"
+#include "trace/tracer.h"
 
 namespace suite {
 
 // Blocks of random numbers from here on choose points of elements (heat/elements.h).
 inline constexpr uint32_t kPointBlock = 1u << 20;
+
+// Reflections after which a path is ended and told.
+inline constexpr uint32_t kMostReflections = 100000;
+
+// When a path looks at the scene: at any time of the tracer's window, so that what comes and goes counts for its share.
+inline double time_of_path(const Tracer& tracer, const SampleStream& numbers, uint32_t sample, double at_rest) {
+  constexpr uint32_t kPurpose = 1;
+  const std::optional<TimeSpan> window = tracer.window();
+  return window ? window->begin + numbers.hashed(sample, kPurpose) * (window->end - window->begin) : at_rest;
+}
+
+// Takes paths from surface to surface until all have ended. go_on(path, ray, hit, n) is asked for each at its n-th
+// surface, or where it leaves, and returns false when it has ended; after_stage() is called when all were asked once.
+template <class Path, class GoOn, class AfterStage>
+void fly(const Tracer& tracer, std::vector<Path>& going, std::vector<Ray>& rays, std::vector<Hit>& hits,
+         TraceStatistics& statistics, const GoOn& go_on, const AfterStage& after_stage) {
+  for (uint32_t n = 0; !going.empty(); ++n) {
+    hits.resize(rays.size());
+    tracer.nearest(rays, hits, false, statistics);
+    size_t kept = 0;
+    for (size_t i = 0; i < going.size(); ++i) {
+      Path path = going[i];
+      Ray ray = rays[i];
+      if (!go_on(path, ray, hits[i], n)) continue;
+      going[kept] = path, rays[kept] = ray;
+      ++kept;
+    }
+    going.resize(kept), rays.resize(kept);
+    after_stage();
+  }
+}
 
 // A path of one bin of a state of which every bin is a knot, or whose shapes are all alike.
 class OneBinWalk {

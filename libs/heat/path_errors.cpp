@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "spectral/planck.h"
 
@@ -16,13 +17,13 @@ constexpr double kBase = 300;  // K, about which differences are followed: they 
 // Means over the parts of the span.
 class Parts {
  public:
-  explicit Parts(size_t moments) : moments_(moments) {}
+  explicit Parts(size_t moments) : moments_(moments) { SUITE_CHECK(moments >= kHeatParts); }
   size_t part(size_t moment) const { return std::min(kHeatParts - size_t{1}, moment * kHeatParts / moments_); }
   template <class Value>
   std::vector<double> means(const Value& value) const {
     std::vector<double> sum(kHeatParts, 0), count(kHeatParts, 0);
     for (size_t k = 0; k < moments_; ++k) sum[part(k)] += value(k), count[part(k)] += 1;
-    for (size_t p = 0; p < kHeatParts; ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : 0;
+    for (size_t p = 0; p < kHeatParts; ++p) sum[p] /= count[p];
     return sum;
   }
 

@@ -30,7 +30,8 @@ Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const He
   for (size_t m = 0; m < optics.materials->materials.size(); ++m)
     if (const ScatterModel* model = optics.sun->material(static_cast<uint32_t>(m)).model)
       out.mirrors = out.mirrors || model->has_delta();
-  std::atomic<uint64_t> rays{0};
+  std::atomic<uint64_t> rays{0}, unfinished{0};
+  constexpr double kUnit = 1e6;
   // Waves are always the same: rays that go together may decide the last bits of a hit.
   constexpr size_t kWave = 32;
   parallel_for(0, (n + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
@@ -43,9 +44,12 @@ Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const He
       wave.scattered(begin, end);
     }
     rays += wave.rays();
+    unfinished += static_cast<uint64_t>(wave.unfinished() * kUnit);
     if (progress) progress(std::min(n, last * kWave) - first * kWave);
   });
   out.rays = static_cast<double>(rays);
+  out.unfinished =
+      static_cast<double>(unfinished) / kUnit / (1.0 * static_cast<double>(n) * options.blocks * options.paths);
   return out;
 }
 

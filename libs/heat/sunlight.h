@@ -48,7 +48,8 @@ struct Sunlight {
   std::vector<float> sun_hours;         // [face]: hours with the sun on it, mean over its points
   std::vector<float> absorptance;       // [face]: of even light of the sky's spectrum
   double rays = 0;
-  bool mirrors = false;  // something in the scene sends beams on without scattering them
+  double unfinished = 0;  // of the paths' light, what was left out after kMostReflections
+  bool mirrors = false;   // something in the scene sends beams on without scattering them
 
   size_t faces() const { return below.size(); }
 };

@@ -16,21 +16,11 @@ constexpr uint32_t kRouletteFrom = 2;  // reflections
 void SunlightWave::scattered(size_t begin, size_t end) {
   going_.clear(), rays_.clear(), spectra_.clear();
   for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
-  for (uint32_t n = 0; !going_.empty(); ++n) {
-    hits_.resize(rays_.size());
-    tracer_.nearest(rays_, hits_, false, trace_);
-    size_t kept = 0;
-    sights_.clear(), asked_.clear();
-    for (size_t i = 0; i < going_.size(); ++i) {
-      Going path = going_[i];
-      Ray ray = rays_[i];
-      if (!go_on(path, ray, hits_[i], n)) continue;
-      going_[kept] = path, rays_[kept] = ray;
-      ++kept;
-    }
-    going_.resize(kept), rays_.resize(kept);
-    answer_sun();
-  }
+  sights_.clear(), asked_.clear();
+  fly(
+      tracer_, going_, rays_, hits_, trace_,
+      [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); },
+      [this] { answer_sun(); });
 }
 
 // The throughput holds what the face keeps of each bin, times pi: the density of a cosine is 1/pi.
@@ -59,10 +49,8 @@ void SunlightWave::start(uint32_t face) {
       spectra_.push_back(kept * static_cast<float>(kPi));
     }
     if (!(any > 0)) continue;
-    const double share = course_.moments.size() > 1 ? numbers.hashed(sample(slot), 1) : 0;
-    const double t = course_.moments.front() + share * (course_.moments.back() - course_.moments.front());
     going_.push_back(path);
-    rays_.push_back({tracer_.leave(hit, d), d, t, slot});
+    rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers, sample(slot), hit.time), slot});
   }
   out_.absorptance[face] = static_cast<float>(kept_of_sky / each);
 }
@@ -151,6 +139,10 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
     for (float& t : T) t = static_cast<float>(static_cast<double>(t) / survives);
   }
   if (!(most > 0)) return false;
+  if (n >= kMostReflections) {
+    unfinished_ += static_cast<double>(most) * mean_ratio(path) / kPi;
+    return false;
+  }
   path.mirrored = drawn->delta;
   const Dir d = at_.frame.to_world(drawn->in);
   ray.origin = tracer_.leave(hit, d), ray.direction = d;
@@ -189,13 +181,13 @@ void SunlightWave::ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t 
 
 void SunlightWave::answer_sun() {
   reach_.assign(sights_.size(), INFINITY), blocked_.assign(sights_.size(), 0);
-  if (sights_.empty()) return;
-  tracer_.occluded(sights_, reach_, blocked_, false, trace_);
+  if (!sights_.empty()) tracer_.occluded(sights_, reach_, blocked_, false, trace_);
   for (size_t i = 0; i < asked_.size(); ++i) {
     if (blocked_[i]) continue;
     const Join& j = asked_[i];
     add_to_beam(j.face, j.block, j.moment, j.value);
   }
+  sights_.clear(), asked_.clear();
 }
 
 }  // namespace suite

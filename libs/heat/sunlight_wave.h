@@ -15,6 +15,7 @@ class SunlightWave {
   void beam(size_t begin, size_t end);       // straight from the sun
   void scattered(size_t begin, size_t end);  // along paths
   uint64_t rays() const { return trace_.rays; }
+  double unfinished() const { return unfinished_; }
 
  private:
   // A point of a face through the day.
@@ -90,6 +91,7 @@ class SunlightWave {
   std::vector<Join> asked_;
   std::vector<double> reach_;
   std::vector<uint8_t> blocked_;
+  double unfinished_ = 0;
 };
 
 }  // namespace suite

@@ -130,7 +130,7 @@ WeatherLoads weather_loads(const HeatWeather& w, const HeatSpec& spec) {
   out.air.vapour_pressure = on_times(out.air.times, spec, [&](double t) {
     return humid ? vapour_pressure(w.weather.at(Q::dew_point, w.clock(t))) : 0;
   });
-  if (!humid) out.notes.push_back("the weather has no humidity: wet surfaces evaporate into dry air");
+  out.humid = humid;
   out.air.repeat = spec.periodic;
   if (w.weather.has(Q::pressure))
     if (const double mean = w.weather.mean(Q::pressure, w.clock(spec.span.begin), w.clock(spec.span.end)); mean > 0)

@@ -43,11 +43,13 @@ std::string neglected(const AirSpec& air, const Scene& scene) {
     return "air: light is scattered once; what is scattered more often, also between ground and air, and " + shadows +
            " are left out";
   if (air.adjacency && scene.media.empty()) return {};
+  const std::string albedo = air.ground_of_scene || air.ground_of_any_scene
+                                 ? "that of the scene in the mean"
+                                 : strf("%.3g to %.3g", air.ground_albedo.min(), air.ground_albedo.max());
   return strf(
-      "air: light between ground and air is that of an even ground (albedo %.3g to %.3g); what single places "
+      "air: light between ground and air is that of an even ground (albedo %s); what single places "
       "send into it (adjacency) and %s are left out%s",
-      air.ground_albedo.min(), air.ground_albedo.max(), shadows.c_str(),
-      air.adjacency ? ", as media fill the scene" : "");
+      albedo.c_str(), shadows.c_str(), air.adjacency ? ", as media fill the scene" : "");
 }
 
 constexpr const char* kBent =

@@ -267,6 +267,8 @@ class StratifiedAir final : public Atmosphere {
         sources.weight[c] = corners.weight[c];
       }
       air_loops::see_sources(bins_, sources, near, far, s.at_near.data(), s.at_far.data());
+      if (diffuse_->low_sun())
+        diffuse_->relight(l, dot(column_.shells.up(middle), beams_[0].direction), s.at_near.data(), s.at_far.data());
     } else {
       std::fill(s.at_near.begin(), s.at_near.end(), 0.0f);
       std::fill(s.at_far.begin(), s.at_far.end(), 0.0f);

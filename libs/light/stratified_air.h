@@ -2,7 +2,7 @@
 //
 // Exact for the layers: transmittance; emission with a source that is linear in depth within a layer; sunlight and
 // moonlight scattered once. Light that is scattered more often comes from a table of its source over height and
-// direction (air/diffuse_field.h), made for a flat and even ground.
+// direction (air/diffuse_field.h), made for an even ground.
 //
 // Quicker where that is as good: what a beam scatters on a thin part of a way (depth below 0.25, the beam within 78
 // degrees of the zenith and straight) comes from series, within 2e-4 of itself; transmittance of ways that leave the

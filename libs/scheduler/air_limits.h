@@ -1,4 +1,4 @@
-// What real air's light over an even ground of a flat Earth is worth for a scene, its sun and what sensors look at: the
+// What real air's light over an even ground is worth for a scene, its sun and what sensors look at: the
 // limits of air that is solved as AirScattering::diffuse, each where it matters.
 #pragma once
 #include "scheduler/scheduler.h"
@@ -12,12 +12,13 @@ namespace suite {
 // - the job's estimator goes back to no place in the air, so that neither single places nor shadows show in it;
 // - sun or moon stand lower than kLowSun at a capture;
 // - a sensor looks past the ground along the limb from 10 km or more (the corners, edges and middles of its captures
-// are asked). written: the sources; resolved here for every capture. Error: as resolve_sources.
+//   are asked) under a sun lower than 85 degrees from the zenith.
+// written: the sources; resolved here for every capture. Error: as resolve_sources.
 std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene,
                                   std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& job);
 
 inline constexpr double kMostFromBeyond = 0.05;
-inline constexpr double kLowSun = 60 * kDegree;  // from the zenith, rad
+inline constexpr double kLowSun = 80.5 * kDegree;  // from the zenith, rad
 
 // Share of the light from an even ground that comes from further than `reach` (m, >= 0) to where air scatters it over
 // the middle: the mean over heights with exp(-height / scale) of that of the solid angle. scale: m.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scheduler/scene_albedo.h"
+
 namespace suite {
 
 namespace {
@@ -48,6 +50,15 @@ Kit Kits::get(size_t state, const Sensor& sensor, const Capture& capture, const 
   return kit;
 }
 
+SourceSpecs Kits::sources_over(size_t state, const Optics& optics, const Tracer& tracer, double moment) {
+  SourceSpecs sources = sources_.at(moment);
+  if (!asks_for_scene(sources.air)) return sources;
+  std::shared_ptr<const AirSpec>& air = airs_[state];
+  if (!air) air = over_scene(sources.air, tracer, optics, window_.begin);
+  sources.air = air;
+  return sources;
+}
+
 // Lights at other moments share what dates do not move with the first ones that were baked.
 std::shared_ptr<const Kits::Lit> Kits::lights(size_t state, const Optics& optics,
                                               const std::shared_ptr<const Tracer>& tracer, double moment) {
@@ -55,14 +66,15 @@ std::shared_ptr<const Kits::Lit> Kits::lights(size_t state, const Optics& optics
   const Tracer* const of = by_tracer ? tracer.get() : nullptr;
   const auto first = cache_.get<Lit>({KitCache::Kind::lights, state, of}, [&] {
     ++light_bakes_;
-    return std::make_shared<const Lit>(Lit{bake_environment(sources_.at(moment), *tracer, periodic_, optics.state()),
-                                           by_tracer ? tracer : nullptr, moment});
+    return std::make_shared<const Lit>(
+        Lit{bake_environment(sources_over(state, optics, *tracer, moment), *tracer, periodic_, optics.state()),
+            by_tracer ? tracer : nullptr, moment});
   });
   if (first->moment == moment) return first;
   return cache_.get<Lit>({KitCache::Kind::lights_at, state, of, moment}, [&] {
     ++light_bakes_;
     Lit lit = *first;
-    rebake_changed(lit.environment, sources_.at(moment), *tracer, optics.state());
+    rebake_changed(lit.environment, sources_over(state, optics, *tracer, moment), *tracer, optics.state());
     lit.moment = moment;
     return std::make_shared<const Lit>(std::move(lit));
   });
@@ -71,7 +83,7 @@ std::shared_ptr<const Kits::Lit> Kits::lights(size_t state, const Optics& optics
 void Kits::done(size_t state) {
   size_t& left = users_[state];
   SUITE_CHECK(left > 0);
-  if (--left == 0) cache_.drop(state);
+  if (--left == 0) cache_.drop(state), airs_.erase(state);
 }
 
 }  // namespace suite

@@ -55,6 +55,8 @@ class Kits {
     std::shared_ptr<const Tracer> tracer;
     double moment;
   };
+  // The sources at a moment; the ground under real air is the scene's where it is asked for.
+  SourceSpecs sources_over(size_t state, const Optics& optics, const Tracer& tracer, double moment);
   std::shared_ptr<const Lit> lights(size_t state, const Optics& optics, const std::shared_ptr<const Tracer>& tracer,
                                     double moment);
 
@@ -64,7 +66,8 @@ class Kits {
   TimeSpan window_;
   Heating heating_;
   KitCache cache_;
-  std::map<size_t, size_t> users_;  // captures that are still to come, by state
+  std::map<size_t, size_t> users_;                         // captures that are still to come, by state
+  std::map<size_t, std::shared_ptr<const AirSpec>> airs_;  // over the scene's ground, by state
   size_t optics_bakes_ = 0, light_bakes_ = 0;
 };
 

@@ -17,6 +17,7 @@ from .scene import (Material, Medium, Object, Origin, Placement, PreparedScene, 
                     layer, mesh, plane, prepare_scene, sphere, terrain)
 from .simulation import (Atmosphere, Band, Fisheye, FrameCamera, Lamp, Moon, Orthographic, Output, Points, Sensor, Simulation,
                          Sky, Sun, bands, render)
+from .temperatures import open_temperatures
 from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
 
 __version__ = "0.1.0"
@@ -25,6 +26,6 @@ __all__ = [
     "InputError", "Interrupted", "Keys", "Lamp", "Material", "Medium", "Moon", "Object", "OpenKeys", "Origin", "Orthographic",
     "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError", "ProgramMissing", "ProgramWarning",
     "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun", "UsageError", "bands", "box", "check_scene",
-    "cylinder", "disk", "find_program", "layer", "mesh", "open_envi", "plane", "prepare_scene", "read_header", "read_values",
+    "cylinder", "disk", "find_program", "layer", "mesh", "open_envi", "open_temperatures", "plane", "prepare_scene", "read_header", "read_values",
     "render", "run_program", "sphere", "terrain", "version", "write_chips", "write_netcdf",
 ]

@@ -9,9 +9,12 @@ from dataclasses import KW_ONLY, dataclass, field
 from pathlib import Path
 from typing import Any, Mapping, Sequence, Union
 
+import xarray as xr
+
 from .programs import Progress, run_program
 from .results import Result
 from .scene import PreparedScene, Time, Vector, _options, _settings
+from .temperatures import open_temperatures
 from .tree import CurveLike, FileName, Keys, OpenKeys, write
 
 
@@ -191,6 +194,8 @@ class Simulation(Keys):
     atmosphere: Atmosphere | Mapping[str, Any] | None = None
     earth: Mapping[str, Any] | None = None
     periodic: Mapping[str, Any] | None = None
+    weather: FileName | Mapping[str, Any] | None = None
+    heat: Mapping[str, Any] | None = None
     epoch: Time | None = None
     dut1_s: float | None = None
     output: Output | Mapping[str, Any] | None = None
@@ -208,24 +213,33 @@ class Simulation(Keys):
         folder = Path(folder)
         return render(self.write(folder.with_name(folder.name + ".yaml")), folder, **options)
 
+    def find_temperatures(self, folder: FileName, *, progress: Progress = None, **options: Any) -> xr.Dataset:
+        """Finds the temperatures that follow from `weather` and writes them into the folder (heat.h5, heat.csv, heat.html),
+        without rendering; further runs take them with `heat=folder/"heat.h5"`. Returns them; see open_temperatures.
+        """
+        folder = Path(folder)
+        text = self.write(folder.with_name(folder.name + ".yaml"))
+        run_program("dirsig-render", [text, "-o", folder, "--heat-only", *_render_options(**options)], progress)
+        return open_temperatures(folder / "heat.h5")
+
 
 def _render_options(*, paths: int | str | None = None, target_error: float | None = None, target_floor: float | None = None,
                     target_bands: str | None = None, time: str | None = None, seed: int | None = None,
                     threads: int | None = None, memory: str | None = None, state: bool = False, resume: bool = False,
-                    more_paths: int | None = None, plugins: Sequence[FileName] = (),
+                    more_paths: int | None = None, plugins: Sequence[FileName] = (), heat: FileName | None = None,
                     settings: Mapping[str, Any] | None = None) -> list[str]:
     error = None if target_error is None else f"{100 * target_error:.9g}%"
     return _options({"--paths": paths, "--target-error": error, "--target-floor": target_floor, "--target-bands": target_bands,
                      "--time": time, "--seed": seed, "--threads": threads, "--memory": memory, "--state": state,
-                     "--resume": resume, "--more": more_paths, "--plugin": list(plugins)}) + _settings(settings)
+                     "--resume": resume, "--more": more_paths, "--plugin": list(plugins), "--heat": heat}) + _settings(settings)
 
 
 def render(text: FileName, folder: FileName, *, progress: Progress = None, **options: Any) -> Result:
     """Renders a simulation text into a folder with dirsig-render, and returns what is there.
 
     paths: per pixel; target_error: relative, 0.01 = 1 % (with target_floor, target_bands); time: "10min"; seed; threads;
-    memory: "8GiB"; state, resume, more_paths: of runs that go on; plugins; settings: values in place of the text's by
-    their place (`sensors.0.columns`). InputError: it was refused; warnings are ProgramWarnings.
+    memory: "8GiB"; state, resume, more_paths: of runs that go on; plugins; heat: a file of temperatures that were found
+    before; settings: values in place of the text's by their place (`sensors.0.columns`). InputError: it was refused; warnings are ProgramWarnings.
     """
     run = run_program("dirsig-render", [text, "-o", folder, *_render_options(**options)], progress)
     wrote = [Path(line.removeprefix("wrote ")).name for line in run.messages if line.startswith("wrote ")]

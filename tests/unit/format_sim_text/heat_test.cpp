@@ -65,7 +65,7 @@ TEST_F(HeatInSimulations, Messages) {
       {kWeather + "heat: {step_s: 0}", ":4:", "step_s"},
       {kWeather + "heat: {ground_albedo: 1.2}", ":4:", "ground_albedo"},
       {kWeather + "heat: {from: 0}", ":4:", "give both, or none"},
-      {kWeather + "heat: {from: 100, to: 0}", ":4:", "shorter than two steps"},
+      {kWeather + "heat: {from: 100, to: 0}", ":4:", "shorter than 24 steps"},
       {kWeather + "heat: {from: 0, to: 43200, repeats: false}", ":4:", "begins with a whole day"},
       {kWeather + "heat: {element: 3}", ":4:", "did you mean 'elements'?"},
       {"weather: {file: none.csv}\nheat: {}", "", "none.csv"},
