@@ -88,6 +88,8 @@ size_t kit_bytes_of(const RenderOptions& o) {
   return o.kit_memory.empty() ? kDefaultKitBytes : bytes_of(o.kit_memory, "--kit-memory");
 }
 
+size_t view_bytes_of(const RenderOptions& o) { return bytes_of(o.view_size, "--view-size"); }
+
 size_t tile_bytes_of(const RenderOptions& o) {
   if (o.memory.empty()) return 0;
   const size_t bytes = bytes_of(o.memory, "--memory");

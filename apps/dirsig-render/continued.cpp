@@ -27,11 +27,15 @@ std::string hash_of_named(const Simulation& sim) {
 
 }  // namespace
 
-StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
-  // The program itself is the build: another compiler or another line of code gives other last bits.
+std::string hash_of_scenes(const Simulation& sim) {
   std::string scenes;
   for (const SimulationScene& s : sim.scenes) scenes += hash_of_file(s.path);
-  return {{"scene", sim.scenes.size() == 1 ? scenes : sha256(scenes)},
+  return sim.scenes.size() == 1 ? scenes : sha256(scenes);
+}
+
+StateIdentity identity_of(const Simulation& sim, const JobOptions& options) {
+  // The program itself is the build: another compiler or another line of code gives other last bits.
+  return {{"scene", hash_of_scenes(sim)},
           {"simulation", hash_of_text(sim)},
           {"files named", hash_of_named(sim)},
           {"seed", strf("%llu", static_cast<unsigned long long>(options.pipeline.seed))},

@@ -12,6 +12,9 @@ namespace suite {
 // SHA-256 of the simulation's text and of the settings that replace some of it.
 std::string hash_of_text(const Simulation& simulation);
 
+// SHA-256 of the scenes' files.
+std::string hash_of_scenes(const Simulation& simulation);
+
 // What a state belongs to, and what all ranks of a run must have in common.
 StateIdentity identity_of(const Simulation& simulation, const JobOptions& options);
 

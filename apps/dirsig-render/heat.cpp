@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/files.h"
 #include "base/outputs.h"
@@ -11,7 +12,10 @@
 #include "base/run_app.h"
 #include "base/stopwatch.h"
 #include "formats/heat_hdf/heat_hdf.h"
+#include "heat/day_sun.h"
 #include "heat/heat_field.h"
+#include "heat/target_paths.h"
+#include "heat_paths.h"
 #include "heat_told.h"
 #include "motion/scene_frame.h"
 #include "scheduler/prepass.h"
@@ -67,28 +71,48 @@ TimeSpan span_of(const Simulation& sim, double longitude_deg) {
   return {begin, begin + 86400};
 }
 
+HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
+  const Weather& weather = *sim.heat->weather;
+  const Clock clock(*sim.epoch);
+  const GeodeticOrigin& o = scene.origin;
+  const auto frame = std::make_shared<const SceneFrame>(
+      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
+  return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
+          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
+}
+
+// cut: as a file says; none = as the simulation asks.
 PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
-                     size_t elements) {
+                     const std::optional<HeatCut>& cut = {}) {
   PreparedHeat p;
   p.spec = sim.heat->spec;
   const Geodetic site = sim.heat->weather->site();
   p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
   p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
   p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
-  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, elements, p.spec.span.begin);
+  const HeatCut by = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, p.spec.span});
+  const HeatWeather weather = weather_of(sim, *scene);
+  const DaySun sun =
+      by.by_sun ? day_sun(*p.tracer, by.span, [&](double t) { return weather.sun(t).direction; }) : DaySun{};
+  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, by.elements, p.spec.span.begin,
+                                          by.by_sun ? &sun : nullptr);
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
   return p;
 }
 
 double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1; }
 
-// What finding temperatures takes at once: histories of loads and answers, paths with the matrix from both ends, shares
-// of sky and sun, blocks, and the nodes of the slabs.
+// What finding temperatures takes at once: by face what paths found and the errors' blocks of it, beside that the most
+// of what is done one after the other: the matrix from both ends as it is made, or that with two histories, loads and
+// the nodes of the slabs.
 double bytes_of(const PreparedHeat& p) {
-  constexpr double kNodes = 2 * 70 * 8;
-  const double a_face = moments_of(p) * (8 * 4 + 4 * 4) + p.spec.paths * 32.0 +
-                        4.0 * (kSkyPatches + HeatSpec::kBlocks * (kHeatParts * 4 + 2)) + kNodes;
-  return static_cast<double>(p.faces->size()) * a_face;
+  constexpr double kNodes = 4 * 30 * 8;
+  const double moments = moments_of(p), paths = p.spec.paths;
+  const double found = paths * 8 + 4.0 * HeatSpec::kBlocks * (kHeatParts + 2) + 4.0 * Sunlight::kContrasts * kHeatParts;
+  const double tracing = 4 * (moments + kSkyPatches), making = 4 * moments + paths * 8 * 4;
+  const double balance = paths * 8 * 2 + 4 * moments * 3 + kNodes;
+  const double errors = 4 * moments * 3 + 4.0 * HeatSpec::kBlocks * kHeatParts + 8.0 * 2 * kHeatParts;
+  return static_cast<double>(p.faces->size()) * (found + std::max({tracing, making, balance, errors}));
 }
 
 // Refuses more than there is room for, before anything is traced.
@@ -102,22 +126,13 @@ void check_size(const PreparedHeat& p, const Simulation& sim) {
                 "fewer elements or paths (2^32 paths at most), or a larger step_s");
 }
 
-HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
-  const Weather& weather = *sim.heat->weather;
-  const Clock clock(*sim.epoch);
-  const GeodeticOrigin& o = scene.origin;
-  const auto frame = std::make_shared<const SceneFrame>(
-      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
-  return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
-          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
-}
-
 struct Found {
   HeatResult result;
   WeatherLoads weather;
 };
 
-Found find(const PreparedHeat& p, const Scene& scene, const Simulation& sim) {
+Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const RenderOptions& options,
+           const std::string& folder) {
   std::unique_ptr<Progress> bar;
   HeatProgress progress;
   progress.begin = [&](const std::string& stage, double whole) {
@@ -127,7 +142,19 @@ Found find(const PreparedHeat& p, const Scene& scene, const Simulation& sim) {
   progress.done = [&](double more) { bar->add(more); };
   for (const std::string& sentence : sim.heat->weather->notes()) note("weather: " + sentence);
   Found found{{}, weather_loads(weather_of(sim, scene), p.spec)};
-  found.result = solve_heat(*p.tracer, *p.elements, *p.faces, p.optics, found.weather, p.spec, progress);
+  if (p.spec.target > 0) {
+    const TargetPaths t =
+        paths_for(p.spec.target, *p.tracer, *p.elements, *p.faces, p.optics, found.weather, p.spec, progress);
+    p.spec.paths = t.paths;
+    note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", kPilotPaths, t.pilot_error,
+              t.paths, p.spec.target));
+    if (!t.enough)
+      warn(strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target));
+    check_size(p, sim);
+  }
+  HeatOperator paths = operator_of(p, found.weather.course, sim, options, folder, progress);
+  found.result =
+      solve_heat({*p.tracer, *p.elements, *p.faces, p.optics}, std::move(paths), found.weather, p.spec, progress);
   if (bar) bar->finish();
   return found;
 }
@@ -144,11 +171,31 @@ void keep(const HeatResult& h, const WeatherLoads& weather, const PreparedHeat& 
   make_folders_of({in_folder(folder, "heat.h5")});
   std::vector<std::string> names;
   for (const Material& m : scene.materials) names.push_back(m.id);
-  write_heat(in_folder(folder, "heat.h5"), h, *p.elements, *p.faces, names, command_line());
+  write_heat(in_folder(folder, "heat.h5"), h, *p.elements, *p.faces, names, p.spec.cut_by_sun, command_line());
   write_file(in_folder(folder, "heat.csv"), heat_table(h, p, scene, sim));
   write_file(in_folder(folder, "heat.html"), heat_page(h, p, weather, scene, sim, sentences));
   if (const std::string probes = heat_probes(h, p, weather, scene, sim); !probes.empty())
     write_file(in_folder(folder, "heat_probes.csv"), probes);
+  if (h.audit) write_file(in_folder(folder, "heat_audit.csv"), audit_table(*h.audit, p, scene));
+}
+
+// Tells what it has, and keeps in the folder what it found.
+HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& sim, const RenderOptions& options,
+                         const std::string& folder) {
+  const Stopwatch::time_point begun = Stopwatch::now();
+  if (options.heat.empty()) {
+    check_size(p, sim);
+    Found found = find(p, scene, sim, options, folder);
+    const std::vector<std::string> sentences = tell(found.result, p, seconds_since(begun));
+    if (!folder.empty()) keep(found.result, found.weather, p, scene, sim, sentences, folder);
+    return std::move(found.result);
+  }
+  HeatResult result = read_heat(options.heat, *p.elements, *p.faces);
+  if (result.span.begin != p.spec.span.begin || result.span.end != p.spec.span.end)
+    warn(strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
+              options.heat.c_str(), result.span.begin, result.span.end, p.spec.span.begin, p.spec.span.end));
+  tell(result, p, seconds_since(begun));
+  return result;
 }
 
 }  // namespace
@@ -170,7 +217,7 @@ std::vector<std::array<double, 2>> heat_windows_um() {
 }
 
 Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
-                   const RenderOptions& options, const std::string& folder) {
+                   const RenderOptions& options, const std::string& folder, Ranks* ranks) {
   if (!waits_for_heat(*scene)) {
     if (sim.heat && sees_heat(sim, options))
       warn("the simulation has `heat`, and no material of the scene waits for it ('temperature: {model: heat}')");
@@ -188,22 +235,18 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
                         "' follows from weather, which is not given",
                     "add 'weather: FILE' and 'heat: {}'");
   }
-  const Stopwatch::time_point begun = Stopwatch::now();
-  const size_t budget = options.heat.empty() ? sim.heat->spec.elements : heat_budget(options.heat);
-  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, budget));
-  auto result = std::make_shared<HeatResult>();
-  if (options.heat.empty()) {
-    check_size(*p, sim);
-    Found found = find(*p, *scene, sim);
-    *result = std::move(found.result);
-    const std::vector<std::string> sentences = tell(*result, *p, seconds_since(begun));
-    if (!folder.empty()) keep(*result, found.weather, *p, *scene, sim, sentences, folder);
-  } else {
-    *result = read_heat(options.heat, *p->elements, *p->faces);
-    if (result->span.begin != p->spec.span.begin || result->span.end != p->spec.span.end)
-      warn(strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
-                options.heat.c_str(), result->span.begin, result->span.end, p->spec.span.begin, p->spec.span.end));
-    tell(*result, *p, seconds_since(begun));
+  if (!options.heat.empty() && !options.heat_operator.empty())
+    throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
+  std::optional<HeatCut> cut;
+  if (!options.heat.empty()) cut = heat_cut(options.heat);
+  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut));
+  const auto result = std::make_shared<HeatResult>();
+  if (!ranks || ranks->leads()) *result = found_or_read(*p, *scene, sim, options, folder);
+  if (ranks) {
+    std::vector<std::byte> bytes;
+    if (ranks->leads()) bytes = packed_field(*result);
+    ranks->share(bytes);
+    if (!ranks->leads()) *result = unpacked_field(bytes);
   }
   // The field keeps what it looks things up in.
   struct Held final : TemperatureField {
@@ -220,7 +263,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
 
 std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim) {
   if (!sim.heat || !waits_for_heat(*scene)) return {};
-  const PreparedHeat p = prepare(scene, sim, {}, sim.heat->spec.elements);
+  const PreparedHeat p = prepare(scene, sim, {});
   const double faces = static_cast<double>(p.faces->size());
   // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every four paths at half
   // of the moments straight.
@@ -228,7 +271,10 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p) / 2);
   return strf("heat: %zu elements (%zu faces, %.3g m2 at most), %.0f moments, some %s rays, some %s\n",
               p.elements->size(), p.faces->size(), p.elements->largest(), moments_of(p), human_count(rays).c_str(),
-              human_bytes(bytes_of(p)).c_str());
+              human_bytes(bytes_of(p)).c_str()) +
+         (p.spec.target > 0
+              ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
+              : std::string{});
 }
 
 }  // namespace suite

@@ -14,9 +14,16 @@ namespace {
 
 double moment_time(const HeatResult& h, size_t k) { return h.span.begin + h.step * static_cast<double>(k); }
 
+// Errors of a temperature by cause, as columns.
+constexpr double HeatErrors::*kCauses[] = {&HeatErrors::paths, &HeatErrors::size, &HeatErrors::steps,
+                                           &HeatErrors::sweeps};
+constexpr const char* kErrorColumns = "path_error_k,size_error_k,step_error_k,sweep_error_k";
+std::string error_text(const HeatErrors& e) { return strf("%.4f,%.4f,%.4f,%.4f", e.paths, e.size, e.steps, e.sweeps); }
+
 // Means over the fronts of one material at one moment, weighed by area.
 struct MaterialMoment {
-  double area = 0, kelvin = 0, coldest = INFINITY, warmest = 0, error = 0, sunlight = 0, infrared = 0;
+  double area = 0, kelvin = 0, coldest = INFINITY, warmest = 0, sunlight = 0, infrared = 0;
+  HeatErrors errors;  // roots of the mean squares
 };
 using MaterialTable = std::map<uint32_t, std::vector<MaterialMoment>>;
 
@@ -31,13 +38,14 @@ MaterialTable means_of(const HeatResult& h, const PreparedHeat& p) {
       const double T = double{h.kelvin[e * h.moments + k]};
       m.area += a, m.kelvin += a * T, m.coldest = std::min(m.coldest, T), m.warmest = std::max(m.warmest, T);
       m.sunlight += a * double{h.absorbed[e * h.moments + k]}, m.infrared += a * double{h.received[e * h.moments + k]};
-      m.error += a * std::pow(h.error_at(e, moment_time(h, k)), 2);
+      const HeatErrors one = h.errors_at(e, moment_time(h, k));
+      for (const auto cause : kCauses) m.errors.*cause += a * std::pow(one.*cause, 2);
     }
   }
   for (auto& [material, rows] : table)
     for (MaterialMoment& m : rows) {
       m.kelvin /= m.area, m.sunlight /= m.area, m.infrared /= m.area;
-      m.error = std::sqrt(m.error / m.area);
+      for (const auto cause : kCauses) m.errors.*cause = std::sqrt(m.errors.*cause / m.area);
     }
   return table;
 }
@@ -51,26 +59,32 @@ std::string moment_text(const HeatResult& h, size_t k, const Simulation& sim) {
 
 std::vector<std::string> heat_sentences(const HeatResult& h, const PreparedHeat& p, double seconds) {
   std::vector<std::string> out;
-  double worst = 0, sum = 0, area = 0, steps = 0;
+  double worst = 0, sum = 0, area = 0, sizes = 0, steps = 0;
   std::vector<double> by_face;
   for (size_t f = 0; f < p.faces->size(); ++f) {
-    double square = 0;
-    for (size_t k = 0; k < kHeatParts; ++k)
-      square += std::pow(double{h.path_error[f * kHeatParts + k]}, 2) / kHeatParts;
+    const auto mean_square = [&](const std::vector<float>& errors) {
+      double square = 0;
+      for (size_t k = 0; k < kHeatParts; ++k) square += std::pow(double{errors[f * kHeatParts + k]}, 2) / kHeatParts;
+      return square;
+    };
+    const double square = mean_square(h.path_error);
     by_face.push_back(std::sqrt(square));
     worst = std::max(worst, by_face.back());
     const double a = (*p.elements)[p.faces->element(f)].area;
     sum += a * square, area += a;
-    steps = std::max(steps, double{h.step_error[f]});
+    sizes += a * mean_square(h.size_error), steps += a * mean_square(h.step_error);
   }
   std::sort(by_face.begin(), by_face.end());
   out.push_back(strf("%zu elements (%zu faces) of %.4g m2, %s rays, %d sweeps, %.1f s", p.elements->size(),
                      p.faces->size(), p.elements->total_area(), human_count(h.rays).c_str(), h.sweeps, seconds));
+  out.push_back(strf(
+      "standard error by the paths %.2g K (root mean square over the area), half of the faces below %.2g K, "
+      "the worst %.2g K; by the steps in time %.2g K, by the sweeps %.1g K, by the past %.1g K",
+      std::sqrt(sum / area), by_face[by_face.size() / 2], worst, std::sqrt(steps / area), h.sweep_error, h.past_error));
   out.push_back(
-      strf("standard error by the paths %.2g K (root mean square over the area), half of the faces below %.2g K, "
-           "the worst %.2g K; by a step in "
-           "time up to %.2g K, by the sweeps %.1g K, by the past %.1g K",
-           std::sqrt(sum / area), by_face[by_face.size() / 2], worst, steps, h.sweep_error, h.past_error));
+      strf("places within an element differ from its mean by %.2g K (root mean square) where direct sun does; "
+           "`elements` makes that smaller",
+           std::sqrt(sizes / area)));
   const auto& b = h.balance;
   const double scale = 1 / p.elements->total_area();
   out.push_back(
@@ -84,20 +98,45 @@ std::vector<std::string> heat_sentences(const HeatResult& h, const PreparedHeat&
            "the ground is "
            "as warm as the air, with an albedo of %g",
            p.elements->largest(), p.spec.ground_albedo));
+  if (h.audit) out.push_back(audit_sentence(*h.audit));
+  return out;
+}
+
+std::string audit_sentence(const HeatAudit& a) {
+  std::string out = strf("audit by %zu probes, %s rays: elements are %+.3f +- %.3f K too warm in the mean (95 %%; %s)",
+                         a.probes.size(), human_count(a.rays).c_str(), a.bias, HeatAudit::kSure * a.bias_error,
+                         a.biased() ? "biased" : "no bias is seen");
+  const double sure = HeatAudit::kSure * a.square_error;
+  out += a.spread() > 0 ? strf("; places differ from their elements by %.2f K (root mean square, %.2f to %.2f)",
+                               a.spread(), std::sqrt(std::max(0.0, a.square - sure)), std::sqrt(a.square + sure))
+                        : strf("; places differ from their elements by less than %.2f K (root mean square)",
+                               std::sqrt(std::max(0.0, a.square + sure)));
+  if (a.cut > 0) out += strf("; %zu walks were cut after %u events", a.cut, HeatAudit::kMostEvents);
+  if (a.fast > 0) out += strf("; %zu waits were longer than their rates allowed", a.fast);
+  return out;
+}
+
+std::string audit_table(const HeatAudit& audit, const PreparedHeat& p, const Scene& scene) {
+  std::string out = "face,material,east_m,north_m,up_m,time_s,found_k,walked_k,walked_again_k,more_k,more_again_k\n";
+  for (const AuditProbe& a : audit.probes)
+    out += strf("%u,%s,%.6g,%.6g,%.6g,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f\n", a.face,
+                scene.materials[(*p.elements)[p.faces->element(a.face)].material].id.c_str(), a.at.x, a.at.y, a.at.z,
+                a.time, a.found, a.walked[0], a.walked[1], a.more[0], a.more[1]);
   return out;
 }
 
 std::string heat_table(const HeatResult& h, const PreparedHeat& p, const Scene& scene, const Simulation& sim) {
   const MaterialTable table = means_of(h, p);
-  std::string out =
-      "time_s,time_utc,material,area_m2,temperature_k,coldest_k,warmest_k,path_error_k,absorbed_sunlight_w_m2,"
-      "received_infrared_w_m2,air_k\n";
+  std::string out = strf(
+      "time_s,time_utc,material,area_m2,temperature_k,coldest_k,warmest_k,%s,absorbed_sunlight_w_m2,"
+      "received_infrared_w_m2,air_k\n",
+      kErrorColumns);
   for (size_t k = 0; k < h.moments; ++k)
     for (const auto& [material, rows] : table) {
       const MaterialMoment& m = rows[k];
-      out += moment_text(h, k, sim) + strf(",%s,%.6g,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.3f\n",
-                                           scene.materials[material].id.c_str(), m.area, m.kelvin, m.coldest, m.warmest,
-                                           m.error, m.sunlight, m.infrared, double{h.air_kelvin[k]});
+      out += moment_text(h, k, sim) +
+             strf(",%s,%.6g,%.4f,%.4f,%.4f,%s,%.3f,%.3f,%.3f\n", scene.materials[material].id.c_str(), m.area, m.kelvin,
+                  m.coldest, m.warmest, error_text(m.errors).c_str(), m.sunlight, m.infrared, double{h.air_kelvin[k]});
     }
   return out;
 }
@@ -105,17 +144,19 @@ std::string heat_table(const HeatResult& h, const PreparedHeat& p, const Scene& 
 std::string heat_probes(const HeatResult& h, const PreparedHeat& p, const WeatherLoads& weather, const Scene& scene,
                         const Simulation& sim) {
   if (sim.heat->probes.empty()) return {};
-  std::string out =
-      "time_s,time_utc,probe,material,temperature_k,path_error_k,absorbed_sunlight_w_m2,absorbed_infrared_w_m2,"
-      "source_w_m2,emitted_w_m2,to_air_w_m2,into_surface_w_m2\n";
+  std::string out = strf(
+      "time_s,time_utc,probe,material,temperature_k,%s,absorbed_sunlight_w_m2,absorbed_infrared_w_m2,"
+      "source_w_m2,emitted_w_m2,to_air_w_m2,into_surface_w_m2\n",
+      kErrorColumns);
   for (const auto& [name, place] : sim.heat->probes) {
     const uint32_t element = nearest_element(*p.elements, place);
     const std::vector<HeatFluxes> fluxes = fluxes_of(h, *p.elements, p.optics, weather, element);
     for (size_t k = 0; k < fluxes.size(); ++k) {
       const HeatFluxes& f = fluxes[k];
-      out += moment_text(h, k, sim) + strf(",%s,%s,%.4f,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
+      out += moment_text(h, k, sim) + strf(",%s,%s,%.4f,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
                                            scene.materials[(*p.elements)[element].material].id.c_str(), f.kelvin,
-                                           f.error, f.sunlight, f.infrared, f.source, f.emitted, f.to_air, f.into());
+                                           error_text(f.errors).c_str(), f.sunlight, f.infrared, f.source, f.emitted,
+                                           f.to_air, f.into());
     }
   }
   return out;
@@ -135,8 +176,9 @@ std::string heat_page(const HeatResult& h, const PreparedHeat& p, const WeatherL
   const size_t warm = plot("Means of materials; bands from the coldest to the warmest element", "K"),
                sun = plot("Sunlight absorbed, means of materials", "W/m2"),
                infrared = plot("Infrared received, means of materials", "W/m2");
-  PageTable materials{
-      "Materials", {"material", "area, m2", "coldest, K", "warmest, K", "standard error by the paths, K"}, {}};
+  PageTable materials{"Materials",
+                      {"material", "area, m2", "coldest, K", "warmest, K", "errors: paths, K", "element size", "steps"},
+                      {}};
   for (const auto& [material, rows] : means_of(h, p)) {
     const std::string& name = scene.materials[material].id;
     PlotSeries T{name, hours, {}, {}, {}}, light{name, hours, {}, {}, {}}, glow = light;
@@ -145,20 +187,22 @@ std::string heat_page(const HeatResult& h, const PreparedHeat& p, const WeatherL
       T.y.push_back(m.kelvin), T.low.push_back(m.coldest), T.high.push_back(m.warmest);
       light.y.push_back(m.sunlight), glow.y.push_back(m.infrared);
       all.coldest = std::min(all.coldest, m.coldest), all.warmest = std::max(all.warmest, m.warmest);
-      all.error = std::max(all.error, m.error);
+      for (const auto cause : kCauses) all.errors.*cause = std::max(all.errors.*cause, m.errors.*cause);
     }
     page.plots[warm].series.push_back(T), page.plots[sun].series.push_back(light);
     page.plots[infrared].series.push_back(glow);
-    materials.rows.push_back(
-        {name, strf("%.4g", all.area), strf("%.2f", all.coldest), strf("%.2f", all.warmest), strf("%.3f", all.error)});
+    materials.rows.push_back({name, strf("%.4g", all.area), strf("%.2f", all.coldest), strf("%.2f", all.warmest),
+                              strf("%.3f", all.errors.paths), strf("%.3f", all.errors.size),
+                              strf("%.3f", all.errors.steps)});
   }
   page.plots[warm].series.push_back({"air", hours, weather.air_kelvin, {}, {}});
   if (!sim.heat->probes.empty()) {
-    const size_t probes = plot("Probes; bands of two standard errors by the paths", "K");
+    const size_t probes = plot("Probes; bands of twice the error of all causes", "K");
     for (const auto& [name, place] : sim.heat->probes) {
       PlotSeries T{name, hours, {}, {}, {}};
       for (const HeatFluxes& f : fluxes_of(h, *p.elements, p.optics, weather, nearest_element(*p.elements, place)))
-        T.y.push_back(f.kelvin), T.low.push_back(f.kelvin - 2 * f.error), T.high.push_back(f.kelvin + 2 * f.error);
+        T.y.push_back(f.kelvin), T.low.push_back(f.kelvin - 2 * f.errors.total()),
+            T.high.push_back(f.kelvin + 2 * f.errors.total());
       page.plots[probes].series.push_back(T);
     }
   }

@@ -21,6 +21,9 @@ struct PreparedHeat {
 
 // Elements, rays, errors, the balance: sentences.
 std::vector<std::string> heat_sentences(const HeatResult& result, const PreparedHeat& prepared, double seconds);
+// What the audit found, in a sentence; and every probe with both its walks, as CSV.
+std::string audit_sentence(const HeatAudit& audit);
+std::string audit_table(const HeatAudit& audit, const PreparedHeat& prepared, const Scene& scene);
 // CSV: means over the faces of each material, by moment.
 std::string heat_table(const HeatResult& result, const PreparedHeat& prepared, const Scene& scene,
                        const Simulation& sim);

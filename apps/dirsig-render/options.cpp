@@ -27,6 +27,7 @@ AppInfo render_info() {
           "  dirsig-render sim.yaml --more 64\n"
           "  dirsig-render sim.yaml -o p2 --part 2/8 --state   one part of eight, and when all are there:\n"
           "  dirsig-render sim.yaml -o out --merge p1 p2 p3 p4 p5 p6 p7 p8\n"
+          "  dirsig-render -o out --view out.html              a page to look at the finished results\n"
           "  dirsig-render sim.yaml --study study/             how error falls with run time\n"
           "  dirsig-render sim.yaml --dry-run                 what would be computed\n\n"
           "The text format is described in formats/sim_text/FORMAT.md. Exit codes: 0 fine, 1 bad input, 2 bad usage, 3 "
@@ -94,6 +95,28 @@ void declare_import(Cli& cli, RenderOptions& o) {
   cli.flag("--strict", o.strict, "of a simulation of DIRSIG: refuse it when anything is left out, however harmless");
 }
 
+void declare_heat(Cli& cli, RenderOptions& o) {
+  cli.option("--heat", o.heat,
+             "take the temperatures of `heat:` from this file (heat.h5 of another run) instead of finding them",
+             "FILE");
+  cli.option(
+      "--heat-operator", o.heat_operator,
+      "take what paths found for `heat:` from this file (heat_operator.h5 of a run with 'heat: {keep: operator}'): "
+      "other weather then needs no new rays",
+      "FILE");
+  cli.flag("--heat-only", o.heat_only, "find the temperatures of `heat:`, write FOLDER/heat.h5 and heat.csv, and stop");
+}
+
+void declare_view(Cli& cli, RenderOptions& o) {
+  cli.option("--view", o.view,
+             "write a page to look at the results in a browser, which needs nothing else: of this run, or without a "
+             "simulation of the finished ones in the folder of -o",
+             "FILE.html");
+  cli.option("--view-size", o.view_size,
+             "room for the page (KiB, MiB, GiB; 256MiB unless given); of larger results it has every n-th pixel",
+             "64MiB");
+}
+
 }  // namespace
 
 void declare_render(Cli& cli, RenderOptions& o) {
@@ -136,10 +159,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--more", o.more,
              "continue a finished run with --state: N more paths per pixel (0 with a finer --target-error)", "N");
   declare_parts(cli, o);
-  cli.option("--heat", o.heat,
-             "take the temperatures of `heat:` from this file (heat.h5 of another run) instead of finding them",
-             "FILE");
-  cli.flag("--heat-only", o.heat_only, "find the temperatures of `heat:`, write FOLDER/heat.h5 and heat.csv, and stop");
+  declare_heat(cli, o);
   cli.option("--study", o.study,
              "error against run time: many runs against a reference; writes study.csv, .json and .html there, and goes "
              "on from them",
@@ -149,6 +169,7 @@ void declare_render(Cli& cli, RenderOptions& o) {
   cli.option("--study-seeds", o.study_seeds, "runs of the study at each budget", "N");
   cli.option("--reference", o.reference, "image that the study's runs are compared with, instead of a long run",
              "FILE");
+  declare_view(cli, o);
   cli.option("--seed", o.seed, "seed of the sample points instead of the simulation's", "N");
   declare_import(cli, o);
   declare_questions(cli, o);

@@ -11,9 +11,10 @@ struct RenderOptions {
   std::string simulation, output = "out";
   std::vector<std::string> plugins, settings, search;
   std::string explain, paths, target_error, target_bands = "reference", time, stop, method = "standard", kit_memory,
-                                            memory, ranks, link, against, heat, account, convert;
-  std::string part, plan;          // K/N; folder of a state of the whole
-  std::vector<std::string> merge;  // folders of parts
+                                            memory, ranks, link, against, heat, heat_operator, account, convert;
+  std::string view, view_size = "256MiB";  // page
+  std::string part, plan;                  // K/N; folder of a state of the whole
+  std::vector<std::string> merge;          // folders of parts
   std::string study, study_budgets = "4,8,16,32,64", reference;
   long long study_seeds = 4;
   double target_floor = -1;

@@ -42,6 +42,7 @@
 #include "together.h"
 #include "transport/channels.h"
 #include "transport/truth/truth.h"
+#include "view.h"
 
 namespace suite {
 
@@ -325,12 +326,11 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   return options;
 }
 
-// Temperatures that the weather makes, when all wishes can be met. leads: of all ranks this one keeps what it found, of
-// a run that has results.
+// Temperatures that the weather makes, when all wishes can be met; kept of a run that has results.
 Heating warmed(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
-               const RenderOptions& o, const Facts& facts, bool leads) {
+               const RenderOptions& o, const Facts& facts, Ranks* ranks) {
   if (!o.heat_only) check_wishes(sim, facts);
-  return heating_of(scene, sim, options, o, leads && o.ranks.empty() && o.study.empty() ? o.output : "");
+  return heating_of(scene, sim, options, o, o.ranks.empty() && o.study.empty() ? o.output : "", ranks);
 }
 
 }  // namespace
@@ -338,7 +338,7 @@ Heating warmed(const std::shared_ptr<const Scene>& scene, const Simulation& sim,
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
   if (const auto code = answer(o)) return *code;
-  if (o.simulation.empty()) throw UsageError("a simulation text is required");
+  if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
   if (!o.convert.empty()) return convert_simulation(o);
 
@@ -371,7 +371,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   check_sensors(sim, *scene, options);
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
-  options.heating = warmed(scene, sim, options, o, facts, !ranks || ranks->leads());
+  options.heating = warmed(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);
@@ -391,7 +391,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, *writer);
-  if (!report.stopped) return 0;
+  if (!report.stopped) return show_own(o);
   warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options));
   return 128 + stop_signal();
 }

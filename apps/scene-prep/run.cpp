@@ -27,6 +27,7 @@
 #include "scene/summary.h"
 #include "surface/quick_look.h"
 #include "thermal/models.h"
+#include "view.h"
 
 namespace suite {
 
@@ -52,6 +53,7 @@ std::string canonical_arguments(const ScenePrepOptions& o) {
   for (const std::string& code : o.mute) text += " --mute " + code;
   if (o.strict) text += " --strict";
   if (o.repair) text += " --repair";
+  if (o.uplift) text += " --uplift";
   for (const std::string& how : o.compress) text += " --compress " + how;
   return text;
 }
@@ -74,8 +76,8 @@ bool program_is_newer(const std::string& output) {
 
 // The output was made by this version from the same inputs with the same options.
 bool up_to_date(const ScenePrepOptions& o) {
-  if (o.force || o.output.empty() || !o.report.empty() || !o.account.empty() || !file_exists(o.output) ||
-      program_is_newer(o.output))
+  if (o.force || o.output.empty() || !o.report.empty() || !o.account.empty() || !o.view.empty() ||
+      !file_exists(o.output) || program_is_newer(o.output))
     return false;
   try {
     const Provenance p = [&] {
@@ -134,7 +136,7 @@ Compression compression_of(const ScenePrepOptions& o) {
 
 int prepare(const ScenePrepOptions& o) {
   const Compression compression = compression_of(o);
-  const std::vector<std::string> outputs{o.output, o.report, page_of_report(o)};
+  const std::vector<std::string> outputs{o.output, o.report, page_of_report(o), o.view};
   note_input(o.input);
   check_outputs(outputs);
   if (up_to_date(o)) {
@@ -145,7 +147,7 @@ int prepare(const ScenePrepOptions& o) {
   Report report(scene_issues());
   for (const std::string& code : o.mute) report.mute(code);
   report.set_strict(o.strict);
-  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings, o.account, o.strict}, report);
+  Draft draft = importer_of(o.input).make(o.input, {o.search, o.settings, o.account, o.strict, o.uplift}, report);
   check_outputs(outputs);  // what the text reads is known now
   steps.done("read");
   MeshCheck check;
@@ -153,6 +155,8 @@ int prepare(const ScenePrepOptions& o) {
   check_draft_meshes(draft, check, o.repair, report);
   steps.done("check");
   const Scene scene = bake_scene(draft, report);
+  const std::vector<ViewedFinding> findings =
+      o.view.empty() ? std::vector<ViewedFinding>{} : findings_to_view(draft, report);
   steps.done("bake");
   make_folders_of({o.report});
   if (report.ok()) make_folders_of({o.output});
@@ -164,6 +168,7 @@ int prepare(const ScenePrepOptions& o) {
     steps.done("write");
   }
   if (!o.report.empty() && o.report != "-") steps.write(o, report);
+  if (report.ok() && !o.view.empty()) write_scene_view(scene, findings, o.view);
   if (!report.ok()) {
     if (!o.output.empty() && file_exists(o.output)) warn(o.output + " is left as it was: it does not hold this scene");
     return 1;
@@ -231,27 +236,29 @@ LookAt parse_look(const ScenePrepOptions& o, const Tracer& tracer, double time) 
 // Anything of how a scene text is prepared was asked for, but where to and with what values.
 bool goes_with_a_scene(const ScenePrepOptions& o) {
   return !o.input.empty() || !o.search.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() ||
-         o.strict || o.repair || o.quick || o.force;
+         o.strict || o.repair || o.quick || o.force || o.uplift;
 }
 
 // Questions about a scene that has been prepared.
 int inspect(const ScenePrepOptions& o) {
   if (!o.output.empty() || !o.settings.empty() || !o.report.empty() || !o.mute.empty() || !o.compress.empty() ||
-      o.strict || o.repair || o.quick || o.force)
+      o.strict || o.repair || o.quick || o.force || o.uplift)
     throw UsageError(
-        "--output, --set, --report, --mute, --strict, --repair, --compress, --no-crossing-check and --force go with a "
-        "scene text, not with questions about a prepared scene");
+        "--output, --set, --report, --mute, --strict, --repair, --compress, --uplift, --no-crossing-check and --force "
+        "go "
+        "with a scene text, not with questions about a prepared scene");
   if (o.quick_look.empty() && (!o.look_at.empty() || !o.look_from.empty() || o.look_size != 0))
     throw UsageError("--look-at, --look-from and --look-size go with --quick-look");
   if (o.pixels < 1 || o.pixels > 16384) throw UsageError("--pixels is 1 to 16384");
   note_input(o.input);
-  check_outputs({o.export_obj, o.quick_look});
+  check_outputs({o.export_obj, o.quick_look, o.view});
   LoadReport stored;
   const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));
   make_folders_of({o.export_obj, o.quick_look});
   if (o.summary) print_summary(o, *scene, stored);
   if (!o.export_obj.empty())
     if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));
+  if (!o.view.empty()) write_scene_view(*scene, {}, o.view);
   if (o.raycast.empty() && o.quick_look.empty()) return 0;
   const double time = time_of_all(*scene);
   const Tracer tracer(scene, std::nullopt, {time, time});
@@ -267,6 +274,14 @@ int inspect(const ScenePrepOptions& o) {
 
 namespace {
 
+// An HDF5 file, by its first bytes.
+bool is_prepared(const std::string& path) {
+  if (!file_exists(path) || file_size(path) < 8) return false;
+  std::array<std::byte, 4> first{};
+  RandomAccessFile(path).read_at(0, first);
+  return first == std::array{std::byte{0x89}, std::byte{'H'}, std::byte{'D'}, std::byte{'F'}};
+}
+
 int convert(const ScenePrepOptions& o) {
   if (!o.output.empty() || !o.report.empty() || !o.account.empty() || !o.settings.empty())
     throw UsageError("--convert goes without --output, --report, --account and --set");
@@ -274,7 +289,7 @@ int convert(const ScenePrepOptions& o) {
   const ImporterRow& importer = importer_of(o.input);
   if (!importer.convert)
     throw Error(Where{o.input, 0, 0, {}, -1}, "is a scene text already", "--convert is for scenes of other programs");
-  const bool whole = importer.convert(o.input, {o.search, {}, "", o.strict}, o.convert);
+  const bool whole = importer.convert(o.input, {o.search, {}, "", o.strict, o.uplift}, o.convert);
   if (!whole) warn("something of it is lost: the account says what");
   return whole || !o.strict ? 0 : 1;
 }
@@ -285,7 +300,8 @@ int run_scene_prep(const ScenePrepOptions& o) {
   if (o.list_issues) return list_issues(), 0;
   if (const std::string list = lists(o); !list.empty()) return std::fputs(list.c_str(), stdout), 0;
   if (!o.explain.empty()) return std::fputs(explain_feature(o.explain).c_str(), stdout), 0;
-  const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty();
+  const bool questions = o.summary || !o.raycast.empty() || !o.export_obj.empty() || !o.quick_look.empty() ||
+                         (!o.view.empty() && is_prepared(o.input));
   if (!o.gases.empty()) {
     if (questions || goes_with_a_scene(o)) throw UsageError("--gases takes --output and --set alone");
     return bake_gases(o);

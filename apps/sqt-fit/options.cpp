@@ -10,7 +10,8 @@ AppInfo sqt_fit_info() {
       "Inputs, recognised by content:\n" + measured_formats() +
           "Models (--model): every scattering model of scenes and every phase function, e.g. lambert, oren_nayar, "
           "ward,\n"
-          "  ggx, ggx_dielectric (both sides), rpv, ross_li, mirror, hg:g=0.9, double_hg, rayleigh; one channel at "
+          "  ggx, ggx_dielectric (both sides), rpv, ross_li, roujean, priest_germer, beard_maxwell, shell, mirror, "
+          "hg:g=0.9, double_hg, rayleigh; one channel at "
           "0.55 um.\n"
           "  A tabulated phase function (Mie): tabulated:table=@FILE, or in place \"tabulated:table=0 9.1, 5 4.2, ... "
           "180 "
@@ -36,14 +37,18 @@ AppInfo sqt_fit_info() {
           "  sqt-fit gold.binary -o gold.sqt --max-error 0.05 --report gold.json\n"
           "  sqt-fit gold.binary -o gold.sqt --max-bytes 50000 --curve gold.csv\n"
           "  sqt-fit --model ward:diffuse=0.1,specular=0.2,roughness=0.15 -o ward.sqt\n"
+          "  sqt-fit BRDFDatabase/brdfs -o merl.csv --fits merl\n"
           "  sqt-fit gold.binary -o old.sqt --method paper --order 6 --views 24 --threshold 0.2\n"
           "Exit codes: 0 written, 1 bad input or (--strict) a promise not kept, 2 wrong usage, 3 a bug of ours."};
 }
 
 void declare(Cli& cli, SqtFitOptions& o) {
-  cli.positional("input", o.input, "file to fit", false);
+  cli.positional("input", o.input, "file to fit, or a folder of them: a table of all (-o TABLE.csv)", false);
   cli.option("--model", o.model, "fit a scattering model instead of a file", "NAME:PARAM=VALUE,...");
-  cli.option("-o,--output", o.output, "file to write", "FILE.sqt");
+  cli.option("-o,--output", o.output, "file to write; of a folder TABLE.csv: sizes, errors, seconds of its files",
+             "FILE.sqt");
+  cli.option("--fits", o.fits, "of a folder: where the .sqt of its files go; without it they are measured only",
+             "FOLDER");
   cli.option("--method", o.method, "aligned, or paper (one tree a view and channel, for comparison)", "NAME");
   cli.flag("--swap", o.swap,
            "the data's incident direction is the viewer's (as Mitsuba and pbrt take .bsdf files), not the light's");

@@ -21,6 +21,8 @@ AppInfo inspect_info() {
               "  sqt-inspect satin.sqt --map lobe.png --channel 1 --views 20,60 --zoom 20\n"
               "  sqt-inspect satin.sqt --compare satin_purple_rgb.bsdf --error-map error.png\n"
               "  sqt-inspect satin.sqt --eval 30,0,30,180,0.55\n"
+              "  sqt-inspect satin.sqt --export satin.csv\n"
+              "  sqt-inspect satin.sqt --export satin_for_mitsuba.bsdf --export-size 128\n"
               "Exit codes: 0 fine, 1 bad input or a failed check, 2 wrong usage, 3 a bug of ours."};
 }
 
@@ -33,6 +35,9 @@ void declare_options(Cli& cli, InspectOptions& o) {
   cli.option("--zoom", o.zoom, "--map shows what lies within this angle of the mirror direction; 0 = the hemisphere",
              "DEG");
   cli.flag("--no-edges", o.no_edges, "--map without the borders of the cells");
+  cli.option("--view", o.view,
+             "page with the lobes and cells of all stored view directions, to turn in a browser; needs nothing else",
+             "FILE.html");
   cli.option("--slice", o.slice, "principal plane as a table", "CSV");
   cli.option("--plot", o.plot, "principal plane as a plot; with a comparison the data as dots beside it", "PNG");
   cli.option("--views", o.views,
@@ -49,8 +54,18 @@ void declare_options(Cli& cli, InspectOptions& o) {
   cli.option("--eval", o.eval, "print f, w = f |cos in|, density and total for one pair of directions",
              "THETA_O,PHI_O,THETA_I,PHI_I,UM");
   cli.option("--sphere", o.sphere, "preview of a sphere under sun and sky", "PNG");
+  cli.option("--export", o.export_to,
+             "write it for others: .csv (angles and values), .raw (raw sample text), .bsdf (Mitsuba's measured), .xml "
+             "(Radiance's tensor tree, one --channel)",
+             "FILE");
+  cli.option(
+      "--export-size", o.export_size,
+      "of --export: steps from pole to horizon of .csv and .raw (18), side of the tables of .bsdf (64), levels of "
+      ".xml (6; anisotropic 4)",
+      "N");
   cli.option("--size", o.size, "pixels of --sphere and of a slice of --map, 16 to 4096", "N");
-  cli.option("--channel", o.channel, "channel of --map, --plot, --sample and --error-map, from 0", "N");
+  cli.option("--channel", o.channel, "channel of --map, --plot, --sample, --error-map and --export FILE.xml, from 0",
+             "N");
 }
 
 std::vector<double> number_list(const std::string& option, const std::string& text, size_t least, size_t most) {

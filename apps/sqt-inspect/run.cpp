@@ -9,12 +9,14 @@
 #include "base/outputs.h"
 #include "check.h"
 #include "compare.h"
+#include "export.h"
 #include "formats/measured/measured.h"
 #include "formats/sqt/sqt.h"
 #include "header.h"
 #include "map.h"
 #include "optics/model_function.h"
 #include "slice.h"
+#include "view.h"
 
 namespace suite {
 
@@ -128,7 +130,8 @@ void run_sample(const InspectOptions& o, const sqt::Bundle& bundle) {
 
 int inspect(const Cli&, const InspectOptions& o) {
   for (const std::string& input : {o.file, o.compare}) note_input(input);
-  check_outputs({o.map, o.slice, o.plot, o.sphere, o.error_map});
+  check_outputs({o.map, o.slice, o.plot, o.sphere, o.error_map, o.view, o.export_to});
+  check_export(o);
   const SqtFile file = read_sqt(o.file);
   const sqt::Bundle& bundle = *file.bundle;
   check_usage(o, bundle);
@@ -138,8 +141,10 @@ int inspect(const Cli&, const InspectOptions& o) {
   if (data && !function_of(*data) && (!o.error_map.empty() || !o.plot.empty()))
     throw Error(Where{o.compare, 0, 0, {}, -1}, "scattered samples have no value at every direction",
                 "--error-map and --plot compare with MERL, RGL and models only");
-  make_folders_of({o.map, o.slice, o.plot, o.sphere, o.error_map});
+  make_folders_of({o.map, o.slice, o.plot, o.sphere, o.error_map, o.view, o.export_to});
   draw_pictures(o, bundle, data);
+  if (!o.view.empty()) write_lobe_view(bundle, o.view);
+  if (!o.export_to.empty()) export_bundle(o, bundle);
   if (o.check) return run_check(o, bundle);
   if (data)
     run_compare(o, bundle, *data);
@@ -147,7 +152,7 @@ int inspect(const Cli&, const InspectOptions& o) {
     run_eval(o, bundle);
   else if (o.sample > 0)
     run_sample(o, bundle);
-  else if (o.json || (o.map + o.slice + o.plot + o.sphere).empty())
+  else if (o.json || (o.map + o.slice + o.plot + o.sphere + o.view + o.export_to).empty())
     std::fputs((o.json ? header_json(file, o.file).text() : printable_lines(header_text(file, o.file))).c_str(),
                stdout);
   return 0;

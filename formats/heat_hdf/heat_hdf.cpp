@@ -9,7 +9,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat", *kVersion = "1";
+constexpr const char *kFormat = "suite heat", *kVersion = "2";
 
 // A number of 64 bits as two of 32, exactly.
 std::vector<uint32_t> halves(uint64_t v) { return {static_cast<uint32_t>(v >> 32), static_cast<uint32_t>(v)}; }
@@ -29,7 +29,7 @@ void check_finite(h5::Reader& r, const std::vector<float>& values, const char* n
 }  // namespace
 
 void write_heat(const std::string& path, const HeatResult& h, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, const std::string& made_by) {
+                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by) {
   AtomicFile file(path);
   h5::Writer w(file.temporary(), path, [](const std::string&) { return 4; });
   w.attribute("format", kFormat);
@@ -37,6 +37,7 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   w.attribute("arguments", made_by);
   const double span[4] = {h.span.begin, h.span.end, h.periodic ? 1.0 : 0.0, static_cast<double>(elements.budget())};
   w.attribute("begin_s_end_s_repeats_budget", span);
+  w.attribute("elements_by", by_sun ? "sun" : "area");
   const double errors[4] = {h.past_error, h.sweep_error, static_cast<double>(h.sweeps), h.unfinished};
   w.attribute("past_error_K_sweep_error_K_sweeps_unfinished", errors);
   const auto& b = h.balance;
@@ -63,8 +64,9 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   w.put("/faces/emissivity", h.emissivity, "1");
   w.put("/faces/absorptance", h.absorptance, "1");
   w.put("/faces/sun_hours", h.sun_hours, "h");
-  w.put("/faces/step_error", h.step_error, "K");
   w.put("/faces/path_error", h.path_error, "K", kHeatParts);
+  w.put("/faces/size_error", h.size_error, "K", kHeatParts);
+  w.put("/faces/step_error", h.step_error, "K", kHeatParts);
   w.put("/faces/temperature", h.kelvin, "K", h.moments);
   w.put("/faces/absorbed_sunlight", h.absorbed, "W/m2", h.moments);
   w.put("/faces/received_infrared", h.received, "W/m2", h.moments);
@@ -73,12 +75,14 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   file.commit();
 }
 
-size_t heat_budget(const std::string& path) {
+HeatCut heat_cut(const std::string& path) {
   h5::Reader r(path, "find the temperatures again");
   check_kind(r);
-  const double budget = r.numbers("begin_s_end_s_repeats_budget", 4)[3];
-  if (!(budget >= 1 && budget <= 1e8)) r.fail(strf("was made for %g elements", budget));
-  return static_cast<size_t>(budget);
+  const std::vector<double> v = r.numbers("begin_s_end_s_repeats_budget", 4);
+  if (!(v[3] >= 1 && v[3] <= 1e8)) r.fail(strf("was made for %g elements", v[3]));
+  const std::string by = r.text("elements_by");
+  if (by != "sun" && by != "area") r.fail("has elements cut by '" + by + "', sun or area are known");
+  return {static_cast<size_t>(v[3]), by == "sun", {v[0], v[1]}};
 }
 
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces) {
@@ -102,7 +106,8 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   h.step = (h.span.end - h.span.begin) / static_cast<double>(h.moments - 1);
   h.kelvin = r.get<float>("/faces/temperature", "K", h.moments, n);
   h.path_error = r.get<float>("/faces/path_error", "K", kHeatParts, n);
-  h.step_error = r.get<float>("/faces/step_error", "K", 1, n);
+  h.size_error = r.get<float>("/faces/size_error", "K", kHeatParts, n);
+  h.step_error = r.get<float>("/faces/step_error", "K", kHeatParts, n);
   h.emissivity = r.get<float>("/faces/emissivity", "1", 1, n);
   h.absorptance = r.get<float>("/faces/absorptance", "1", 1, n);
   h.sun_hours = r.get<float>("/faces/sun_hours", "h", 1, n);
@@ -111,6 +116,8 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   check_finite(r, h.kelvin, "/faces/temperature", 1, 1e4f);
   check_finite(r, h.air_kelvin, "/air/temperature", 1, 1e4f);
   check_finite(r, h.path_error, "/faces/path_error", 0, 1e4f);
+  check_finite(r, h.size_error, "/faces/size_error", 0, 1e4f);
+  check_finite(r, h.step_error, "/faces/step_error", 0, 1e4f);
   return h;
 }
 

@@ -6,13 +6,18 @@
 
 namespace suite {
 
-// Whole or not at all. made_by: the command line. Error: not writable.
+// Whole or not at all. by_sun: how the elements were cut. made_by: the command line. Error: not writable.
 void write_heat(const std::string& path, const HeatResult& result, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, const std::string& made_by);
+                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by);
 
 // Error: no such file, damaged, or of another scene, other materials or another number of elements.
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces);
-// The number of elements that it was asked for, which the elements have to be made with.
-size_t heat_budget(const std::string& path);
+// What the elements have to be made with.
+struct HeatCut {
+  size_t elements = 0;
+  bool by_sun = false;
+  TimeSpan span;  // s
+};
+HeatCut heat_cut(const std::string& path);
 
 }  // namespace suite

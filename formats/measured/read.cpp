@@ -76,6 +76,13 @@ Measured read_measured(const std::string& path) {
               "known formats:\n" + measured_formats());
 }
 
+bool looks_measured(const std::string& path) {
+  const RandomAccessFile file(path);
+  std::vector<std::byte> head(std::min<size_t>(file.size(), 12));
+  file.read_at(0, head);
+  return kind_of(head, path) != Kind::unknown;
+}
+
 std::string measured_formats() {
   return "  .binary   MERL, 90 x 90 x 180 or 360; f = raw x (1, 1.15, 1.66)/1500 per sr, no cosine; values at bin "
          "centres,\n"

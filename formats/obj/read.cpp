@@ -14,7 +14,7 @@
 #include <map>
 
 #include "base/files.h"
-#include "formats/obj/polygon.h"
+#include "math/polygon.h"
 
 namespace suite {
 

@@ -65,4 +65,15 @@ class RglBrdf final : public sqt::Function {
 std::shared_ptr<const RglBrdf> read_rgl(const std::string& path);
 std::shared_ptr<const RglBrdf> parse_rgl(std::span<const std::byte> bytes, const std::string& file_name);
 
+// How finely a function is tabulated for a .bsdf: slices over the polar angle (and azimuth, when it is not isotropic)
+// of the viewer, each with side x side half vectors, the polar angle's root along one and the azimuth along the other.
+struct RglSize {
+  size_t theta = 32, phi = 25, side = 64;
+};
+// The bytes of a .bsdf as Mitsuba's `measured` and pbrt take it: theta_i, phi_i are the viewer's direction, values hold
+// the cosine of the light's. The warp is the identity and `jacobian` 0: values are tabulated over half vectors as they
+// are. read_rgl takes theta_i for the light's, so `sqt::swapped` of what it reads is the function. Error: no BRDF;
+// wavelengths that neither ascend nor are those that stand for R, G, B.
+std::vector<std::byte> rgl_of(const sqt::Function& function, const std::string& description, const RglSize& size = {});
+
 }  // namespace suite

@@ -3,9 +3,7 @@
 #include <cmath>
 
 #include "base/files.h"
-#include "formats/dirsig/dirsig.h"
 #include "formats/envi/envi.h"
-#include "formats/obj/obj.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
 #include "scene/primitives.h"
@@ -21,7 +19,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   const size_t slot = draft_.geometry.size();
   draft_.geometry.push_back(g);
   draft_.geometry[slot].failed = true;
-  std::vector<std::string> kinds{"obj", "obj_text", "gdb", "terrain", "voxels"};
+  std::vector<std::string> kinds{"obj", "obj_text", "gdb", "ply", "stl", "gltf", "terrain", "voxels", "waves"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
   for (const std::string& k : kinds)
@@ -30,48 +28,18 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
       kind = k;
     }
   if (kind.empty()) throw p.error("object '" + name + "' has no geometry", name_hint("", kinds));
-  if (kind == "obj" || kind == "obj_text" || kind == "gdb")
-    read_obj_geometry(p, kind, g);
+  if (kind == "gltf") return read_model(p, std::move(g), slot);
+  if (kind == "obj" || kind == "obj_text" || kind == "gdb" || kind == "ply" || kind == "stl")
+    read_mesh(p, kind, g);
   else if (kind == "terrain")
     read_terrain(p, g);
   else if (kind == "voxels")
     read_voxel_geometry(p, g);
+  else if (kind == "waves")
+    read_waves(p, g);
   else
     read_primitive(p, g, kind);
   draft_.geometry[slot] = std::move(g);
-}
-
-void Reader::read_obj_geometry(const Params& p, const std::string& kind, DraftGeometry& g) {
-  g.kind = DraftGeometry::Kind::mesh;
-  if (const auto materials = p.find("materials"))
-    for (const std::string& name : materials->keys()) g.materials[name] = reference(materials->at(name));
-  constexpr NormalRule rules[] = {NormalRule::file, NormalRule::facet, NormalRule::smooth};
-  if (const auto normals = p.find("normals")) g.normals = rules[normals->as_choice({"file", "facet", "smooth"})];
-  if (const auto crease = p.find("crease_deg")) {
-    if (g.normals != NormalRule::smooth) throw crease->error("'crease_deg' goes with 'normals: smooth'");
-    g.crease_rad = p.number_in("crease_deg", 0, 180, "degrees") * kPi / 180;
-  }
-  const double unit = p.number_in("unit_m", 1e-9, 1e9, "m", 1);
-  g.to_local = scaling({unit, unit, unit});
-  // y up, z towards the viewer (the usual modelling tools) becomes z up, -y towards the viewer.
-  if (const auto up = p.find("up"))
-    if (up->as_choice({"z", "y"}) == 1) g.to_local = g.to_local * Affine3{{1, 0, 0, 0, 0, -1, 0, 1, 0}, {}};
-  if (p.has("fill_holes")) g.fill_holes = static_cast<size_t>(p.integer("fill_holes", 3, 1000));
-  if (const auto decimate = p.find("decimate")) {
-    if (!decimate->has("to") && !decimate->has("error_m"))
-      throw decimate->error("'decimate' says neither how far nor how exactly", "give 'to', 'error_m' or both");
-    g.decimate = DecimationRule{};
-    if (decimate->has("to")) g.decimate->to = decimate->number_in("to", 0, 1, "of the triangles");
-    if (decimate->has("error_m")) g.decimate->error_m = decimate->number_in("error_m", 1e-9, 1e9, "m");
-  }
-  if (kind == "obj") {
-    g.mesh = read_obj(input(p.at("obj")), report_);
-  } else if (kind == "gdb") {
-    const std::string path = input(p.at("gdb"));
-    g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
-  } else {
-    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
-  }
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "formats/scene_text/reader.h"
 #include "formats/sqt/sqt.h"
 #include "optics/models.h"
+#include "optics/models/sea.h"
 
 namespace suite::scene_text {
 
@@ -120,6 +121,9 @@ void Reader::read_model(const Params& p, ModelSpec& spec) {
     if (q.required && !spec.numbers.count(q.name) && !spec.curves.count(q.name) && !spec.texts.count(q.name))
       if (const auto near = p.misspelt(q.name)) throw *near;
   check_model(spec, model.where());
+  if (spec.model == "sea")
+    for (const std::string& note : sea_notes(spec.numbers.at("wind_m_s"), spec.numbers.at("directed") > 0.5))
+      report_.add("SP108", draft_.file, {model.where(), "model 'sea': " + note});
 }
 
 void Reader::read_material(const std::string& id, const Params& p) {

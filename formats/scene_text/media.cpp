@@ -71,6 +71,23 @@ void Reader::read_medium(const std::string& id, const Params& p) {
   Medium m;
   m.id = id;
   m.description = p.text("description", "");
+  if (const auto water = p.find("water")) {
+    for (const char* name : {"absorption", "scattering", "extinction", "albedo", "phase", "index"})
+      if (p.has(name)) throw p.at(name).error(strf("'%s' and 'water' cannot be combined", name), "water gives it");
+    read_water(*water, m);
+  } else {
+    read_coefficients(p, m);
+    if (const auto phase = p.find("phase")) read_phase(*phase, m.phase);
+    if (p.has("index")) m.index = read_curve_value(p.at("index"));
+  }
+  if (p.has("temperature_k")) m.temperature_k = p.number_in("temperature_k", 1, 1e5, "K");
+  m.priority = static_cast<int>(p.integer("priority", -1000, 1000, 0));
+  check_medium(m, p.where());
+  draft_.media[slot].medium = std::move(m);
+}
+
+// Absorption and scattering from the two coefficients that are given.
+void Reader::read_coefficients(const Params& p, Medium& m) {
   const auto curve = [&](const char* name) {
     return p.has(name) ? std::optional(read_curve_value(p.at(name))) : std::nullopt;
   };
@@ -83,7 +100,7 @@ void Reader::read_medium(const std::string& id, const Params& p) {
     check_sum(p, *extinction, *absorption, *scattering);
     m.absorption = *absorption, m.scattering = *scattering;
   } else if (given != 2 && !(given == 1 && (absorption || scattering))) {
-    throw p.error(strf("medium '%s' is given by %d coefficients", id.c_str(), given),
+    throw p.error(strf("medium '%s' is given by %d coefficients", m.id.c_str(), given),
                   "two of absorption, scattering, extinction, albedo; or one of the first two, the other being 0");
   } else if (!extinction && !albedo) {
     if (absorption) m.absorption = *absorption;
@@ -103,12 +120,6 @@ void Reader::read_medium(const std::string& id, const Params& p) {
     m.absorption =
         absorption ? *absorption : combined(*scattering, *albedo, [](double s, double w) { return s * (1 - w) / w; });
   }
-  if (const auto phase = p.find("phase")) read_phase(*phase, m.phase);
-  if (const auto index = curve("index")) m.index = *index;
-  m.temperature_k = p.has("temperature_k") ? p.number_in("temperature_k", 1, 1e5, "K") : 0;
-  m.priority = static_cast<int>(p.integer("priority", -1000, 1000, 0));
-  check_medium(m, p.where());
-  draft_.media[slot].medium = std::move(m);
 }
 
 // Index of refraction behind a surface over that in front of it, from the media it bounds; a missing one counts as 1.

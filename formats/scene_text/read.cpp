@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <iterator>
 
 #include "base/files.h"
 #include "formats/scene_text/reader.h"
@@ -122,10 +123,14 @@ void Reader::run(const Params& root) {
   item("SP001", root.has("world") ? root.at("world") : root, [&] { read_group("world", root.at("world")); });
   each("groups", "SP001", [&](const std::string& name, const Params& p) {
     if (name == "world") throw p.error("'world' is the name of the root");
-    for (const DraftGeometry& g : draft_.geometry)
-      if (g.name == name) throw p.error("'" + name + "' is an object already", strf("see line %d", g.where.line));
+    const auto clashes = [&](const auto& objects) {
+      for (const auto& o : objects)
+        if (o.name == name) throw p.error("'" + name + "' is an object already", strf("see line %d", o.where.line));
+    };
+    clashes(draft_.geometry), clashes(models_);
     read_group(name, p);
   });
+  std::move(models_.begin(), models_.end(), std::back_inserter(draft_.groups));
   for (const Error& e : root.unread()) report_.add("SP002", draft_.file, {e.where(), e.message() + "; " + e.hint()});
 }
 

@@ -12,6 +12,10 @@
 #include "formats/voxel/voxel.h"
 #include "motion/scene_frame.h"
 
+namespace suite {
+struct WaterSpec;
+}
+
 namespace suite::scene_text {
 
 // projection and drape of a map.
@@ -38,6 +42,12 @@ class Reader {
   std::optional<Curve> relative_index(const Params& p);
   // media.cpp
   void read_medium(const std::string& id, const Params& p);
+  void read_coefficients(const Params& p, Medium& m);
+  // water.cpp
+  void read_water(const Params& p, Medium& m);
+  void read_waves(const Params& p, DraftGeometry& g);
+  void read_measured_water(const Params& p, WaterSpec& spec);
+  // media.cpp
   void read_grid(const std::string& name, const Params& p);
   void read_volume(const Params& p);
   void read_voxel_geometry(const Params& p, DraftGeometry& g);
@@ -49,10 +59,13 @@ class Reader {
   void read_temperature(const Params& p, DraftMaterial& m);
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
-  void read_obj_geometry(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_terrain(const Params& p, DraftGeometry& g);
   void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
+  // meshes.cpp
+  void read_mesh_rules(const Params& p, DraftGeometry& g);
+  void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
+  void read_model(const Params& p, DraftGeometry g, size_t slot);
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p, bool world);
@@ -83,6 +96,7 @@ class Reader {
   std::map<std::string, Curve> curves_;
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> stored_;  // name in the scene -> what it holds
   std::map<std::string, std::string> embedded_;                       // resolved path -> name in the scene
+  std::vector<DraftGroup> models_;                                    // of objects that are groups; after `world`
 };
 
 }  // namespace suite::scene_text

@@ -49,12 +49,27 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   out.weather = std::make_shared<const Weather>(read_the_weather(*weather));
   HeatSpec& s = out.spec;
   s.elements = static_cast<size_t>(heat->integer("elements", 1, 10'000'000, 20000));
+  if (const auto by = heat->find("elements_by")) s.cut_by_sun = by->as_choice({"sun", "area"}) == 0;
   s.paths = static_cast<uint32_t>(heat->integer("paths", HeatSpec::kBlocks, 1 << 16, 64));
   s.paths = (s.paths + HeatSpec::kBlocks - 1) / HeatSpec::kBlocks * HeatSpec::kBlocks;
+  if (const auto target = heat->find("target_k")) {
+    if (heat->find("paths"))
+      throw target->error("paths are given, and are to be chosen for a target", "drop one of them");
+    s.target = target->as_number_in(1e-3, 10, "K");
+  }
   s.step = heat->number_in("step_s", 1, 3600, "s", 600);
   s.tolerance = heat->number_in("tolerance_k", 1e-7, 1, "K", 0.01);
   s.ground_albedo = heat->number_in("ground_albedo", 0, 1, "", 0.2);
+  s.audit = static_cast<size_t>(heat->integer("audit", 0, 100'000'000, 0));
+  if (s.audit == 1)
+    throw heat->at("audit").error("one probe has no error", "two at least, thousands for tenths of a kelvin");
   s.seed = sim.pipeline.seed;
+  if (const auto keep = heat->find("keep")) {
+    if (keep->as_text() != "operator")
+      throw keep->error("the balance of heat cannot keep '" + keep->as_text() + "'", "keep: operator");
+    out.keep_operator = true;
+    out.save_every = heat->number_in("save_every_s", 0, 86400, "s", out.save_every);
+  }
   if (const auto probes = heat->find("probes"))
     for (const std::string& name : probes->keys()) {
       const std::vector<double> v = probes->at(name).as_numbers();

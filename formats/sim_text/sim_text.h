@@ -57,6 +57,8 @@ struct HeatRequest {
   HeatSpec spec;                                     // its span is still to be chosen unless `span` is given
   std::optional<TimeSpan> span;                      // s
   std::vector<std::pair<std::string, Vec3>> probes;  // m, scene ENU
+  bool keep_operator = false;                        // what paths find, for other weather and to go on from
+  double save_every = 20;                            // s
   Where where;
 };
 

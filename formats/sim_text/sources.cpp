@@ -1,7 +1,11 @@
 #include "formats/sim_text/sources.h"
 
+#include <cmath>
+
 #include "base/files.h"
+#include "base/run_app.h"
 #include "formats/curve/curve.h"
+#include "formats/ies/ies.h"
 #include "formats/motion/motion.h"
 #include "formats/raster/raster.h"
 #include "formats/sim_text/air.h"
@@ -50,6 +54,15 @@ std::shared_ptr<const sqt::Bundle> read_intensity(const Params& file) {
   if (sqt.bundle->info().function.quantity != sqt::Quantity::intensity)
     throw file.error("this SQT holds no distribution of intensity");
   return sqt.bundle;
+}
+
+IntensityTable read_candela(const Params& file) {
+  double lost = 0;
+  const std::string path = file_of(file);
+  IntensityTable table = intensity_table(read_ies(path), lost);
+  if (std::fabs(lost) > 1e-4)
+    warn(strf("%s: on the even table of a lamp its lumens change by %+.2g %%", path.c_str(), 100 * lost));
+  return table;
 }
 
 ModelSpec read_phase(const Params& p) {
@@ -173,8 +186,12 @@ SourceSpecs read_sources(const Params& root, std::vector<AskedCurve>& asked) {
   SourceSpecs s;
   MotionContext motion;
   motion.clock = clock_of(root);
-  LightContext context{read_curve_value, read_image, read_intensity,
-                       [&](const Params& p) { return read_lamp_schedule(p, motion); }, &asked};
+  LightContext context{read_curve_value,
+                       read_image,
+                       read_intensity,
+                       read_candela,
+                       [&](const Params& p) { return read_lamp_schedule(p, motion); },
+                       &asked};
   for (const LightRow* key : light_keys()) {
     const auto value = root.find(key->key());
     if (!value) continue;

@@ -63,6 +63,14 @@ size_t Report::count(const std::string& code) const {
 
 bool Report::ok() const { return count(Severity::error) == 0 && !(strict_ && count(Severity::warning) > 0); }
 
+std::vector<PlacedFinding> Report::placed() const {
+  std::vector<PlacedFinding> out;
+  for (const auto& [key, entry] : entries_)
+    for (const Finding& f : entry.examples)
+      if (f.at && !muted_.count(key.first)) out.push_back({key.first, key.second, kind(key.first).severity, f});
+  return out;
+}
+
 std::string Report::text() const {
   std::string out;
   for (const auto& [key, entry] : entries_) {

@@ -1,7 +1,9 @@
 // Many findings at once. A finding has a stable code, a severity and a place; a Report counts all of them, keeps the
 // first three examples per code and asset, prints a verdict line and can be written as JSON.
 #pragma once
+#include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,6 +26,13 @@ struct IssueKind {
 struct Finding {
   Where where;
   std::string message;
+  std::optional<std::array<double, 3>> at = std::nullopt;  // in the asset's own coordinates, where it has a place
+};
+// A finding with a place, and what it is an example of.
+struct PlacedFinding {
+  std::string code, asset;
+  Severity severity = Severity::info;
+  Finding finding;
 };
 
 class Report {
@@ -42,8 +51,9 @@ class Report {
   bool ok() const;                        // no (unmuted) errors
   size_t count(Severity severity) const;  // single faults of that severity, muted ones left out
   size_t count(const std::string& code) const;
-  std::string text() const;  // findings + verdict line
-  std::string json() const;  // schema "suite.report/1", see formats/report/FORMAT.md
+  std::string text() const;                   // findings + verdict line
+  std::string json() const;                   // schema "suite.report/1", see formats/report/FORMAT.md
+  std::vector<PlacedFinding> placed() const;  // of the examples those with a place, muted ones left out
   const std::vector<IssueKind>& kinds() const { return kinds_; }
 
  private:

@@ -35,6 +35,10 @@ class MpiRanks final : public Ranks {
       texts.push_back(all.substr(static_cast<size_t>(begins[i]), static_cast<size_t>(lengths[i])));
     return texts;
   }
+  void share(std::vector<std::byte>& bytes) override {
+    link_->meet();
+    link_->broadcast(bytes);
+  }
   void meet() override { link_->meet(); }
   LinkCosts measure_link() override { return cluster::measure(*link_); }
   std::string of_first_here(const std::string& mine) override {

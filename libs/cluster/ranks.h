@@ -4,6 +4,7 @@
 // All calls but rank(), size() and host() are made by all ranks in the same order. Where a rank has failed, the others
 // learn it in their next call, which throws EndedElsewhere there, so that none waits for what will never come.
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class Ranks {
   virtual Executor& executor() = 0;
   // The texts of all ranks, on rank 0; nothing elsewhere.
   virtual std::vector<std::string> gather(const std::string& mine) = 0;
+  // The first rank's bytes, on all.
+  virtual void share(std::vector<std::byte>& bytes) = 0;
   // Waits for all.
   virtual void meet() = 0;
   // What talking costs between the first two ranks; a second or so. Of use on rank 0 of two or more.

@@ -7,12 +7,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "heat/made_of.h"
 #include "scene/primitives.h"
 
 namespace suite {
 
 namespace {
 
+constexpr double kFewer = 4;
 constexpr uint32_t kAttempts = 4096;  // to find a point of a material, or past a stretch
 
 // What an area grows by under a transform.
@@ -58,9 +60,9 @@ Box3 reach_of(const Primitive& primitive, const Affine3& to_local, const Box3& b
   return reach;
 }
 
-double size_of(const Affine3& m) { return std::pow(std::fabs(m.determinant()), 2.0 / 3); }
-
 }  // namespace
+
+double Elements::size_of(const Affine3& m) { return std::pow(std::fabs(m.determinant()), 2.0 / 3); }
 
 // What the scene has of the materials.
 struct Elements::Seen {
@@ -76,7 +78,7 @@ struct Elements::Seen {
   double area = 0;
 };
 
-Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time)
+Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time, const DaySun* sun)
     : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()) {
   SUITE_CHECK(budget > 0 && heated.size() == tracer.scene().materials.size());
   Seen seen;
@@ -84,73 +86,59 @@ Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t
   if (seen.kinds.empty() && seen.exact.empty())
     throw Error("no surface at rest has a temperature that the heat balance is to find",
                 "give a material in view 'temperature: {model: heat}'");
-  const double target = seen.area / static_cast<double>(budget);
-  group_meshes(seen, target);
-  for (const auto& [slot, primitive] : seen.exact) {
-    const uint32_t grid = make_grid(slot, tracer.scene().primitives[primitive], target);
-    add_group({slot}, nullptr, grid, grids_[grid].cells);
-  }
+  // Cells that are cut where the sun differs begin as fewer.
+  const double even = seen.area / static_cast<double>(budget), target = even * (sun ? kFewer : 1);
+  std::vector<Planned> planned;
+  group_meshes(seen, even, target, planned);
+  for (const auto& [slot, primitive] : seen.exact)
+    planned.push_back({{slot}, nullptr, make_grid(slot, tracer.scene().primitives[primitive], target)});
+  if (sun) refine(planned, *sun);
+  for (Planned& p : planned) add_group(std::move(p));
   make_elements(heated);
-}
-
-// Of what hangs on a node: it may only come and go.
-bool Elements::at_rest(uint32_t number) const {
-  const std::optional<TimeSpan> window = tracer_.window();
-  if (!window) return true;
-  constexpr int kTimes = 16;
-  const Affine3 first = tracer_.to_world(number, window->begin);
-  for (int k = 1; k <= kTimes; ++k)
-    if (tracer_.to_world(number, window->begin + (window->end - window->begin) * k / kTimes) != first) return false;
-  return true;
 }
 
 void Elements::gather(Seen& seen, const std::vector<bool>& heated) {
   const Scene& scene = tracer_.scene();
   // Materials that are heated, or that a class map may turn into one.
-  std::vector<bool> wanted = heated;
-  for (const MapBinding& b : scene.map_bindings)
-    for (const uint32_t m : scene.class_maps[b.class_map].materials)
-      if (m != kNone && heated[m]) wanted[b.material] = true;
+  const std::vector<bool> wanted = with_class_maps(scene, heated);
   const auto is_wanted = [&](uint32_t m) { return m != kNone && wanted[m]; };
-  const auto any = [&](const TracedObject& o) {
-    if (o.material_override != kNone) return is_wanted(o.material_override);
-    if (o.primitive != kNone) return is_wanted(scene.primitives[o.primitive].material);
-    return std::ranges::any_of(scene.meshes[o.mesh].parts, [&](const Part& p) { return is_wanted(p.material); });
-  };
-  tracer_.each("surfaces whose temperatures are to be found", any, [&](uint32_t number, const TracedObject& o) {
-    if (o.node != kNone && !at_rest(number)) {
-      ++moving_;
-      return;
-    }
-    if (slot_of_.contains(o.instance)) return;
-    slot_of_[o.instance] = 0;
-    const Affine3 place = tracer_.to_world(number, time_);
-    const Slot slot{number, o.instance, 0, place, place.inverse()};
-    if (o.primitive != kNone) {
-      seen.exact.emplace_back(slot, o.primitive);
-      const Primitive& primitive = scene.primitives[o.primitive];
-      const PrimitiveFaces faces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds()));
-      for (size_t f = 0; f < faces.size(); ++f) seen.area += faces.area(f) * size_of(place);
-      return;
-    }
-    Seen::Kind& kind = seen.kinds[{o.mesh, o.material_override}];
-    const Mesh& mesh = scene.meshes[o.mesh];
-    if (kind.slots.empty()) {
-      mesh.require();
-      kind.mesh = o.mesh, kind.override = o.material_override;
-      for (const Part& p : mesh.parts) {
-        const uint32_t m = o.material_override != kNone ? o.material_override : p.material;
-        kind.material_of_part.push_back(is_wanted(m) ? m : kNone);
-      }
-      kind.local_area = MeshCells(mesh, kind.material_of_part, 1).total_area();
-    }
-    kind.slots.push_back(slot);
-    kind.areas.push_back(kind.local_area * size_of(place));
-    seen.area += kind.areas.back();
-  });
+  tracer_.each("surfaces whose temperatures are to be found", made_of(scene, wanted),
+               [&](uint32_t number, const TracedObject& o) {
+                 if (o.node != kNone && !stays_put(tracer_, number)) {
+                   ++moving_;
+                   return;
+                 }
+                 if (slot_of_.contains(o.instance)) return;
+                 slot_of_[o.instance] = 0;
+                 const Affine3 place = tracer_.to_world(number, time_);
+                 const Slot slot{number, o.instance, 0, place, place.inverse()};
+                 if (o.primitive != kNone) {
+                   seen.exact.emplace_back(slot, o.primitive);
+                   const Primitive& primitive = scene.primitives[o.primitive];
+                   const PrimitiveFaces faces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds()));
+                   for (size_t f = 0; f < faces.size(); ++f) seen.area += faces.area(f) * size_of(place);
+                   return;
+                 }
+                 Seen::Kind& kind = seen.kinds[{o.mesh, o.material_override}];
+                 const Mesh& mesh = scene.meshes[o.mesh];
+                 if (kind.slots.empty()) {
+                   mesh.require();
+                   kind.mesh = o.mesh, kind.override = o.material_override;
+                   for (const Part& p : mesh.parts) {
+                     const uint32_t m = o.material_override != kNone ? o.material_override : p.material;
+                     kind.material_of_part.push_back(is_wanted(m) ? m : kNone);
+                   }
+                   kind.local_area = MeshCells(mesh, kind.material_of_part, 1).total_area();
+                 }
+                 kind.slots.push_back(slot);
+                 kind.areas.push_back(kind.local_area * size_of(place));
+                 seen.area += kind.areas.back();
+               });
 }
 
-void Elements::add_group(std::vector<Slot> slots, const MeshCells* mesh, uint32_t grid, uint32_t cells) {
+void Elements::add_group(Planned planned) {
+  auto& [slots, mesh, grid] = planned;
+  const size_t cells = mesh ? mesh->size() : grids_[grid].cells.size();
   Group group;
   group.first_slot = static_cast<uint32_t>(slots_.size()), group.slots = static_cast<uint32_t>(slots.size());
   group.first_cell = static_cast<uint32_t>(group_of_cell_.size());
@@ -166,13 +154,13 @@ void Elements::add_group(std::vector<Slot> slots, const MeshCells* mesh, uint32_
   groups_.push_back(std::move(group));
 }
 
-void Elements::group_meshes(Seen& seen, double target) {
+void Elements::group_meshes(Seen& seen, double together_below, double target, std::vector<Planned>& planned) {
   for (auto& [key, kind] : seen.kinds) {
     const Mesh& mesh = tracer_.scene().meshes[kind.mesh];
-    std::map<int, const MeshCells*> by_size;
+    std::map<int, MeshCells*> by_size;
     const auto cells_for = [&](double wanted) {
       const int power = std::max(0, static_cast<int>(std::lround(std::log2(std::max(wanted, 1.0)))));
-      const MeshCells*& cells = by_size[power];
+      MeshCells*& cells = by_size[power];
       if (!cells) {
         meshes_.push_back(std::make_unique<MeshCells>(
             mesh, kind.material_of_part,
@@ -183,15 +171,14 @@ void Elements::group_meshes(Seen& seen, double target) {
     };
     std::vector<size_t> small;
     for (size_t i = 0; i < kind.slots.size(); ++i) {
-      if (kind.areas[i] < target / 2) {
+      if (kind.areas[i] < together_below / 2) {
         small.push_back(i);
         continue;
       }
-      const MeshCells* cells = cells_for(kind.areas[i] / target);
-      add_group({kind.slots[i]}, cells, kNone, static_cast<uint32_t>(cells->size()));
+      planned.push_back({{kind.slots[i]}, cells_for(kind.areas[i] / target), kNone});
     }
     if (small.empty()) continue;
-    const MeshCells* whole = cells_for(1);
+    MeshCells* whole = cells_for(1);
     std::vector<std::pair<uint64_t, size_t>> order;
     for (const size_t i : small) order.emplace_back(along_curve(kind.slots[i].to_world.b, tracer_.bounds()), i);
     std::sort(order.begin(), order.end());
@@ -200,15 +187,15 @@ void Elements::group_meshes(Seen& seen, double target) {
     for (size_t k = 0; k < order.size(); ++k) {
       together.push_back(kind.slots[order[k].second]);
       area += kind.areas[order[k].second];
-      if (area < target && k + 1 < order.size()) continue;
-      add_group(std::move(together), whole, kNone, static_cast<uint32_t>(whole->size()));
+      if (area < together_below && k + 1 < order.size()) continue;
+      planned.push_back({std::move(together), whole, kNone});
       together.clear(), area = 0;
     }
   }
 }
 
 uint32_t Elements::make_grid(const Slot& slot, const Primitive& primitive, double target) {
-  Grid grid{PrimitiveFaces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds())), {}, 0};
+  Grid grid{PrimitiveFaces(primitive, reach_of(primitive, slot.to_local, tracer_.bounds())), {}};
   const double scale = size_of(slot.to_world);
   for (size_t f = 0; f < grid.faces.size(); ++f) {
     const auto [along_a, along_b] = grid.faces.lengths(f);
@@ -217,8 +204,13 @@ uint32_t Elements::make_grid(const Slot& slot, const Primitive& primitive, doubl
     Grid::Face part;
     part.columns = static_cast<uint32_t>(std::clamp(std::lround(std::min(columns, wanted)), 1L, 10000L));
     part.rows = static_cast<uint32_t>(std::clamp(std::lround(wanted / part.columns), 1L, 10000L));
-    part.first = grid.cells;
-    grid.cells += part.columns * part.rows;
+    part.first = static_cast<uint32_t>(grid.cells.size());
+    for (uint32_t k = 0; k < part.columns * part.rows; ++k) {
+      const double column = k % part.columns, row = k / part.columns;
+      grid.cells.push_back({static_cast<uint32_t>(f),
+                            {column / part.columns, row / part.rows},
+                            {(column + 1) / part.columns, (row + 1) / part.rows}});
+    }
     grid.parts.push_back(part);
   }
   grids_.push_back(std::move(grid));
@@ -234,12 +226,9 @@ Elements::Local Elements::local_point(const Group& group, uint32_t cell, const s
     return at;
   }
   const Grid& grid = grids_[group.grid];
-  size_t face = grid.parts.size() - 1;
-  while (grid.parts[face].first > inside) --face;
-  const Grid::Face& part = grid.parts[face];
-  const uint32_t k = inside - part.first;
+  const Grid::Cell& c = grid.cells[inside];
   const PrimitiveFaces::Point p =
-      grid.faces.point(face, (k % part.columns + u[0]) / part.columns, (k / part.columns + u[1]) / part.rows);
+      grid.faces.point(c.face, c.low.x + u[0] * (c.high.x - c.low.x), c.low.y + u[1] * (c.high.y - c.low.y));
   at.position = p.position, at.normal = p.normal, at.uv = p.uv, at.stretch = p.stretch / grid.faces.most_stretch();
   return at;
 }
@@ -307,15 +296,8 @@ void Elements::make_elements(const std::vector<bool>& heated) {
         if (at == found[c].end()) at = found[c].insert(at, Found{m, 0, {}, {}});
         ++at->points, at->centre += hit.position, at->normal += hit.normal;
       }
-      double local = 0;
-      if (group.mesh) {
-        local = group.mesh->area(cell - group.first_cell);
-      } else {
-        const Grid& grid = grids_[group.grid];
-        size_t face = grid.parts.size() - 1;
-        while (grid.parts[face].first > cell - group.first_cell) --face;
-        local = grid.faces.area(face) / (1.0 * grid.parts[face].columns * grid.parts[face].rows);
-      }
+      const uint32_t inside = cell - group.first_cell;
+      const double local = group.mesh ? group.mesh->area(inside) : grids_[group.grid].area(inside);
       areas[c] = local * stretch / kLooks;
       if (group.slots > 1) areas[c] = local * group.until.back();
     }
@@ -355,7 +337,19 @@ std::optional<uint32_t> Elements::cell_at(uint32_t instance, uint32_t triangle, 
   const Grid::Face& part = grid.parts[p.face];
   const auto column = std::min(part.columns - 1, static_cast<uint32_t>(p.a * part.columns));
   const auto row = std::min(part.rows - 1, static_cast<uint32_t>(p.b * part.rows));
-  return group.first_cell + part.first + row * part.columns + column;
+  return group.first_cell + grid.cuts.find(part.first + row * part.columns + column, {p.a, p.b});
+}
+
+bool Elements::covers(const Hit& hit) const {
+  const auto found = slot_of_.find(tracer_.object(hit.object).instance);
+  if (found == slot_of_.end()) return false;
+  const Slot& slot = slots_[found->second];
+  const Group& group = groups_[slot.group];
+  if (group.mesh) return true;
+  const PrimitiveFaces& faces = grids_[group.grid].faces;
+  const Vec3 local = slot.to_local.point(hit.position);
+  const PrimitiveFaces::Place p = faces.place(local);
+  return length(faces.point(p.face, p.a, p.b).position - local) <= 1e-3 * (1 + length(local));
 }
 
 std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material) const {

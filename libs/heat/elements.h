@@ -4,8 +4,10 @@
 // Assumes: what is at rest in the tracer it is made from, be it there all the time or not. Instances that are more than
 // the budget are put together with their neighbours of the same kind.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -33,12 +35,21 @@ struct PointDraw {
   uint32_t sample = 0, first_block = 0;
 };
 
+// What tells places apart: direct sun through the day on their fronts, W/m2, so many numbers a place.
+struct DaySun {
+  size_t numbers = 0;
+  std::function<void(std::span<const Hit> places, std::span<float> sun)> at;  // [place][number]
+};
+
 class Elements {
  public:
   // heated: by material, whether it has elements. budget: about how many there will be, at least one an instance group.
   // Surfaces without end are cut off half the scene's size around it; beyond they are as warm as at the edge. Keeps a
-  // reference to the tracer. time: s, within its window. Error: nothing of these materials is at rest.
-  Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time);
+  // reference to the tracer. time: s, within its window. sun: where it differs most within a cell, area counting, cells
+  // are cut in two until there are as many as the budget (elements_split.cpp); none = all of about equal areas. Error:
+  // nothing of these materials is at rest.
+  Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time,
+           const DaySun* sun = nullptr);
 
   size_t size() const { return elements_.size(); }
   const HeatElement& operator[](size_t i) const { return elements_[i]; }
@@ -48,6 +59,8 @@ class Elements {
   // of this material, as at the edges of maps, the largest one of the cell.
   std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;
   std::optional<uint32_t> at(const Hit& hit, uint32_t material) const;
+  // False beyond the places where surfaces without end are cut off, and on what has no elements.
+  bool covers(const Hit& hit) const;
 
   size_t budget() const { return budget_; }  // as asked
   double total_area() const { return total_area_; }
@@ -76,8 +89,24 @@ class Elements {
       uint32_t columns, rows, first;  // cells: first + row * columns + column
     };
     std::vector<Face> parts;
-    uint32_t cells = 0;
+    struct Cell {
+      uint32_t face;
+      Vec2 low, high;  // of the face's unit square
+    };
+    std::vector<Cell> cells = {};
+    CellCuts cuts = {};
+    double area(uint32_t cell) const {
+      const Cell& c = cells[cell];
+      return faces.area(c.face) * (c.high.x - c.low.x) * (c.high.y - c.low.y);
+    }
+    void split(uint32_t cell);
   };
+  struct Planned {  // a group to be
+    std::vector<Slot> slots;
+    MeshCells* mesh;
+    uint32_t grid;
+  };
+  class Refinement;
   struct Seen;  // while they are made
   struct Local {
     Vec3 position, normal;
@@ -85,10 +114,12 @@ class Elements {
     double u = 0, v = 0, stretch = 1;
     Vec2 uv;
   };
-  bool at_rest(uint32_t number) const;
   void gather(Seen& seen, const std::vector<bool>& heated);
-  void group_meshes(Seen& seen, double target);
-  void add_group(std::vector<Slot> slots, const MeshCells* mesh, uint32_t grid, uint32_t cells);
+  // together: m2 below whose half instances are put together. target: m2 of a cell.
+  void group_meshes(Seen& seen, double together, double target, std::vector<Planned>& planned);
+  static double size_of(const Affine3& m);  // what areas grow by, as a mean over directions
+  void refine(const std::vector<Planned>& planned, const DaySun& sun);
+  void add_group(Planned planned);
   uint32_t make_grid(const Slot& slot, const Primitive& primitive, double target);
   void make_elements(const std::vector<bool>& heated);
   Local local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const;

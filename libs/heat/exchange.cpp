@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -19,21 +19,25 @@ ExchangeMatrix::ExchangeMatrix(size_t elements, size_t outsides)
 void ExchangeMatrix::add_row(std::span<const Entry> row) {
   const size_t element = factors_.size();
   SUITE_CHECK_LT(element, elements_);
-  std::map<uint32_t, double> shares;
+  std::vector<Entry> shares(row.begin(), row.end());
   double sum = 0;
-  for (const Entry& entry : row) {
+  for (const Entry& entry : shares) {
     if (entry.end >= elements_ + outsides_)
       throw Error(strf("the exchange of element %zu ends at %u", element, entry.end),
                   strf("there are %zu elements and %zu outsides", elements_, outsides_));
     if (!(entry.share >= 0 && std::isfinite(entry.share)))
       throw Error(strf("element %zu has a share of exchange of %g", element, entry.share), "0 to 1");
-    shares[entry.end] += entry.share;
     sum += entry.share;
   }
   if (!(std::fabs(sum - 1) <= 1e-6))
     throw Error(strf("the shares of exchange of element %zu sum to %.9g", element, sum), "1");
+  const auto by_end = [](const Entry& a, const Entry& b) { return a.end < b.end; };
+  if (!std::is_sorted(shares.begin(), shares.end(), by_end)) std::stable_sort(shares.begin(), shares.end(), by_end);
   double stored = 0;
-  for (const auto& [end, share] : shares) {
+  for (size_t k = 0; k < shares.size();) {
+    const uint32_t end = shares[k].end;
+    double share = 0;
+    for (; k < shares.size() && shares[k].end == end; ++k) share += shares[k].share;
     const auto rounded = static_cast<float>(share);
     if (rounded == 0) continue;
     ends_.push_back(end);
@@ -42,6 +46,23 @@ void ExchangeMatrix::add_row(std::span<const Entry> row) {
   }
   begins_.push_back(ends_.size());
   factors_.push_back(1 / stored);
+}
+
+ExchangeMatrix ExchangeMatrix::of_rows(size_t outsides, std::vector<size_t> begins, std::vector<uint32_t> ends,
+                                       std::vector<float> shares) {
+  ExchangeMatrix m(begins.size() - 1, outsides);
+  SUITE_CHECK(begins.back() == ends.size() && ends.size() == shares.size());
+  m.begins_ = std::move(begins), m.ends_ = std::move(ends), m.shares_ = std::move(shares);
+  for (size_t i = 0; i < m.elements_; ++i) {
+    double sum = 0;
+    for (size_t k = m.begins_[i]; k < m.begins_[i + 1]; ++k) {
+      SUITE_CHECK(m.ends_[k] < m.elements_ + outsides && m.shares_[k] >= 0);
+      sum += double{m.shares_[k]};
+    }
+    SUITE_CHECK(sum > 0 && std::isfinite(sum));
+    m.factors_.push_back(1 / sum);
+  }
+  return m;
 }
 
 void ExchangeMatrix::receive(std::span<const double> emitted, size_t moments, std::span<double> received) const {
@@ -62,51 +83,86 @@ void ExchangeMatrix::receive(std::span<const double> emitted, size_t moments, st
   });
 }
 
+void ExchangeMatrix::receive_one(size_t element, const Histories& emitted, std::span<double> received) const {
+  double* sum = received.data();
+  double least = 0;
+  std::fill(received.begin(), received.end(), 0.0);
+  for (size_t k = begins_[element]; k < begins_[element + 1]; ++k) {
+    const double share = shares_[k] * factors_[element];
+    least += share * emitted.least(ends_[k]);
+    const std::span<const float> from = emitted.above(ends_[k]);
+#pragma GCC ivdep
+    for (size_t m = 0; m < from.size(); ++m) sum[m] += share * static_cast<double>(from[m]);
+  }
+  for (double& r : received) r += least;
+}
+
 namespace {
 
 double kelvin_of(double emitted) { return std::sqrt(std::sqrt(emitted / kStefanBoltzmann)); }
 
-// The largest difference of two histories of emitted flux, as temperatures.
-double largest_change(std::span<const double> a, std::span<const double> b) {
-  double largest = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (!(b[i] > 0 && b[i] < INFINITY))
-      throw Error(strf("coupled elements answer with an emitted flux of %g W/m2", b[i]), "positive and finite");
-    largest = std::fmax(largest, std::fabs(kelvin_of(std::fmax(a[i], 0.0)) - kelvin_of(b[i])));
+// The largest difference of two histories of emitted flux, as temperatures, over the rows of the second.
+double largest_change(const Histories& a, const Histories& b) {
+  std::vector<double> largest(b.rows(), 0);
+  parallel_for(0, b.rows(), 64, [&](size_t first, size_t last) {
+    for (size_t row = first; row < last; ++row)
+      for (size_t m = 0; m < b.moments(); ++m) {
+        const double before = a.at(row, m), after = b.at(row, m);
+        if (!(after > 0 && after < INFINITY))
+          throw Error(strf("coupled elements answer with an emitted flux of %g W/m2", after), "positive and finite");
+        largest[row] = std::fmax(largest[row], std::fabs(kelvin_of(std::fmax(before, 0.0)) - kelvin_of(after)));
+      }
+  });
+  return *std::max_element(largest.begin(), largest.end());
+}
+
+// What histories cannot tell of the temperature of the element that they round most, K.
+double least_change(const Histories& h) {
+  double most = 0;
+  for (size_t row = 0; row < h.rows(); ++row) {
+    const auto above = h.above(row);
+    const double swing = double{*std::max_element(above.begin(), above.end())}, top = h.least(row) + swing;
+    most = std::fmax(most, kelvin_of(top) / 4 * swing / top);
   }
-  return largest;
+  return std::ldexp(2 * most, -24);
+}
+
+// What Anderson's method makes of an answer to `present`, where that is sound.
+void accelerate(Anderson& anderson, const Histories& present, Histories& answer) {
+  std::vector<double> before = present.values();
+  before.resize(answer.rows() * answer.moments());  // without the outsides
+  const std::vector<double> next = anderson.next(before, answer.values());
+  if (!std::all_of(next.begin(), next.end(), [](double m) { return m > 0; })) return;
+  for (size_t row = 0; row < answer.rows(); ++row) answer.set(row, {&next[row * answer.moments()], answer.moments()});
 }
 
 }  // namespace
 
-CouplingResult couple_histories(const ExchangeMatrix& exchange, size_t moments, std::span<double> emitted,
-                                const Respond& respond, const CouplingOptions& options) {
-  SUITE_CHECK(moments > 0 && options.tolerance > 0);
-  const size_t own = exchange.elements() * moments;
-  SUITE_CHECK_EQ(emitted.size(), own + exchange.outsides() * moments);
-  std::vector<double> received(own), present(emitted.begin(), emitted.begin() + static_cast<std::ptrdiff_t>(own));
-  std::vector<double> answer(own);
-  Anderson anderson(std::vector<double>(own, 1.0), options.memory);
+CouplingResult couple_histories(const ExchangeMatrix& exchange, Histories& emitted, const Respond& respond,
+                                const CouplingOptions& options) {
+  SUITE_CHECK(emitted.moments() > 0 && exchange.elements() > 0 && options.tolerance > 0);
+  SUITE_CHECK_EQ(emitted.rows(), exchange.elements() + exchange.outsides());
+  Histories answer(exchange.elements(), emitted.moments());
+  std::optional<Anderson> anderson;
+  if (options.memory > 0) anderson.emplace(std::vector<double>(answer.rows() * answer.moments(), 1.0), options.memory);
   CouplingResult result;
   for (double last = 0;; last = result.change) {
-    std::copy(present.begin(), present.end(), emitted.begin());
-    exchange.receive(emitted, moments, received);
-    respond(received, answer);
+    respond(emitted, answer);
     ++result.sweeps;
-    result.change = largest_change(present, answer);
+    result.change = largest_change(emitted, answer);
     // Of changes that shrink by a ratio, this much is still to come.
     const double ratio = last > 0 ? std::clamp(result.change / last, 0.0, 0.99) : 0.9;
     result.distance = result.change * ratio / (1 - ratio);
-    if (result.change == 0 || (result.sweeps > 1 && result.distance <= options.tolerance)) {
-      std::copy(answer.begin(), answer.end(), emitted.begin());
-      return result;
-    }
+    const double least = least_change(answer);
+    if (result.change <= least) result.distance = std::fmin(result.distance, least);
+    const bool there =
+        result.change == 0 || (result.sweeps > 1 && (result.distance <= options.tolerance || result.change <= least));
+    if (!there && anderson && result.sweeps < options.most_sweeps) accelerate(*anderson, emitted, answer);
+    emitted.take(answer);
+    if (there) return result;
     if (result.sweeps >= options.most_sweeps)
       throw Error(strf("coupled surfaces still change by %g K after %d sweeps", result.change, result.sweeps),
                   "allow more sweeps, or a memory for Anderson's method");
-    std::vector<double> next = anderson.next(present, answer);
-    const bool sound = std::all_of(next.begin(), next.end(), [](double m) { return m > 0; });
-    present = sound ? std::move(next) : answer;
   }
 }
 

@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "heat/histories.h"
+
 namespace suite {
 
 class ExchangeMatrix {
@@ -27,13 +29,19 @@ class ExchangeMatrix {
   // The next element's row, in any order, an end possibly more than once. Shares are divided by their sum, so that rows
   // sum to 1 to rounding. Error: an unknown end, a share that is negative, a sum that is not 1 within 1e-6.
   void add_row(std::span<const Entry> row);
+  // All rows at once, taking over what they are made of: of row i the entries begins[i] to begins[i + 1], with
+  // different ends and shares of any sum above 0.
+  static ExchangeMatrix of_rows(size_t outsides, std::vector<size_t> begins, std::vector<uint32_t> ends,
+                                std::vector<float> shares);
   size_t elements() const { return elements_; }
   size_t outsides() const { return outsides_; }
   size_t entries() const { return ends_.size(); }
 
   // emitted: W/m2, `moments` of the first end, then of the next, ..., outsides last; received likewise, of the
-  // elements. All rows must be there.
+  // elements. All rows must be there. In parallel over elements.
   void receive(std::span<const double> emitted, size_t moments, std::span<double> received) const;
+  // Of one element; received has a value a moment, emitted the rows of all ends.
+  void receive_one(size_t element, const Histories& emitted, std::span<double> received) const;
 
  private:
   size_t elements_, outsides_;
@@ -43,8 +51,9 @@ class ExchangeMatrix {
   std::vector<double> factors_;  // of a row's shares, so that these sum to 1
 };
 
-// What the elements answer to histories of received longwave: fills their emitted histories, W/m2.
-using Respond = std::function<void(std::span<const double> received, std::span<double> emitted)>;
+// What the elements answer when all ends emit as in `around` (elements, then outsides): sets the rows of `emitted`,
+// W/m2. What an element receives is receive_one() of it.
+using Respond = std::function<void(const Histories& around, Histories& emitted)>;
 
 struct CouplingOptions {
   double tolerance = 1e-3;  // K: estimated distance from the coupled state
@@ -57,10 +66,12 @@ struct CouplingResult {
   double distance = 0;  // K, as estimated from the change and its contraction
 };
 // Waveform relaxation: from the emitted histories of all ends (elements, as guessed, then outsides, as given) the
-// received ones, from these the answer of every element over the whole time, and again, until the histories of the
-// elements are within the tolerance. Error: not within most_sweeps, or an answer that is not positive.
-// Based on: E. Lelarasmee, A. Ruehli, A. Sangiovanni-Vincentelli, IEEE Trans. CAD 1, 1982; Anderson 1965 (anderson.h).
-CouplingResult couple_histories(const ExchangeMatrix& exchange, size_t moments, std::span<double> emitted,
-                                const Respond& respond, const CouplingOptions& options = {});
+// answer of every element over the whole time, and again, until the histories of the elements are within the tolerance,
+// or as near as histories can tell. Plain sweeps hold two of them, the given ones and their answer; of every difference
+// that is kept (`memory`) there are two more, in doubles. Error: not within most_sweeps, or an answer that is not
+// positive. Based on: E. Lelarasmee, A. Ruehli, A. Sangiovanni-Vincentelli, IEEE Trans. CAD 1, 1982; Anderson 1965
+// (anderson.h).
+CouplingResult couple_histories(const ExchangeMatrix& exchange, Histories& emitted, const Respond& respond,
+                                const CouplingOptions& options = {});
 
 }  // namespace suite

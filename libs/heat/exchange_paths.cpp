@@ -11,8 +11,8 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kWave = 128;              // faces
 constexpr uint64_t kPurpose = 0x6c6f6e67;  // of the random numbers
+constexpr double kUnfinishedUnit = 1e6;
 
 struct Going {
   uint32_t slot;  // of its end
@@ -42,7 +42,7 @@ class Wave {
         tracer_, going_, rays_, hits_, trace_,
         [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); }, [] {});
   }
-  double rays() const { return static_cast<double>(trace_.rays); }
+  uint64_t rays() const { return trace_.rays; }
   double unfinished() const { return unfinished_; }
 
  private:
@@ -112,7 +112,7 @@ class Wave {
       finish(path, faces_.end_at(hit, ray.direction, at_.material));
       return false;
     }
-    const auto in = walk_.reflect(*at_.baked->model, out, {u[0], u[1]}, u[2], path.bin);
+    const auto in = walk_.reflect(*at_.baked->model, out, u, path.bin);
     if (!in) {  // drawn in vain: the others of its kind make up for it
       finish({path.slot, path.bin, 0}, faces_.outside_below());
       return false;
@@ -141,9 +141,11 @@ class Wave {
 
 }  // namespace
 
-ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
-                             const HeatOptics& optics, const PathOptions& options,
-                             const std::function<void(size_t)>& progress) {
+double ExchangePaths::unfinished() const {
+  return static_cast<double>(count.unfinished) / kUnfinishedUnit / static_cast<double>(weights.size());
+}
+
+ExchangePaths untraced_exchange(const Elements& elements, const HeatFaces& faces, const PathOptions& options) {
   ExchangePaths out;
   out.blocks = options.blocks, out.paths = options.paths;
   const size_t each = size_t{options.blocks} * options.paths;
@@ -151,20 +153,35 @@ ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, con
   out.ends.resize(faces.size() * each), out.weights.resize(faces.size() * each);
   out.emissivity.resize(faces.size());
   for (size_t f = 0; f < faces.size(); ++f) out.area.push_back(elements[faces.element(f)].area);
+  return out;
+}
+
+void trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+                    const PathOptions& options, FaceRange range, ExchangePaths& out,
+                    const std::function<void(size_t)>& progress) {
+  constexpr size_t kWave = ExchangePaths::kTogether;
+  SUITE_CHECK(range.begin % kWave == 0 && (range.end % kWave == 0 || range.end == faces.size()));
   std::atomic<uint64_t> rays{0}, unfinished{0};
-  constexpr double kUnit = 1e6;
   // Waves are always the same: rays that go together may decide the last bits of a hit.
-  parallel_for(0, (faces.size() + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
+  parallel_for(range.begin / kWave, (range.end + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
     const FlushDenormals denormals;
     const AtWork work(tracer);
-    Wave wave(tracer, elements, faces, optics, options, out);
-    for (size_t w = first; w < last; ++w) wave.run(w * kWave, std::min(faces.size(), (w + 1) * kWave));
-    rays += static_cast<uint64_t>(wave.rays());
-    unfinished += static_cast<uint64_t>(wave.unfinished() * kUnit);
+    for (size_t w = first; w < last; ++w) {
+      Wave wave(tracer, elements, faces, optics, options, out);
+      wave.run(w * kWave, std::min(faces.size(), (w + 1) * kWave));
+      rays += wave.rays();
+      unfinished += static_cast<uint64_t>(wave.unfinished() * kUnfinishedUnit);
+    }
     if (progress) progress(std::min(faces.size(), last * kWave) - first * kWave);
   });
-  out.rays = static_cast<double>(rays);
-  out.unfinished = static_cast<double>(unfinished) / kUnit / static_cast<double>(faces.size() * each);
+  out.count += {rays, unfinished};
+}
+
+ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                             const HeatOptics& optics, const PathOptions& options,
+                             const std::function<void(size_t)>& progress) {
+  ExchangePaths out = untraced_exchange(elements, faces, options);
+  trace_exchange(tracer, elements, faces, optics, options, {0, faces.size()}, out, progress);
   return out;
 }
 

@@ -21,14 +21,31 @@ struct PathOptions {
   uint64_t seed = 1;
 };
 
+// Faces [begin, end).
+struct FaceRange {
+  size_t begin = 0, end = 0;
+  size_t size() const { return end - begin; }
+  bool operator==(const FaceRange&) const = default;
+};
+
+// What tracing took, as whole numbers: sums of pieces are the same in any order.
+struct PathCount {
+  uint64_t rays = 0;
+  uint64_t unfinished = 0;  // millionths of the weight of a path, still reflected after kMostReflections
+  PathCount operator-(const PathCount& o) const { return {rays - o.rays, unfinished - o.unfinished}; }
+  PathCount& operator+=(const PathCount& o) { return rays += o.rays, unfinished += o.unfinished, *this; }
+};
+
 struct ExchangePaths {
+  static constexpr size_t kTogether = 128;  // faces that are traced together
   uint32_t blocks = 0, paths = 0;
   std::vector<uint32_t> ends;      // [face][block][path]: a face or an outside
   std::vector<float> weights;      // the same; of a face they do not sum to anything in particular
   std::vector<double> emissivity;  // by face, hemispheric
   std::vector<double> area;        // m2, by face
-  double rays = 0;
-  double unfinished = 0;  // share of the weight that was absorbed where it was after kMostReflections
+  PathCount count;
+  double rays() const { return static_cast<double>(count.rays); }
+  double unfinished() const;  // share of the weight that was absorbed where it was after kMostReflections
 
   // Of all paths, from both ends of what two faces exchange, so that what one gives the other takes and rows still sum
   // to 1 (where faces see so few others that both cannot be had, the latter). exchange_reciprocity.cpp has the method.
@@ -38,7 +55,15 @@ struct ExchangePaths {
   size_t faces() const { return emissivity.size(); }
 };
 
-// In parallel over faces, the same on any number of threads. progress: is told faces that are done; may be empty.
+// Room for the paths of all faces, of which none is traced.
+ExchangePaths untraced_exchange(const Elements& elements, const HeatFaces& faces, const PathOptions& options);
+// Traces those of some faces; the range begins at a multiple of kTogether, and ends at one or with the faces. In
+// parallel over faces, the same on any number of threads and in ranges of any size. progress: is told faces that are
+// done; may be empty.
+void trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+                    const PathOptions& options, FaceRange range, ExchangePaths& out,
+                    const std::function<void(size_t)>& progress = {});
+// Of all faces.
 ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                              const HeatOptics& optics, const PathOptions& options,
                              const std::function<void(size_t)>& progress = {});

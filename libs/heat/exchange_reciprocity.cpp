@@ -23,6 +23,10 @@ struct Rows {
   std::vector<size_t> begin;
   std::vector<uint32_t> end;
   std::vector<float> exchanged;
+  void make_room(size_t faces, size_t entries) {
+    begin.reserve(faces + 1), end.reserve(entries), exchanged.reserve(entries);
+    begin = {0};
+  }
 };
 
 // Sums up what has one end; entries need no order.
@@ -40,8 +44,8 @@ void put_row(Rows& rows, std::vector<std::pair<uint32_t, double>>& row) {
 // Shares of every face's own paths.
 Rows own_shares(const ExchangePaths& paths) {
   Rows rows;
-  rows.begin = {0};
   const size_t each = size_t{paths.blocks} * paths.paths;
+  rows.make_room(paths.faces(), paths.faces() * each);
   std::vector<std::pair<uint32_t, double>> row;
   for (size_t f = 0; f < paths.faces(); ++f) {
     row.clear();
@@ -70,15 +74,18 @@ Rows joined(const Rows& own, const std::vector<double>& a) {
       if (const uint32_t j = own.end[k]; j < n && j != i) from[next[j]] = i, share[next[j]++] = own.exchanged[k];
   const auto weight = [&](size_t i, size_t j) { return a[i] + a[j] > 0 ? a[i] * a[j] / (a[i] + a[j]) : 0; };
   Rows rows;
-  rows.begin = {0};
+  rows.make_room(n, own.end.size() + from.size());
   std::vector<std::pair<uint32_t, double>> row;
-  for (size_t i = 0; i < n; ++i) {
+  for (uint32_t i = 0; i < n; ++i) {
     row.clear();
     for (size_t k = own.begin[i]; k < own.begin[i + 1]; ++k) {
       const uint32_t j = own.end[k];
       row.emplace_back(j, double{own.exchanged[k]} * (j < n && j != i ? weight(i, j) : a[i]));
     }
     for (size_t k = begin[i]; k < begin[i + 1]; ++k) row.emplace_back(from[k], double{share[k]} * weight(i, from[k]));
+    // What neither emits nor takes anything, and a block of paths that were all drawn in vain: whatever the row is.
+    const auto is_nothing = [](const auto& entry) { return !(entry.second > 1e-30); };
+    if (std::all_of(row.begin(), row.end(), is_nothing)) row = {{i, 1}};
     put_row(rows, row);
   }
   return rows;
@@ -110,6 +117,7 @@ ExchangePaths ExchangePaths::block(uint32_t number) const {
   SUITE_CHECK_LT(number, blocks);
   ExchangePaths out;
   out.blocks = 1, out.paths = paths, out.emissivity = emissivity, out.area = area;
+  out.ends.reserve(faces() * paths), out.weights.reserve(faces() * paths);
   for (size_t f = 0; f < faces(); ++f) {
     const auto from = static_cast<std::ptrdiff_t>((f * blocks + number) * paths);
     out.ends.insert(out.ends.end(), ends.begin() + from, ends.begin() + from + paths);
@@ -122,24 +130,20 @@ ExchangeMatrix ExchangePaths::matrix(size_t outsides) const {
   const size_t n = faces();
   std::vector<double> a;
   for (size_t f = 0; f < n; ++f) a.push_back(area[f] * emissivity[f]);
-  const Rows rows = joined(own_shares(*this), a);
+  Rows rows = joined(own_shares(*this), a);
   const std::vector<double> d = factors(rows, a);
-  ExchangeMatrix m(n, outsides);
-  std::vector<ExchangeMatrix::Entry> row;
-  for (uint32_t i = 0; i < n; ++i) {
-    row.clear();
-    double sum = 0;
-    for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k) {
-      const uint32_t end = rows.end[k];
-      row.push_back({end, double{rows.exchanged[k]} * (end < n ? d[end] : 1)});
-      sum += row.back().share;
+  parallel_for(0, n, 256, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const auto exchanged = [&](size_t k) {
+        return double{rows.exchanged[k]} * (rows.end[k] < n ? d[rows.end[k]] : 1);
+      };
+      double sum = 0;
+      for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k) sum += exchanged(k);
+      for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
+        rows.exchanged[k] = static_cast<float>(exchanged(k) / sum);
     }
-    for (ExchangeMatrix::Entry& e : row) e.share /= sum;
-    // What neither emits nor takes anything, and a block of paths that were all drawn in vain: whatever the row is.
-    if (!(sum > 0)) row = {{i, 1}};
-    m.add_row(row);
-  }
-  return m;
+  });
+  return ExchangeMatrix::of_rows(outsides, std::move(rows.begin), std::move(rows.end), std::move(rows.exchanged));
 }
 
 }  // namespace suite

@@ -1,14 +1,15 @@
 #include "heat/heat_balance.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "heat/heat_walk.h"
+#include "heat/heat_audit.h"
+#include "heat/heat_notes.h"
 #include "heat/path_errors.h"
+#include "heat/step_errors.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -74,9 +75,9 @@ std::vector<double> outsides(const Tracer& tracer, const HeatFaces& faces, const
 }
 
 // W/m2 by face and moment.
-std::vector<double> absorbed(const Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
+std::vector<float> absorbed(const Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
   const size_t moments = loads.moments.size();
-  std::vector<double> out(sun.faces() * moments);
+  std::vector<float> out(sun.faces() * moments);
   parallel_for(0, sun.faces(), 64, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f)
       for (size_t k = 0; k < moments; ++k) {
@@ -87,81 +88,10 @@ std::vector<double> absorbed(const Sunlight& sun, const WeatherLoads& loads, con
           for (uint32_t p = 0; p < kSkyPatches; ++p) diffuse += double{takes[p] * sky[p]};
           sum += diffuse + double{sun.below[f]} * spec.ground_albedo * loads.global[k] / kPi;
         }
-        out[f * moments + k] = sum;
+        out[f * moments + k] = static_cast<float>(sum);
       }
   });
   return out;
-}
-
-std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
-
-// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as in a
-// light wind with radiation; d no deeper than a day's warmth goes); elements that are smaller differ more than they
-// should.
-double evened_over(const std::vector<SlabLayer>& layers) {
-  constexpr double kFilm = 12, kDay = 86400;  // W/(m2 K), s
-  double sheet = 0;                           // W/K
-  for (const SlabLayer& layer : layers) {
-    const double k = layer.conductivity[0], deep = std::sqrt(k * kDay / (kPi * layer.density * layer.specific_heat[0]));
-    sheet += k * std::min(layer.thickness, deep);
-    if (layer.thickness > deep) break;
-  }
-  return 3 * std::sqrt(sheet / kFilm);
-}
-
-std::vector<std::string> lateral_notes(const Scene& scene, const Elements& elements, const HeatOptics& optics) {
-  std::vector<size_t> small(scene.materials.size(), 0), all(scene.materials.size(), 0);
-  std::vector<double> reach(scene.materials.size(), 0);
-  for (size_t m = 0; m < reach.size(); ++m) reach[m] = evened_over(optics.heated[m].layers);
-  for (size_t e = 0; e < elements.size(); ++e) {
-    const uint32_t m = elements[e].material;
-    ++all[m], small[m] += std::sqrt(elements[e].area) < reach[m];
-  }
-  std::vector<std::string> notes;
-  for (size_t m = 0; m < reach.size(); ++m)
-    if (small[m] > 0)
-      notes.push_back(
-          strf("material '%s': %zu of %zu elements are smaller than the %.2g m over which conduction along the "
-               "surface evens temperatures out, which is left out: fewer elements show what is there",
-               scene.materials[m].id.c_str(), small[m], all[m], reach[m]));
-  return notes;
-}
-
-void add_notes(const Tracer& tracer, const Elements& elements, const HeatOptics& optics, const ExchangePaths& exchange,
-               const Sunlight& sun, bool dry_air, HeatResult& result) {
-  auto& notes = result.notes;
-  if (elements.moving() > 0)
-    notes.push_back(strf("%zu instances move: they give shade, and count as warm as the air", elements.moving()));
-  if (sun.mirrors)
-    notes.push_back(
-        strf("surfaces that mirror or refract without scattering are there: the sunlight that they send on is "
-             "found as that of a sun %.0f degrees wide",
-             2 * kWideSun / kDegree));
-  for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
-  if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
-  if (exchange.unfinished > 1e-6)
-    notes.push_back(
-        strf("%.2g of the infrared was still being reflected after %u reflections and counts as absorbed there",
-             exchange.unfinished, kMostReflections));
-  if (sun.unfinished > 1e-6)
-    notes.push_back(strf("%.2g of the light of paths was still being reflected after %u reflections, and is left out",
-                         sun.unfinished, kMostReflections));
-  if (elements.shared_cells() > 0)
-    notes.push_back(
-        strf("%zu cells hold several materials of class maps; one with less than %.1f %% of a cell may have no "
-             "element there, and is then as warm as the largest of the others",
-             elements.shared_cells(), 100.0 / Elements::kLooks));
-  const auto is_wet = [](const HeatedMaterial& m) { return m.front.wetness > 0; };
-  if (dry_air && std::any_of(optics.heated.begin(), optics.heated.end(), is_wet))
-    notes.push_back("the weather has no humidity: wet surfaces evaporate into dry air");
-  for (const HeatOptics::Assumed& a : optics.assumed) {
-    if (a.sunlight < 0.01 && a.infrared < 0.01) continue;
-    notes.push_back(
-        "material '" + optics.materials->materials[a.material].id + "': beyond its curves lie " +
-        share_text(a.sunlight) + " of sunlight and " + share_text(a.infrared) +
-        " of a body's light at 300 K, for which the ends of the curves (in the infrared their mean from 8 to "
-        "14 um) are held");
-  }
 }
 
 }  // namespace
@@ -200,9 +130,10 @@ double HeatResult::kelvin_at(size_t face, double t) const {
   return static_cast<double>(row[0] + (row[1] - row[0]) * share);
 }
 
-double HeatResult::error_at(size_t face, double t) const {
+HeatErrors HeatResult::errors_at(size_t face, double t) const {
   const auto part = static_cast<size_t>(position(t) / static_cast<double>(moments - 1) * kHeatParts);
-  return double{path_error[face * kHeatParts + std::min<size_t>(part, kHeatParts - 1)]};
+  const size_t at = face * kHeatParts + std::min<size_t>(part, kHeatParts - 1);
+  return {double{path_error[at]}, double{size_error[at]}, double{step_error[at]}, std::hypot(sweep_error, past_error)};
 }
 
 double HeatResult::air_at(double t) const {
@@ -224,8 +155,9 @@ SurfaceLoads first_day(const SurfaceLoads& loads, const WeatherLoads& weather, s
   day.begin = loads.begin;
   day.steps.assign(loads.steps.begin(), loads.steps.begin() + static_cast<std::ptrdiff_t>(steps));
   const size_t all = loads.steps.size() + 1, moments = steps + 1;
-  const auto cut = [&](const std::vector<double>& from, size_t rows) {
-    std::vector<double> out;
+  const auto cut = [&]<class Number>(const std::vector<Number>& from, size_t rows) {
+    std::vector<Number> out;
+    out.reserve(rows * moments);
     for (size_t r = 0; r < rows; ++r)
       for (size_t k = 0; k < moments; ++k) out.push_back(from[r * all + (k + 1 == moments ? 0 : k)]);
     return out;
@@ -269,8 +201,8 @@ void sum_balance(const Elements& elements, const std::vector<SurfaceGroup>& grou
     for (size_t k = 0; k < moments; ++k) {
       const double weight = area * (k == 0 || k + 1 == moments ? 0.5 : 1) / static_cast<double>(moments - 1);
       const double kelvin = h.kelvin_at(face, k);
-      b.sunlight += weight * loads.absorbed[face * moments + k];
-      b.infrared += weight * traits.emissivity * h.received[face * moments + k];
+      b.sunlight += weight * double{loads.absorbed[face * moments + k]};
+      b.infrared += weight * traits.emissivity * double{h.received[face * moments + k]};
       b.emitted += weight * traits.emissivity * body(kelvin);
       b.to_air += weight * loss_to_air(traits, air[k], kelvin);
       b.source += weight * source;
@@ -290,19 +222,19 @@ void sum_balance(const Elements& elements, const std::vector<SurfaceGroup>& grou
   }
 }
 
-// All that acts on the faces through the span.
-SurfaceLoads face_loads(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
-                        const HeatOptics& optics, const Sunlight& sun, const WeatherLoads& weather,
-                        const HeatSpec& spec) {
+// All that acts on the faces through the span. Uses up what the sunlight has of moments and of the sky.
+SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoads& weather, const HeatSpec& spec) {
   SurfaceLoads loads;
   loads.begin = spec.span.begin;
   for (size_t k = 0; k + 1 < weather.moments.size(); ++k)
     loads.steps.push_back(weather.moments[k + 1] - weather.moments[k]);
   loads.air = weather.air;
   loads.absorbed = absorbed(sun, weather, spec);
-  for (size_t f = 0; f < faces.size(); ++f)
-    loads.source.push_back(faces.is_back(f) ? 0 : optics.heated[elements[faces.element(f)].material].source);
-  loads.outside = outsides(tracer, faces, weather, spec);
+  sun.beam = {}, sun.sky = {};
+  for (size_t f = 0; f < scene.faces.size(); ++f)
+    loads.source.push_back(
+        scene.faces.is_back(f) ? 0 : scene.optics.heated[scene.elements[scene.faces.element(f)].material].source);
+  loads.outside = outsides(scene.tracer, scene.faces, weather, spec);
   return loads;
 }
 
@@ -324,41 +256,18 @@ void keep(const SurfaceHistory& h, const SurfaceLoads& loads, const ExchangePath
           const WeatherLoads& weather, const HeatSpec& spec, HeatResult& result) {
   result.span = spec.span, result.periodic = spec.periodic, result.step = loads.steps.front();
   result.moments = h.moments;
-  result.kelvin.assign(h.kelvin.begin(), h.kelvin.end());
-  result.received.assign(h.received.begin(), h.received.end());
-  result.absorbed.assign(loads.absorbed.begin(), loads.absorbed.end());
-  result.step_error.assign(h.step_error.begin(), h.step_error.end());
   result.emissivity.assign(exchange.emissivity.begin(), exchange.emissivity.end());
   result.absorptance = sun.absorptance, result.sun_hours = sun.sun_hours;
   result.air_kelvin.assign(weather.air_kelvin.begin(), weather.air_kelvin.end());
   result.sweeps = h.coupling.sweeps, result.sweep_error = h.coupling.distance;
-  if (spec.periodic) result.past_error = h.past_distance;
-  result.rays = exchange.rays + sun.rays, result.unfinished = exchange.unfinished;
+  result.rays = exchange.rays() + sun.rays(), result.unfinished = exchange.unfinished();
 }
 
-}  // namespace
-
-HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
-                      const WeatherLoads& weather, const HeatSpec& spec, const HeatProgress& progress) {
-  SUITE_CHECK(spec.paths % HeatSpec::kBlocks == 0 && spec.paths > 0);
-  const auto stage = [&](const char* name, double whole) {
-    if (progress.begin) progress.begin(name, whole);
-  };
-  const auto done = [&](size_t more) {
-    if (progress.done) progress.done(static_cast<double>(more));
-  };
-  const PathOptions paths{HeatSpec::kBlocks, spec.paths / HeatSpec::kBlocks, spec.seed};
-  const auto count = static_cast<double>(faces.size());
-  stage("exchange of infrared", count);
-  const ExchangePaths exchange = trace_exchange(tracer, elements, faces, optics, paths, done);
-  stage("sunlight", count);
-  const Sunlight sun = trace_sunlight(tracer, elements, faces, optics, weather.course, paths, 4, done);
-
-  stage("balance", 1);
-  const std::vector<SurfaceGroup> groups = surface_groups(elements, faces, optics, exchange.emissivity);
-  const ExchangeMatrix matrix = exchange.matrix(faces.outsides());
-  const SurfaceLoads loads = face_loads(tracer, elements, faces, optics, sun, weather, spec);
-
+// Temperatures under the loads, from where a span that does not repeat begins.
+SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const ExchangePaths& exchange, size_t outside_count,
+                        const SurfaceLoads& loads, const WeatherLoads& weather, const HeatSpec& spec,
+                        double& past_error) {
+  const ExchangeMatrix matrix = exchange.matrix(outside_count);
   CoupledSurfaces surfaces(groups, matrix);
   double mean_air = 0;
   for (const double T : weather.air_kelvin) mean_air += T / static_cast<double>(weather.air_kelvin.size());
@@ -366,23 +275,79 @@ HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const Heat
   SurfaceOptions options;
   options.coupling.tolerance = spec.tolerance, options.past.tolerance = spec.tolerance;
   if (enclosed(exchange) > kCavity) options.coupling.memory = 5;
-  HeatResult result;
   if (!spec.periodic) {
-    const SurfaceHistory past = surfaces.solve(first_day(loads, weather, faces.size(), faces.outsides()), options);
-    result.past_error = past.past_distance;
+    past_error = surfaces.solve(first_day(loads, weather, exchange.faces(), outside_count), options).past_distance;
     options.periodic = false;
   }
-  const SurfaceHistory h = surfaces.solve(loads, options);
+  SurfaceHistory h = surfaces.solve(loads, options);
+  if (spec.periodic) past_error = h.past_distance;
+  return h;
+}
 
-  keep(h, loads, exchange, sun, weather, spec, result);
-  result.assumed = optics.assumed;
-  add_notes(tracer, elements, optics, exchange, sun, !weather.humid, result);
-  sum_balance(elements, groups, loads, h, result);
-  done(1);
-  stage("errors", 1);
-  result.path_error = path_errors({exchange, sun, weather, groups, loads, h, spec.ground_albedo});
-  done(1);
+// As floats, row by row.
+std::vector<float> floats_of(const Histories& h) {
+  std::vector<float> out;
+  out.reserve(h.rows() * h.moments());
+  for (size_t row = 0; row < h.rows(); ++row)
+    for (size_t m = 0; m < h.moments(); ++m) out.push_back(static_cast<float>(h.at(row, m)));
+  return out;
+}
+
+void begin(const HeatProgress& progress, const char* stage, double whole) {
+  if (progress.begin) progress.begin(stage, whole);
+}
+
+void tell_done(const HeatProgress& progress, double more) {
+  if (progress.done) progress.done(more);
+}
+
+}  // namespace
+
+HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const WeatherLoads& weather, const HeatSpec& spec,
+                      const HeatProgress& progress) {
+  const ExchangePaths& exchange = found.exchange;
+  SUITE_CHECK(exchange.faces() == scene.faces.size() && found.sun.faces() == scene.faces.size());
+  SUITE_CHECK_EQ(found.sun.moments, weather.moments.size());
+  begin(progress, "balance", 1);
+  const std::vector<SurfaceGroup> groups =
+      surface_groups(scene.elements, scene.faces, scene.optics, exchange.emissivity);
+  SurfaceLoads loads = face_loads(scene, found.sun, weather, spec);
+  HeatResult result;
+  SurfaceHistory h = balanced(groups, exchange, scene.faces.outsides(), loads, weather, spec, result.past_error);
+  keep(h, loads, exchange, found.sun, weather, spec, result);
+  result.assumed = scene.optics.assumed;
+  result.notes = heat_notes(scene, found, !weather.humid);
+  sum_balance(scene.elements, groups, loads, h, result);
+  tell_done(progress, 1);
+  begin(progress, "errors", 1);
+  const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo};
+  LinearErrors errors = linear_errors(solved);
+  result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
+  result.step_error = step_errors(solved);
+  tell_done(progress, 1);
+  if (spec.audit > 0) {
+    begin(progress, "audit", static_cast<double>(spec.audit));
+    result.audit =
+        audit_heat({scene.tracer, scene.elements, scene.faces, scene.optics, spec.periodic, spec.seed}, solved,
+                   spec.audit, {}, [&](size_t more) { tell_done(progress, static_cast<double>(more)); });
+  }
+  result.absorbed = std::move(loads.absorbed), result.received = std::move(h.received);
+  found = {};
+  result.kelvin = floats_of(h.kelvin);
   return result;
+}
+
+HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+                      const WeatherLoads& weather, const HeatSpec& spec, const HeatProgress& progress) {
+  SUITE_CHECK(spec.paths % HeatSpec::kBlocks == 0 && spec.paths > 0);
+  const HeatScene scene{tracer, elements, faces, optics};
+  const auto done = [&](size_t more) { tell_done(progress, static_cast<double>(more)); };
+  HeatOperator found;
+  begin(progress, "exchange of infrared", static_cast<double>(faces.size()));
+  found.exchange = find_exchange(scene, path_options(spec), nullptr, done);
+  begin(progress, "sunlight", static_cast<double>(faces.size()));
+  found.sun = find_sunlight(scene, weather.course, path_options(spec), nullptr, done);
+  return solve_heat(scene, std::move(found), weather, spec, progress);
 }
 
 }  // namespace suite

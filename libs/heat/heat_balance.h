@@ -13,14 +13,16 @@
 // comes and goes is part of the exchange for its share of the span, whenever that is. Media are passed
 // by.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "heat/audit_result.h"
 #include "heat/elements.h"
 #include "heat/exchange_paths.h"
+#include "heat/heat_operator.h"
 #include "heat/heat_optics.h"
-#include "heat/sunlight.h"
 #include "heat/surfaces.h"
 #include "heat/weather.h"
 #include "motion/scene_frame.h"
@@ -32,10 +34,13 @@ struct HeatSpec {
   double step = 600;           // s
   bool periodic = true;        // the span repeats for ever; else it goes on from its first day's periodic state
   size_t elements = 20000;     // about
+  bool cut_by_sun = true;      // elements, where it differs within them (day_sun.h); else they are of about equal areas
   uint32_t paths = 64;         // of a face, for each of infrared and sunlight; a multiple of kBlocks
+  double target = 0;           // K, by the paths: asks for as many (target_paths.h); 0 = the paths are given
   double tolerance = 0.01;     // K, of sweeps and of the past
   double ground_albedo = 0.2;  // of sunlight, beyond the scene
   uint64_t seed = 1;
+  size_t audit = 0;  // probes of heat_audit.h; 0 = none
   static constexpr uint32_t kBlocks = 8;
 };
 
@@ -49,6 +54,13 @@ struct HeatWeather {
 // Means over parts of the span, by face: [face][part].
 inline constexpr uint32_t kHeatParts = Sunlight::kParts;
 
+// How far a temperature may be off, K, each cause for itself: standard error by the paths; root of the mean square of
+// what places differ from the mean of their element; by the steps in time; by ending sweeps and the past.
+struct HeatErrors {
+  double paths = 0, size = 0, steps = 0, sweeps = 0;
+  double total() const { return std::sqrt(paths * paths + size * size + steps * steps + sweeps * sweeps); }
+};
+
 struct HeatResult {
   TimeSpan span;
   bool periodic = true;
@@ -56,7 +68,8 @@ struct HeatResult {
   size_t moments = 0;
   std::vector<float> kelvin;                              // [face][moment]
   std::vector<float> path_error;                          // K, standard error of the paths, [face][part]
-  std::vector<float> step_error;                          // K, by face, of the largest step
+  std::vector<float> size_error;                          // K, of the elements' size, [face][part]: path_errors.h
+  std::vector<float> step_error;                          // K, of the steps, [face][part]: step_errors.h
   std::vector<float> absorbed, received;                  // W/m2 of sunlight, of infrared that arrives; [face][moment]
   std::vector<float> emissivity, absorptance, sun_hours;  // by face
   std::vector<float> air_kelvin;                          // by moment
@@ -71,11 +84,13 @@ struct HeatResult {
   double rays = 0, unfinished = 0;
   std::vector<std::string> notes;  // what a user should know, a sentence each
   std::vector<HeatOptics::Assumed> assumed;
+  std::optional<HeatAudit> audit;
 
   // K at a time (s), straight between moments; a span that repeats goes on for ever, of others the nearer end holds.
   double kelvin_at(size_t face, double t) const;
   double air_at(double t) const;
-  double error_at(size_t face, double t) const;  // K, standard error of the paths, of the part of the span
+  // K, of the part of the span.
+  HeatErrors errors_at(size_t face, double t) const;
 
  private:
   double position(double t) const;  // of a time, in moments
@@ -97,11 +112,20 @@ WeatherLoads weather_loads(const HeatWeather& weather, const HeatSpec& spec);
 std::vector<SurfaceGroup> surface_groups(const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                                          const std::vector<double>& emissivity);
 
+// The paths of a search.
+inline PathOptions path_options(const HeatSpec& spec) {
+  return {HeatSpec::kBlocks, spec.paths / HeatSpec::kBlocks, spec.seed};
+}
+
 // report: is told stages and shares that are done; may be empty. Error: as its parts.
 struct HeatProgress {
   std::function<void(const std::string& stage, double whole)> begin;
   std::function<void(double more)> done;
 };
+// found: of all faces, for the sun of the loads. It is used up, as what is no longer needed makes room.
+HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const WeatherLoads& loads, const HeatSpec& spec,
+                      const HeatProgress& progress = {});
+// Finds that, too.
 HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                       const WeatherLoads& loads, const HeatSpec& spec, const HeatProgress& progress = {});
 

@@ -31,7 +31,7 @@ std::vector<HeatFluxes> fluxes_of(const HeatResult& result, const Elements& elem
     const double t = weather.moments[k];
     HeatFluxes f;
     f.kelvin = double{result.kelvin[element * result.moments + k]};
-    f.error = result.error_at(element, t);
+    f.errors = result.errors_at(element, t);
     f.sunlight = double{result.absorbed[element * result.moments + k]};
     f.infrared = face.emissivity * double{result.received[element * result.moments + k]};
     f.emitted = face.emissivity * kStefanBoltzmann * std::pow(f.kelvin, 4);

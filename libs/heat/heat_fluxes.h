@@ -6,7 +6,8 @@ namespace suite {
 
 // W/m2 at one moment; into the element = sunlight + infrared + source - emitted - to_air.
 struct HeatFluxes {
-  double kelvin = 0, error = 0;  // K; standard error by the paths
+  double kelvin = 0;  // K
+  HeatErrors errors;
   double sunlight = 0, infrared = 0, emitted = 0, to_air = 0, source = 0;
   double into() const { return sunlight + infrared + source - emitted - to_air; }
 };

@@ -1,6 +1,8 @@
 // How paths of the balance of heat go on at a surface.
 #pragma once
+#include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "math/sampling.h"
@@ -45,6 +47,37 @@ void fly(const Tracer& tracer, std::vector<Path>& going, std::vector<Ray>& rays,
   }
 }
 
+// A direction towards a point of the sun's disk, of radius rad; x and y in units of it.
+inline Dir on_disk(const Frame& sun, double x, double y, double radius) {
+  return normalized(sun.z + radius * (sun.x * x + sun.y * y));
+}
+
+// Draws how a path goes on, with the first three numbers, and says the weights of all bins and the densities at all
+// knots of what was drawn, of a Dirac lobe or not. Nothing: drawn in vain.
+inline std::optional<ScatterModel::Sample> draw_reflection(const ScatterModel& model, Dir out,
+                                                           const std::array<double, 4>& u, int knot, std::span<float> w,
+                                                           std::span<float> p) {
+  auto drawn = model.sample(out, {u[0], u[1]}, u[2], knot);
+  if (!drawn) return std::nullopt;
+  if (drawn->delta) {
+    model.delta_weight(out, drawn->lobe, knot, w);
+    model.delta_probability(out, drawn->lobe, knot, p);
+  } else {
+    model.eval(out, drawn->in, w);
+    model.pdf(out, drawn->in, p);
+  }
+  if (!(p[static_cast<size_t>(knot)] > 0)) return std::nullopt;
+  return drawn;
+}
+
+// One over the mean density of the knots that could have drawn a path, times that of its own: the balance heuristic.
+// ratios: of the densities at the knots to that at its own.
+inline double mean_ratio(const std::array<double, kMaxKnots>& ratios, size_t knots) {
+  double sum = 0;
+  for (size_t k = 0; k < knots; ++k) sum += ratios[k];
+  return static_cast<double>(knots) / sum;
+}
+
 // A path of one bin of a state of which every bin is a knot, or whose shapes are all alike.
 class OneBinWalk {
  public:
@@ -56,18 +89,10 @@ class OneBinWalk {
     double weight = 0;  // what the surface makes of the bin's throughput, its total included
   };
   // Nothing: the draw was in vain.
-  std::optional<Reflected> reflect(const ScatterModel& model, Dir out, Vec2 u, double lobe_u, size_t bin) {
+  std::optional<Reflected> reflect(const ScatterModel& model, Dir out, const std::array<double, 4>& u, size_t bin) {
     const size_t knot = knots_ == 1 ? 0 : bin;
-    const auto drawn = model.sample(out, u, lobe_u, static_cast<int>(knot));
+    const auto drawn = draw_reflection(model, out, u, static_cast<int>(knot), w_, p_);
     if (!drawn) return std::nullopt;
-    if (drawn->delta) {
-      model.delta_weight(out, drawn->lobe, static_cast<int>(knot), w_);
-      model.delta_probability(out, drawn->lobe, static_cast<int>(knot), p_);
-    } else {
-      model.eval(out, drawn->in, w_);
-      model.pdf(out, drawn->in, p_);
-    }
-    if (!(p_[knot] > 0)) return std::nullopt;
     return Reflected{drawn->in, static_cast<double>(w_[bin]) / static_cast<double>(p_[knot])};
   }
 

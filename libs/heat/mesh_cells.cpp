@@ -40,7 +40,7 @@ std::array<Vec3, 3> MeshCells::corners(uint32_t triangle) const {
 }
 
 MeshCells::MeshCells(const Mesh& mesh, const std::vector<uint32_t>& material_of_part, double wanted)
-    : mesh_(mesh), cell_(mesh.triangle_count(), kNone), split_(mesh.triangle_count(), 0), first_{0} {
+    : mesh_(mesh), cell_(mesh.triangle_count(), kNone), split_(mesh.triangle_count(), 0) {
   SUITE_CHECK_EQ(material_of_part.size(), mesh.parts.size());
   std::vector<std::vector<Facet>> by_material;
   std::vector<uint32_t> known;
@@ -73,7 +73,9 @@ MeshCells::MeshCells(const Mesh& mesh, const std::vector<uint32_t>& material_of_
 }
 
 void MeshCells::add_cell(double area, uint32_t material) {
-  first_.push_back(static_cast<uint32_t>(order_.size()));
+  first_.push_back(end_.empty() ? 0 : end_.back());
+  end_.push_back(static_cast<uint32_t>(order_.size()));
+  piece_.push_back(kNone);
   areas_.push_back(area);
   materials_.push_back(material);
 }
@@ -95,12 +97,7 @@ void MeshCells::cut(const Facet& facet, double target, uint32_t material) {
 void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, double target, uint32_t material) {
   if (begin == end) return;
   double area = 0;
-  Box3 place, facing;
-  for (size_t i = begin; i < end; ++i)
-    area += facets[i].area, place.grow(facets[i].centre), facing.grow(facets[i].normal);
-  const Vec3 size = place.size(), turn = facing.size();
-  // A right angle counts for more than the width of what is cut.
-  const double width = std::max({size.x, size.y, size.z});
+  for (size_t i = begin; i < end; ++i) area += facets[i].area;
   if (end - begin == 1 || area <= 1.5 * target) {
     double sum = 0;
     for (size_t i = begin; i < end; ++i) {
@@ -112,6 +109,18 @@ void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, dou
     part_.push_back(0);
     return add_cell(sum, material);
   }
+  const size_t middle = divide(facets, begin, end, area);
+  gather(facets, begin, middle, target, material);
+  gather(facets, middle, end, target, material);
+}
+
+// Puts facets in order and says where the second half begins.
+size_t MeshCells::divide(std::vector<Facet>& facets, size_t begin, size_t end, double area) {
+  Box3 place, facing;
+  for (size_t i = begin; i < end; ++i) place.grow(facets[i].centre), facing.grow(facets[i].normal);
+  const Vec3 size = place.size(), turn = facing.size();
+  // A right angle counts for more than the width of what is cut.
+  const double width = std::max({size.x, size.y, size.z});
   int axis = 0;
   double longest = -1;
   for (int k = 0; k < 6; ++k)
@@ -132,16 +141,73 @@ void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, dou
         jump > widest && before > 0.1 * area && before < 0.9 * area)
       widest = jump, fold = i;
   }
-  if (fold > 0) middle = fold;
-  gather(facets, begin, middle, target, material);
-  gather(facets, middle, end, target, material);
+  return fold > 0 ? fold : middle;
+}
+
+void MeshCells::split(uint32_t cell) { end_[cell] - first_[cell] == 1 ? cut_piece(cell) : halve(cell); }
+
+MeshCells::Piece MeshCells::piece_of(size_t cell) const {
+  if (piece_[cell] != kNone) return pieces_[piece_[cell]];
+  const int s = std::max<int>(1, split_[order_[first_[cell]]]);
+  const SubTriangle p = part_at(s, static_cast<int>(part_[cell]));
+  const auto at = [&](int i, int j) { return Vec2{double{1} * (p.i + i) / s, double{1} * (p.j + j) / s}; };
+  return p.turned ? Piece{at(1, 1), at(0, 1), at(1, 0)} : Piece{at(0, 0), at(1, 0), at(0, 1)};
+}
+
+void MeshCells::cut_piece(uint32_t cell) {
+  const uint32_t triangle = order_[first_[cell]], other = static_cast<uint32_t>(size());
+  const Piece piece = piece_of(cell);
+  const auto [a, b, c] = corners(triangle);
+  const auto place = [&](Vec2 p) { return (b - a) * p.x + (c - a) * p.y; };
+  size_t side = 0;
+  double longest = -1;
+  for (size_t k = 0; k < 3; ++k)
+    if (const double l = length(place(piece[(k + 1) % 3]) - place(piece[k])); l > longest) longest = l, side = k;
+  const Vec2 p = piece[side], q = piece[(side + 1) % 3], tip = piece[(side + 2) % 3],
+             middle{(p.x + q.x) / 2, (p.y + q.y) / 2};
+  const bool left = (tip.x - middle.x) * (p.y - middle.y) - (tip.y - middle.y) * (p.x - middle.x) >= 0;
+  left ? cuts_.add(cell, middle, tip, other) : cuts_.add(cell, tip, middle, other);
+  const double area = areas_[cell] / 2;
+  if (piece_[cell] == kNone) piece_[cell] = static_cast<uint32_t>(pieces_.size()), pieces_.emplace_back();
+  pieces_[piece_[cell]] = {p, middle, tip};
+  areas_[cell] = until_[first_[cell]] = area;
+  first_.push_back(static_cast<uint32_t>(order_.size())), order_.push_back(triangle), until_.push_back(area);
+  end_.push_back(static_cast<uint32_t>(order_.size()));
+  piece_.push_back(static_cast<uint32_t>(pieces_.size())), pieces_.push_back({middle, q, tip});
+  part_.push_back(part_[cell]), areas_.push_back(area), materials_.push_back(materials_[cell]);
+}
+
+void MeshCells::halve(uint32_t cell) {
+  const auto other = static_cast<uint32_t>(size());
+  std::vector<Facet> facets;
+  for (uint32_t k = first_[cell]; k < end_[cell]; ++k) {
+    const auto [a, b, c] = corners(order_[k]);
+    const Vec3 n = cross(b - a, c - a);
+    facets.push_back({(a + b + c) / 3, n / length(n), length(n) / 2, order_[k]});
+  }
+  const size_t middle = divide(facets, 0, facets.size(), areas_[cell]);
+  double sum = 0, first_half = 0;
+  for (size_t k = 0; k < facets.size(); ++k) {
+    if (k == middle) first_half = sum, sum = 0;
+    order_[first_[cell] + k] = facets[k].triangle;
+    until_[first_[cell] + k] = sum += facets[k].area;
+    if (k >= middle) cell_[facets[k].triangle] = other;
+  }
+  first_.push_back(first_[cell] + static_cast<uint32_t>(middle)), end_.push_back(end_[cell]);
+  end_[cell] = first_.back();
+  areas_[cell] = first_half;
+  piece_.push_back(kNone), part_.push_back(0), areas_.push_back(sum), materials_.push_back(materials_[cell]);
 }
 
 MeshCells::Point MeshCells::point(size_t cell, double x, double y, double z) const {
-  const auto begin = until_.begin() + first_[cell], end = until_.begin() + first_[cell + 1];
+  const auto begin = until_.begin() + first_[cell], end = until_.begin() + end_[cell];
   const auto at = std::min(std::upper_bound(begin, end, x * *(end - 1)), end - 1);
   const uint32_t triangle = order_[static_cast<size_t>(at - until_.begin())];
   const double root = std::sqrt(y), u = 1 - root, v = z * root;
+  if (piece_[cell] != kNone) {
+    const auto& [a, b, c] = pieces_[piece_[cell]];
+    return {triangle, a.x + u * (b.x - a.x) + v * (c.x - a.x), a.y + u * (b.y - a.y) + v * (c.y - a.y)};
+  }
   const int s = split_[triangle];
   if (s <= 1) return {triangle, u, v};
   const SubTriangle part = part_at(s, static_cast<int>(part_[cell]));
@@ -150,14 +216,14 @@ MeshCells::Point MeshCells::point(size_t cell, double x, double y, double z) con
 }
 
 uint32_t MeshCells::cell_of(uint32_t triangle, Vec3 local) const {
-  if (split_[triangle] <= 1) return cell_[triangle];
+  if (whole(triangle)) return cell_[triangle];
   const auto [a, b, c] = corners(triangle);
   const Vec3 e1 = b - a, e2 = c - a, p = local - a;
   const double d11 = dot(e1, e1), d12 = dot(e1, e2), d22 = dot(e2, e2), p1 = dot(p, e1), p2 = dot(p, e2);
   const double scale = 1 / (d11 * d22 - d12 * d12);
   const double u = std::clamp((d22 * p1 - d12 * p2) * scale, 0.0, 1.0);
   const double v = std::clamp((d11 * p2 - d12 * p1) * scale, 0.0, 1.0 - u);
-  return cell_[triangle] + part_of(split_[triangle], u, v);
+  return cuts_.find(cell_[triangle] + (split_[triangle] > 1 ? part_of(split_[triangle], u, v) : 0), {u, v});
 }
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "heat/cell_cuts.h"
 #include "scene/scene.h"
 
 namespace suite {
@@ -14,7 +15,7 @@ class MeshCells {
   // and both sides of one are in one cell only where so few cells are wanted. The mesh's arrays must be here.
   MeshCells(const Mesh& mesh, const std::vector<uint32_t>& material_of_part, double wanted);
 
-  size_t size() const { return first_.size() - 1; }
+  size_t size() const { return areas_.size(); }
   double area(size_t cell) const { return areas_[cell]; }            // m2, local
   uint32_t material(size_t cell) const { return materials_[cell]; }  // as material_of_part has it
   double total_area() const { return total_; }
@@ -27,7 +28,13 @@ class MeshCells {
   Point point(size_t cell, double x, double y, double z) const;
   // The cell of a place on a triangle (local, mesh origin included); kNone when it belongs to none.
   uint32_t cell_of(uint32_t triangle, Vec3 local) const;
-  bool whole(uint32_t triangle) const { return split_[triangle] <= 1; }  // then cell_of does not ask the place
+  // Then cell_of does not ask the place.
+  bool whole(uint32_t triangle) const {
+    return split_[triangle] <= 1 && (cell_[triangle] == kNone || !cuts_.cut(cell_[triangle]));
+  }
+  // Cuts a cell in two of about equal areas, the second of which becomes the last cell: pieces of triangles through the
+  // middle of their longest side, several triangles as the constructor does.
+  void split(uint32_t cell);
 
  private:
   struct Facet {
@@ -35,18 +42,26 @@ class MeshCells {
     double area;
     uint32_t triangle;
   };
+  using Piece = std::array<Vec2, 3>;  // corners, barycentrics of vertices 1 and 2
+  Piece piece_of(size_t cell) const;
+  void cut_piece(uint32_t cell);
+  void halve(uint32_t cell);
+  static size_t divide(std::vector<Facet>& facets, size_t begin, size_t end, double area);
   void cut(const Facet& facet, double target, uint32_t material);
   void gather(std::vector<Facet>& facets, size_t begin, size_t end, double target, uint32_t material);
   void add_cell(double area, uint32_t material);
   std::array<Vec3, 3> corners(uint32_t triangle) const;
 
   const Mesh& mesh_;
-  std::vector<uint32_t> cell_;   // by triangle: its cell, or the first of its cells; kNone
-  std::vector<uint16_t> split_;  // by triangle: it has the square of this many cells; 0 = none
-  std::vector<uint32_t> first_;  // by cell: where its triangles begin; cells + 1
-  std::vector<uint32_t> order_;  // triangles by cell
-  std::vector<double> until_;    // area of the cell up to and including each
-  std::vector<uint32_t> part_;   // by cell: number of the part of a cut triangle
+  std::vector<uint32_t> cell_;         // by triangle: its cell, or the first of its cells; kNone
+  std::vector<uint16_t> split_;        // by triangle: it has the square of this many cells; 0 = none
+  std::vector<uint32_t> first_, end_;  // by cell: where its triangles begin and end
+  std::vector<uint32_t> order_;        // triangles by cell
+  std::vector<double> until_;          // area of the cell up to and including each
+  std::vector<uint32_t> part_;         // by cell: number of the part of a cut triangle
+  CellCuts cuts_;
+  std::vector<Piece> pieces_;    // that were cut from parts
+  std::vector<uint32_t> piece_;  // by cell: of these; kNone
   std::vector<uint32_t> materials_;
   std::vector<double> areas_;
   double total_ = 0;

@@ -41,23 +41,46 @@ class Errors {
         moments_(s.history.moments),
         parts_(moments_),
         faces_(s.exchange.faces()),
-        deviation_(faces_ * blocks_ * kHeatParts),
         slope_(faces_ * kHeatParts) {
     weather_by_part();
-    receive_by_block();
+    for (const SurfaceGroup& group : s_.groups)
+      parallel_for(0, group.front_rows.size(), kTogether,
+                   [&](size_t begin, size_t end) { slopes(group, begin, end - begin); });
+  }
+
+  std::vector<float> of_paths() {
+    const auto n = static_cast<double>(blocks_);
+    begin(blocks_, 1 / (n * (n - 1)));
+    loads_by_block();
+    every_face([this](size_t f) { take_mean(f); });
+    return follow();
+  }
+  std::vector<float> of_size() {
+    begin(Sunlight::kContrasts, 1.0 / Sunlight::kContrasts);
+    every_face([this](size_t f) { spread_of(f); });
+    return follow();
+  }
+
+ private:
+  // What is followed: so many deviations of each face, whose answers' squares are summed with a weight.
+  void begin(size_t cases, double weight) {
+    cases_ = cases, weight_ = weight;
+    deviation_.assign(faces_ * cases * kHeatParts, 0.0f);
+  }
+  template <class Fill>
+  void every_face(const Fill& fill) const {
     parallel_for(0, faces_, 64, [&](size_t begin, size_t end) {
-      for (size_t f = begin; f < end; ++f) deviations_of(f);
+      for (size_t f = begin; f < end; ++f) fill(f);
     });
   }
 
-  std::vector<float> follow() {
+  std::vector<float> follow() const {
     std::vector<float> out(faces_ * kHeatParts, 0.0f);
     for (const SurfaceGroup& group : s_.groups) {
       const size_t count = group.front_rows.size();
       parallel_for(0, (count + kTogether - 1) / kTogether, 1, [&](size_t begin, size_t end) {
         for (size_t p = begin; p < end; ++p) {
           const size_t first = p * kTogether, n = std::min(kTogether, count - first);
-          slopes(group, first, n);
           group.layers.empty() ? massless(group, first, n, out) : conduct(group, first, n, out);
         }
       });
@@ -65,7 +88,6 @@ class Errors {
     return out;
   }
 
- private:
   void weather_by_part() {
     const auto& w = s_.weather;
     direct_ = parts_.means([&](size_t k) { return w.direct[k]; });
@@ -73,45 +95,57 @@ class Errors {
     below_ = parts_.means([&](size_t k) { return s_.ground_albedo * w.global[k] / kPi; });
   }
 
-  // What every block's exchange alone would bring, of what all emit: means over the parts.
-  void receive_by_block() {
+  // Loads of every face by each block's paths alone, of what all emit: means over the parts. One block's exchange after
+  // the other, as all at once would be the most that is held of anything.
+  void loads_by_block() {
     const size_t outsides = s_.loads.outside.size() / moments_;
-    std::vector<double> emits;
+    std::vector<double> emits, received(faces_ * kHeatParts);
+    emits.reserve((faces_ + outsides) * kHeatParts);
     for (uint32_t end = 0; end < faces_ + outsides; ++end) {
       const std::vector<double> means = parts_.means([&](size_t m) { return emitted(end, m); });
       emits.insert(emits.end(), means.begin(), means.end());
     }
-    const size_t each = faces_ * kHeatParts;
-    received_.resize(blocks_ * each);
-    for (uint32_t b = 0; b < blocks_; ++b)
-      s_.exchange.block(b).matrix(outsides).receive(emits, kHeatParts, {&received_[b * each], each});
+    for (uint32_t b = 0; b < blocks_; ++b) {
+      s_.exchange.block(b).matrix(outsides).receive(emits, kHeatParts, received);
+      parallel_for(0, faces_, 64, [&](size_t begin, size_t end) {
+        for (size_t f = begin; f < end; ++f) put_loads(f, b, &received[f * kHeatParts]);
+      });
+    }
   }
 
-  // Of a face's loads: each block's minus the mean of all.
-  void deviations_of(size_t f) {
-    const auto& e = s_.exchange;
+  void put_loads(size_t f, size_t b, const double* received) {
     const auto& sun = s_.sun;
-    std::vector<double> load(blocks_ * kHeatParts, 0);
     const double per_part = static_cast<double>(moments_ - 1) / kHeatParts;
-    for (size_t b = 0; b < blocks_; ++b) {
-      for (size_t p = 0; p < kHeatParts; ++p)
-        load[b * kHeatParts + p] =
-            e.emissivity[f] * received_[(b * faces_ + f) * kHeatParts + p] +
-            double{sun.beam_of_block[(f * blocks_ + b) * kHeatParts + p]} / per_part * direct_[p] +
-            double{sun.diffuse_of_block[f * blocks_ + b]} * diffuse_[p] +
-            double{sun.below_of_block[f * blocks_ + b]} * below_[p];
-    }
+    for (size_t p = 0; p < kHeatParts; ++p)
+      deviation_[(f * blocks_ + b) * kHeatParts + p] =
+          static_cast<float>(s_.exchange.emissivity[f] * received[p] +
+                             double{sun.beam_of_block[(f * blocks_ + b) * kHeatParts + p]} / per_part * direct_[p] +
+                             double{sun.diffuse_of_block[f * blocks_ + b]} * diffuse_[p] +
+                             double{sun.below_of_block[f * blocks_ + b]} * below_[p]);
+  }
+
+  // Leaves each block's minus the mean of all.
+  void take_mean(size_t f) {
     for (size_t p = 0; p < kHeatParts; ++p) {
+      const auto of = [&](size_t b) -> float& { return deviation_[(f * blocks_ + b) * kHeatParts + p]; };
       double mean = 0;
-      for (size_t b = 0; b < blocks_; ++b) mean += load[b * kHeatParts + p] / static_cast<double>(blocks_);
-      for (size_t b = 0; b < blocks_; ++b)
-        deviation_[(f * blocks_ + b) * kHeatParts + p] = static_cast<float>(load[b * kHeatParts + p] - mean);
+      for (size_t b = 0; b < blocks_; ++b) mean += double{of(b)} / static_cast<double>(blocks_);
+      for (size_t b = 0; b < blocks_; ++b) of(b) = static_cast<float>(double{of(b)} - mean);
     }
+  }
+
+  void spread_of(size_t f) {
+    const double per_part = static_cast<double>(moments_ - 1) / kHeatParts;
+    for (size_t c = 0; c < cases_; ++c)
+      for (size_t p = 0; p < kHeatParts; ++p) {
+        const size_t at = (f * cases_ + c) * kHeatParts + p;
+        deviation_[at] = static_cast<float>(double{s_.sun.beam_spread[at]} / per_part * direct_[p]);
+      }
   }
 
   double emitted(uint32_t end, size_t m) const {
     if (end >= faces_) return s_.loads.outside[(end - faces_) * moments_ + m];
-    const double T = s_.history.kelvin[end * moments_ + m];
+    const double T = s_.history.kelvin_at(end, m);
     return kStefanBoltzmann * T * cube(T);
   }
 
@@ -127,7 +161,7 @@ class Errors {
   // W/(m2 K) that a face gives back, by part.
   void slopes(const SurfaceGroup& group, size_t first, size_t n) {
     const auto of = [&](uint32_t face, const FaceTraits& traits) {
-      const std::vector<double> T = parts_.means([&](size_t m) { return s_.history.kelvin[face * moments_ + m]; });
+      const std::vector<double> T = parts_.means([&](size_t m) { return s_.history.kelvin_at(face, m); });
       for (size_t p = 0; p < kHeatParts; ++p) {
         FaceWeather w;
         w.air_kelvin = air(s_.loads.air.kelvin, p), w.wind = air(s_.loads.air.wind, p);
@@ -143,20 +177,19 @@ class Errors {
   }
 
   double deviation(uint32_t face, size_t block, size_t part) const {
-    return double{deviation_[(face * blocks_ + block) * kHeatParts + part]};
+    return double{deviation_[(face * cases_ + block) * kHeatParts + part]};
   }
   double slope(uint32_t face, size_t part) const { return double{slope_[face * kHeatParts + part]}; }
 
   void add(std::vector<float>& out, uint32_t face, size_t part, double kelvin) const {
-    const auto n = static_cast<double>(blocks_);
     float& to = out[face * kHeatParts + part];
-    to = static_cast<float>(std::sqrt(double{to} * double{to} + kelvin * kelvin / (n * (n - 1))));
+    to = static_cast<float>(std::sqrt(double{to} * double{to} + kelvin * kelvin * weight_));
   }
 
   void massless(const SurfaceGroup& group, size_t first, size_t n, std::vector<float>& out) const {
     for (size_t i = first; i < first + n; ++i) {
       const uint32_t front = group.front_rows[i];
-      for (size_t b = 0; b < blocks_; ++b)
+      for (size_t b = 0; b < cases_; ++b)
         for (size_t p = 0; p < kHeatParts; ++p) {
           double flux = deviation(front, b, p), loss = slope(front, p);
           if (!group.back_rows.empty())
@@ -172,7 +205,7 @@ class Errors {
     const double length = s_.weather.moments.back() - s_.weather.moments.front();
     const std::vector<double> steps(kHeatParts, length / kHeatParts);
     const FaceBalance behind = back_balance(group.behind);
-    for (size_t b = 0; b < blocks_; ++b) {
+    for (size_t b = 0; b < cases_; ++b) {
       std::vector<SlabLayer> layers = group.layers;
       for (SlabLayer& layer : layers) layer.heat_generation = 0;
       SlabBatch batch(layers, n, {60, !group.back_rows.empty()});
@@ -215,16 +248,17 @@ class Errors {
   size_t blocks_, moments_;
   Parts parts_;
   size_t faces_;
+  size_t cases_ = 0;
+  double weight_ = 0;
   std::vector<float> deviation_, slope_;
   std::vector<double> direct_, diffuse_, below_;
-  std::vector<double> received_;  // W/m2, by block, face and part
 };
 
 }  // namespace
 
-std::vector<float> path_errors(const SolvedSurfaces& solved) {
+LinearErrors linear_errors(const SolvedSurfaces& solved) {
   Errors errors(solved);
-  return errors.follow();
+  return {errors.of_paths(), errors.of_size()};
 }
 
 }  // namespace suite

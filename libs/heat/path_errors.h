@@ -1,4 +1,4 @@
-// How far the paths may have led temperatures astray.
+// How far the paths may have led temperatures astray, and how far they differ within an element.
 #pragma once
 #include "heat/heat_balance.h"
 
@@ -14,10 +14,15 @@ struct SolvedSurfaces {
   double ground_albedo;
 };
 
-// Standard error of the mean of all blocks, K, [face][part of the span]. Each block's own loads, as means over the
-// parts, differ from those of all; the difference goes through the conduction of its element with the faces' exchange
-// linearised about the solution, as a periodic state. At least kHeatParts moments. What neighbours make of it is left
-// out: they emit as solved.
-std::vector<float> path_errors(const SolvedSurfaces& solved);
+struct LinearErrors {
+  std::vector<float> paths;  // K, standard error of the mean of all blocks, [face][part of the span]
+  std::vector<float> size;   // K, root of the mean square of what places of the element differ from its mean
+};
+// What loads differ by, as means over the parts, goes through the conduction of its element with the faces' exchange
+// linearised about the solution, as a periodic state. Of the paths: each block's own loads against those of all; what
+// neighbours make of it is left out: they emit as solved. Of the size: direct sun on the points of the element
+// (Sunlight::beam_spread); what sky and neighbours send is taken as even over it, and conduction along the surface,
+// which evens out, is left out. At least kHeatParts moments.
+LinearErrors linear_errors(const SolvedSurfaces& solved);
 
 }  // namespace suite

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "heat/sunlight_mirrored.h"
 #include "heat/sunlight_wave.h"
 
 namespace suite {
@@ -16,25 +17,38 @@ uint32_t sky_patch(Dir d) {
   return ring * kSkyTurns + column;
 }
 
-Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
-                        const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
-                        const std::function<void(size_t)>& progress) {
+namespace {
+
+constexpr double kUnfinishedUnit = 1e6;
+
+}  // namespace
+
+double Sunlight::unfinished(uint32_t paths) const {
+  return static_cast<double>(count.unfinished) / kUnfinishedUnit / (1.0 * static_cast<double>(faces()) * paths);
+}
+
+Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options) {
   Sunlight out;
   const size_t n = faces.size();
   out.moments = course.moments.size(), out.blocks = options.blocks;
   out.beam.assign(n * out.moments, 0.0f);
   out.sky.assign(n * kSkyPatches, 0.0f);
   out.beam_of_block.assign(n * out.blocks * Sunlight::kParts, 0.0f);
+  out.beam_spread.assign(n * Sunlight::kContrasts * Sunlight::kParts, 0.0f);
   for (auto* each : {&out.below, &out.sun_hours, &out.absorptance}) each->assign(n, 0.0f);
   for (auto* each : {&out.diffuse_of_block, &out.below_of_block}) each->assign(n * out.blocks, 0.0f);
-  for (size_t m = 0; m < optics.materials->materials.size(); ++m)
-    if (const ScatterModel* model = optics.sun->material(static_cast<uint32_t>(m)).model)
-      out.mirrors = out.mirrors || model->has_delta();
+  return out;
+}
+
+void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+                    const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
+                    const std::function<void(size_t)>& progress) {
+  constexpr size_t kWave = Sunlight::kTogether;
+  const size_t n = faces.size();
+  SUITE_CHECK(range.begin % kWave == 0 && (range.end % kWave == 0 || range.end == n));
   std::atomic<uint64_t> rays{0}, unfinished{0};
-  constexpr double kUnit = 1e6;
   // Waves are always the same: rays that go together may decide the last bits of a hit.
-  constexpr size_t kWave = 32;
-  parallel_for(0, (n + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
+  parallel_for(range.begin / kWave, (range.end + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
     const FlushDenormals denormals;
     const AtWork work(tracer);
     SunlightWave wave(tracer, elements, faces, optics, course, options, joins, out);
@@ -44,12 +58,18 @@ Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const He
       wave.scattered(begin, end);
     }
     rays += wave.rays();
-    unfinished += static_cast<uint64_t>(wave.unfinished() * kUnit);
+    unfinished += static_cast<uint64_t>(wave.unfinished() * kUnfinishedUnit);
     if (progress) progress(std::min(n, last * kWave) - first * kWave);
   });
-  out.rays = static_cast<double>(rays);
-  out.unfinished =
-      static_cast<double>(unfinished) / kUnit / (1.0 * static_cast<double>(n) * options.blocks * options.paths);
+  out.count += {rays, unfinished};
+}
+
+Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                        const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
+                        const std::function<void(size_t)>& progress) {
+  Sunlight out = untraced_sunlight(faces, course, options);
+  trace_sunlight(tracer, elements, faces, optics, course, options, joins, {0, faces.size()}, out, progress);
+  add_mirrored_sunlight(tracer, elements, faces, optics, course, options, out);
   return out;
 }
 

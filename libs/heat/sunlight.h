@@ -7,11 +7,11 @@
 // turn, and to the part of the sky where they leave. Between moments all is taken as straight lines with the same
 // integrals.
 //
-// Beams that mirrors and smooth glass send on are met by paths that leave the scene from there, as if the sun were
-// kWideSun wide: unbiased but for the angle.
+// Beams that mirrors and smooth glass send on are followed from the sun (sunlight_mirrored.h).
 //
 // Assumes: one direction of the sun a moment for the whole scene; media are passed by.
 #pragma once
+#include <algorithm>
 #include <functional>
 
 #include "heat/exchange_paths.h"
@@ -28,7 +28,8 @@ struct SunCourse {
   bool up(double t) const { return towards(t).z > 0; }
 };
 
-inline constexpr double kWideSun = 2.5 * 3.14159265358979323846 / 180;  // rad, half of its angle
+// Every fourth path of a block has a point that looks at the sun through the whole day, and one there is at least.
+inline uint32_t points_of_beam(const PathOptions& options) { return std::max(1u, options.paths / 4); }
 
 // Parts of the sky: kSkyRings of equal solid angle, each in kSkyTurns.
 inline constexpr uint32_t kSkyRings = 8, kSkyTurns = 16, kSkyPatches = kSkyRings * kSkyTurns;
@@ -36,27 +37,49 @@ uint32_t sky_patch(Dir d);                                                     /
 inline constexpr double kSkyPatch = 2 * 3.14159265358979323846 / kSkyPatches;  // sr
 
 struct Sunlight {
-  static constexpr uint32_t kParts = 24;  // of the time, for errors
+  static constexpr size_t kTogether = 32;  // faces that are traced together
+  static constexpr uint32_t kParts = 24;   // of the time, for errors
   size_t moments = 0;
   uint32_t blocks = 0;
-  std::vector<float> beam;              // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
-  std::vector<float> sky;               // [face][patch]: for 1 W/(m2 sr) of the patch
-  std::vector<float> below;             // [face]: for 1 W/(m2 sr) of all below the horizon
-  std::vector<float> beam_of_block;     // [face][block][part]: as beam, means over a part of the time
+  std::vector<float> beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
+  std::vector<float> sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
+  std::vector<float> below;          // [face]: for 1 W/(m2 sr) of all below the horizon
+  std::vector<float> beam_of_block;  // [face][block][part]: as beam, means over a part of the time
+  // [face][contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
+  // in steps of moments and scaled so that the mean square over the contrasts is the variance over the face.
+  static constexpr uint32_t kContrasts = 3;
+  std::vector<float> beam_spread;
   std::vector<float> diffuse_of_block;  // [face][block]: for 1 W/(m2 sr) of the whole sky
   std::vector<float> below_of_block;    // [face][block]
   std::vector<float> sun_hours;         // [face]: hours with the sun on it, mean over its points
   std::vector<float> absorptance;       // [face]: of even light of the sky's spectrum
-  double rays = 0;
-  double unfinished = 0;  // of the paths' light, what was left out after kMostReflections
-  bool mirrors = false;   // something in the scene sends beams on without scattering them
+  PathCount count;
+  // [face][moment]: the part of beam that came first to what sends light on without scattering it; empty without such.
+  std::vector<float> beam_by_mirrors;
+  // Of these: places of surfaces at rest, surfaces without end, instances that move and are left out.
+  struct Mirrored {
+    size_t places = 0, endless = 0, moving = 0;
+    double unfinished = 0;  // share of the light they send on that was left out after kMostReflections
+  } mirrored;
 
   size_t faces() const { return below.size(); }
+  double rays() const { return static_cast<double>(count.rays); }
+  double unfinished(uint32_t paths) const;  // of the light of so many paths of a face, what was left out
 };
 
-// joins: moments that a path is joined to at each surface. In parallel over faces, the same on any number of threads.
+// Room for the sunlight of all faces, of which none is traced.
+Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options);
+
+// joins: moments that a path is joined to at each surface.
+inline constexpr uint32_t kSunJoins = 4;
+// Traces that of some faces; the range begins at a multiple of kTogether, and ends at one or with the faces. In
+// parallel over faces, the same on any number of threads and in ranges of any size.
+void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
+                    const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
+                    const std::function<void(size_t)>& progress = {});
+// Of all faces.
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
-                        uint32_t joins = 4, const std::function<void(size_t)>& progress = {});
+                        uint32_t joins = kSunJoins, const std::function<void(size_t)>& progress = {});
 
 }  // namespace suite

@@ -8,8 +8,10 @@ namespace suite {
 namespace {
 
 constexpr uint64_t kPurpose = 0x6265616d;
-constexpr double kFinest = 10;     // s, to which edges of shadows are found
-constexpr size_t kWatches = 4096;  // at once
+constexpr uint64_t kTold = 0x746f6c64;  // purpose of points whose days are told from others'
+constexpr uint32_t kToldPoints = 128;   // of a block
+constexpr double kFinest = 1;           // s, to which edges of shadows are found
+constexpr size_t kWatches = 4096;       // at once
 
 }  // namespace
 
@@ -29,7 +31,8 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       step_(course.moments.size() > 1 ? course.moments[1] - course.moments[0] : 1),
       W_(bins_),
       w_(bins_),
-      p_(knots_) {
+      p_(knots_),
+      lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
   for (uint32_t k = 0; k < course.moments.size(); ++k) {
     suns_.push_back(Frame::around(course.towards(course.moments[k])));
     if (suns_.back().z.z > 0) sunny_.push_back(k);
@@ -71,13 +74,16 @@ void SunlightWave::beam_of(size_t begin, size_t end) {
   look(watches);
   std::vector<Edge> edges;
   find_edges(watches, edges);
+  std::vector<PointDay> days;
   size_t from = 0;
   for (size_t k = 0; k < watches.size(); ++k) {
     size_t to = from;
     while (to < edges.size() && edges[to].watch == k) ++to;
-    add_beam(watches[k], {edges.data() + from, to - from});
+    days.push_back(day_of(watches[k], {edges.data() + from, to - from}));
     from = to;
   }
+  const size_t each = size_t{options_.blocks} * watches_of_block();
+  for (size_t k = 0; k < watches.size(); k += each) add_face({&watches[k], each}, {&days[k], each});
 }
 
 float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
@@ -146,39 +152,113 @@ void SunlightWave::find_edges(std::vector<Watch>& watches, std::vector<Edge>& ed
   }
 }
 
-// Puts the integral of what is taken onto the moments, by the hats of straight lines between them: a product of two
-// lines over each lit piece, for which Simpson's rule is exact.
-void SunlightWave::add_beam(const Watch& watch, std::span<const Edge> edges) {
-  float* to = &out_.beam[watch.face * suns_.size()];
-  float* parts = &out_.beam_of_block[(size_t{watch.face} * options_.blocks + watch.block) * Sunlight::kParts];
-  const double weight = 1.0 / (1.0 * options_.blocks * watches_of_block());
-  double lit_time = 0;
-  size_t next = 0;
-  for (size_t m = 0; m + 1 < suns_.size(); ++m) {
-    double begin = watch.lit[m] ? 0 : 1,
-           end = watch.lit[m] || watch.lit[m + 1] ? 1 : begin;  // the lit share of the step
-    if (next < edges.size() && edges[next].moment == m) {
-      const double at = ((edges[next].low + edges[next].high) / 2 - course_.moments[m]) / step_;
-      (watch.lit[m] ? end : begin) = at;
-      ++next;
-    }
-    if (!(end > begin)) continue;
-    lit_time += (end - begin) * step_;
-    // Where one end of the step takes nothing, the other's line is followed to it.
-    const double a = watch.takes[m], b = watch.takes[m + 1];
-    const auto value = [&](double s) { return a + (b - a) * s; };
-    const double middle = (begin + end) / 2, width = (end - begin) / 6;
-    const auto hat = [&](double s, bool late) { return value(s) * (late ? s : 1 - s); };
-    for (const bool late : {false, true}) {
-      const double share = width * (hat(begin, late) + 4 * hat(middle, late) + hat(end, late));
-      const size_t moment = m + (late ? 1 : 0);
-      // A hat's integral is a step, of the first and last moment half a one.
-      const double hats = moment == 0 || moment + 1 == suns_.size() ? 2 : 1;
-      to[moment] += static_cast<float>(weight * hats * share);
-      parts[moment * Sunlight::kParts / suns_.size()] += static_cast<float>(share / watches_of_block());
-    }
+std::array<double, 4> SunlightWave::place_of(uint32_t face, Vec3 position, double disk_x, double disk_y) const {
+  const HeatElement& e = elements_[faces_.element(face)];
+  const Vec3 on_it = Frame::around(e.normal).to_local(position - e.centre);
+  return {on_it.x, on_it.y, disk_x, disk_y};
+}
+
+PointDay SunlightWave::day_of(const Watch& watch, std::span<const Edge> edges) const {
+  PointDay day;
+  day.place = place_of(watch.face, watch.hit.position, watch.disk_x, watch.disk_y);
+  day.lit_first = watch.lit.front();
+  for (const Edge& e : edges) day.changes.push_back((e.low + e.high) / 2);
+  return day;
+}
+
+// Puts the integral of what is taken onto the moments, by the hats of straight lines between them.
+void SunlightWave::add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight) {
+  const size_t moments = suns_.size();
+  float* to = &out_.beam[face * moments];
+  float* parts = &out_.beam_of_block[(size_t{face} * options_.blocks + block) * Sunlight::kParts];
+  lit_.spread(takes, [&](size_t moment, double value) {
+    // A hat's integral is a step, of the first and last moment half a one.
+    const double hats = moment == 0 || moment + 1 == moments ? 2 : 1;
+    to[moment] += static_cast<float>(weight * hats * value / options_.blocks);
+    parts[moment * Sunlight::kParts / moments] += static_cast<float>(weight * value);
+  });
+  out_.sun_hours[face] += static_cast<float>(weight * lit_.total() * step_ / 3600 / options_.blocks);
+}
+
+void SunlightWave::add_face(std::span<const Watch> watches, std::span<const PointDay> days) {
+  for (size_t k = 0; k < watches.size(); ++k) {
+    if (!days[k].lit_first && days[k].changes.empty()) continue;
+    lit_.clear();
+    lit_.add(days[k], 1);
+    add_lit(watches[k].face, watches[k].block, watches[k].takes, 1.0 / watches_of_block());
   }
-  out_.sun_hours[watch.face] += static_cast<float>(weight * lit_time / 3600);
+  for (uint32_t b = 0; b < options_.blocks; ++b) add_untold(watches, days, b);
+  add_spread(watches, days);
+  // The difference of two means may be less than no light; it is taken from the moments beside it.
+  const std::span<float> row{&out_.beam[watches.front().face * suns_.size()], suns_.size()};
+  const auto lift = [&](size_t moment, size_t beside) {
+    if (row[moment] >= 0) return;
+    row[beside] += row[moment], row[moment] = 0;
+  };
+  for (size_t m = 0; m + 1 < row.size(); ++m) lift(m, m + 1);
+  for (size_t m = row.size(); m-- > 1;) lift(m, m - 1);
+  row[0] = std::max(row[0], 0.0f);
+  float& hours = out_.sun_hours[watches.front().face];
+  hours = std::max(hours, 0.0f);
+}
+
+// How much points differ, as a few sums of them with random signs: whatever is linear in them has the mean square of
+// its answers to these as its variance (M. F. Hutchinson, Commun. Stat. Simul. 18, 1989). The variance itself is met
+// exactly.
+void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const PointDay> days) {
+  constexpr uint32_t kParts = Sunlight::kParts, kContrasts = Sunlight::kContrasts;
+  const size_t n = watches.size();
+  std::vector<std::array<double, kParts>> takes(n);
+  std::array<double, kParts> mean{};
+  for (size_t k = 0; k < n; ++k) {
+    lit_.clear();
+    lit_.add(days[k], 1);
+    lit_.spread(watches[k].takes,
+                [&](size_t moment, double value) { takes[k][moment * kParts / suns_.size()] += value; });
+    for (uint32_t p = 0; p < kParts; ++p) mean[p] += takes[k][p] / static_cast<double>(n);
+  }
+  std::array<std::array<double, kParts>, kContrasts> sums{};
+  double variance = 0, met = 0;
+  for (size_t k = 0; k < n; ++k)
+    for (uint32_t p = 0; p < kParts; ++p) {
+      const double off = takes[k][p] - mean[p];
+      variance += off * off / static_cast<double>(n);
+      for (uint32_t c = 0; c < kContrasts; ++c)
+        sums[c][p] += hash_of(options_.seed, watches.front().face, k, c) & 1 ? off : -off;
+    }
+  for (const auto& contrast : sums)
+    for (const double v : contrast) met += v * v / kContrasts;
+  if (!(met > 0)) return;
+  float* to = &out_.beam_spread[size_t{watches.front().face} * kContrasts * kParts];
+  for (const auto& contrast : sums)
+    for (const double v : contrast) *to++ = static_cast<float>(v * std::sqrt(variance / met));
+}
+
+// What a block's points miss of an edge that passes over the element: it is told from the other blocks' points, once
+// for these points and once for many others. All of them take what the other blocks' do.
+void SunlightWave::add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block) {
+  std::vector<const PointDay*> others;
+  for (size_t k = 0; k < watches.size(); ++k)
+    if (watches[k].block != block) others.push_back(&days[k]);
+  const PassingEdges told(others, course_.angular_radius > 0, kFinest);
+  if (!told.moves()) return;
+  std::vector<float> takes(suns_.size(), 0.0f);
+  for (const Watch& w : watches)
+    if (w.block != block)
+      for (size_t m = 0; m < takes.size(); ++m) takes[m] += w.takes[m] / static_cast<float>(others.size());
+  const double begin = course_.moments.front(), end = course_.moments.back();
+  const uint32_t face = watches.front().face;
+  lit_.clear();
+  for (size_t k = 0; k < watches.size(); ++k)
+    if (watches[k].block == block) lit_.add(told.at(days[k].place, begin, end), -1.0 / watches_of_block());
+  const SampleStream numbers = stream((face * options_.blocks + block) * options_.paths, kTold);
+  for (uint32_t k = 0; k < kToldPoints; ++k) {
+    const Hit hit = elements_.point(faces_.element(face), {numbers, k, kPointBlock});
+    const std::array<double, 4> u = numbers.draw(k, 0);
+    const Vec2 d = disk_from_square({u[0], u[1]});
+    lit_.add(told.at(place_of(face, hit.position, d.x, d.y), begin, end), 1.0 / kToldPoints);
+  }
+  add_lit(face, block, takes, 1);
 }
 
 }  // namespace suite

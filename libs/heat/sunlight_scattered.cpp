@@ -55,13 +55,6 @@ void SunlightWave::start(uint32_t face) {
   out_.absorptance[face] = static_cast<float>(kept_of_sky / each);
 }
 
-// One over the mean density of the knots that could have drawn the path, times that of its own: the balance heuristic.
-double SunlightWave::mean_ratio(const Going& path) const {
-  double sum = 0;
-  for (size_t k = 0; k < knots_; ++k) sum += path.ratios[k];
-  return static_cast<double>(knots_) / sum;
-}
-
 void SunlightWave::leave(const Going& path, Dir d) {
   const uint32_t each = options_.blocks * options_.paths, face = path.slot / each;
   const std::span<const float> T = throughput(path);
@@ -79,20 +72,6 @@ void SunlightWave::leave(const Going& path, Dir d) {
   }
 }
 
-// A wide sun stands for the one that mirrors and glass send here: at every moment at which it is in the way.
-void SunlightWave::meet_sun(const Going& path, Dir d) {
-  const double near = std::cos(kWideSun), radiance = 1 / (2 * kPi * one_minus_cos(kWideSun));
-  const uint32_t each = options_.blocks * options_.paths;
-  const std::span<const float> T = throughput(path);
-  for (const uint32_t moment : sunny_) {
-    if (!(dot(d, suns_[moment].z) > near)) continue;
-    double value = 0;
-    for (size_t i = 0; i < bins_; ++i) value += double{T[i]} * double{course_.beam[moment][i]};
-    add_to_beam(path.slot / each, path.slot % each / options_.paths, moment,
-                value * radiance * mean_ratio(path) / each);
-  }
-}
-
 void SunlightWave::add_to_beam(uint32_t face, uint32_t block, uint32_t moment, double value) {
   out_.beam[size_t{face} * suns_.size() + moment] += static_cast<float>(value);
   out_.beam_of_block[(size_t{face} * options_.blocks + block) * Sunlight::kParts +
@@ -102,7 +81,6 @@ void SunlightWave::add_to_beam(uint32_t face, uint32_t block, uint32_t moment, d
 bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   if (!hit.hit()) {
     leave(path, ray.direction);
-    if (path.mirrored) meet_sun(path, ray.direction);
     return false;
   }
   surface_.interact(hit, -ray.direction, at_, ray.time);
@@ -115,17 +93,9 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   ask_sun(path, hit, out, n);
   const SampleStream numbers = stream(path.slot, kPurpose);
   const std::array<double, 4> u = numbers.draw(sample(path.slot), 1 + n);
-  const auto drawn = model.sample(out, {u[0], u[1]}, u[2], path.knot);
+  const auto drawn = draw_reflection(model, out, u, path.knot, w_, p_);
   if (!drawn) return false;
-  if (drawn->delta) {
-    model.delta_weight(out, drawn->lobe, path.knot, w_);
-    model.delta_probability(out, drawn->lobe, path.knot, p_);
-  } else {
-    model.eval(out, drawn->in, w_);
-    model.pdf(out, drawn->in, p_);
-  }
   const double own = static_cast<double>(p_[static_cast<size_t>(path.knot)]);
-  if (!(own > 0)) return false;
   const std::span<float> T = throughput(path);
   float most = 0;
   for (size_t i = 0; i < bins_; ++i) {
@@ -143,7 +113,6 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
     unfinished_ += static_cast<double>(most) * mean_ratio(path) / kPi;
     return false;
   }
-  path.mirrored = drawn->delta;
   const Dir d = at_.frame.to_world(drawn->in);
   ray.origin = tracer_.leave(hit, d), ray.direction = d;
   return true;

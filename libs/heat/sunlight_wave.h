@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "heat/heat_walk.h"
+#include "heat/lit_time.h"
 #include "heat/sunlight.h"
 
 namespace suite {
@@ -35,8 +36,7 @@ class SunlightWave {
   struct Going {
     uint32_t slot;
     int knot = 0;
-    bool mirrored = false;  // the last surface sent it on without scattering: the sun could not be asked for there
-    uint32_t spectrum;      // number of its throughput
+    uint32_t spectrum;                     // number of its throughput
     std::array<double, kMaxKnots> ratios;  // density at each knot over that at its own, of the path so far
   };
   struct Join {
@@ -45,28 +45,28 @@ class SunlightWave {
   };
   SampleStream stream(uint32_t slot, uint64_t purpose) const;
   uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
-  static Dir on_disk(const Frame& sun, double x, double y, double radius) {
-    return normalized(sun.z + radius * (sun.x * x + sun.y * y));
-  }
   Dir towards_sun(const Watch& watch, double t) const;
   Dir towards_sun(const Watch& watch, uint32_t moment) const {
     return on_disk(suns_[moment], watch.disk_x, watch.disk_y, course_.angular_radius);
   }
   void beam_of(size_t begin, size_t end);
-  // Every fourth path of a block has a point that looks at the sun through the whole day, and one there is at least.
-  uint32_t watches_of_block() const { return std::max(1u, options_.paths / 4); }
+  uint32_t watches_of_block() const { return points_of_beam(options_); }
   void look(std::vector<Watch>& watches);
   void find_edges(std::vector<Watch>& watches, std::vector<Edge>& edges);
-  void add_beam(const Watch& watch, std::span<const Edge> edges);
+  PointDay day_of(const Watch& watch, std::span<const Edge> edges) const;
+  std::array<double, 4> place_of(uint32_t face, Vec3 position, double disk_x, double disk_y) const;
+  void add_face(std::span<const Watch> watches, std::span<const PointDay> days);
+  void add_spread(std::span<const Watch> watches, std::span<const PointDay> days);
+  void add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block);
+  void add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight);
   float taken(const Watch& watch, uint32_t moment, Dir d);
   void start(uint32_t face);
   bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n);
   void ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t n);
   void answer_sun();
   void add_to_beam(uint32_t face, uint32_t block, uint32_t moment, double value);
-  double mean_ratio(const Going& path) const;
+  double mean_ratio(const Going& path) const { return suite::mean_ratio(path.ratios, knots_); }
   void leave(const Going& path, Dir d);
-  void meet_sun(const Going& path, Dir d);
   std::span<float> throughput(const Going& path) { return {&spectra_[size_t{path.spectrum} * bins_], bins_}; }
 
   const Tracer& tracer_;
@@ -83,6 +83,7 @@ class SunlightWave {
   std::vector<Frame> suns_;      // by moment: z to the middle of the sun
   Interaction at_;
   std::vector<float> W_, w_, p_;
+  LitTime lit_;
   TraceStatistics trace_;
   std::vector<Going> going_;
   std::vector<float> spectra_;

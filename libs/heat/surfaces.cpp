@@ -42,6 +42,19 @@ FixedLaw fixed_law(const SurfaceLoads& loads, const FaceTraits& face) {
   return {lines_of(loads, coefficient), lines_of(loads, times_air)};
 }
 
+// J/m2 that the layers of an element took up between two states; heat capacities may depend on temperature.
+double taken_up(const SlabBatch& before, const SlabBatch& after, size_t element) {
+  const auto heat = [element](const SlabBatch& of, size_t node) {
+    double sum = 0, power = 1;
+    for (const std::vector<double>& coefficients : of.grid().heat)
+      sum += coefficients[node] * (power *= of.kelvin(element, node));
+    return sum;
+  };
+  double stored = 0;
+  for (size_t n = 0; n < after.nodes(); ++n) stored += heat(after, n) - heat(before, n);
+  return stored;
+}
+
 bool is_fixed(const FaceTraits& face) {
   return face.convection && !face.convection->asks_surface() && face.wetness == 0;
 }
@@ -69,7 +82,7 @@ struct CoupledSurfaces::Through {
   std::vector<StepLine> kelvin = {}, wind = {}, vapour = {};  // by step
   std::vector<double> gusts = {};                             // by step
   std::vector<FixedLaw> front = {}, back = {};                // by group; empty for laws that ask the surface
-  std::span<const double> received = {};
+  const Histories* around = nullptr;                          // what all ends emit
   bool first = true;
 
   struct Air {
@@ -78,17 +91,21 @@ struct CoupledSurfaces::Through {
   Air air_at(size_t step, double fraction) const {
     return {kelvin[step].at(fraction), wind[step].at(fraction), gusts[step], vapour[step].at(fraction)};
   }
-  FaceWeather weather(size_t face, size_t moment, const Air& air) const {
+  struct Face {
+    size_t row;              // of the exchange
+    const double* longwave;  // W/m2 that it receives, by moment
+  };
+  FaceWeather weather(Face face, size_t moment, const Air& air) const {
     FaceWeather w;
-    w.absorbed = loads.absorbed[face * moments + moment];
-    w.longwave = received[face * moments + moment];
-    w.source = loads.source.empty() ? 0 : loads.source[face];
+    w.absorbed = double{loads.absorbed[face.row * moments + moment]};
+    w.longwave = face.longwave[moment];
+    w.source = loads.source.empty() ? 0 : loads.source[face.row];
     w.pressure = loads.air.pressure;
     w.air_kelvin = air.kelvin, w.wind = air.wind, w.gusts = air.gusts, w.vapour_pressure = air.vapour;
     return w;
   }
   // The air at a moment: between the lines of the steps before and after it.
-  FaceWeather weather_at(size_t face, size_t moment) const {
+  FaceWeather weather_at(Face face, size_t moment) const {
     const size_t last = loads.steps.size() - 1;
     const Air before = air_at(moment > 0 ? moment - 1 : 0, moment > 0 ? 1 : 0);
     const Air after = air_at(std::min(moment, last), moment > last ? 1 : 0);
@@ -97,7 +114,7 @@ struct CoupledSurfaces::Through {
                     (before.gusts + after.gusts) / 2, (before.vapour + after.vapour) / 2});
   }
   // What acts on a face through a step; its temperature is that at the step's begin.
-  void act(const FaceTraits& traits, const FixedLaw& law, size_t face, size_t step, double now, FaceLines& lines,
+  void act(const FaceTraits& traits, const FixedLaw& law, Face face, size_t step, double now, FaceLines& lines,
            size_t lane) const {
     const FaceWeather begin = weather(face, step, air_at(step, 0)), end = weather(face, step + 1, air_at(step, 1));
     lines.quartic[lane] = traits.emissivity * kStefanBoltzmann;
@@ -114,6 +131,22 @@ struct CoupledSurfaces::Through {
     lines.linear[lane] = {a.linear, a.linear};
     lines.constant[lane] = {a.constant, taken(end) + a.linear * now - end_loss};
   }
+};
+
+// Only of those faces that are worked on: histories of all faces at once would be as much memory as their answers.
+struct CoupledSurfaces::Received {
+  Received(const CoupledSurfaces& of, const Part& part, const Through& through) : moments(through.moments) {
+    const SurfaceGroup& group = of.groups_[part.group];
+    const auto take = [&](const std::vector<uint32_t>& all, std::vector<double>& out) {
+      if (all.empty()) return;
+      out.resize(part.count * moments);
+      for (size_t i = 0; i < part.count; ++i)
+        of.exchange_.receive_one(all[part.first + i], *through.around, {&out[i * moments], moments});
+    };
+    take(group.front_rows, front), take(group.back_rows, back);
+  }
+  size_t moments;
+  std::vector<double> front, back;  // W/m2, by element of the part and moment
 };
 
 CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange)
@@ -166,15 +199,17 @@ void CoupledSurfaces::check(const SurfaceLoads& loads) const {
                 strf("%zu faces and %zu outsides at %zu moments", faces, exchange_.outsides(), moments));
 }
 
-void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through, const SlabBatch& batch,
-                           FaceLines& top, FaceLines& bottom) const {
+void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through, const Received& received,
+                           const SlabBatch& batch, FaceLines& top, FaceLines& bottom) const {
   const SurfaceGroup& group = groups_[part.group];
   for (size_t i = 0; i < part.count; ++i) {
     const size_t element = part.first + i;
     const FaceTraits front = group.front_of(element), back = group.back_of(element);
-    through.act(front, through.front[part.group], group.front_rows[element], step, batch.top(i), top, i);
+    through.act(front, through.front[part.group], {group.front_rows[element], &received.front[i * through.moments]},
+                step, batch.top(i), top, i);
     if (!group.back_rows.empty()) {
-      through.act(back, through.back[part.group], group.back_rows[element], step, batch.bottom(i), bottom, i);
+      through.act(back, through.back[part.group], {group.back_rows[element], &received.back[i * through.moments]}, step,
+                  batch.bottom(i), bottom, i);
     } else {
       const FaceBalance behind = back_balance(group.behind);
       bottom.constant[i] = {behind.constant, behind.constant};
@@ -183,21 +218,24 @@ void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through
   }
 }
 
-void CoupledSurfaces::answer(Part& part, const Through& through, std::span<double> emitted) {
+void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emitted) {
   const SurfaceGroup& group = groups_[part.group];
   const SurfaceLoads& loads = through.loads;
   if (!through.options.periodic || through.first) part.next = part.batch;
   SlabBatch& batch = *part.next;
   batch.restart(loads.begin);
+  const Received received(*this, part, through);
   size_t step = 0;
   const BatchLoads lines = [&](double begin, double, const SlabBatch& now, FaceLines& top, FaceLines& bottom) {
     if (begin <= loads.begin) step = 0;  // another period
-    fill(part, step++, through, now, top, bottom);
+    fill(part, step++, through, received, now, top, bottom);
   };
+  // What both sides emit, by element and moment.
+  std::vector<double> tops(part.count * through.moments), bottoms(group.back_rows.empty() ? 0 : tops.size());
   const auto record = [&](size_t moment) {
     for (size_t i = 0; i < part.count; ++i) {
       const size_t front = group.front_rows[part.first + i];
-      emitted[front * through.moments + moment] = emitted_by(batch.top(i));
+      tops[i * through.moments + moment] = emitted_by(batch.top(i));
       step_error_[front] = std::fmax(moment <= 1 ? 0 : step_error_[front], moment == 0 ? 0 : batch.estimate(i));
       if (group.back_rows.empty()) {
         if (moment <= 1) behind_[front] = 0;
@@ -206,8 +244,15 @@ void CoupledSurfaces::answer(Part& part, const Through& through, std::span<doubl
         continue;
       }
       const size_t back = group.back_rows[part.first + i];
-      emitted[back * through.moments + moment] = emitted_by(batch.bottom(i));
+      bottoms[i * through.moments + moment] = emitted_by(batch.bottom(i));
       step_error_[back] = step_error_[front];
+    }
+  };
+  const auto hand_over = [&] {
+    for (size_t i = 0; i < part.count; ++i) {
+      const size_t at = i * through.moments;
+      emitted.set(group.front_rows[part.first + i], {&tops[at], through.moments});
+      if (!bottoms.empty()) emitted.set(group.back_rows[part.first + i], {&bottoms[at], through.moments});
     }
   };
   if (through.options.periodic) {
@@ -217,9 +262,10 @@ void CoupledSurfaces::answer(Part& part, const Through& through, std::span<doubl
     if (through.options.coupling.memory == 0 && past.enough == 0) past.enough = 1;
     part.distance =
         find_periodic(batch, loads.begin, loads.steps, lines, past, [&](size_t k) { record(k + 1); }).distance;
-    for (const auto* rows : {&group.front_rows, &group.back_rows})
-      for (size_t i = part.first; i < std::min(part.first + part.count, rows->size()); ++i)
-        emitted[(*rows)[i] * through.moments] = emitted[((*rows)[i] + 1) * through.moments - 1];
+    for (auto* values : {&tops, &bottoms})
+      for (size_t begin = 0; begin < values->size(); begin += through.moments)
+        (*values)[begin] = (*values)[begin + through.moments - 1];
+    hand_over();
     return;
   }
   const SlabBatch before = batch;
@@ -228,33 +274,26 @@ void CoupledSurfaces::answer(Part& part, const Through& through, std::span<doubl
     batch.step(loads.steps[k], lines);
     record(k + 1);
   }
-  // Heat capacities may depend on temperature.
-  const auto heat = [&](const SlabBatch& of, size_t element, size_t node) {
-    double sum = 0, power = 1;
-    for (const std::vector<double>& coefficients : of.grid().heat)
-      sum += coefficients[node] * (power *= of.kelvin(element, node));
-    return sum;
-  };
-  for (size_t i = 0; i < part.count; ++i) {
-    double& stored = stored_[group.front_rows[part.first + i]] = 0;
-    for (size_t n = 0; n < batch.nodes(); ++n) stored += heat(batch, i, n) - heat(before, i, n);
-  }
+  hand_over();
+  for (size_t i = 0; i < part.count; ++i) stored_[group.front_rows[part.first + i]] = taken_up(before, batch, i);
 }
 
-void CoupledSurfaces::answer_massless(const Part& part, const Through& through, std::span<double> emitted) const {
+void CoupledSurfaces::answer_massless(const Part& part, const Through& through, Histories& emitted) const {
   const SurfaceGroup& group = groups_[part.group];
+  const Received received(*this, part, through);
   std::vector<MasslessFace> faces(group.back_rows.empty() ? 1 : 2);
-  for (size_t element = part.first; element < part.first + part.count; ++element) {
+  std::vector<double> emits(through.moments);
+  for (size_t i = 0; i < part.count; ++i) {
+    const size_t element = part.first + i, at = i * through.moments;
+    std::vector<Through::Face> sides{{group.front_rows[element], &received.front[at]}};
+    if (faces.size() > 1) sides.push_back({group.back_rows[element], &received.back[at]});
     faces.front().traits = group.front_of(element);
     if (faces.size() > 1) faces.back().traits = group.back_of(element);
-    const size_t rows[2] = {group.front_rows[element], faces.size() > 1 ? group.back_rows[element] : 0};
     for (size_t moment = 0; moment < through.moments; ++moment) {
-      for (size_t f = 0; f < faces.size(); ++f) {
-        faces[f].weather = through.weather_at(rows[f], moment);
-      }
-      const double emits = emitted_by(massless_kelvin(faces));
-      for (size_t f = 0; f < faces.size(); ++f) emitted[rows[f] * through.moments + moment] = emits;
+      for (size_t f = 0; f < faces.size(); ++f) faces[f].weather = through.weather_at(sides[f], moment);
+      emits[moment] = emitted_by(massless_kelvin(faces));
     }
+    for (const Through::Face& side : sides) emitted.set(side.row, emits);
   }
 }
 
@@ -276,22 +315,33 @@ SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOp
   }
   SurfaceHistory history;
   history.moments = through.moments;
-  const size_t own = exchange_.elements() * through.moments;
-  std::vector<double> emitted(own, emitted_by(through.kelvin.front().mean()));
-  emitted.insert(emitted.end(), loads.outside.begin(), loads.outside.end());
-  const Respond respond = [&](std::span<const double> received, std::span<double> answers) {
-    through.received = received;
+  const size_t own = exchange_.elements();
+  Histories emitted(own + exchange_.outsides(), through.moments);
+  const std::vector<double> guess(through.moments, emitted_by(through.kelvin.front().mean()));
+  for (size_t i = 0; i < own; ++i) emitted.set(i, guess);
+  for (size_t i = 0; i < exchange_.outsides(); ++i)
+    emitted.set(own + i, {&loads.outside[i * through.moments], through.moments});
+  const Respond respond = [&](const Histories& around, Histories& answers) {
+    through.around = &around;
     parallel_for(0, parts_.size(), 1, [&](size_t begin, size_t end) {
       for (size_t p = begin; p < end; ++p)
         parts_[p].batch ? answer(parts_[p], through, answers) : answer_massless(parts_[p], through, answers);
     });
     through.first = false;
   };
-  history.coupling = couple_histories(exchange_, through.moments, emitted, respond, options.coupling);
+  history.coupling = couple_histories(exchange_, emitted, respond, options.coupling);
   for (Part& part : parts_) part.batch.swap(part.next);
-  history.received.resize(own);
-  exchange_.receive(emitted, through.moments, history.received);
-  for (size_t i = 0; i < own; ++i) history.kelvin.push_back(std::sqrt(std::sqrt(emitted[i] / kStefanBoltzmann)));
+  history.received.resize(own * through.moments);
+  parallel_for(0, own, 64, [&](size_t begin, size_t end) {
+    std::vector<double> row(through.moments);
+    for (size_t i = begin; i < end; ++i) {
+      exchange_.receive_one(i, emitted, row);
+      std::copy(row.begin(), row.end(), history.received.begin() + static_cast<std::ptrdiff_t>(i * row.size()));
+    }
+  });
+  emitted.shrink(own);
+  emitted.change([](double e) { return std::sqrt(std::sqrt(e / kStefanBoltzmann)); });
+  history.kelvin = std::move(emitted);
   history.step_error = step_error_;
   history.behind = behind_, history.stored = options.periodic ? std::vector<double>(stored_.size(), 0.0) : stored_;
   for (const Part& part : parts_) history.past_distance = std::fmax(history.past_distance, part.distance);

@@ -39,9 +39,9 @@ struct SurfaceLoads {
   double begin = 0;           // s
   std::vector<double> steps;  // s
   AirSeries air;
-  std::vector<double> absorbed;  // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
-  std::vector<double> source;    // W/m2 released at every element's front, by face; empty = none
-  std::vector<double> outside;   // W/m2 emitted by the outsides of the exchange, by outside and moment
+  std::vector<float> absorbed;  // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
+  std::vector<double> source;   // W/m2 released at every element's front, by face; empty = none
+  std::vector<double> outside;  // W/m2 emitted by the outsides of the exchange, by outside and moment
 };
 
 struct SurfaceOptions {
@@ -52,14 +52,15 @@ struct SurfaceOptions {
 
 struct SurfaceHistory {
   size_t moments = 0;
-  std::vector<double> kelvin, received;  // K, W/m2 longwave: by face, then by moment
-  std::vector<double> step_error;        // K, by face: largest estimated error of a step; 0 without heat capacity
+  Histories kelvin;                // K, of every face
+  std::vector<float> received;     // W/m2 longwave, by face, then by moment
+  std::vector<double> step_error;  // K, by face: largest estimated error of a step; 0 without heat capacity
   // J/m2 over the span, by front face: what went to what lies behind, and what the layers took up (of a span that
   // repeats nothing); 0 of backs.
   std::vector<double> behind, stored;
   CouplingResult coupling;
   double past_distance = 0;  // K, largest estimated distance of a node from the periodic state
-  double kelvin_at(size_t face, size_t moment) const { return kelvin[face * moments + moment]; }
+  double kelvin_at(size_t face, size_t moment) const { return kelvin.at(face, moment); }
 };
 
 class CoupledSurfaces {
@@ -80,12 +81,13 @@ class CoupledSurfaces {
     double distance = 0;                   // K, from the periodic state
     std::optional<SlabBatch> batch, next;  // the present state and that of the sweep; none without heat capacity
   };
-  struct Through;  // what all elements share through a span
+  struct Through;   // what all elements share through a span
+  struct Received;  // infrared that the faces of a part receive
   void check(const SurfaceLoads& loads) const;
-  void fill(const Part& part, size_t step, const Through& through, const SlabBatch& batch, FaceLines& top,
-            FaceLines& bottom) const;
-  void answer(Part& part, const Through& through, std::span<double> emitted);
-  void answer_massless(const Part& part, const Through& through, std::span<double> emitted) const;
+  void fill(const Part& part, size_t step, const Through& through, const Received& received, const SlabBatch& batch,
+            FaceLines& top, FaceLines& bottom) const;
+  void answer(Part& part, const Through& through, Histories& emitted);
+  void answer_massless(const Part& part, const Through& through, Histories& emitted) const;
 
   std::vector<SurfaceGroup> groups_;
   const ExchangeMatrix& exchange_;

@@ -61,17 +61,19 @@ std::function<Dir(double)> sun_table(const std::function<SkyBody(double)>& sun, 
   };
 }
 
-// Spectra of beam and sky: those of a clear sky with the sun at its height; of the sky in the middle of its light.
-// Without air the sun's own.
-void set_spectra(SunCourse& course, const std::vector<double>& diffuse, bool airless) {
+// Spectra of beam and sky: those of a clear sky with the sun at its height; of the sky in the middle of the light of
+// clear skies, whatever the clouds: what is found of sunlight then holds for any weather. Without air the sun's own.
+void set_spectra(SunCourse& course, bool airless) {
   const SpectralState state = sunlight_state();
   const std::vector<float> above = airless ? shares(solar_irradiance(), state) : std::vector<float>{};
   double weight = 0, height = 0;
   for (size_t k = 0; k < course.moments.size(); ++k) {
     const Dir d = course.towards(course.moments[k]);
     if (d.z > 0) {
-      course.beam.push_back(airless ? above : shares(clear_at(d).direct, state));
-      weight += diffuse[k], height += diffuse[k] * d.z;
+      const ClearSky clear = clear_at(d);
+      course.beam.push_back(airless ? above : shares(clear.direct, state));
+      const double diffuse = clear.diffuse.integral(clear.diffuse.low_um(), clear.diffuse.high_um());
+      weight += diffuse, height += diffuse * d.z;
     } else {
       course.beam.emplace_back(state.size(), 0.0f);
     }
@@ -153,7 +155,7 @@ WeatherLoads weather_loads(const HeatWeather& w, const HeatSpec& spec) {
   out.course.angular_radius = noon.angular_radius;
   const double astronomical = noon.distance / kAstronomicalUnit;
   const double extraterrestrial = solar_irradiance().integral(0.28, 4) / (astronomical * astronomical);
-  set_spectra(out.course, out.diffuse, w.weather.table().airless());
+  set_spectra(out.course, w.weather.table().airless());
   for (size_t k = 0; k < out.moments.size(); ++k) {
     const Dir sun = out.course.towards(out.moments[k]);
     out.diffuse[k] = std::max(out.diffuse[k], 0.0);

@@ -8,9 +8,9 @@
 
 #include "base/params.h"
 #include "base/registry.h"
+#include "light/intensity_table.h"
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
-#include "sqt/bundle.h"
 
 namespace suite {
 
@@ -33,6 +33,8 @@ struct LightContext {
   std::function<LightImage(const std::string& path)> image;
   // An SQT of quantity `intensity`. Error, at the value that names the file, for others.
   std::function<std::shared_ptr<const sqt::Bundle>(const Params& path)> intensity;
+  // Candela of a luminaire's photometric file.
+  std::function<IntensityTable(const Params& path)> candela;
   // When a lamp is how bright.
   std::function<std::shared_ptr<const LampSchedule>(const Params&)> schedule;
   std::vector<AskedCurve>* asked = nullptr;  // receives the curves that were read

@@ -34,14 +34,22 @@ class Checker {
   }
 
   void add(const char* code, Where place, const std::string& message, size_t count = 1) {
+    add(code, Finding{std::move(place), message}, count);
+  }
+  // Of a triangle, at its centre.
+  void add(const char* code, uint32_t t, const std::string& message, size_t count = 1) {
+    const Vec3 middle = (point(3 * size_t{t}) + point(3 * size_t{t} + 1) + point(3 * size_t{t} + 2)) * (1.0 / 3);
+    add(code, Finding{where(t), message, std::array{middle.x, middle.y, middle.z}}, count);
+  }
+  void add(const char* code, Finding finding, size_t count) {
     auto found = std::find_if(findings_.begin(), findings_.end(),
                               [&](const MeshFinding& f) { return std::string(f.code) == code; });
     if (found == findings_.end()) found = findings_.insert(findings_.end(), {code, 0, {}});
     found->count += count;
-    if (found->examples.size() < 3) found->examples.push_back({std::move(place), message});
+    if (found->examples.size() < 3) found->examples.push_back(std::move(finding));
   }
   void list(const char* code, const std::vector<uint32_t>& triangles, const std::string& message) {
-    for (const uint32_t t : triangles) add(code, where(t), message);
+    for (const uint32_t t : triangles) add(code, t, message);
   }
 
   struct Against {
@@ -74,7 +82,7 @@ class Checker {
       const size_t c = 3 * size_t{t};
       for (size_t k = 0; k < 3; ++k) used[mesh_.indices[c + k]] = true;
       if (corners_[c] == corners_[c + 1] || corners_[c + 1] == corners_[c + 2] || corners_[c + 2] == corners_[c]) {
-        add("SP301", where(t), "two corners are at one place");
+        add("SP301", t, "two corners are at one place");
         continue;
       }
       const Vec3 a = point(c), b = point(c + 1), d = point(c + 2), n = cross(b - a, d - a);
@@ -82,11 +90,10 @@ class Checker {
       // Coordinates far from the origin carry their own rounding: height below that is none.
       const double rounding = 4e-16 * std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), edge});
       if (!(height > rounding)) {
-        add("SP302", where(t), "its corners are on a line");
+        add("SP302", t, "its corners are on a line");
         continue;
       }
-      if (height < options_.sliver * edge)
-        add("SP303", where(t), strf("height %.3g of its longest edge", height / edge));
+      if (height < options_.sliver * edge) add("SP303", t, strf("height %.3g of its longest edge", height / edge));
       if (!mesh_.normals.empty()) against_winding(t, n);
     }
     tell_against_winding();
@@ -109,7 +116,7 @@ class Checker {
   void tell_against_winding() {
     const auto tell = [&](const Against& of, const char* cause) {
       if (of.triangles)
-        add("SP311", where(of.worst),
+        add("SP311", of.worst,
             strf("%zu triangles %s; the worst by %.0f degrees, here", of.triangles, cause,
                  std::acos(std::max(-1.0, of.deepest)) * 180 / kPi),
             of.triangles);
@@ -145,10 +152,9 @@ class Checker {
         (keys[i].even == keys[i - 1].even ? same : opposite).push_back({keys[i].triangle, keys[i - 1].triangle});
     std::sort(same.begin(), same.end());
     std::sort(opposite.begin(), opposite.end());
-    for (const auto& [t, other] : same)
-      add("SP304", where(t), strf("repeats the triangle of line %d", where(other).line));
+    for (const auto& [t, other] : same) add("SP304", t, strf("repeats the triangle of line %d", where(other).line));
     for (const auto& [t, other] : opposite)
-      add("SP314", where(t), strf("lies on the back of the triangle of line %d", where(other).line));
+      add("SP314", t, strf("lies on the back of the triangle of line %d", where(other).line));
   }
 
   void edges() {

@@ -30,7 +30,8 @@ inline double beta_above_one(double a, double b) {
 }
 
 struct Ggx {
-  double ax = 0.1, ay = 0.1;  // roughness along x and y, > 0
+  double ax = 0.1, ay = 0.1;                       // roughness along x and y, > 0
+  static constexpr uint32_t kBakingPoints = 4096;  // visible normals that tables take the mean of
 
   // Density of normals per projected solid angle, 1/sr.
   double density(Dir h) const {

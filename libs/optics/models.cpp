@@ -7,8 +7,9 @@ namespace suite {
 const Registry<ModelRow>& models() {
   static const Registry<ModelRow> table(
       "model", "OP101",
-      {lambert_row(), oren_nayar_row(), leaf_row(), rpv_row(), ross_li_row(), ward_row(), ggx_row(), mirror_row(),
-       dielectric_row(), ggx_dielectric_row(), sqt_row()});
+      {lambert_row(), oren_nayar_row(), leaf_row(), rpv_row(), ross_li_row(), roujean_row(), ward_row(), ggx_row(),
+       mirror_row(), dielectric_row(), ggx_dielectric_row(), priest_germer_row(), beard_maxwell_row(), shell_row(),
+       sqt_row(), sea_row()});
   return table;
 }
 

@@ -15,6 +15,7 @@ struct ImportOptions {
   std::vector<std::string> settings;  // "PATH=VALUE", values in place of a text's (base/params.h)
   std::string account = {};           // where to write what became of every line of another program's file; empty = not
   bool strict = false;                // what such a file says must not be left out, however harmless
+  bool uplift = false;                // display colours of models may be guessed into spectra
 };
 
 // make reads a file and every file it names; the draft lists them as its inputs. Whatever is wrong goes to the report,

@@ -25,6 +25,7 @@ constexpr Row kRows[] = {
     {"SP106", error, "a temperature table does not cover the time that is looked at",
      "give a longer table, 'repeat: true', or a shorter 'times_s'"},
     {"SP107", warning, "a temperature is that of deep space", "temperatures are in kelvin"},
+    {"SP108", info, "what a model of the sea's surface rests on", ""},
     {"SP201", error, "a face names something that is not there",
      "indices count from 1, or from the end when negative; 0 is nothing"},
     {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},
@@ -80,6 +81,8 @@ constexpr Row kRows[] = {
      "paths in it take that much longer, up to the simulation's 'max_scatterings'; a layer is one object, 'box: {z0, "
      "z1}' "
      "without x and y"},
+    {"SP608", info, "what a medium of water leaves out or rests on", ""},
+    {"SP609", info, "what a surface of waves leaves out", "a finer 'step_m', or a rough model"},
     {"SP407", error, "a motion does not cover the time that is looked at", "give it more keys, or a shorter 'times_s'"},
     {"SP408", warning, "an exact surface, a volume or a moving group is too large to follow the curvature",
      "use a mesh, or several smaller ones"},
@@ -103,6 +106,11 @@ constexpr Row kRows[] = {
      "--account FILE.json tells every line of the import"},
     {"SP704", error, "a strict import leaves out what an imported file says",
      "leave out --strict, or take it out of the file"},
+    {"SP705", warning, "a model's file says what is lost here", ""},
+    {"SP706", info, "a model's file says what has no effect here", ""},
+    {"SP707", info, "a model's file says what is approximated here", ""},
+    {"SP708", warning, "a model's material has no spectrum and is a stand-in",
+     "give it one: --set 'materials.NAME={model: lambert, reflectance: CURVE}', or name it in a scene text"},
 };
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "scheduler/features.h"
 
+#include <algorithm>
 #include <set>
 
 #include "base/error.h"
@@ -33,13 +34,18 @@ std::vector<Feature> all_features() {
        "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
        "which it is when it shows in some spectral window (--explain temperatures)."}};
   for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
-  all.insert(all.end(), {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
-                         {"adjacency",
-                          "Paths that go back to places in real air, for shadows in it and light of single places. "
-                          "Without, or without air, kernels are made that know nothing of it."},
-                         {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
-                         {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
-                         {"bands", "Spectral bins are carried only where a band of the state responds."}});
+  all.insert(all.end(),
+             {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
+              {"adjacency",
+               "Paths that go back to places in real air, for shadows in it and light of single places. "
+               "Without, or without air, kernels are made that know nothing of it."},
+              {"refracted light",
+               "Sun and moon asked for through one or two smooth interfaces (water, panes, lenses) from every "
+               "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
+               "asked at a node."},
+              {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
+              {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
+              {"bands", "Spectral bins are carried only where a band of the state responds."}});
   return all;
 }
 
@@ -72,6 +78,21 @@ FeatureUse adjacency(const Scene& scene, const AirSpec* air, const PipelineOptio
   return {"adjacency", !missing, missing ? missing : "in the air of the simulation"};
 }
 
+FeatureUse refraction(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
+  const auto smooth = std::count_if(scene.materials.begin(), scene.materials.end(),
+                                    [](const Material& m) { return m.surface.model == "dielectric"; });
+  const bool small = std::any_of(sources.lights.begin(), sources.lights.end(), [](const LightSpecPtr& light) {
+    return !light->in_scene() && !light->hardly_met(1).empty();
+  });
+  const char* missing = smooth == 0                       ? "no material passes light smoothly"
+                        : !small                          ? "no sun or moon in the simulation"
+                        : options.method == Method::paper ? "the paper's estimator"
+                        : !options.explicit_sources       ? "lights are not asked"
+                        : !options.refracted_sources      ? "`light_through_refraction: false`"
+                                                          : nullptr;
+  return {"refracted light", !missing, missing ? missing : strf("%zu smooth materials", static_cast<size_t>(smooth))};
+}
+
 }  // namespace
 
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
@@ -96,6 +117,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
   add_lights(sources, all);
   all.push_back(source("atmosphere", sources.has_air()));
   all.push_back(adjacency(scene, sources.air.get(), options));
+  all.push_back(refraction(scene, sources, options));
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

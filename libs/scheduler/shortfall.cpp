@@ -62,17 +62,22 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
                                     const PipelineOptions& options, uint32_t paths) {
   if (!options.explicit_sources) return {};
-  std::vector<std::string> lights, refracting, mirrors;
+  // Far lights are asked for through smooth interfaces; their mirrored light is not.
+  const bool asked = options.refracted_sources && options.method == Method::standard;
+  std::vector<std::string> lights, bent, refracting, mirrors;
   for (const LightSpecPtr& light : sources.lights)
-    for (const std::string& part : light->hardly_met(Accumulators::kEnoughMeetings / paths)) lights.push_back(part);
+    for (const std::string& part : light->hardly_met(Accumulators::kEnoughMeetings / paths)) {
+      lights.push_back(part);
+      if (!asked || light->in_scene()) bent.push_back(part);
+    }
   if (lights.empty()) return {};
   for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
   for (uint32_t i = 0; i < scene.materials.size(); ++i)
     if (const ScatterModel* m = optics.material(i).model; m && m->has_delta())
       mirrors.push_back("'" + scene.materials[i].id + "'");
   std::vector<std::string> said;
-  if (!refracting.empty())
-    said.push_back("light of " + listed(lights) + " is not found behind smooth refracting surfaces (" +
+  if (!refracting.empty() && !bent.empty())
+    said.push_back("light of " + listed(bent) + " is not found behind smooth refracting surfaces (" +
                    listed(refracting) +
                    "): only asking for it finds it, and they bend it away. What is missing is estimated, enlarges "
                    "standard errors and flags problems as not resolved");

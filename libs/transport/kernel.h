@@ -16,6 +16,7 @@
 
 #include "transport/dimensions.h"
 #include "transport/path_tracing.h"
+#include "transport/refracted_sight.h"
 #include "transport/shares.h"
 #include "transport/space_nothing.h"
 #include "transport/surfaces_any.h"
@@ -44,7 +45,14 @@ class PathKernel final : public PathTracing {
   }
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }
-  TraceStatistics take_statistics() override { return space_.take_statistics(); }
+  TraceStatistics take_statistics() override {
+    TraceStatistics all = space_.take_statistics();
+    if (refracted_) {
+      const TraceStatistics ways = refracted_->take_statistics();
+      all.rays += ways.rays, all.cycles += ways.cycles;
+    }
+    return all;
+  }
 
   // For estimators: the nodes of the stage, what they may ask, and how.
   struct NodeAt {
@@ -111,6 +119,13 @@ class PathKernel final : public PathTracing {
   void answer();
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
   void lack(const Question& q, size_t ray, bool blocked);
+  // kernel_refract.h: lights behind smooth interfaces.
+  void want_refracted(const NodeAt& node, const Asked& light, const LightSample& sample);
+  void shine_refracted();
+  void shine_refracted(const Question& q, size_t knot);
+  bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
+  uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
+  bool is_owned(const Question& q, size_t ray);
   SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
   SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
   // The next contribution, of path p as it stands; it counts from contribute() on.
@@ -137,11 +152,13 @@ class PathKernel final : public PathTracing {
   }
   size_t knots_;
   std::vector<size_t> knot_bins_;
+  std::vector<int> knot_of_bin_;
   size_t bins_;
   std::array<double, kMaxKnots> probability_;  // P_k
   const bool keep_first_;
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;
+  std::unique_ptr<RefractedSight> refracted_;  // null where nothing refracts
   std::vector<Asked> asked_;
   std::vector<Asked> outside_, glowing_;  // lights that rays meet by chance: leaving the scene, at surfaces
   Surfaces surfaces_;
@@ -177,6 +194,7 @@ class PathKernel final : public PathTracing {
   std::vector<uint32_t> onward_;
   SightRays sight_rays_;
   std::vector<Question> questions_;
+  std::vector<Question> refracted_questions_;
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;

@@ -16,11 +16,13 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       options_(c.options),
       knots_(c.optics.state().knots.size()),
       knot_bins_(c.optics.state().knots),
+      knot_of_bin_(c.optics.state().knot_of_bin()),
       bins_(c.optics.state().size()),
       probability_(Estimator::knot_probabilities(knots_)),
       keep_first_(c.keep_first),
       draws_(c.surface.tracer().has_holes() || may_lose(c)),
       lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
+      refracted_(Surfaces::kDense > 0 && refracts(c) ? std::make_unique<RefractedSight>(c.surface, c.optics) : nullptr),
       surfaces_(c.surface, c.optics, width, c.keep_first),
       space_(SpaceContext{c.surface, c.optics, c.environment, c.options, width,
                           std::span<const double>(probability_).first(knots_), lost_.get()}),
@@ -89,6 +91,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.before = 1;
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
+  path.bends = Path::kUnasked;
   path.knot = 0;
   std::fill_n(path.relative, knots(), 1.0);
   std::fill_n(path.throughput, knots(), 1.0);
@@ -299,7 +302,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
+  const bool asked_through = refracted_ && path.bends > 0 && path.bends <= RefractedSight::kMostCrossings;
   for (const Asked& light : outside_) {
+    if (asked_through && is_refracted(light.nature)) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
     if (!met) continue;
     std::span<float> memory;

@@ -133,6 +133,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const NodeAt& node = nodes_[i];
   const uint32_t p = node.path;
   Path& path = paths_[p];
+  if (refracted_) path.bends = bends_behind(node, on);
   if constexpr (Space::kScatters) {
     ++path.flights;
     if (node.event) {

@@ -23,7 +23,7 @@ LightReceiver PathKernel<Surfaces, Space, Throughputs, Estimator>::receiver(cons
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
-  sight_rays_.clear(), space_.clear_sight();
+  sight_rays_.clear(), space_.clear_sight(), refracted_questions_.clear();
   sight_rays_.first = first_stage_;
   points_.clear();
   for (const NodeAt& node : nodes_) {
@@ -50,6 +50,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
   const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
   if (!(sample.scale > 0)) return;
+  if (refracted_ && is_refracted(light.nature)) want_refracted(node, light, sample);
   if (Space::kGoesBack && node.event && light.index == kFromAir) return;  // the same as over the even ground
   if (!node.event && !surfaces_.takes(p, hit, -path.direction, sample.direction)) return;
   if (!light.nature.far && !glowing_.empty()) last_[p].draws = draws;
@@ -102,10 +103,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
     double passes = 1;
     if (blocked[i]) {
       passes = lost_ && !q.wide ? space_.sight().passes(i) : 0;
-      if (!(passes > 0)) continue;
+      if (!(passes > 0) || is_owned(q, i)) continue;
     }
     if (!behind_earth) shine(q, i, passes);
   }
+  shine_refracted();
 }
 
 // Density with which continuations are drawn towards `in` and get as far as the light, over all knots.

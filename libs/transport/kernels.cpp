@@ -5,6 +5,7 @@
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"
+#include "transport/kernel_refract.h"
 #include "transport/media/space_field.h"
 #include "transport/space_lit_air.h"
 #include "transport/surfaces_matte.h"
@@ -43,6 +44,13 @@ bool may_lose(const KernelContext& c) {
   const auto small = [](const auto& light) { return light->nature().drawn && !light->nature().wide; };
   return std::any_of(c.environment.lights.begin(), c.environment.lights.end(), small) &&
          LostLight::possible(c.surface.tracer().scene(), c.optics, c.options);
+}
+
+bool refracts(const KernelContext& c) {
+  if (!c.options.explicit_sources || !c.options.refracted_sources || c.options.method != Method::standard) return false;
+  const auto asked = [](const auto& light) { return is_refracted(light->nature()); };
+  return std::any_of(c.environment.lights.begin(), c.environment.lights.end(), asked) &&
+         SmoothInterfaces(c.surface.tracer().scene(), c.optics).any();
 }
 
 namespace {

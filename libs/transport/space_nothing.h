@@ -71,6 +71,12 @@ class NothingSpace {
   bool dims(const Ray&, double, size_t, std::span<float>, std::span<double>) { return false; }
   // m, index of refraction times way, along ray i.
   double optical_way(uint32_t, size_t, double distance) const { return distance; }
+  // Along a way that interfaces bend (kernel_refract.h): it leaves the event, or the surface at `hit` towards `in`,
+  void begin_way(uint32_t, bool, const Hit&, uint32_t, Dir, Dir) {}
+  // runs `length` m straight on, which multiplies `through`; the index of refraction there. scratch: per bin.
+  double follow_way(const Ray&, double, std::span<float>, std::span<float>) { return 1; }
+  // and passes a surface.
+  void cross_way(const Hit&, uint32_t, Dir) {}
   TraceStatistics take_statistics() { return {}; }
 
  private:
@@ -103,6 +109,11 @@ class AirSpace : public NothingSpace {
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);
     return true;
+  }
+  double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch) {
+    air_.transmittance(ray.origin, ray.direction, length, scratch);
+    for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
+    return 1;
   }
 
  protected:

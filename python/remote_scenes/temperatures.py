@@ -11,14 +11,14 @@ from .envi import FormatError
 from .tree import FileName
 
 _OF_FACES = {"temperature": "moment", "absorbed_sunlight": "moment", "received_infrared": "moment", "path_error": "part",
-             "step_error": None, "emissivity": None, "absorptance": None, "sun_hours": None}
+             "size_error": "part", "step_error": "part", "emissivity": None, "absorptance": None, "sun_hours": None}
 
 
 def open_temperatures(path: FileName) -> xr.Dataset:
     """A file of found temperatures, in memory.
 
     Dimensions: `face` (sides of elements), `moment` (`time_s`, seconds of the simulation), `part` (24ths of the span).
-    Variables: `temperature`, its standard error by the paths `path_error`, `step_error` (K); `absorbed_sunlight` and
+    Variables: `temperature`, its errors by cause, `path_error`, `size_error`, `step_error` (K); `absorbed_sunlight` and
     `received_infrared` (W/m2); `emissivity`, `absorptance`, `sun_hours`; `material` (names), `area` (m2), `is_back`;
     `centre` and `normal` (scene ENU); `air_temperature` (K). FileNotFoundError: no such file; FormatError: no such content;
     ImportError: netCDF4 is not installed (pip install netCDF4).

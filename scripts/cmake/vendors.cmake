@@ -72,6 +72,12 @@ suite_vendor(pugixml pugixml::pugixml)
 find_package(tinyobjloader REQUIRED)
 suite_vendor(tinyobjloader tinyobjloader::tinyobjloader_double)  # georeferenced coordinates need double
 
+# Its implementation is compiled in its home, with nlohmann's json under the name by which it asks for it.
+find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)
+find_path(NLOHMANN_INCLUDE json.hpp PATH_SUFFIXES nlohmann REQUIRED)
+suite_vendor(tinygltf nlohmann_json::nlohmann_json)
+target_include_directories(vendor_tinygltf SYSTEM INTERFACE ${TINYGLTF_INCLUDE} ${NLOHMANN_INCLUDE})
+
 # OpenMesh and CGAL: headers in few translation units, both in libs/mesh only.
 find_package(OpenMesh REQUIRED)
 suite_vendor(openmesh OpenMeshCore OpenMeshTools)

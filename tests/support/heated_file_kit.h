@@ -17,7 +17,7 @@ struct HeatedFile {
     result = kit.solve(still_loads(w, run.span, 24), run);
   }
   void write(const std::string& path) const {
-    write_heat(path, result, *kit.elements, *kit.faces, {"m0", "m1"}, "a test");
+    write_heat(path, result, *kit.elements, *kit.faces, {"m0", "m1"}, false, "a test");
   }
 
  private:

@@ -1,12 +1,14 @@
 // Scenes whose temperatures follow from the balance of heat, made in code, and runs of that balance on them.
 #pragma once
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/weather/weather.h"
+#include "heat/day_sun.h"
 #include "heat/heat_balance.h"
 #include "support/heat_kit.h"
 #include "support/radiometry_kit.h"
@@ -58,7 +60,8 @@ class HeatedScene {
     scene_->temperatures.push_back({m, spec});
     return m;
   }
-  uint32_t given(double emissivity, double kelvin) { return add(lambert(1 - emissivity), kelvin); }
+  uint32_t given(double emissivity, double kelvin) { return given(lambert(1 - emissivity), kelvin); }
+  uint32_t given(ModelSpec optics, double kelvin) { return add(std::move(optics), kelvin); }
 
   void exact(PrimitiveKind kind, std::vector<double> parameters, uint32_t material, const Affine3& place = {}) {
     scene_->primitives.push_back({"exact", kind, std::move(parameters), material});
@@ -96,11 +99,14 @@ struct HeatKit {
   std::unique_ptr<const Elements> elements;
   std::unique_ptr<const HeatFaces> faces;
 
-  HeatKit(HeatedScene made, size_t budget, TimeSpan span = {0, 86400}) : scene(made.scene()) {
+  // sun: towards it, where elements are to be cut by it.
+  HeatKit(HeatedScene made, size_t budget, TimeSpan span = {0, 86400}, const std::function<Dir(double)>& sun = {})
+      : scene(made.scene()) {
     check_scene(*scene, "test scene");
     tracer = std::make_unique<const Tracer>(scene, std::nullopt, span);
     optics = heat_optics(*scene, used_materials(*tracer), {});
-    elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin);
+    const DaySun by = sun ? day_sun(*tracer, span, sun) : DaySun{};
+    elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin, sun ? &by : nullptr);
     faces = std::make_unique<const HeatFaces>(*elements, optics);
   }
   ExchangePaths exchange(const PathOptions& options) const {

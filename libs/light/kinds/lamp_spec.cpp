@@ -3,6 +3,7 @@
 
 #include "light/kinds/lamps.h"
 #include "light/kinds/rows.h"
+#include "spectral/photopic.h"
 
 namespace suite {
 
@@ -76,11 +77,26 @@ std::shared_ptr<const IntensityTable> read_distribution(const Params& p, const L
     t->sqt = context.intensity(*file);
     return t;
   }
+  if (const auto file = p.find("ies")) {
+    *t = context.candela(*file);
+    return t;
+  }
   const Params table = p.at("table");
   read_rows(table, t->polars, t->azimuths, t->value, "a table of intensity");
   if (t->polars < 2)
     throw table.error("a table of intensity needs at least two rows", "the first is the axis, the last its opposite");
   return t;
+}
+
+// The spectrum, on whatever scale, of a light of one candela.
+Curve of_a_candela(const Curve& spectrum, const Params& p) {
+  if (!spectrum.covers(0.38, 0.78))
+    throw p.error(
+        "the spectrum of a light in candela reaches from " + spectrum.range_text() + ", not from 0.38 to 0.78 um",
+        "give a longer curve, or declare 'outside: hold' or 'zero'");
+  const double candela = photopic(spectrum);
+  if (!(candela > 0)) throw p.error("has no light that the eye sees: candela cannot say how much it is");
+  return spectrum.scaled(1 / candela);
 }
 
 // Places, axis and intensity of points of either kind, and the cone of spots.
@@ -106,7 +122,10 @@ LightSpecPtr read_points(LampSpec::Kind kind, const Params& p, const LightContex
     lamp.inner = p.number_in("inner_deg", 0, 180, "degrees", 0.8 * lamp.outer / kDegree) * kDegree;
     if (lamp.inner > lamp.outer) throw outer.error("the outer cone is narrower than the inner one");
   }
-  if (const auto distribution = p.find("distribution")) lamp.table = read_distribution(*distribution, context);
+  if (const auto distribution = p.find("distribution")) {
+    lamp.table = read_distribution(*distribution, context);
+    if (distribution->find("ies")) lamp.intensity = of_a_candela(lamp.intensity, p.at("intensity"));
+  }
   return make_light(std::move(lamp));
 }
 

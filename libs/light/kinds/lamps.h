@@ -15,22 +15,13 @@
 #include <string>
 #include <vector>
 
+#include "light/intensity_table.h"
 #include "light/lamp_schedule.h"
 #include "light/light_spec.h"
 #include "light/light_tree.h"
-#include "sqt/bundle.h"
 #include "trace/tracer.h"
 
 namespace suite {
-
-// Relative intensity over polar angle from the lamp's axis and azimuth around it: rows from 0 to 180 degrees inclusive,
-// columns in equal steps from the x axis of the frame, periodic; bilinear. Or an SQT of quantity `intensity`, averaged
-// over its channels, whose z axis is the lamp's axis.
-struct IntensityTable {
-  std::vector<double> value;
-  size_t polars = 0, azimuths = 0;
-  std::shared_ptr<const sqt::Bundle> sqt;
-};
 
 struct LampSpec {
   enum class Kind { point, spot, surface } kind = Kind::point;

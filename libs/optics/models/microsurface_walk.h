@@ -1,7 +1,8 @@
-// A random walk of light over a GGX micro-surface, from facet to facet until it leaves: what the tables of the models
-// that conserve energy are made with. Light at a facet has a height, given as the share of the surface below it.
-// Based on: E. Heitz, J. Hanika, E. d'Eon, C. Dachsbacher, "Multiple-scattering microfacet BSDFs with the Smith model",
-// SIGGRAPH 2016, sections 4 and 5 (nothing depends on the distribution of heights: their shares are uniform).
+// A random walk of light over a micro-surface of facets (Ggx, GaussFacets), from facet to facet until it leaves: what
+// the tables of the models that conserve energy are made with. Light at a facet has a height, given as the share of the
+// surface below it. Based on: E. Heitz, J. Hanika, E. d'Eon, C. Dachsbacher, "Multiple-scattering microfacet BSDFs with
+// the Smith model", SIGGRAPH 2016, sections 4 and 5 (nothing depends on the distribution of heights: their shares are
+// uniform).
 #pragma once
 #include <cmath>
 #include <optional>
@@ -15,10 +16,11 @@ namespace suite {
 inline constexpr int kMostFacets =
     128;  // of one walk: at roughness 1 no walk of 300 000 over white metal met more than 32
 
+template <class Facets>
 class MicrosurfaceWalk {
  public:
   // Light that comes down along -out, out.z > 0. facets must outlive the walk.
-  MicrosurfaceWalk(const Ggx& facets, Dir out) : facets_(facets), d_(-out) {}
+  MicrosurfaceWalk(const Facets& facets, Dir out) : facets_(facets), d_(-out) {}
 
   // Goes on to the next facet: its normal, or nothing when the light leaves the surface. The frame is that of the side
   // on which the light is: z points out of that side.
@@ -45,7 +47,7 @@ class MicrosurfaceWalk {
   Dir direction() const { return d_; }
 
  private:
-  const Ggx& facets_;
+  const Facets& facets_;
   Dir d_;             // of travel
   double below_ = 1;  // share of the surface below the light
 };

@@ -1,10 +1,10 @@
 // Natural ground: isotropic, volumetric (RossThick) and geometric (LiSparse, reciprocal) kernels, as in satellite
-// products. Assumes: crowns with h/b = 2 and b/r = 1; negative sums count as 0; beyond 85 deg evaluated at 85 deg (see
-// ground.h). Based on: W. Lucht, C. Schaaf, A. Strahler, "An algorithm for the retrieval of albedo from space using
-// semiempirical BRDF models", IEEE TGRS 38(2), 2000, equations 37-44.
+// products. Assumes: crowns with h/b = 2 and b/r = 1; and what kernel_ground.h says. Based on: W. Lucht, C. Schaaf, A.
+// Strahler, "An algorithm for the retrieval of albedo from space using semiempirical BRDF models", IEEE TGRS 38(2),
+// 2000, equations 37-44.
 #include <cmath>
 
-#include "optics/models/ground.h"
+#include "optics/models/kernel_ground.h"
 #include "optics/models/rows.h"
 
 namespace suite {
@@ -14,7 +14,6 @@ namespace {
 struct Kernels {
   double volume, geometry;
   Kernels(Dir o, Dir i) {
-    o = not_grazing(o), i = not_grazing(i);
     const double phase = angle_between(o, i), cos_phase = std::cos(phase);
     volume = ((kPi / 2 - phase) * cos_phase + std::sin(phase)) / (o.z + i.z) - kPi / 4;
     // Overlap of the shadows of spheres whose centres stand two radii high.
@@ -26,41 +25,9 @@ struct Kernels {
   }
 };
 
-class RossLi final : public GroundModel {
+class RossLi final : public KernelGround<Kernels> {
  public:
-  RossLi(const ModelSpec& spec, const SpectralState& state)
-      : isotropic_(state.sample(spec.curves.at("isotropic"))),
-        volume_(state.sample(spec.curves.at("volume"))),
-        geometry_(state.sample(spec.curves.at("geometry"))) {
-    uniform_ = same_shares();
-    fill_totals("ross_li", "lower the kernel weights", state, [&](Dir out, std::span<float> W) {
-      std::vector<double> sum(W.size());
-      for (const GroundNode& n : ground_nodes(out)) {
-        const Kernels k(out, n.in);
-        for (size_t i = 0; i < W.size(); ++i) sum[i] += n.weight * f(k, i);
-      }
-      for (size_t i = 0; i < W.size(); ++i) W[i] = static_cast<float>(sum[i]);
-    });
-  }
-
-  void eval(Dir out, Dir in, std::span<float> w) const override {
-    if (!same_side(out, in)) return zero(w);
-    const Kernels k(up(out), up(in));
-    for (size_t i = 0; i < w.size(); ++i) w[i] = static_cast<float>(f(k, i) * std::fabs(in.z));
-  }
-
- private:
-  double f(const Kernels& k, size_t i) const {
-    return std::max(0.0, isotropic_[i] + volume_[i] * k.volume + geometry_[i] * k.geometry) / kPi;
-  }
-  bool same_shares() const {
-    for (size_t i = 1; i < isotropic_.size(); ++i)
-      if (volume_[i] * isotropic_[0] != volume_[0] * isotropic_[i] ||
-          geometry_[i] * isotropic_[0] != geometry_[0] * isotropic_[i])
-        return false;
-    return true;
-  }
-  std::vector<float> isotropic_, volume_, geometry_;
+  RossLi(const ModelSpec& spec, const SpectralState& state) : KernelGround("ross_li", spec, state) {}
 };
 
 }  // namespace

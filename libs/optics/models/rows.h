@@ -13,7 +13,12 @@ ModelRow dielectric_row();
 ModelRow oren_nayar_row();
 ModelRow rpv_row();
 ModelRow ross_li_row();
+ModelRow roujean_row();
+ModelRow priest_germer_row();
+ModelRow beard_maxwell_row();
+ModelRow shell_row();
 ModelRow leaf_row();
 ModelRow sqt_row();
+ModelRow sea_row();
 
 }  // namespace suite

@@ -9,6 +9,9 @@ PhaseRow double_hg_row();
 PhaseRow rayleigh_row();
 PhaseRow tabulated_row();
 PhaseRow sqt_phase_row();
+PhaseRow fournier_forand_row();
+PhaseRow petzold_row();
+PhaseRow sea_phase_row();
 
 template <class Phase>
 std::unique_ptr<const PhaseFunction> make_phase(const ModelSpec& spec, const SpectralState& state) {

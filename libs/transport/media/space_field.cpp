@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "optics/phase_function.h"
@@ -174,6 +175,42 @@ bool FieldSpace::dims(const Ray& ray, double distance, size_t i, std::span<float
   air_->transmittance(ray.origin, ray.direction, distance, phase_);
   for (size_t k = 0; k < phase_.size(); ++k) transmission[k] *= phase_[k];
   return true;
+}
+
+void FieldSpace::begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in) {
+  way_ = stacks_[p];
+  if (!event && dot(in, hit.normal) * dot(out, hit.normal) < 0) bodies_.transmit(way_, hit, material, in, statistics_);
+}
+
+double FieldSpace::follow_way(const Ray& from, double length, std::span<float> through, std::span<float> scratch) {
+  const double index = index_of(way_.medium(ambient_));
+  depths_.assign(optics_.media().size(), 0);
+  // Index-matched boundaries lie on it at most, short of its end.
+  constexpr double kShort = 1 - 1e-9;
+  Ray ray = from;
+  double left = length, gap = 0;
+  while (true) {
+    Hit hit;
+    if (bodies_.any_boundary()) surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+    if (gap > 0) bodies_.settle(hit, ray, gap);
+    const bool met = hit.hit() && hit.distance < left * kShort && bodies_.is_boundary(surface_.material(hit));
+    if (!met && left == std::numeric_limits<double>::infinity()) bodies_.leave_scene(way_);
+    const double way = met ? hit.distance : left;
+    ray.origin -= ray.direction * gap;
+    flights_.add_depths(ray, way, way_.medium(ambient_), depths_);
+    if (!met) break;
+    const auto onward = bodies_.pass(way_, hit, ray, way - gap, statistics_);
+    if (!onward) break;
+    left -= way;
+    gap = onward->gap;
+    ray.origin = onward->start;
+  }
+  const auto weaken = [&] {
+    for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
+  };
+  if (flights_.transmittance(depths_, scratch)) weaken();
+  if (air_) air_->transmittance(from.origin, from.direction, length, scratch), weaken();
+  return index;
 }
 
 TraceStatistics FieldSpace::take_statistics() {

@@ -54,6 +54,9 @@ class FieldSpace {
   bool dims(const Ray& ray, double distance, size_t i, std::span<float> transmission, std::span<double> reach);
   // Along ray i, with the index where it starts: boundaries that do not bend it part media of one index.
   double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
+  void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in);
+  double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch);
+  void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   TraceStatistics take_statistics();
 
  private:
@@ -82,6 +85,8 @@ class FieldSpace {
   std::vector<Way> ways_;
   std::vector<ScatterPlace> events_;
   std::vector<float> phase_;
+  MediumStack way_;  // that interfaces bend, as it stands
+  std::vector<double> depths_;
   TraceStatistics statistics_;  // of short rays at boundaries
 };
 

@@ -188,7 +188,8 @@ void add_matter_rows(std::vector<TruthRow>& table) {
                          });
                    }});
   table.push_back({"temperature_error",
-                   "standard error of temperatures that were found from weather, root mean square over the first hits "
+                   "error of temperatures that were found from weather (paths, size of elements, steps, sweeps), root "
+                   "mean square over the first hits "
                    "that have one",
                    "K", [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<SimpleCollector>(

@@ -120,12 +120,12 @@ TEST(SqtFitCli, RefusesBadInput) {
     int code;
   } cases[] = {
       {"nowhere.bsdf", "no such file", 1},
-      {folder.path(), "is a directory", 1},
+      {folder.path(), "of a folder of files give -o TABLE.csv", 2},
       {folder / "short.bsdf", "short.bsdf", 1},
       {folder / "odd.xyz", "odd.xyz", 1},
       {"--model wrad:diffuse=0.2", "did you mean 'ward'", 1},
       {"--model ward:diffuse=x", "is not PARAM=NUMBER", 1},
-      {"", "one input file or --model", 2},
+      {"", "one input file, a folder of them, or --model", 2},
       {kWard + " --method best", "'aligned' or 'paper'", 2},
       {kWard + " --method paper --max-error 0.1", "need --method aligned", 2},
       {"--model ward:diffuse=0.2,specular=0.1,roughness=0.2 --order 99", "out of range", 2},

@@ -44,17 +44,17 @@ TEST(Cavities, OneTemperatureStays) {
   // Nothing outside is seen: what it emits does not matter.
   const SurfaceHistory h = solve_exchange(kit, paths, outsides_at(kit, 10), 250);
   double worst = 0;
-  for (const double T : h.kelvin) worst = std::fmax(worst, std::fabs(T - 311.5));
+  for (const double T : h.kelvin.values()) worst = std::fmax(worst, std::fabs(T - 311.5));
   std::printf("cavity: %.1e K from its temperature, %zu faces, %d sweeps, %.0f rays, %.1g unfinished\n", worst,
-              kit.faces->size(), h.coupling.sweeps, paths.rays, paths.unfinished);
+              kit.faces->size(), h.coupling.sweeps, paths.rays(), paths.unfinished());
   EXPECT_LT(worst, 1e-6);
-  EXPECT_EQ(paths.unfinished, 0);
+  EXPECT_EQ(paths.unfinished(), 0);
   // Negative control: a hole, of one part in a hundred of the wall that is held, is felt.
   std::vector<double> outside = outsides_at(kit, 10);
   ExchangePaths open = paths;
   for (size_t k = 0; k < open.ends.size(); k += 100) open.ends[k] = kit.faces->outside_below();
   const SurfaceHistory colder = solve_exchange(kit, open, outside, 311.5);
-  EXPECT_LT(*std::min_element(colder.kelvin.begin(), colder.kelvin.end()), 311);
+  EXPECT_LT(std::ranges::min(colder.kelvin.values()), 311);
 }
 
 // Endless plates at 350 and 280 K, shields without heat capacity between them, all of one emissivity: the flux is
@@ -158,7 +158,7 @@ TEST(Cavities, BareAluminiumInTheSun) {
     surfaces.start(k == 0 ? 301 : 299);
     SurfaceOptions options;
     options.periodic = false;
-    left[k] = surfaces.solve(loads, options).kelvin.at(33);
+    left[k] = surfaces.solve(loads, options).kelvin.at(0, 33);
   }
   const double hours = -5.5 / std::log((left[0] - left[1]) / 2);
   std::printf("aluminium: time constant %.4f h\n", hours);

@@ -37,8 +37,25 @@ ExchangeMatrix stack(int shields, double emissivity) {
   return m;
 }
 
+// Couples what answers to received histories, all in doubles.
+using Answer = std::function<void(std::span<const double> received, std::span<double> emitted)>;
+CouplingResult couple(const ExchangeMatrix& m, size_t moments, std::vector<double>& emitted, const Answer& answer,
+                      const CouplingOptions& options = {}) {
+  Histories all(m.elements() + m.outsides(), moments);
+  for (size_t row = 0; row < all.rows(); ++row) all.set(row, {&emitted[row * moments], moments});
+  const Respond respond = [&](const Histories& around, Histories& answers) {
+    std::vector<double> received(m.elements() * moments), emits(received.size());
+    for (size_t row = 0; row < m.elements(); ++row) m.receive_one(row, around, {&received[row * moments], moments});
+    answer(received, emits);
+    for (size_t row = 0; row < m.elements(); ++row) answers.set(row, {&emits[row * moments], moments});
+  };
+  const CouplingResult result = couple_histories(m, all, respond, options);
+  for (size_t row = 0; row < all.rows(); ++row) all.get(row, {&emitted[row * moments], moments});
+  return result;
+}
+
 // Sheets without heat capacity: both faces take the temperature at which what they receive is what they emit.
-Respond sheets(double emissivity) {
+Answer sheets(double emissivity) {
   return [emissivity](std::span<const double> received, std::span<double> emitted) {
     for (size_t i = 0; i < received.size(); i += 2) {
       std::vector<MasslessFace> faces(2);
@@ -58,7 +75,7 @@ TEST(Exchange, ShieldsBetweenPlatesOfEmissivity2Percent) {
     std::vector<double> emitted(m.elements() + 2, black(300));
     emitted[m.elements()] = black(hot);
     emitted[m.elements() + 1] = black(cold);
-    const CouplingResult r = couple_histories(m, 1, emitted, sheets(e), {1e-7, 60, 12});
+    const CouplingResult r = couple(m, 1, emitted, sheets(e), {1e-7, 60, 12});
     std::vector<double> received(m.elements());
     m.receive(emitted, 1, received);
     const double exact = (black(hot) - black(cold)) / ((shields + 1) * (2 / e - 1));
@@ -75,7 +92,7 @@ TEST(Exchange, ShieldsBetweenPlatesOfEmissivity2Percent) {
   forgetful.add_row(std::vector<Entry>{{2, 1}});
   forgetful.add_row(std::vector<Entry>{{3, 1}});
   std::vector<double> emitted{black(300), black(300), black(hot), black(cold)}, received(2);
-  couple_histories(forgetful, 1, emitted, sheets(e), {1e-7, 60, 12});
+  couple(forgetful, 1, emitted, sheets(e), {1e-7, 60, 12});
   forgetful.receive(emitted, 1, received);
   EXPECT_GT(e * (received[0] - emitted[0]) * 2 * (2 / e - 1) / (black(hot) - black(cold)), 1.9);
 }
@@ -86,7 +103,7 @@ TEST(Exchange, RadiationShieldOfFds) {
   m.add_row(std::vector<Entry>{{2, 1}});
   m.add_row(std::vector<Entry>{{3, 1}});
   std::vector<double> emitted{black(300), black(300), black(773.15), black(293.15)};
-  couple_histories(m, 1, emitted, sheets(0.48));
+  couple(m, 1, emitted, sheets(0.48));
   EXPECT_NEAR(kelvin_of(emitted[0]), 653.473, 0.001);
 }
 
@@ -146,8 +163,8 @@ TEST(Exchange, ABoxOfOneTemperatureStaysAtIt) {
   const std::vector<double> start(n, 287.65);
   const ExchangeMatrix closed = random_exchange(n, 0, 0, 3);
   std::vector<double> emitted(n * count, black(260));  // a guess far away
-  const Respond respond = [&](std::span<const double> r, std::span<double> e) { cavity.run(start, r, e); };
-  const CouplingResult r = couple_histories(closed, count, emitted, respond, {1e-9, 60, 8});
+  const Answer respond = [&](std::span<const double> r, std::span<double> e) { cavity.run(start, r, e); };
+  const CouplingResult r = couple(closed, count, emitted, respond, {1e-9, 60, 8});
   double worst = 0;
   for (const double m : emitted) worst = std::fmax(worst, std::fabs(kelvin_of(m) - 287.65));
   std::printf("isothermal box: %.1e K after %d sweeps\n", worst, r.sweeps);
@@ -157,7 +174,7 @@ TEST(Exchange, ABoxOfOneTemperatureStaysAtIt) {
   const ExchangeMatrix leaky = random_exchange(n, 1, 1e-3, 3);
   std::vector<double> leaking((n + 1) * count, black(287.65));
   std::fill(leaking.end() - static_cast<std::ptrdiff_t>(count), leaking.end(), black(3));
-  couple_histories(leaky, count, leaking, respond, {1e-9, 60, 8});
+  couple(leaky, count, leaking, respond, {1e-9, 60, 8});
   EXPECT_GT(std::fabs(kelvin_of(leaking[n * count - 1]) - 287.65), 1e-4);
 }
 
@@ -167,7 +184,7 @@ TEST(Exchange, AHeldFaceSetsAClosedCavity) {
   const size_t n = 40;
   const ExchangeMatrix closed = random_exchange(n, 0, 0, 11);
   const std::vector<double> emissivity = mixed_emissivities(n);
-  const Respond respond = [&](std::span<const double> received, std::span<double> emitted) {
+  const Answer respond = [&](std::span<const double> received, std::span<double> emitted) {
     emitted[0] = black(310);
     for (size_t i = 1; i < n; ++i) {
       MasslessFace face;
@@ -177,8 +194,8 @@ TEST(Exchange, AHeldFaceSetsAClosedCavity) {
     }
   };
   std::vector<double> emitted(n, black(280)), crawling(n, black(280));
-  const CouplingResult r = couple_histories(closed, 1, emitted, respond, {1e-8, 100, 20});
-  const CouplingResult plain = couple_histories(closed, 1, crawling, respond, {1e-8, 5000, 0});
+  const CouplingResult r = couple(closed, 1, emitted, respond, {1e-8, 100, 20});
+  const CouplingResult plain = couple(closed, 1, crawling, respond, {1e-8, 5000, 0});
   double worst = 0;
   for (const double m : emitted) worst = std::fmax(worst, std::fabs(kelvin_of(m) - 310));
   std::printf("held face: %.1e K after %d sweeps, plain %d sweeps\n", worst, r.sweeps, plain.sweeps);
@@ -198,8 +215,8 @@ TEST(Exchange, SweepsAreTheCoupledMarch) {
   auto coupled = [&](const Cavity& c) {
     std::vector<double> emitted((n + 1) * c.moments(), black(290));
     std::fill(emitted.end() - static_cast<std::ptrdiff_t>(c.moments()), emitted.end(), sky);
-    const Respond respond = [&](std::span<const double> r, std::span<double> e) { c.run(start, r, e); };
-    const CouplingResult result = couple_histories(m, c.moments(), emitted, respond, {1e-6, 60, 0});
+    const Answer respond = [&](std::span<const double> r, std::span<double> e) { c.run(start, r, e); };
+    const CouplingResult result = couple(m, c.moments(), emitted, respond, {1e-6, 60, 0});
     EXPECT_LE(result.sweeps, 20);
     return emitted;
   };
@@ -259,7 +276,7 @@ TEST(Exchange, CoupledFilmDoesNotDependOnTheStep) {
     const auto steps = static_cast<size_t>(std::lround(21600 / dt)), count = steps + 1;
     std::vector<double> emitted(3 * count, black(290));
     std::fill(emitted.end() - static_cast<std::ptrdiff_t>(count), emitted.end(), 320.0);
-    const Respond respond = [&](std::span<const double> received, std::span<double> answer) {
+    const Answer respond = [&](std::span<const double> received, std::span<double> answer) {
       SlabBatch batch = dawn;
       for (size_t k = 0; k < count; ++k) {
         for (size_t i = 0; i < 2; ++i) answer[i * count + k] = black(batch.top(i));
@@ -269,7 +286,7 @@ TEST(Exchange, CoupledFilmDoesNotDependOnTheStep) {
         });
       }
     };
-    const CouplingResult r = couple_histories(m, count, emitted, respond, {1e-3, 40, 0});
+    const CouplingResult r = couple(m, count, emitted, respond, {1e-3, 40, 0});
     std::printf("coupled film in steps of %g s: %d sweeps\n", dt, r.sweeps);
     return emitted;
   };
@@ -295,9 +312,9 @@ TEST(Exchange, RefusesWhatIsNoExchange) {
   EXPECT_EQ(m.entries(), 3u);
   // Two mirrors of each other's guess that answer ever more: told, not looped.
   std::vector<double> emitted{100, 100, 100};
-  const Respond louder = [](std::span<const double> r, std::span<double> e) { e[0] = 2 * r[0], e[1] = 2 * r[1]; };
+  const Answer louder = [](std::span<const double> r, std::span<double> e) { e[0] = 2 * r[0], e[1] = 2 * r[1]; };
   EXPECT_NE(message_of([&] {
-              couple_histories(m, 1, emitted, louder, {1e-3, 20, 0});
+              couple(m, 1, emitted, louder, {1e-3, 20, 0});
             }).find("after 20 sweeps"),
             std::string::npos);
 }

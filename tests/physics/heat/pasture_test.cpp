@@ -161,7 +161,7 @@ std::vector<double> with_latent_heat(const Pasture& pasture, const WeatherLoads&
   }
   CoupledSurfaces surfaces({ground}, sky);
   surfaces.start(295);
-  return surfaces.solve(acting).kelvin;
+  return surfaces.solve(acting).kelvin.values();
 }
 
 TEST(Pasture, WithMeasuredLatentHeat) {

@@ -87,7 +87,7 @@ TEST(Surfaces, AllAtOneTemperatureStay) {
   options.coupling.tolerance = 1e-8;
   const SurfaceHistory h = surfaces.solve(still.loads, options);
   double worst = 0;
-  for (const double T : h.kelvin) worst = std::fmax(worst, std::fabs(T - 288));
+  for (const double T : h.kelvin.values()) worst = std::fmax(worst, std::fabs(T - 288));
   std::printf("one temperature: %.1e K, %d sweeps\n", worst, h.coupling.sweeps);
   EXPECT_LT(worst, 1e-6);
 }
@@ -160,7 +160,7 @@ TEST(Surfaces, DoNotDependOnThreads) {
     set_threads(k + 1);
     CoupledSurfaces surfaces(grove.groups, grove.exchange);
     surfaces.start(285);
-    kelvin[k] = surfaces.solve(grove.loads).kelvin;
+    kelvin[k] = surfaces.solve(grove.loads).kelvin.values();
   }
   set_threads(0);
   EXPECT_EQ(kelvin[0], kelvin[1]);

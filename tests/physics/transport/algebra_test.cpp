@@ -7,6 +7,7 @@
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"
+#include "transport/kernel_refract.h"
 #include "transport/serve.h"
 
 namespace suite {

@@ -9,6 +9,7 @@
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_light.h"
+#include "transport/kernel_refract.h"
 #include "transport/serve.h"
 #include "transport/sinks/radiance.h"
 

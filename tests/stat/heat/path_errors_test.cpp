@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "heat/target_paths.h"
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
@@ -48,7 +49,7 @@ HeatSpec spec_of(uint32_t paths, uint64_t seed) {
 
 // Means over the parts of the span, K: [face][part].
 std::vector<double> by_part(const HeatResult& r) {
-  const size_t faces = r.step_error.size();
+  const size_t faces = r.emissivity.size();
   std::vector<double> sum(faces * kHeatParts, 0), count(sum);
   for (size_t f = 0; f < faces; ++f)
     for (size_t k = 0; k < r.moments; ++k) {
@@ -113,6 +114,27 @@ TEST(PathErrors, CoverWhatOtherSeedsFind) {
       bias / weight, worst, beyond, n);
   EXPECT_LT(std::fabs(bias / weight), 0.02);
   EXPECT_LE(static_cast<double>(beyond), 0.01 * static_cast<double>(n));
+}
+
+// Paths chosen from a pilot: the error told by the run itself is what was asked for, within what the pilot knows (the
+// errors of a face are of 7 degrees of freedom, those of all together of many).
+TEST(PathErrors, PathsForATarget) {
+  const HeatKit kit = street();
+  const Weather weather = summer_weather();
+  const WeatherLoads loads = summer_loads(weather, spec_of(64, 1));
+  uint32_t before = 0;
+  for (const double target : {0.2, 0.1}) {
+    const TargetPaths t = paths_for(target, *kit.tracer, *kit.elements, *kit.faces, kit.optics, loads, spec_of(64, 1));
+    const double told = mean_path_error(kit.solve(loads, spec_of(t.paths, 1)), *kit.elements, *kit.faces);
+    std::printf("target %.2g K: %.3f K with %u paths, so %u, which tell %.4f K\n", target, t.pilot_error, kPilotPaths,
+                t.paths, told);
+    EXPECT_TRUE(t.enough);
+    EXPECT_LT(told, 1.1 * target);
+    EXPECT_GT(told, 0.6 * target);
+    EXPECT_GT(t.paths, before);
+    before = t.paths;
+  }
+  EXPECT_FALSE(paths_for(1e-4, *kit.tracer, *kit.elements, *kit.faces, kit.optics, loads, spec_of(64, 1)).enough);
 }
 
 TEST(PathErrors, BalanceClosesAndThreadsDoNotMatter) {

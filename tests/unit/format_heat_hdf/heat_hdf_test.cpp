@@ -22,10 +22,14 @@ TEST(HeatHdf, ThereAndBack) {
   const TempFolder folder;
   const HeatedFile file;
   file.write(folder / "heat.h5");
-  EXPECT_EQ(heat_budget(folder / "heat.h5"), file.kit.elements->budget());
+  const HeatCut cut = heat_cut(folder / "heat.h5");
+  EXPECT_EQ(cut.elements, file.kit.elements->budget());
+  EXPECT_EQ(cut.span, file.result.span);
+  EXPECT_FALSE(cut.by_sun);
   const HeatResult a = file.result, b = read_heat(folder / "heat.h5", *file.kit.elements, *file.kit.faces);
   EXPECT_EQ(a.kelvin, b.kelvin);
   EXPECT_EQ(a.path_error, b.path_error);
+  EXPECT_EQ(a.size_error, b.size_error);
   EXPECT_EQ(a.step_error, b.step_error);
   EXPECT_EQ(a.absorbed, b.absorbed);
   EXPECT_EQ(a.received, b.received);

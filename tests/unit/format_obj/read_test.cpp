@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "formats/obj/obj.h"
-#include "formats/obj/polygon.h"
+#include "math/polygon.h"
 #include "scene/issues.h"
 #include "support/message_of.h"
 

@@ -53,7 +53,16 @@ TEST_F(HeatInSimulations, KeysArrive) {
   EXPECT_EQ(full.heat->spec.ground_albedo, 0.3);
   EXPECT_FALSE(full.heat->spec.periodic) << "longer than a day";
   EXPECT_EQ(full.heat->span->end, 2 * 86400);
+  EXPECT_TRUE(full.heat->spec.cut_by_sun);
+  EXPECT_EQ(full.heat->spec.target, 0);
+  const Simulation asked = read(kWeather + "heat: {elements_by: area, target_k: 0.1}");
+  EXPECT_FALSE(asked.heat->spec.cut_by_sun);
+  EXPECT_EQ(asked.heat->spec.target, 0.1);
   EXPECT_FALSE(read("").heat);
+  EXPECT_FALSE(plain.heat->keep_operator);
+  const Simulation kept = read(kWeather + "heat: {keep: operator, save_every_s: 5}");
+  EXPECT_TRUE(kept.heat->keep_operator);
+  EXPECT_EQ(kept.heat->save_every, 5);
 }
 
 TEST_F(HeatInSimulations, Messages) {
@@ -62,7 +71,13 @@ TEST_F(HeatInSimulations, Messages) {
       {kWeather, ":3:", "add 'heat: {}'"},
       {kWeather + "heat: {elements: 0}", ":4:", "elements"},
       {kWeather + "heat: {elements: 0.5}", ":4:", "whole number"},
+      {kWeather + "heat: {elements_by: size}", ":4:", "sun"},
+      {kWeather + "heat: {target_k: 0}", ":4:", "target_k"},
+      {kWeather + "heat: {target_k: 0.1, paths: 64}", ":4:", "drop one of them"},
       {kWeather + "heat: {step_s: 0}", ":4:", "step_s"},
+      {kWeather + "heat: {keep: paths}", ":4:", "keep: operator"},
+      {kWeather + "heat: {save_every_s: 5}", ":4:", "save_every_s"},
+      {kWeather + "heat: {audit: 1}", ":4:", "one probe"},
       {kWeather + "heat: {ground_albedo: 1.2}", ":4:", "ground_albedo"},
       {kWeather + "heat: {from: 0}", ":4:", "give both, or none"},
       {kWeather + "heat: {from: 100, to: 0}", ":4:", "shorter than 24 steps"},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "motion/track.h"
@@ -53,6 +54,38 @@ TEST(Elements, PointsAreWhereTheirElementIs) {
     EXPECT_LE(elements.size(), 2 * budget + 30);
     EXPECT_GE(2 * elements.size(), budget);
   }
+}
+
+// The same of elements that are cut where the sun differs, of which there are no more than asked for; and they are
+// smaller where a shadow passes.
+TEST(Elements, CutBySun) {
+  const auto sun = [](double t) {
+    const double hour = 2 * kPi * (t / 86400 - 0.5);
+    return normalized(Vec3{-std::sin(hour), -0.5, std::cos(hour)});
+  };
+  const HeatKit kit(mixed(), 3000, {0, 86400}, sun);
+  const Elements& elements = *kit.elements;
+  size_t astray = 0, asked = 0;
+  double sum = 0;
+  std::array<double, 2> area{}, count{};  // of the endless ground: where shadows are, and far away
+  for (size_t e = 0; e < elements.size(); ++e) {
+    const SampleStream stream(1, 2, e);
+    for (uint32_t k = 0; k < 8; ++k, ++asked)
+      astray += elements.at(elements.point(e, {stream, k, 0}), elements[e].material) != e;
+    sum += elements[e].area;
+    const Vec3 c = elements[e].centre;
+    if (std::fabs(c.z) > 1e-6) continue;
+    const double off = std::hypot(c.x, c.y);
+    if (off > 10 && off < 60) continue;
+    area[off > 60] += elements[e].area, count[off > 60] += 1;
+  }
+  EXPECT_LE(astray, asked / 500);
+  EXPECT_NEAR(sum, HeatKit(mixed(), 50).elements->total_area(), 2e-3 * sum);
+  EXPECT_LE(elements.size(), 3000u);
+  EXPECT_GE(elements.size(), 2990u);
+  EXPECT_LT(area[0] / count[0], 0.1 * area[1] / count[1]);
+  const HeatKit again(mixed(), 3000, {0, 86400}, sun);
+  EXPECT_EQ(again.elements->fingerprint(), elements.fingerprint());
 }
 
 // Areas under transforms that do not keep shapes: of the box in closed form, of the ellipsoid by quadrature.

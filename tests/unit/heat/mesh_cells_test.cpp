@@ -94,6 +94,38 @@ TEST(MeshCells, PointsAreUniform) {
   }
 }
 
+// Cut in two again and again, they hold the same surface, each point in one.
+TEST(MeshCells, CellsThatAreSplit) {
+  for (const Mesh& mesh : {uneven(), dome(10), quad(5, 1, 0), box({0, 0, 0}, {1, 2, 3}, 0, true)}) {
+    std::vector<uint32_t> materials;
+    for (const Part& p : mesh.parts) materials.push_back(p.material);
+    MeshCells cells(mesh, materials, 7);
+    const size_t before = cells.size();
+    Pcg32 random(11);
+    for (int k = 0; k < 200; ++k) {
+      // Often the same ones, so that pieces become small.
+      const auto cell = static_cast<uint32_t>(static_cast<double>(cells.size()) * std::pow(random.uniform(), 3));
+      const double area = cells.area(cell);
+      cells.split(cell);
+      EXPECT_NEAR(cells.area(cell) + cells.area(cells.size() - 1), area, 1e-12 * area);
+      EXPECT_EQ(cells.material(cell), cells.material(cells.size() - 1));
+    }
+    EXPECT_EQ(cells.size(), before + 200);
+    double sum = 0;
+    size_t astray = 0, asked = 0;
+    for (size_t c = 0; c < cells.size(); ++c) {
+      sum += cells.area(c);
+      EXPECT_GT(cells.area(c), 0);
+      for (int k = 0; k < 20; ++k, ++asked) {
+        const MeshCells::Point p = cells.point(c, random.uniform(), random.uniform(), random.uniform());
+        astray += cells.cell_of(p.triangle, place(mesh, p)) != c;
+      }
+    }
+    EXPECT_NEAR(sum, cells.total_area(), 1e-9 * sum);
+    EXPECT_LE(astray, asked / 1000);
+  }
+}
+
 TEST(MeshCells, FoldsAreApartAndWhatHasNoPartHasNone) {
   const Mesh cube = box({0, 0, 0}, {1, 1, 1}, 0, true);
   const MeshCells six(cube, {0}, 6);

@@ -56,6 +56,31 @@ TEST(Features, AdjacencyIsThatOfTheEstimator) {
               testing::HasSubstr("adjacency            left out  lights are not asked\n"));
 }
 
+TEST(Features, RefractionNeedsASmoothMaterialAndASun) {
+  const auto scene = [](const char* model) {
+    return test::scene_of({test::quad(1, 0, 0)},
+                          {test::material("m", {model, {}, {{"index", Curve::constant(1.33)}}, {}, nullptr})});
+  };
+  SourceSpecs sun, none;
+  SunSpec disk;
+  disk.irradiance = Curve::constant(1);
+  sun.add(disk);
+  PipelineOptions off, paper;
+  off.refracted_sources = false, paper.method = Method::paper;
+  const auto said = [](const std::shared_ptr<Scene>& s, const SourceSpecs& sources, const PipelineOptions& options) {
+    for (const FeatureUse& f : features_of(*s, sources, {}, options))
+      if (f.name == "refracted light") return f.why;
+    return std::string("missing");
+  };
+  const auto water = scene("dielectric");
+  const auto grey = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  EXPECT_EQ(said(water, sun, {}), "1 smooth materials");
+  EXPECT_EQ(said(grey, sun, {}), "no material passes light smoothly");
+  EXPECT_EQ(said(water, none, {}), "no sun or moon in the simulation");
+  EXPECT_EQ(said(water, sun, off), "`light_through_refraction: false`");
+  EXPECT_EQ(said(water, sun, paper), "the paper's estimator");
+}
+
 TEST(Features, EachIsExplained) {
   const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
   const std::vector<FeatureUse> uses = features_of(*scene, {}, {});

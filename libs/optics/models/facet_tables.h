@@ -1,5 +1,5 @@
-// What a GGX surface of mirrors does besides reflecting once: tables that depend on the roughness only and are shared
-// by all states and wavelengths.
+// What a surface of small mirrors (Ggx, GaussFacets) does besides reflecting once: tables that depend on the roughness
+// only and are shared by all states and wavelengths.
 //
 // Totals of single scattering are kept as distributions of the cosine at the facet, so that any Fresnel reflectance can
 // be applied afterwards. What is missing to 1 at reflectance 1 has been scattered again: `missed`. How often, and at
@@ -14,21 +14,25 @@
 
 namespace suite {
 
-class GgxTables {
- public:
+// What tables of all kinds of facets have in common.
+struct FacetGrid {
   static constexpr size_t kRows = 129, kAngles = 96, kOrders = 24;
   // Cosine of node a of kAngles: even in its square root, because Fresnel reflectance bends near grazing.
   static double cosine(size_t a) {
     const double t = static_cast<double>(a) / (kAngles - 1);
     return t * t;
   }
-
   struct Roughness {
     double x, y;
     auto operator<=>(const Roughness&) const = default;
   };
-  static std::shared_ptr<const GgxTables> of(Roughness roughness);
-  explicit GgxTables(Roughness roughness);
+};
+
+template <class Facets>
+class FacetTables : public FacetGrid {
+ public:
+  static std::shared_ptr<const FacetTables> of(Roughness roughness);
+  explicit FacetTables(Roughness roughness);
 
   // Single scattering: the total is the sum over a of once[a] F(cosine(a)). once.size() == kAngles, out.z > 0.
   void single(Dir out, std::span<float> once) const { single_.at(out, once); }

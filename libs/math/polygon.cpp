@@ -1,4 +1,4 @@
-#include "formats/obj/polygon.h"
+#include "math/polygon.h"
 
 #include <cmath>
 #include <numeric>

@@ -1,10 +1,11 @@
-#include "optics/models/ggx_tables.h"
+#include "optics/models/facet_tables.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
 
+#include "optics/models/gauss_facets.h"
 #include "optics/models/microsurface_walk.h"
 #include "optics/models/shared_tables.h"
 
@@ -12,22 +13,23 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kPoints = 4096, kWalks = 1024, kWalksOfAnisotropic = 128;
+constexpr size_t kWalks = 1024, kWalksOfAnisotropic = 128;
 
 // Adds `weight` at cosine c to hats over the nodes: linear in c between them, as F is nearly.
 void add_hat(double c, double weight, std::span<double> hats) {
-  const double t = std::min(1.0, std::sqrt(c)) * (GgxTables::kAngles - 1);
-  const size_t a = std::min(GgxTables::kAngles - 2, static_cast<size_t>(t));
-  const double low = GgxTables::cosine(a), share = (c - low) / (GgxTables::cosine(a + 1) - low);
+  const double t = std::min(1.0, std::sqrt(c)) * (FacetGrid::kAngles - 1);
+  const size_t a = std::min(FacetGrid::kAngles - 2, static_cast<size_t>(t));
+  const double low = FacetGrid::cosine(a), share = (c - low) / (FacetGrid::cosine(a + 1) - low);
   hats[a] += weight * (1 - share);
   hats[a + 1] += weight * share;
 }
 
 // Shares of orders and of nodes among walks from `out` that meet more than one facet.
-void walk(const Ggx& facets, Dir out, size_t count, std::span<float> shares) {
+template <class Facets>
+void walk(const Facets& facets, Dir out, size_t count, std::span<float> shares) {
   // Every direction has its own stream.
   Pcg32 random(hash_of(std::bit_cast<uint64_t>(out.x), std::bit_cast<uint64_t>(out.y)));
-  std::vector<double> orders(GgxTables::kOrders), cosines(GgxTables::kAngles), met;
+  std::vector<double> orders(FacetGrid::kOrders), cosines(FacetGrid::kAngles), met;
   for (size_t n = 0; n < count; ++n) {
     MicrosurfaceWalk light(facets, out);
     met.clear();
@@ -51,22 +53,24 @@ void walk(const Ggx& facets, Dir out, size_t count, std::span<float> shares) {
 
 }  // namespace
 
-std::shared_ptr<const GgxTables> GgxTables::of(Roughness roughness) {
-  static SharedTables<Roughness, GgxTables> tables;
+template <class Facets>
+std::shared_ptr<const FacetTables<Facets>> FacetTables<Facets>::of(Roughness roughness) {
+  static SharedTables<Roughness, FacetTables> tables;
   return tables.get(roughness);
 }
 
-GgxTables::GgxTables(Roughness roughness) {
-  const Ggx facets{roughness.x, roughness.y};
+template <class Facets>
+FacetTables<Facets>::FacetTables(Roughness roughness) {
+  const Facets facets{roughness.x, roughness.y};
   const bool isotropic = facets.ax == facets.ay;
-  const std::vector<Vec2> points = baking_points(kPoints);
+  const std::vector<Vec2> points = baking_points(Facets::kBakingPoints);
   single_ = DirectionalTable(facets.ax, facets.ay, kRows, kAngles, [&](Dir o, std::span<float> once) {
     std::vector<double> hats(kAngles);
     for (const Vec2 u : points) {
       const Dir h = facets.visible_normal(o, u);
       const double c = dot(o, h);
       const Dir in = h * (2 * c) - o;
-      if (in.z > 0 && c > 0) add_hat(c, facets.shadowing(o, in) / facets.masking(o) / kPoints, hats);
+      if (in.z > 0 && c > 0) add_hat(c, facets.shadowing(o, in) / facets.masking(o) / Facets::kBakingPoints, hats);
     }
     std::copy(hats.begin(), hats.end(), once.begin());
   });
@@ -86,7 +90,8 @@ GgxTables::GgxTables(Roughness roughness) {
   });
 }
 
-double GgxTables::repeated(Dir out, std::span<const float> F) const {
+template <class Facets>
+double FacetTables<Facets>::repeated(Dir out, std::span<const float> F) const {
   std::vector<float> shares(kOrders + kAngles);
   walks_.at(out, shares);
   double mean = 0, sum = 0;
@@ -95,5 +100,8 @@ double GgxTables::repeated(Dir out, std::span<const float> F) const {
   for (size_t k = 0; k < kOrders; ++k) sum += shares[k] * (power *= mean);
   return sum;
 }
+
+template class FacetTables<Ggx>;
+template class FacetTables<GaussFacets>;
 
 }  // namespace suite

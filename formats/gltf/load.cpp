@@ -1,0 +1,137 @@
+// The container is checked here before tinygltf sees it: its own check of a GLB's second chunk is 8 bytes short, and
+// it follows nested JSON by recursion.
+// Based on: Khronos Group, "glTF 2.0 Specification", 2021, section 4.4 (GLB).
+#include "formats/gltf/load.h"
+
+#include <cstring>
+
+#include "base/files.h"
+
+namespace suite::gltf {
+
+namespace {
+
+constexpr size_t kDeepest = 200;  // levels of JSON
+constexpr size_t kMostBytes = size_t{4} << 30;
+
+Error fault_at(const std::string& file, size_t offset, const std::string& what, const std::string& hint = {}) {
+  return {Where{file, 0, 0, {}, static_cast<long long>(offset)}, what, hint};
+}
+
+uint32_t word(std::span<const std::byte> bytes, size_t at) {
+  uint32_t w;
+  std::memcpy(&w, bytes.data() + at, sizeof w);
+  return w;
+}
+
+// The JSON of a GLB, whose chunks must lie within it.
+std::string_view json_of_container(std::span<const std::byte> bytes, const std::string& file) {
+  constexpr uint32_t kJson = 0x4E4F534A;
+  if (bytes.size() < 20) throw fault_at(file, bytes.size(), "ends within the header of a GLB");
+  if (const uint32_t version = word(bytes, 4); version != 2)
+    throw fault_at(file, 4, strf("GLB of version %u", version), "version 2 is read; convert it");
+  const size_t length = word(bytes, 8);
+  if (length > bytes.size() || length < 20)
+    throw fault_at(file, 8, strf("declares %zu bytes and has %zu", length, bytes.size()));
+  for (size_t at = 12, chunk = 0; at < length; ++chunk) {
+    if (length - at < 8) throw fault_at(file, at, "ends within the header of a chunk");
+    const size_t size = word(bytes, at);
+    if (size > length - at - 8)
+      throw fault_at(file, at, strf("a chunk of %zu bytes, %zu are left", size, length - at - 8));
+    if (chunk == 0 && word(bytes, at + 4) != kJson) throw fault_at(file, at + 4, "the first chunk is no JSON");
+    at += 8 + size;
+  }
+  return {reinterpret_cast<const char*>(bytes.data()) + 20, word(bytes, 12)};
+}
+
+void check_nesting(std::string_view json, const std::string& file, size_t offset) {
+  size_t depth = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      quoted = c != '"';
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kDeepest) throw fault_at(file, offset + i, strf("JSON of more than %zu levels", kDeepest));
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    }
+  }
+}
+
+// tinygltf asks for the buffers that a file names; what goes wrong is kept, for it passes on no exceptions.
+struct Files {
+  const Resolve& resolve;
+  std::optional<Error> fault;
+};
+
+tinygltf::FsCallbacks callbacks(Files& files) {
+  tinygltf::FsCallbacks call{};
+  call.user_data = &files;
+  call.FileExists = [](const std::string&, void*) { return true; };
+  call.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  call.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& name, void* user) {
+    Files& from = *static_cast<Files*>(user);
+    try {
+      const std::vector<std::byte> bytes = read_bytes(from.resolve(name), kMostBytes);
+      const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
+      out->assign(first, first + bytes.size());
+      return true;
+    } catch (const Error& e) {
+      from.fault = e;
+      return false;
+    }
+  };
+  return call;
+}
+
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (char& c : text)
+    if (c == '\n') c = ';';
+  return text.substr(0, 300);
+}
+
+bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+  return true;
+}
+
+}  // namespace
+
+Error fault(const std::string& file, const std::string& pointer, const std::string& what, const std::string& hint) {
+  return {Where{file, 0, 0, {}, -1}, pointer + ": " + what, hint};
+}
+
+tinygltf::Model load(std::span<const std::byte> bytes, const std::string& file, const Resolve& resolve) {
+  if (bytes.size() > kMostBytes - 1) throw Error(Where{file, 0, 0, {}, -1}, "has more than 4 GiB");
+  const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+  const std::string_view json = binary ? json_of_container(bytes, file)
+                                       : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  check_nesting(json, file, binary ? 20 : 0);
+  tinygltf::Model model;
+  tinygltf::TinyGLTF reader;
+  Files files{resolve, {}};
+  reader.SetFsCallbacks(callbacks(files));
+  reader.SetImageLoader(ignore_image, nullptr);
+  std::string errors, warnings;
+  bool whole = false;
+  try {
+    const auto size = static_cast<unsigned>(bytes.size());
+    whole = binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings,
+                                                 reinterpret_cast<const unsigned char*>(bytes.data()), size, "")
+                   : reader.LoadASCIIFromString(&model, &errors, &warnings, json.data(), size, "");
+  } catch (const std::exception& e) {
+    errors = e.what();
+  }
+  if (files.fault) throw *files.fault;
+  if (!whole || !errors.empty())
+    throw Error(Where{file, 0, 0, {}, -1}, "cannot be read as glTF: " + one_line(printable(one_line(errors))));
+  if (!model.asset.version.empty() && model.asset.version.substr(0, 2) != "2.")
+    throw fault(file, "asset/version", "glTF " + printable(model.asset.version), "version 2 is read; convert it");
+  return model;
+}
+
+}  // namespace suite::gltf

@@ -1,0 +1,79 @@
+// What the parts of the glTF reader share: the parsed file, and faults at a place in its JSON.
+#pragma once
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#define TINYGLTF_NO_FS
+#include <tiny_gltf.h>
+
+#include <set>
+#include <span>
+
+#include "base/report.h"
+#include "motion/track.h"
+#include "scene/source_model.h"
+
+namespace suite::gltf {
+
+using Resolve = std::function<std::string(const std::string&)>;
+
+// Checks the container and the nesting, then lets tinygltf parse. Error: as read_gltf.
+tinygltf::Model load(std::span<const std::byte> bytes, const std::string& file, const Resolve& resolve);
+
+// A fault at a JSON pointer such as "accessors[3]/count".
+Error fault(const std::string& file, const std::string& pointer, const std::string& what, const std::string& hint = {});
+
+// A list's item by an index that came from the file. Error: there is none.
+template <class T>
+const T& item_of(const std::vector<T>& list, int index, const std::string& file, const std::string& pointer,
+                 const char* what) {
+  if (index < 0 || static_cast<size_t>(index) >= list.size())
+    throw fault(file, pointer, strf("%s %d of %zu", what, index, list.size()), "indices count from 0");
+  return list[static_cast<size_t>(index)];
+}
+
+// The numbers of an accessor, one after the other, checked to lie within its buffers and to be finite; normalised
+// integers as the specification turns them into numbers, sparse values put in. components: how many a value must have
+// (any of these). Error: fault().
+struct Values {
+  std::vector<double> numbers;
+  size_t count = 0, components = 0;
+};
+Values values_of(const tinygltf::Model& model, const std::string& file, int accessor, const std::string& pointer,
+                 std::initializer_list<size_t> components);
+
+// A name that no other part of the model has: NAME/given, or NAME/otherwise, with #2, #3 ... behind it.
+class Names {
+ public:
+  explicit Names(std::string model) : model_(std::move(model)) {}
+  std::string make(const std::string& given, const std::string& otherwise);
+
+ private:
+  std::string model_;
+  std::set<std::string> used_;
+};
+
+// The materials' names, of all of the file; unnamed ones are material_N.
+std::vector<std::string> material_names(const tinygltf::Model& model);
+
+// The triangles of a mesh; nothing when it has none (points and lines are told).
+std::optional<SourceMesh> mesh_of(const tinygltf::Model& model, const std::string& file, int mesh, double unit_m,
+                                  Report& report);
+
+// Where a node stands in its parent, m.
+struct Local {
+  Affine3 at_rest;
+  Affine3 scale;    // what is left beside a motion
+  TrackPtr motion;  // null: at rest
+};
+// Of every node. Error: fault().
+std::vector<Local> locals_of(const tinygltf::Model& model, const std::string& file, double unit_m);
+// Gives nodes that move their tracks. name: of the animation, see SourceModelOptions.
+void animate(const tinygltf::Model& model, const std::string& file, const SourceModelOptions& options,
+             std::vector<Local>& locals, Report& report);
+
+// Everything else that the file says and that has no place in a scene. Error: it needs an extension that is not read.
+void check_extensions(const tinygltf::Model& model, const std::string& file);
+void tell_what_is_left_out(const tinygltf::Model& model, const std::string& file, Report& report);
+
+}  // namespace suite::gltf

@@ -1,0 +1,250 @@
+#include "formats/heat_hdf/operator_hdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <type_traits>
+
+#include "base/files.h"
+#include "formats/hdf5/h5.h"
+
+namespace suite {
+
+namespace {
+
+constexpr const char *kFormat = "suite heat operator", *kVersion = "1";
+constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight";
+constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
+constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
+                     *kByMirrors = "/sunlight/beam_by_mirrors";
+constexpr const char* kHint = "remove it to find the paths again, or write to another folder";
+
+// The datasets of a part, each with its values a face, and the least that a value can be.
+template <class Exchange, class Visit>
+requires std::is_same_v<std::remove_const_t<Exchange>, ExchangePaths>
+void visit_all(Exchange& e, const Visit& visit) {
+  const size_t each = size_t{e.blocks} * e.paths;
+  visit("/infrared/end", "1", each, e.ends, 0.0f);
+  visit("/infrared/weight", "1", each, e.weights, 0.0f);
+  visit("/infrared/emissivity", "1", size_t{1}, e.emissivity, 0.0f);
+}
+template <class Sun, class Visit>
+requires std::is_same_v<std::remove_const_t<Sun>, Sunlight>
+void visit_all(Sun& s, const Visit& visit) {
+  const size_t blocks = s.blocks;
+  visit("/sunlight/beam", "1", s.moments, s.beam, -kMost);
+  visit("/sunlight/sky", "sr", size_t{kSkyPatches}, s.sky, 0.0f);
+  visit("/sunlight/below", "sr", size_t{1}, s.below, 0.0f);
+  visit("/sunlight/beam_of_block", "1", blocks * Sunlight::kParts, s.beam_of_block, -kMost);
+  visit("/sunlight/beam_spread", "1", size_t{Sunlight::kContrasts * Sunlight::kParts}, s.beam_spread, -kMost);
+  visit("/sunlight/diffuse_of_block", "sr", blocks, s.diffuse_of_block, 0.0f);
+  visit("/sunlight/below_of_block", "sr", blocks, s.below_of_block, 0.0f);
+  visit("/sunlight/sun_hours", "h", size_t{1}, s.sun_hours, 0.0f);
+  visit("/sunlight/absorptance", "1", size_t{1}, s.absorptance, 0.0f);
+}
+
+const char* name_of(const ExchangePaths&) { return kInfrared; }
+const char* name_of(const Sunlight&) { return kSunlight; }
+
+void put_identity(h5::Writer& w, const OperatorIdentity& identity) {
+  w.attribute("format", kFormat);
+  w.attribute("version", kVersion);
+  for (const auto& [name, text] : identity.scene) w.attribute("of_" + name, text);
+}
+
+// Halves of 32 bits are exact as doubles.
+template <class Found>
+void put(h5::Writer& w, const Found& found, FaceRange range, PathCount count, const std::string& sun) {
+  const std::string name = name_of(found);
+  if (name == kSunlight) w.attribute("of_sun", sun);
+  const auto high = [](uint64_t v) { return static_cast<double>(v >> 32); };
+  const auto low = [](uint64_t v) { return static_cast<double>(v & 0xffffffff); };
+  const double numbers[6] = {
+      static_cast<double>(range.begin), static_cast<double>(range.end), high(count.rays), low(count.rays),
+      high(count.unfinished),           low(count.unfinished)};
+  w.attribute(name + "_begin_end_rays_unfinished", numbers);
+  visit_all(found, [&](const char* dataset, const char* units, size_t width, const auto& values, float) {
+    w.put(dataset, std::span(values).subspan(range.begin * width, range.size() * width), units, width);
+  });
+}
+
+// Of a whole one: what mirrors add is found when all faces' paths are.
+void put_mirrored(h5::Writer& w, const Sunlight& s) {
+  const auto& m = s.mirrored;
+  const double numbers[4] = {static_cast<double>(m.places), static_cast<double>(m.endless),
+                             static_cast<double>(m.moving), m.unfinished};
+  w.attribute(kMirrored, numbers);
+  if (!s.beam_by_mirrors.empty()) w.put(kByMirrors, s.beam_by_mirrors, "1", s.moments);
+}
+
+// What is in a file of this kind and fits.
+class Stored {
+ public:
+  Stored(const std::string& path, const OperatorIdentity& identity) : reader_(path, kHint), identity_(identity) {
+    if (reader_.text("format") != kFormat) reader_.fail("holds no paths of a balance of heat");
+    if (const std::string version = reader_.text("version"); version != kVersion)
+      reader_.fail("is of version '" + version + "', version " + kVersion + " is read");
+    for (const auto& [name, text] : identity.scene)
+      if (const std::string there = reader_.text("of_" + name); there != text)
+        reader_.fail("was found with another " + name + " (" + there.substr(0, 60) + ", here " + text.substr(0, 60) +
+                     ")");
+  }
+  bool same_sun() { return reader_.text("of_sun") == identity_.sun; }
+  void check_sun() {
+    if (!same_sun())
+      reader_.fail("was found with the sun elsewhere: on another day, at another place or in other steps");
+  }
+
+  // Of a file with faces in all. Adds to the counts.
+  template <class Found>
+  FaceRange read(Found& into, size_t faces) {
+    const std::string name = name_of(into);
+    ends_ = faces + identity_.outsides;
+    const std::vector<double> v = reader_.numbers(name + "_begin_end_rays_unfinished", 6);
+    for (const double n : v)
+      if (!(n >= 0 && n <= 4294967295.0 && n == std::floor(n))) reader_.fail("counts what cannot be");
+    const FaceRange range{static_cast<size_t>(v[0]), static_cast<size_t>(v[1])};
+    if (!(range.begin < range.end && range.end <= faces) || range.begin % Found::kTogether != 0 ||
+        (range.end % Found::kTogether != 0 && range.end != faces))
+      reader_.fail(strf("has faces %zu to %zu of %zu", range.begin, range.end, faces));
+    visit_all(into, [&](const char* dataset, const char* units, size_t width, auto& values, float least) {
+      take(dataset, units, width, range, values, least);
+    });
+    const auto whole = [](double high, double low) {
+      return static_cast<uint64_t>(high) << 32 | static_cast<uint64_t>(low);
+    };
+    into.count += {whole(v[2], v[3]), whole(v[4], v[5])};
+    return range;
+  }
+  void read_mirrored(Sunlight& into) {
+    const std::vector<double> v = reader_.numbers(kMirrored, 4);
+    for (const double n : v)
+      if (!(n >= 0 && n <= 4294967295.0)) reader_.fail("counts what cannot be");
+    into.mirrored = {static_cast<size_t>(v[0]), static_cast<size_t>(v[1]), static_cast<size_t>(v[2]), v[3]};
+    if (into.mirrored.places == 0) return;
+    into.beam_by_mirrors.resize(into.faces() * into.moments);
+    take(kByMirrors, "1", into.moments, {0, into.faces()}, into.beam_by_mirrors, 0.0f);
+  }
+  [[noreturn]] void fail(const std::string& what) const { reader_.fail(what); }
+
+ private:
+  template <class Value>
+  void take(const char* dataset, const char* units, size_t width, FaceRange range, std::vector<Value>& values,
+            float least) {
+    const auto opened = reader_.open(dataset, h5::native<Value>(), units, width, static_cast<long long>(range.size()));
+    Value* to = &values[range.begin * width];
+    reader_.read(dataset, opened, h5::native<Value>(), to, 0, opened.count);
+    for (size_t k = 0; k < opened.count; ++k)
+      if (!can_be(to[k], least)) reader_.fail(strf("%s holds %g", dataset, static_cast<double>(to[k])));
+  }
+  bool can_be(uint32_t end, float) const { return end < ends_; }
+  static bool can_be(float v, float least) { return v >= least && v <= kMost; }
+  static bool can_be(double emissivity, float) { return emissivity >= 0 && emissivity <= 1; }
+
+  mutable h5::Reader reader_;
+  const OperatorIdentity identity_;
+  size_t ends_ = 0;  // faces and outsides: what paths may end at
+};
+
+class Folder final : public HeatPieces {
+ public:
+  Folder(std::string folder, OperatorIdentity identity, double seconds)
+      : folder_(std::move(folder)), identity_(std::move(identity)), seconds_(seconds) {}
+  std::vector<FaceRange> take(ExchangePaths& out) override { return take_all(out); }
+  std::vector<FaceRange> take(Sunlight& out) override { return take_all(out); }
+  void keep(const ExchangePaths& found, FaceRange range, PathCount count) override { put_one(found, range, count); }
+  void keep(const Sunlight& found, FaceRange range, PathCount count) override { put_one(found, range, count); }
+  double seconds() const override { return seconds_; }
+
+ private:
+  std::string name_of_piece(const char* part, FaceRange range) const {
+    return folder_ + strf("/%s_%010zu.h5", part, range.begin);
+  }
+  template <class Found>
+  std::vector<FaceRange> take_all(Found& out) {
+    std::vector<std::string> files;
+    const std::string prefix = std::string(name_of(out)) + "_";
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, none))
+      if (const std::string name = entry.path().filename(); name.starts_with(prefix) && name.ends_with(".h5"))
+        files.push_back(entry.path());
+    std::sort(files.begin(), files.end());  // by their first faces
+    std::vector<FaceRange> there;
+    for (const std::string& path : files) {
+      Stored stored(path, identity_);
+      if (prefix == std::string(kSunlight) + "_") stored.check_sun();
+      const FaceRange range = stored.read(out, out.faces());
+      if (!there.empty() && range.begin < there.back().end) stored.fail("has faces that another piece has, too");
+      there.push_back(range);
+    }
+    return there;
+  }
+  template <class Found>
+  void put_one(const Found& found, FaceRange range, PathCount count) {
+    make_folder(folder_);
+    const std::string path = name_of_piece(name_of(found), range);
+    AtomicFile file(path);
+    h5::Writer w(file.temporary(), path);
+    put_identity(w, identity_);
+    put(w, found, range, count, identity_.sun);
+    w.close();
+    file.commit();
+  }
+  std::string folder_;
+  OperatorIdentity identity_;
+  double seconds_;
+};
+
+}  // namespace
+
+void write_operator(const std::string& path, const HeatOperator& found, const OperatorIdentity& identity,
+                    const std::string& made_by) {
+  AtomicFile file(path);
+  h5::Writer w(file.temporary(), path);
+  put_identity(w, identity);
+  w.attribute("arguments", made_by);
+  const FaceRange all{0, found.exchange.faces()};
+  put(w, found.exchange, all, found.exchange.count, identity.sun);
+  put(w, found.sun, all, found.sun.count, identity.sun);
+  put_mirrored(w, found.sun);
+  w.close();
+  file.commit();
+}
+
+struct StoredOperator::File : Stored {
+  using Stored::Stored;
+  template <class Found>
+  void read_all(Found& into) {
+    if (read(into, into.faces()) != FaceRange{0, into.faces()}) fail("has not all faces");
+  }
+};
+
+StoredOperator::StoredOperator(const std::string& path, const OperatorIdentity& identity)
+    : file_(std::make_unique<File>(path, identity)) {}
+StoredOperator::~StoredOperator() = default;
+bool StoredOperator::same_sun() const { return file_->same_sun(); }
+void StoredOperator::read(ExchangePaths& into) const { file_->read_all(into); }
+void StoredOperator::read(Sunlight& into) const {
+  file_->check_sun();
+  file_->read_all(into);
+  file_->read_mirrored(into);
+}
+
+std::unique_ptr<HeatPieces> pieces_in(const std::string& folder, const OperatorIdentity& identity, double seconds) {
+  return std::make_unique<Folder>(folder, identity, seconds);
+}
+
+void remove_pieces(const std::string& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> pieces;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    // With what a killed one was writing: NAME.h5.part-...
+    if (name.find(".h5") != std::string::npos && (name.starts_with(kInfrared) || name.starts_with(kSunlight)))
+      pieces.push_back(entry.path());
+  }
+  for (const auto& piece : pieces) std::filesystem::remove(piece, ignored);
+  std::filesystem::remove(folder, ignored);
+}
+
+}  // namespace suite

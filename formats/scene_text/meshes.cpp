@@ -1,0 +1,107 @@
+// Objects that are meshes in files of modelling tools.
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "base/files.h"
+#include "formats/dirsig/dirsig.h"
+#include "formats/gltf/gltf.h"
+#include "formats/obj/obj.h"
+#include "formats/ply/ply.h"
+#include "formats/scene_text/reader.h"
+#include "formats/stl/stl.h"
+
+namespace suite::scene_text {
+
+// What holds for a mesh whatever file it comes from.
+void Reader::read_mesh_rules(const Params& p, DraftGeometry& g) {
+  g.kind = DraftGeometry::Kind::mesh;
+  if (const auto materials = p.find("materials"))
+    for (const std::string& name : materials->keys()) g.materials[name] = reference(materials->at(name));
+  constexpr NormalRule rules[] = {NormalRule::file, NormalRule::facet, NormalRule::smooth};
+  if (const auto normals = p.find("normals")) g.normals = rules[normals->as_choice({"file", "facet", "smooth"})];
+  if (const auto crease = p.find("crease_deg")) {
+    if (g.normals != NormalRule::smooth) throw crease->error("'crease_deg' goes with 'normals: smooth'");
+    g.crease_rad = p.number_in("crease_deg", 0, 180, "degrees") * kPi / 180;
+  }
+  if (p.has("fill_holes")) g.fill_holes = static_cast<size_t>(p.integer("fill_holes", 3, 1000));
+  if (const auto decimate = p.find("decimate")) {
+    if (!decimate->has("to") && !decimate->has("error_m"))
+      throw decimate->error("'decimate' says neither how far nor how exactly", "give 'to', 'error_m' or both");
+    g.decimate = DecimationRule{};
+    if (decimate->has("to")) g.decimate->to = decimate->number_in("to", 0, 1, "of the triangles");
+    if (decimate->has("error_m")) g.decimate->error_m = decimate->number_in("error_m", 1e-9, 1e9, "m");
+  }
+}
+
+namespace {
+
+double unit_of(const Params& p) { return p.number_in("unit_m", 1e-9, 1e9, "m", 1); }
+
+bool y_up(const Params& p, bool otherwise) {
+  const auto up = p.find("up");
+  return up ? up->as_choice({"z", "y"}) == 1 : otherwise;
+}
+
+// What is wrong with a file is no fault of the text that names it.
+template <class Read>
+auto of_file(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    if (!e.code().empty()) throw;
+    throw Error(e.where(), e.message(), e.hint(), "SP003");
+  }
+}
+
+}  // namespace
+
+void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& g) {
+  read_mesh_rules(p, g);
+  const double unit = unit_of(p);
+  g.to_local = scaling({unit, unit, unit});
+  if (y_up(p, false)) g.to_local = g.to_local * kFromYUp;
+  if (kind == "obj") {
+    g.mesh = read_obj(input(p.at("obj")), report_);
+  } else if (kind == "ply") {
+    g.mesh = of_file([&] { return read_ply(input(p.at("ply")), report_); });
+  } else if (kind == "stl") {
+    g.mesh = of_file([&] { return read_stl(input(p.at("stl")), report_); });
+  } else if (kind == "gdb") {
+    const std::string path = input(p.at("gdb"));
+    g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
+  } else {
+    g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
+  }
+}
+
+// The model becomes a group of the object's name; its meshes are objects of their own. slot: where the object's name
+// stands among the geometry until then.
+void Reader::read_model(const Params& p, DraftGeometry g, size_t slot) {
+  read_mesh_rules(p, g);
+  SourceModelOptions options;
+  options.name = g.name;
+  options.where = g.where;
+  options.unit_m = unit_of(p);
+  options.y_up = y_up(p, true);
+  options.animation = p.text("animation", "");
+  const Params file = p.at("gltf");
+  const std::filesystem::path folder = std::filesystem::path(file.as_text()).parent_path();
+  options.resolve = [&](const std::string& name) {
+    try {
+      return inputs_.add((folder / name).string()).path;
+    } catch (const Error& e) {
+      throw Error(file.where(), "buffer '" + printable(name) + "' " + e.message(), e.hint(), "SP003");
+    }
+  };
+  SourceModel model = of_file([&] { return read_gltf(input(file), options, report_); });
+  draft_.geometry.erase(draft_.geometry.begin() + static_cast<std::ptrdiff_t>(slot));
+  for (SourceModel::Part& part : model.meshes) {
+    DraftGeometry& made = draft_.geometry.emplace_back(g);
+    made.name = part.name;
+    made.mesh = std::move(part.mesh);
+  }
+  std::move(model.groups.begin(), model.groups.end(), std::back_inserter(models_));
+}
+
+}  // namespace suite::scene_text

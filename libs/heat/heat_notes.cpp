@@ -1,0 +1,94 @@
+#include "heat/heat_notes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "heat/heat_walk.h"
+
+namespace suite {
+
+namespace {
+
+std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
+
+// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as in a
+// light wind with radiation; d no deeper than a day's warmth goes); elements that are smaller differ more than they
+// should.
+double evened_over(const std::vector<SlabLayer>& layers) {
+  constexpr double kFilm = 12, kDay = 86400;  // W/(m2 K), s
+  double sheet = 0;                           // W/K
+  for (const SlabLayer& layer : layers) {
+    const double k = layer.conductivity[0], deep = std::sqrt(k * kDay / (kPi * layer.density * layer.specific_heat[0]));
+    sheet += k * std::min(layer.thickness, deep);
+    if (layer.thickness > deep) break;
+  }
+  return 3 * std::sqrt(sheet / kFilm);
+}
+
+std::vector<std::string> lateral_notes(const Scene& scene, const Elements& elements, const HeatOptics& optics) {
+  std::vector<size_t> small(scene.materials.size(), 0), all(scene.materials.size(), 0);
+  std::vector<double> reach(scene.materials.size(), 0);
+  for (size_t m = 0; m < reach.size(); ++m) reach[m] = evened_over(optics.heated[m].layers);
+  for (size_t e = 0; e < elements.size(); ++e) {
+    const uint32_t m = elements[e].material;
+    ++all[m], small[m] += std::sqrt(elements[e].area) < reach[m];
+  }
+  std::vector<std::string> notes;
+  for (size_t m = 0; m < reach.size(); ++m)
+    if (small[m] > 0)
+      notes.push_back(
+          strf("material '%s': %zu of %zu elements are smaller than the %.2g m over which conduction along the "
+               "surface evens temperatures out, which is left out: fewer elements show what is there",
+               scene.materials[m].id.c_str(), small[m], all[m], reach[m]));
+  return notes;
+}
+
+}  // namespace
+
+std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {
+  const auto& [tracer, elements, faces, optics] = scene;
+  const auto& [exchange, sun] = found;
+  std::vector<std::string> notes;
+  if (elements.moving() > 0)
+    notes.push_back(strf("%zu instances move: they give shade, and count as warm as the air", elements.moving()));
+  if (sun.mirrored.moving > 0)
+    notes.push_back(
+        strf("%zu instances that mirror or refract without scattering move: the sunlight that they send on "
+             "is left out",
+             sun.mirrored.moving));
+  if (sun.mirrored.endless > 1)
+    notes.push_back(
+        strf("%zu surfaces without end mirror or refract without scattering: sunlight that goes from one to "
+             "another and on may be found in part only",
+             sun.mirrored.endless));
+  for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
+  if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
+  if (exchange.unfinished() > 1e-6)
+    notes.push_back(
+        strf("%.2g of the infrared was still being reflected after %u reflections and counts as absorbed there",
+             exchange.unfinished(), kMostReflections));
+  if (const double left = std::max(sun.unfinished(exchange.blocks * exchange.paths), sun.mirrored.unfinished);
+      left > 1e-6)
+    notes.push_back(strf("%.2g of the light of paths was still being reflected after %u reflections, and is left out",
+                         left, kMostReflections));
+  if (elements.shared_cells() > 0)
+    notes.push_back(
+        strf("%zu cells hold several materials of class maps; one with less than %.1f %% of a cell may have no "
+             "element there, and is then as warm as the largest of the others",
+             elements.shared_cells(), 100.0 / Elements::kLooks));
+  const auto is_wet = [](const HeatedMaterial& m) { return m.front.wetness > 0; };
+  if (dry_air && std::any_of(optics.heated.begin(), optics.heated.end(), is_wet))
+    notes.push_back("the weather has no humidity: wet surfaces evaporate into dry air");
+  for (const HeatOptics::Assumed& a : optics.assumed) {
+    if (a.sunlight < 0.01 && a.infrared < 0.01) continue;
+    notes.push_back(
+        "material '" + optics.materials->materials[a.material].id + "': beyond its curves lie " +
+        share_text(a.sunlight) + " of sunlight and " + share_text(a.infrared) +
+        " of a body's light at 300 K, for which the ends of the curves (in the infrared their mean from 8 to "
+        "14 um) are held");
+  }
+  return notes;
+}
+
+}  // namespace suite

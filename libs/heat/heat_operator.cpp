@@ -1,0 +1,81 @@
+#include "heat/heat_operator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "heat/sunlight_mirrored.h"
+
+namespace suite {
+
+namespace {
+
+// trace(range) for all that is not there.
+template <class Found, class Trace>
+void find_missing(size_t faces, Found& found, HeatPieces* pieces, const std::function<void(size_t)>& progress,
+                  const Trace& trace) {
+  const std::vector<FaceRange> there = pieces ? pieces->take(found) : std::vector<FaceRange>{};
+  auto next = there.begin();
+  // Pieces grow until one takes about as long as may be lost.
+  size_t waves = pieces ? 2 * static_cast<size_t>(threads()) : faces;
+  for (size_t at = 0; at < faces;) {
+    if (next != there.end() && next->begin == at) {
+      if (progress) progress(next->size());
+      at = next++->end;
+      continue;
+    }
+    const size_t limit = next != there.end() ? next->begin : faces;
+    const FaceRange range{at, waves < (limit - at) / Found::kTogether ? at + waves * Found::kTogether : limit};
+    const PathCount before = found.count;
+    const Stopwatch::time_point begun = Stopwatch::now();
+    trace(range);
+    const double took = seconds_since(begun);
+    if (pieces) {
+      pieces->keep(found, range, found.count - before);
+      if (took < pieces->seconds() / 2) waves *= 2;
+      if (took > pieces->seconds() && waves > 2 * static_cast<size_t>(threads())) waves /= 2;
+    }
+    at = range.end;
+  }
+}
+
+}  // namespace
+
+ExchangePaths find_exchange(const HeatScene& s, const PathOptions& options, HeatPieces* pieces,
+                            const std::function<void(size_t)>& progress) {
+  ExchangePaths out = untraced_exchange(s.elements, s.faces, options);
+  find_missing(s.faces.size(), out, pieces, progress, [&](FaceRange range) {
+    trace_exchange(s.tracer, s.elements, s.faces, s.optics, options, range, out, progress);
+  });
+  return out;
+}
+
+Sunlight find_sunlight(const HeatScene& s, const SunCourse& course, const PathOptions& options, HeatPieces* pieces,
+                       const std::function<void(size_t)>& progress) {
+  Sunlight out = untraced_sunlight(s.faces, course, options);
+  find_missing(s.faces.size(), out, pieces, progress, [&](FaceRange range) {
+    trace_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, kSunJoins, range, out, progress);
+  });
+  add_mirrored_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, out);
+  return out;
+}
+
+std::string digest_of(const SunCourse& course) {
+  std::string text;
+  const auto add = [&](const char* format, double v) { text += strf(format, v); };
+  for (const double t : course.moments) {
+    const Dir d = course.towards(t);
+    add("%.6f ", t);
+    for (int k = 0; k < 3; ++k) add("%.9f ", d[k]);
+  }
+  add("%.9g ", course.angular_radius);
+  for (const std::vector<float>& spectrum : course.beam)
+    for (const float v : spectrum) add("%.6f ", double{v});
+  for (const float v : course.sky) add("%.6f ", double{v});
+  return sha256(text);
+}
+
+}  // namespace suite

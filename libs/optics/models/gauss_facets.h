@@ -1,0 +1,26 @@
+// A surface whose slopes are normally distributed, as waves of the sea are: the distribution of facets ("Beckmann's"),
+// Smith's shadowing for it, and the sampling of the normals that are visible from a direction. The counterpart of Ggx
+// in microfacet.h, to the same conventions.
+// Based on: P. Beckmann & A. Spizzichino, "The scattering of electromagnetic waves from rough surfaces", 1963; B.
+// Smith, "Geometrical shadowing of a random rough surface", IEEE Trans. AP 15, 1967; E. Heitz, "Understanding the
+// masking-shadowing function", JCGT 3(2), 2014; E. Heitz & E. d'Eon, "Importance sampling microfacet-based BSDFs using
+// the distribution of visible normals", EGSR 2014.
+#pragma once
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace suite {
+
+struct GaussFacets {
+  double ax = 0.1, ay = 0.1;                       // square root of twice the variance of the slopes along x and y, > 0
+  static constexpr uint32_t kBakingPoints = 4096;  // visible normals that tables take the mean of
+
+  double density(Dir h) const;  // of normals per projected solid angle, 1/sr
+  double lambda(Dir d) const;
+  double masking(Dir d) const { return 1 / (1 + lambda(d)); }
+  double shadowing(Dir a, Dir b) const { return 1 / (1 + lambda(a) + lambda(b)); }
+  Dir visible_normal(Dir out, Vec2 u) const;  // out may point below the horizon too
+};
+
+}  // namespace suite

@@ -1,0 +1,146 @@
+// Definitions of kernel.h: lights behind one or two smooth interfaces (refracted_sight.h).
+//
+// Every node asks far lights that are small for all ways through such interfaces, whatever the straight line towards
+// the light meets; so what continuations of the node find of the light after one or two smooth transmissions, and
+// nothing else, is left out (Lane::bends). The light comes along a way with
+//   w(out, direction) x transmittances of interfaces, squared indices with them, and of what fills space
+//     x |d(direction) / d(direction at the light)|  x  radiance over its density, or irradiance.
+#pragma once
+#include <algorithm>
+#include <limits>
+
+#include "transport/kernel.h"
+
+namespace suite {
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::want_refracted(const NodeAt& node, const Asked& light,
+                                                                         const LightSample& sample) {
+  if (node.event && Space::kGoesBack) return;  // the even field that it stands for knows no interfaces
+  if (!node.event && refracted_->interfaces().has(surfaces_.material(node.path))) return;  // Dirac lobes only
+  const bool delta = !(sample.density > 0);
+  refracted_questions_.push_back({static_cast<uint32_t>(&node - nodes_.data()), light.index, light.nature.disk, false,
+                                  light.beam, sample.direction, delta ? 0 : sample.density,
+                                  static_cast<float>(sample.scale), sample.spectrum});
+}
+
+// What continuations have passed since their last question, behind this node.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+uint8_t PathKernel<Surfaces, Space, Throughputs, Estimator>::bends_behind(const NodeAt& node,
+                                                                          const Continuation& on) const {
+  const Path& path = paths_[node.path];
+  if (node.event) return Space::kGoesBack ? Path::kUnasked : 0;
+  if (!on.dirac) return 0;
+  const Hit& hit = hits_[node.slot];
+  const bool passed = dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
+  if (!passed || path.bends >= RefractedSight::kMostCrossings) return Path::kUnasked;
+  return refracted_->interfaces().has(surfaces_.material(node.path)) ? static_cast<uint8_t>(path.bends + 1)
+                                                                     : Path::kUnasked;
+}
+
+// Whether light that a straight ray has lost is asked for through what it lost it at.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_owned(const Question& q, size_t ray) {
+  if (!refracted_ || q.light == kFromAir || !is_refracted(environment_.lights[q.light]->nature())) return false;
+  if (Space::kGoesBack && nodes_[q.node].event) return false;
+  return refracted_->crossings(sight_rays_.rays()[ray]) <= RefractedSight::kMostCrossings;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
+  if constexpr (Surfaces::kDense > 0) {
+    for (const Question& q : refracted_questions_) {
+      const Path& path = paths_[nodes_[q.node].path];
+      const std::vector<size_t>& set = refracted_->interfaces().set_of();
+      for (size_t k = 0; k < knots(); ++k) {
+        if (set[k] != k) continue;
+        bool alive = false;  // else an interface on the path has parted it from these wavelengths
+        for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
+        if (alive) shine_refracted(q, k);
+      }
+    }
+  }
+}
+
+// What is left of light along a way, per bin, and its optical length. False: nothing.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& node, const RefractedWay& way,
+                                                                 size_t knot, std::span<float> through,
+                                                                 double& arrival) {
+  const uint32_t p = node.path;
+  const Path& path = paths_[p];
+  const std::vector<size_t>& set = refracted_->interfaces().set_of();
+  for (size_t i = 0; i < bins_; ++i) through[i] *= set[static_cast<size_t>(knot_of_bin_[i])] == knot ? 1.0f : 0.0f;
+  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -path.direction,
+                   way.direction);
+  Ray ray{way.origin, way.direction, path.time, path.draw};
+  for (int i = 0; i < way.crossings; ++i) {
+    const RefractedCrossing& at = way.at[i];
+    arrival += at.length * space_.follow_way(ray, at.length, through, transmission_);
+    at.model->delta_weight(at.out_local, refracted_->interfaces().lobe(at.material), static_cast<int>(knot),
+                           transmission_);
+    for (size_t b = 0; b < bins_; ++b) through[b] *= transmission_[b];
+    space_.cross_way(at.hit, at.material, at.in);
+    ray.origin = surface_.tracer().leave(at.hit, at.in);
+    ray.direction = at.in;
+  }
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, kFar)) return false;
+  space_.follow_way(ray, kFar, through, transmission_);
+  return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const Question& q, size_t knot) {
+  const NodeAt& node = nodes_[q.node];
+  const uint32_t p = node.path;
+  const Path& path = paths_[p];
+  RefractedSight::Node from;
+  from.time = path.time, from.draw = path.draw;
+  if (node.event) {
+    if constexpr (Space::kScatters) from.place = space_.place(p);
+  } else {
+    const Hit& hit = hits_[node.slot];
+    const LightReceiver at = surfaces_.receiver(p, hit, -path.direction);
+    from.place = hit.position;
+    from.hit = &hit;
+    if (!at.two_sided) from.side = dot(path.direction, hit.normal) < 0 ? hit.normal : -hit.normal;
+  }
+  constexpr uint64_t kPurpose = 0x62656e74;
+  const auto way = refracted_->find(
+      from, q.direction, knot, hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot));
+  if (!way) return;
+  const auto most = static_cast<uint32_t>(options_.max_nodes);
+  if (most > 0 && path.surfaces + static_cast<uint32_t>(way->crossings) >= most) return;
+  if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way->direction)) return;
+  const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
+  const Factor factor = evaluate(node, way->direction, memory);
+  for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
+  double arrival = 0;
+  if (!weaken(node, *way, knot, through, arrival)) return;
+  const float* radiance = q.spectrum;
+  if (!radiance) {  // its shape changes with direction
+    const std::span<float> own = throughputs_.take(p);
+    std::fill(own.begin(), own.end(), 0.0f);
+    environment_.lights[q.light]->add(q.direction, path.time, 1, own);
+    radiance = own.data();
+  }
+  const double scale = q.scale / (q.density > 0 ? q.density : 1) * way->spreading * way->trials;
+  for (const bool doubtful : {false, true}) {
+    if (doubtful && !way->doubtful) break;
+    Contribution& c = contribution(p, q.light);
+    c.events |= by_surface | by_dirac;
+    if (node.event) c.events |= by_medium;
+    c.asked = true;
+    c.beam = q.beam;
+    c.order += static_cast<uint32_t>(way->crossings);
+    c.scale = static_cast<float>(scale);
+    c.factor = {1, through.data()};
+    c.radiance = radiance;
+    c.arrival += arrival;
+    if (doubtful) c.missed = 0;  // there may be as much again
+    contribute();
+  }
+}
+
+}  // namespace suite

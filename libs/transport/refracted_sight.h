@@ -1,0 +1,97 @@
+// Ways of light from far lights through one or two smooth interfaces: what a straight ray cannot ask for.
+//
+// From a node rays are shot that smooth interfaces bend; Newton's method turns a start until its end runs towards the
+// light (manifold walk). Which starts find which way is not known; so when a random start has found one, starts are
+// repeated until one finds the same again: the number of them is an unbiased estimate of the reciprocal of the
+// probability with which it was found, whatever the surfaces look like. All ways together count right in the mean.
+// Ways after more than kMostTrials such starts count as that many and are said to be doubtful.
+// Starts: the straight line, or what flat water at its first interface would make of it; directions about that; points
+// and directions of the refracting objects. Every direction that meets one has a chance.
+// Assumes: rays that the interfaces bend run on freely behind the second of them or are no way at all; more interfaces,
+// reflections on the way and rough interfaces are left to continuations that meet a light by chance.
+// Based on: J. Hanika, M. Droske, L. Fascione, "Manifold next event estimation", EGSR 2015; T. Zeltner, I. Georgiev,
+// W. Jakob, "Specular manifold sampling for rendering high-frequency caustics and glints", ACM TOG 39(4), 2020.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "math/sampling.h"
+#include "transport/refracted_ray.h"
+
+namespace suite {
+
+// A smooth interface on a way.
+struct RefractedCrossing {
+  Hit hit;
+  double length = 0;  // m from the place before
+  Dir out, in;        // back towards the node, on towards the light
+  Dir out_local;      // `out` in the shading frame
+  uint32_t material = kNone;
+  const ScatterModel* model = nullptr;
+};
+
+struct RefractedWay {
+  Vec3 origin;    // of the ray that leaves the node
+  Dir direction;  // from the node
+  int crossings = 0;
+  RefractedCrossing at[2];
+  Vec3 last;             // where the free ray towards the light starts
+  double spreading = 0;  // solid angle at the node over that at the light
+  double trials = 1;     // the estimated reciprocal of the probability with which it was found
+  bool doubtful = false;
+};
+
+class RefractedSight {
+ public:
+  static constexpr int kMostCrossings = 2, kMostTrials = 512;
+
+  // Keeps references. Whether any ray can be asked for: interfaces().any().
+  RefractedSight(const Surface& surface, const Optics& optics);
+  const SmoothInterfaces& interfaces() const { return interfaces_; }
+
+  // Where a way starts.
+  struct Node {
+    Vec3 place;
+    const Hit* hit = nullptr;  // of a surface; null = in a medium
+    Dir side = {};             // an opaque surface takes light only from the half space of this direction; 0 = all
+    double time = 0;           // s
+    uint32_t draw = 0;         // Ray::draw
+  };
+  // A way from the node towards a light at infinity, for the wavelengths of a knot. seed: of the random numbers.
+  // Nothing where none was found; in the mean over seeds all ways count.
+  std::optional<RefractedWay> find(const Node& node, Dir light, size_t knot, uint64_t seed);
+  // How many smooth interfaces a straight ray crosses before it is free; more than kMostCrossings = at least one more.
+  int crossings(Ray ray);
+  TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
+
+ private:
+  struct Traced {
+    RefractedWay way;
+    BentRay end;
+    bool open = false;   // nothing behind the last interface
+    double det = 0;      // of the change of the end's direction with that of the start, in the frame of the light
+    double off = 0;      // rad, the end's direction from the light's
+    Dir next;            // Newton's next direction
+    double inverse = 0;  // norm of the inverse of the change
+  };
+  bool hit_next(Ray& ray, Hit& hit);
+  bool trace(const Node& node, Dir direction, Dir light, size_t knot, Traced& traced);
+  bool walk(const Node& node, const Traced& start, Dir light, size_t knot, Traced& found);
+  bool guess(const Node& node, Dir light, size_t knot, Dir& direction);
+  bool try_once(const Node& node, Dir light, size_t knot, Traced& found);
+  Dir draw_start(const Node& node);
+  Dir draw_at_object(const Node& node);
+  static void aim(Dir light, Traced& traced, const Frame& start);
+  double random() { return unit_double(mix64(seed_ + counter_++)); }
+
+  const Surface& surface_;
+  SmoothInterfaces interfaces_;
+  std::vector<uint8_t> passes_;  // per material: bounds a medium and bends nothing
+  std::vector<Box3> objects_;    // that refract; an empty box has no bounds
+  Interaction at_, beside_;
+  TraceStatistics statistics_;
+  uint64_t seed_ = 0, counter_ = 0;
+  std::optional<Dir> guessed_;
+};
+
+}  // namespace suite

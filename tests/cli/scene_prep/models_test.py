@@ -1,0 +1,192 @@
+"""scene-prep on models by themselves and in scenes: the same triangles as assimp, an independent reader, and faults.
+
+models_test.py BIN DATA WORK. Needs numpy and assimp's program (scripts/packages-test.txt). Lengths are
+made 1000 times larger, so that the six decimals of --export-obj stand for nanometres; the bound of 5e-7 m is that of
+the file's own metres.
+"""
+import os
+import struct
+import subprocess
+import sys
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    if os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3"):
+        raise
+    os.execv("/usr/bin/python3", ["/usr/bin/python3", "-B"] + sys.argv)
+
+BIN, DATA, WORK = (os.path.abspath(p) for p in sys.argv[1:4])
+SCALE = 1000.0
+BOUND = 5e-7
+
+
+def prepare(model, *options):
+    """Runs scene-prep; its exit code and all that it said."""
+    done = subprocess.run([BIN + "/scene-prep", model, "-o", WORK + "/m.h5", "--force", *options],
+                          capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def read_obj(path):
+    """Triangles of an OBJ file, and the materials of each."""
+    places, faces, materials, material = [], [], [], ""
+    with open(path, encoding="utf-8") as f:
+        for line in f:
+            word = line.split()
+            if word and word[0] == "v":
+                places.append([float(w) for w in word[1:4]])
+            elif word and word[0] == "usemtl":
+                material = line.split(maxsplit=1)[1].strip()
+            elif word and word[0] == "f":
+                faces.append([int(w.split("/")[0]) - 1 for w in word[1:]])
+                materials.append(material)
+    return np.array(places)[np.array(faces)], materials
+
+
+def exported():
+    """Triangles of the scene that was prepared last, m of the file, and the materials of each."""
+    subprocess.run([BIN + "/scene-prep", WORK + "/m.h5", "--export-obj", WORK + "/m.obj"], check=True)
+    triangles, materials = read_obj(WORK + "/m.obj")
+    return triangles / SCALE, materials
+
+
+def by_assimp(path, y_up):
+    """The same by assimp, its nodes flattened."""
+    subprocess.run(["assimp", "export", path, WORK + "/assimp.obj", "-tri"], check=True, stdout=subprocess.DEVNULL)
+    t, _ = read_obj(WORK + "/assimp.obj")
+    return np.stack([t[..., 0], -t[..., 2], t[..., 1]], axis=-1) if y_up else t
+
+
+def in_order(triangles):
+    """Triangles, and the corners of each, in an order that does not depend on the reader."""
+    grid = np.floor(triangles * 1e4 + 0.38196601)  # no corner of these files lies on its lines
+    made = []
+    for t, g in zip(triangles, grid):
+        first = min(range(3), key=lambda k: tuple(tuple(g[(k + i) % 3]) for i in range(3)))
+        turn = [(first + i) % 3 for i in range(3)]
+        made.append((tuple(g[turn].ravel()), t[turn]))
+    made.sort(key=lambda row: row[0])
+    return np.array([t for _, t in made])
+
+
+def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
+    """A PLY file of five places, a triangle and a concave polygon, which can be cut in one way only."""
+    places = [(0, 0, 0), (2, 0, 0), (0.5, 0.5, 0), (0, 2.125, 0), (2, 2, 2)]
+    head = (f"ply\nformat {kind} 1.0\ncomment a test\nelement vertex {len(places)}\nproperty double x\nproperty double y\n"
+            f"property double z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+    with open(path, "wb") as f:
+        f.write(head.encode())
+        if kind == "ascii":
+            f.write("".join("%.12g %.12g %.12g\n" % p for p in places).encode())
+            f.write("".join(f"{len(c)} {' '.join(map(str, c))}\n" for c in faces).encode())
+        else:
+            order = "<" if kind == "binary_little_endian" else ">"
+            f.write(b"".join(struct.pack(order + "3d", *p) for p in places))
+            f.write(b"".join(struct.pack(order + f"B{len(c)}i", len(c), *c) for c in faces))
+    return path
+
+
+class Models(unittest.TestCase):
+    def same(self, path, y_up, name, *options):
+        code, said = prepare(path, "--set", f"objects.{name}.unit_m={SCALE:g}", *options)
+        self.assertEqual(code, 0, said)
+        ours, materials = exported()
+        theirs = by_assimp(path, y_up)
+        self.assertEqual(ours.shape, theirs.shape)
+        worst = np.abs(in_order(ours) - in_order(theirs)).max()
+        print(f"{os.path.basename(path)}: {len(ours)} triangles, farthest {worst:.2g} m")
+        self.assertLess(worst, BOUND)
+        moved = in_order(theirs + [0, 0, 2 * BOUND])  # and a test that could not fail would be none
+        self.assertGreater(np.abs(in_order(ours) - moved).max(), BOUND)
+        return said, materials
+
+    def test_glb(self):
+        said, materials = self.same(DATA + "/gltf/Box.glb", True, "Box")
+        self.assertIn("material 'Red': a grey of reflectance 0.18 stands in", said)
+        self.assertIn("SP708", said)
+        self.assertEqual(set(materials), {"Red"})
+        self.same(DATA + "/gltf/ShapeCollection.glb", True, "ShapeCollection")
+
+    def test_more_models(self):
+        for path in os.environ.get("SUITE_MORE_MODELS", "").split():
+            name = os.path.splitext(os.path.basename(path))[0]
+            self.same(path, True, name, "--set", f"objects.{name}.animation=none")
+
+    def test_ply_and_stl(self):
+        for kind in ("ascii", "binary_little_endian", "binary_big_endian"):
+            self.same(ply(kind, f"{WORK}/{kind}.ply"), False, kind)
+        with open(WORK + "/bin.stl", "wb") as f:
+            f.write(b"solid but binary".ljust(80) + struct.pack("<I", 2))
+            f.write(struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0))
+            f.write(struct.pack("<12fH", 0, 0, 1, 1, 0, 0, 1, 1, 0.25, 0, 1, 0, 0))
+        self.same(WORK + "/bin.stl", False, "bin")
+        with open(WORK + "/text.stl", "w", encoding="utf-8") as f:
+            f.write("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1e-1\nendloop\nendfacet\n"
+                    "endsolid a\n")
+        self.same(WORK + "/text.stl", False, "text")
+
+    def test_spectra(self):
+        box = DATA + "/gltf/Box.glb"
+        code, said = prepare(box, "--set", "materials.Red.reflectance=0.4")
+        self.assertEqual(code, 0, said)
+        self.assertNotIn("SP708", said)
+        code, said = prepare(box, "--uplift")
+        self.assertEqual(code, 0, said)
+        self.assertIn("a spectrum is guessed from the display colour (0.800, 0.000, 0.000)", said)
+
+    def test_in_a_scene(self):
+        with open(WORK + "/scene.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {paint: {model: lambert, reflectance: 0.5}}\n"
+                    f"objects:\n  box: {{gltf: {DATA}/gltf/Box.glb, materials: {{Red: paint}}, unit_m: 1000}}\n"
+                    "world:\n  - {place: box}\n  - {place: box, translate: [5000, 0, 0]}\n")
+        code, said = prepare(WORK + "/scene.yaml")
+        self.assertEqual(code, 0, said)
+        ours, materials = exported()
+        self.assertEqual((len(ours), set(materials)), (24, {"paint"}))
+        one = by_assimp(DATA + "/gltf/Box.glb", True)
+        both = np.concatenate([one, one + [5, 0, 0]])
+        self.assertLess(np.abs(in_order(ours) - in_order(both)).max(), BOUND)
+
+    def test_a_text_to_edit(self):
+        code, said = prepare(DATA + "/gltf/Box.glb")
+        done = subprocess.run([BIN + "/scene-prep", DATA + "/gltf/Box.glb", "--convert", WORK + "/made"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        code, said = prepare(WORK + "/made/Box.yaml")
+        self.assertEqual(code, 0, said)
+        self.assertEqual(len(exported()[0]), 12)
+
+    def test_faults_have_their_place(self):
+        def said_of(name, content):
+            with open(f"{WORK}/{name}", "wb") as f:
+                f.write(content)
+            code, said = prepare(f"{WORK}/{name}")
+            self.assertEqual(code, 1, said)
+            self.assertNotIn("SP001", said)  # the fault is the file's, not a text's
+            return said
+
+        def bytes_of(path):
+            with open(path, "rb") as f:
+                return f.read()
+
+        good = bytes_of(ply("ascii", WORK + "/good.ply"))
+        self.assertIn("bad.ply:16:1: vertex 7 of 5", said_of("bad.ply", good.replace(b"3 0 1 4", b"3 0 1 7")))
+        self.assertIn("bad.ply:4:1: 'x' is no count", said_of("bad.ply", good.replace(b"vertex 5", b"vertex x")))
+        self.assertIn("cannot be in", said_of("bad.ply", good.replace(b"vertex 5", b"vertex 4000000000")))
+        self.assertIn("unknown type 'flaot'; did you mean 'float'?",
+                      said_of("bad.ply", good.replace(b"double x", b"flaot x")))
+        self.assertIn("bad.stl:3:1: 'outer' is expected, found 'inner'",
+                      said_of("bad.stl", b"solid a\nfacet normal 0 0 1\ninner loop"))
+        self.assertIn("bad.stl: byte 80: declares 16843009 facets", said_of("bad.stl", b"\x01" * 200))
+        glb = bytes_of(DATA + "/gltf/Box.glb")
+        self.assertIn("a chunk of", said_of("bad.glb", glb[:-40].replace(struct.pack("<I", len(glb)),
+                                                                         struct.pack("<I", len(glb) - 40))))
+        self.assertIn("bad.glb: error: accessors[0]: 99 values of 2 bytes",
+                      said_of("bad.glb", glb.replace(b'"count":36', b'"count":99')))
+
+
+if __name__ == "__main__":
+    os.makedirs(WORK, exist_ok=True)
+    unittest.main(argv=[sys.argv[0]], verbosity=2)

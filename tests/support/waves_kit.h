@@ -1,0 +1,101 @@
+// Light forwards, for tests of light that is asked for backwards: from the sun through a smooth interface to a grid on
+// a floor, by code that shares nothing with the suite but vectors.
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace suite::test {
+
+// Snell's law by angles: the direction behind an interface of a ray along d; n: unit normal against it; eta: index
+// behind over in front. transmittance: of unpolarised light, by Fresnel's formulas of sines and tangents.
+struct Forward {
+  Vec3 direction;
+  double transmittance = 0;
+};
+inline Forward forward_refract(Vec3 d, Vec3 n, double eta) {
+  const double c = std::fmin(1.0, -dot(d, n)), incident = std::acos(c), s = std::sin(incident) / eta;
+  if (s >= 1) return {};
+  const double refracted = std::asin(s);
+  Forward f;
+  const Vec3 along = d + n * c;  // in the surface
+  const double len = length(along);
+  f.direction = n * -std::cos(refracted) + (len > 0 ? along * (s / len) : Vec3{});
+  if (incident < 1e-6) {
+    f.transmittance = 4 * eta / ((1 + eta) * (1 + eta));
+    return f;
+  }
+  const double rs = std::sin(incident - refracted) / std::sin(incident + refracted),
+               rp = std::tan(incident - refracted) / std::tan(incident + refracted);
+  f.transmittance = 1 - 0.5 * (rs * rs + rp * rp);
+  return f;
+}
+
+// Flux on a square grid of cells around the origin of the plane z = floor.
+struct FluxMap {
+  int cells;     // a side
+  double width;  // m
+  double floor;  // m
+  std::vector<double> flux = std::vector<double>(static_cast<size_t>(cells) * static_cast<size_t>(cells));
+  void add(Vec3 from, Vec3 direction, double amount) {
+    const double t = (floor - from.z) / direction.z, x = (from.x + t * direction.x) / width + 0.5,
+                 y = (from.y + t * direction.y) / width + 0.5;
+    if (x < 0 || x >= 1 || y < 0 || y >= 1) return;
+    flux[static_cast<size_t>(y * cells) * static_cast<size_t>(cells) + static_cast<size_t>(x * cells)] += amount;
+  }
+  double cell_area() const { return width * width / (cells * cells); }
+};
+
+// One wave: a sin(kx x + ky y + phase), m and 1/m.
+struct Wave {
+  double a, kx, ky, phase;
+};
+
+// A parallel beam of irradiance 1 (on a plane facing it) from `sun` through a surface of waves about z = 0 that does
+// not shadow itself; side: of the square of surface that is lit, steps: rays a side. eta: water over air.
+inline void light_waves(FluxMap& map, const std::vector<Wave>& waves, Vec3 sun, double eta, double side, int steps) {
+  const double h = side / steps;
+  for (int j = 0; j < steps; ++j)
+    for (int i = 0; i < steps; ++i) {
+      const double x = (i + 0.5) * h - side / 2, y = (j + 0.5) * h - side / 2;
+      double z = 0, zx = 0, zy = 0;
+      for (const Wave& w : waves) {
+        const double phase = w.kx * x + w.ky * y + w.phase;
+        z += w.a * std::sin(phase), zx += w.a * w.kx * std::cos(phase), zy += w.a * w.ky * std::cos(phase);
+      }
+      const Vec3 up{-zx, -zy, 1};
+      const double flux = dot(sun, up) * h * h;
+      if (flux <= 0) continue;
+      const Forward f = forward_refract(-sun, normalized(up), eta);
+      map.add({x, y, z}, f.direction, flux * f.transmittance);
+    }
+}
+
+// The same beam on a sphere: what passes it by two refractions, and (beside) what passes beside it.
+inline void light_sphere(FluxMap& map, Vec3 centre, double radius, Vec3 sun, double eta, int steps) {
+  const Frame across = Frame::around(-sun);
+  const double h = 2 * radius / steps;
+  for (int j = 0; j < steps; ++j)
+    for (int i = 0; i < steps; ++i) {
+      const double x = (i + 0.5) * h - radius, y = (j + 0.5) * h - radius, rest = radius * radius - x * x - y * y;
+      if (rest <= 0) continue;
+      const Vec3 in = across.x * x + across.y * y + sun * std::sqrt(rest), n = in / radius;
+      const Forward first = forward_refract(-sun, n, eta);
+      const Vec3 out = in - first.direction * (2 * dot(in, first.direction));
+      const Forward second = forward_refract(first.direction, out / -radius, 1 / eta);
+      if (second.transmittance > 0)
+        map.add(centre + out, second.direction, h * h * first.transmittance * second.transmittance);
+    }
+  // Beside it, on the floor: lines towards the sun that miss the sphere.
+  const int fine = steps / 2;
+  const double g = map.width / fine;
+  for (int j = 0; j < fine; ++j)
+    for (int i = 0; i < fine; ++i) {
+      const Vec3 p{(i + 0.5) * g - map.width / 2, (j + 0.5) * g - map.width / 2, map.floor}, to = centre - p;
+      const double along = dot(to, sun), off2 = dot(to, to) - along * along;
+      if (off2 > radius * radius || along < 0) map.add(p + sun, -sun, sun.z * g * g);
+    }
+}
+
+}  // namespace suite::test
