@@ -50,8 +50,9 @@ class Sqt final : public ScatterModel {
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
     for (const double wavelength : info.function.wavelength_um)
-      total_of_.push_back(static_cast<size_t>(
-          std::lower_bound(info.magnitude_um.begin(), info.magnitude_um.end(), wavelength) - info.magnitude_um.begin()));
+      total_of_.push_back(
+          static_cast<size_t>(std::lower_bound(info.magnitude_um.begin(), info.magnitude_um.end(), wavelength) -
+                              info.magnitude_um.begin()));
   }
 
   void eval(Dir out, Dir in, std::span<float> w) const override {
