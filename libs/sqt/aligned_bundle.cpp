@@ -1,5 +1,6 @@
 // The runtime of the aligned method; see aligned.h. Tables are in aligned_tables.h, here they are asked.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/error.h"
@@ -33,8 +34,8 @@ class AlignedBundle final : public Bundle {
   }
 
   void value(Dir out, Dir in, std::span<double> f) const override {
-    Query q;
-    if (!query(out, in, q)) {
+    const Query& q = ask(out, in);
+    if (!q.leaf) {
       std::fill(f.begin(), f.end(), 0.0);
       return;
     }
@@ -42,8 +43,8 @@ class AlignedBundle final : public Bundle {
     for (size_t c = 0; c < f.size(); ++c) f[c] = value_at(q, fine, c);
   }
   double value(Dir out, Dir in, size_t channel) const override {
-    Query q;
-    return query(out, in, q) ? value_at(q, place(fine_, q.up), channel) : 0;
+    const Query& q = ask(out, in);
+    return q.leaf ? value_at(q, place(fine_, q.up), channel) : 0;
   }
   double total(Dir out, size_t channel) const override {
     if (!faces(out)) return 0;
@@ -97,13 +98,12 @@ class AlignedBundle final : public Bundle {
     return back(out, in);
   }
   double pdf(Dir out, Dir in, size_t channel) const override {
-    Query q;
-    return query(out, in, q) ? density(q, channel) : 0;
+    const Query& q = ask(out, in);
+    return q.leaf ? density(q, channel) : 0;
   }
   void pdf(Dir out, Dir in, std::span<double> p) const override {
-    Query q;
-    const bool there = query(out, in, q);
-    for (size_t c = 0; c < p.size(); ++c) p[c] = there ? density(q, c) : 0;
+    const Query& q = ask(out, in);
+    for (size_t c = 0; c < p.size(); ++c) p[c] = q.leaf ? density(q, c) : 0;
   }
   std::optional<DeltaLobe> delta(Dir out, size_t channel) const override {
     if (totals_.delta.empty() || !faces(out)) return std::nullopt;
@@ -211,6 +211,26 @@ class AlignedBundle final : public Bundle {
     return s;
   }
 
+  // The answer for a pair of directions; no leaf where there is nothing. Values and densities of one pair are asked for
+  // one after the other, so each thread keeps its last answer.
+  const Query& ask(Dir out, Dir in) const {
+    struct Asked {
+      uint64_t bundle = 0;
+      Dir out, in;
+      Query answer;
+    };
+    thread_local Asked last;
+    const auto same = [](Dir a, Dir b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+    if (last.bundle == number_ && same(last.in, in) && same(last.out, out)) return last.answer;
+    last.bundle = number_, last.out = out, last.in = in;
+    if (!query(out, in, last.answer)) last.answer.leaf = nullptr;
+    return last.answer;
+  }
+  static uint64_t next_number() {
+    static std::atomic<uint64_t> count = 0;
+    return ++count;
+  }
+
   // The leaf of a pair of directions and where in it they fall; false where there is nothing.
   bool query(Dir out, Dir in, Query& q) const {
     if (!faces(out)) return false;
@@ -280,7 +300,8 @@ class AlignedBundle final : public Bundle {
   AlignedTotals totals_;
   ThetaGrid views_, fine_;
   AlignedTables tables_;
-  bool planar_;  // a surface seen in the plane of its normal and `out`
+  bool planar_;                            // a surface seen in the plane of its normal and `out`
+  const uint64_t number_ = next_number();  // of this bundle among all that there ever were
   std::vector<size_t> channel_magnitude_;
 };
 

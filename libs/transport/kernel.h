@@ -139,7 +139,7 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool draw(size_t i, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
   bool fail(uint32_t p);
-  SUITE_INLINE double survives(uint32_t p, double brightest, bool dirac);
+  SUITE_INLINE double survives(uint32_t p, double brightest);
   SUITE_INLINE bool cut(uint32_t p, bool event);
   SUITE_INLINE void leave(size_t i, const Continuation& on);
 

@@ -36,7 +36,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   const double shares = weigh(p, on, own, brightest);
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
   if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
-  const double alive = survives(p, brightest, on.dirac);
+  const double alive = survives(p, brightest);
   if (alive == 0 || cut(p, nodes_[i].event)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
@@ -105,9 +105,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
 
 // The probability with which the path has survived; 0 when roulette ends it.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest, bool dirac) {
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest) {
   Path& path = paths_[p];
-  const double alive = Estimator::survival(brightest, path.order(), options_.roulette_after, dirac);
+  const double alive = Estimator::survival(brightest, path.order(), options_.roulette_after);
   if (alive == 1) return 1;
   if (path.stream.hashed(path.sample, dimensions::roulette(path.order() - 1)) >= alive) {
     records_[p].end = PathEnd::roulette;

@@ -49,17 +49,21 @@ class Sqt final : public ScatterModel {
       most_.push_back(beyond && range.outside == Outside::zero ? 0 : 1);
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
+    for (const double wavelength : info.function.wavelength_um)
+      total_of_.push_back(
+          static_cast<size_t>(std::lower_bound(info.magnitude_um.begin(), info.magnitude_um.end(), wavelength) -
+                              info.magnitude_um.begin()));
   }
 
   void eval(Dir out, Dir in, std::span<float> w) const override {
     thread_local std::vector<double> f, W;
     f.resize(bundle_->channels());
     bundle_->value(out, in, f);
+    magnitudes(out, W);
     for (size_t c = 0; c < f.size(); ++c) {
-      const double total = f[c] > 0 ? bundle_->total(out, c) : 0;
+      const double total = f[c] > 0 ? W[total_of_[c]] : 0;
       f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
     }
-    magnitudes(out, W);
     for (size_t i = 0; i < w.size(); ++i)
       w[i] =
           static_cast<float>(at_bin(W, i) * ((1 - shape_[i].t) * f[shape_[i].low] + shape_[i].t * f[shape_[i].high]));
@@ -136,6 +140,7 @@ class Sqt final : public ScatterModel {
   std::vector<Between> shape_, magnitude_;  // per bin
   std::vector<double> most_;                // per bin: the largest total, 0 where nothing is stored and `zero` declared
   std::vector<Between> knot_;               // per knot
+  std::vector<size_t> total_of_;            // per channel: where its total stands among the magnitudes
 };
 
 // The tests fit a bundle to each.

@@ -17,7 +17,7 @@ namespace suite {
 struct PaperEstimator {
   static std::array<double, kMaxKnots> knot_probabilities(size_t) { return {1}; }
   static int draw_knot(double, int) { return 0; }
-  static double survival(double, uint64_t, int, bool) { return 1; }
+  static double survival(double, uint64_t, int) { return 1; }
   static double by_chance(const LightNature& light, double) { return light.wide ? 1 : 0; }
   static double asked(double drawn, double, bool) { return drawn; }
   static bool parallel(const LightNature&) { return false; }

@@ -21,8 +21,8 @@ struct StandardEstimator {
   static int draw_knot(double u, int knots) {
     return u < 0.5 ? 0 : 1 + std::min(knots - 2, static_cast<int>((u - 0.5) * 2 * (knots - 1)));
   }
-  static double survival(double brightness, uint64_t events, int after, bool dirac) {
-    return suite::survival(brightness, events, after, dirac);
+  static double survival(double brightness, uint64_t events, int after) {
+    return suite::survival(brightness, events, after);
   }
   // What a light counts that continuations met by chance; other: the density of asking for it over theirs.
   static double by_chance(const LightNature& light, double other) { return 1 / shared_density(1, other, light.disk); }
