@@ -34,18 +34,17 @@ std::vector<Feature> all_features() {
        "Thermal emission. The blackbody radiance of a material is tabulated only when its temperature was loaded, "
        "which it is when it shows in some spectral window (--explain temperatures)."}};
   for (const LightRow* row : light_keys()) all.push_back({row->key(), row->uses});
-  all.insert(all.end(),
-             {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
-              {"adjacency",
-               "Paths that go back to places in real air, for shadows in it and light of single places. "
-               "Without, or without air, kernels are made that know nothing of it."},
-              {"refracted light",
-               "Sun and moon asked for through one or two smooth interfaces (water, panes, lenses) from every "
-               "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
-               "asked at a node."},
-              {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
-              {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
-              {"bands", "Spectral bins are carried only where a band of the state responds."}});
+  all.insert(all.end(), {{"atmosphere", "Layers of air that dim and scatter along every segment of a path."},
+                         {"adjacency",
+                          "Paths that go back to places in real air, for shadows in it and light of single places. "
+                          "Without, or without air, kernels are made that know nothing of it."},
+                         {"refracted light",
+                          "Sun and moon asked for through smooth interfaces (water, panes, lenses) from every "
+                          "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
+                          "asked at a node."},
+                         {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
+                         {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
+                         {"bands", "Spectral bins are carried only where a band of the state responds."}});
   return all;
 }
 

@@ -123,6 +123,7 @@ class PathKernel final : public PathTracing {
   void want_refracted(const NodeAt& node, const Asked& light, const LightSample& sample);
   void shine_refracted();
   void shine_refracted(const Question& q, size_t knot);
+  void shine_along(const RefractedWay& way, const Question& q, size_t knot);
   bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
   bool is_owned(const Question& q, size_t ray);

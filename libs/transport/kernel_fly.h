@@ -302,7 +302,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
-  const bool asked_through = refracted_ && path.bends > 0 && path.bends <= RefractedSight::kMostCrossings;
+  const bool asked_through = refracted_ && path.bends > 0 && path.bends <= RefractedWay::kMostEvents;
   for (const Asked& light : outside_) {
     if (asked_through && is_refracted(light.nature)) continue;
     const auto met = light.light->met_outside(path.direction, path.time);

@@ -1,9 +1,9 @@
-// Definitions of kernel.h: lights behind one or two smooth interfaces (refracted_sight.h).
+// Definitions of kernel.h: lights behind smooth interfaces (refracted_sight.h).
 //
 // Every node asks far lights that are small for all ways through such interfaces, whatever the straight line towards
-// the light meets; so what continuations of the node find of the light after one or two smooth transmissions, and
-// nothing else, is left out (Lane::bends). The light comes along a way with
-//   w(out, direction) x transmittances of interfaces, squared indices with them, and of what fills space
+// the light meets; so what continuations of the node find of the light after a smooth transmission and some more or
+// smooth reflections, and nothing else, is left out (Lane::bends). The light comes along a way with
+//   w(out, direction) x transmittances and reflectances of interfaces, squared indices, and of what fills space
 //     x |d(direction) / d(direction at the light)|  x  radiance over its density, or irradiance.
 #pragma once
 #include <algorithm>
@@ -33,7 +33,7 @@ uint8_t PathKernel<Surfaces, Space, Throughputs, Estimator>::bends_behind(const 
   if (!on.dirac) return 0;
   const Hit& hit = hits_[node.slot];
   const bool passed = dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
-  if (!passed || path.bends >= RefractedSight::kMostCrossings) return Path::kUnasked;
+  if (path.bends >= RefractedWay::kMostEvents || (path.bends == 0 && !passed)) return Path::kUnasked;
   return refracted_->interfaces().has(surfaces_.material(node.path)) ? static_cast<uint8_t>(path.bends + 1)
                                                                      : Path::kUnasked;
 }
@@ -43,7 +43,7 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_owned(const Question& q, size_t ray) {
   if (!refracted_ || q.light == kFromAir || !is_refracted(environment_.lights[q.light]->nature())) return false;
   if (Space::kGoesBack && nodes_[q.node].event) return false;
-  return refracted_->crossings(sight_rays_.rays()[ray]) <= RefractedSight::kMostCrossings;
+  return refracted_->crossings(sight_rays_.rays()[ray]) <= RefractedWay::kMostEvents;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -74,13 +74,13 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& n
   space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -path.direction,
                    way.direction);
   Ray ray{way.origin, way.direction, path.time, path.draw};
-  for (int i = 0; i < way.crossings; ++i) {
-    const RefractedCrossing& at = way.at[i];
+  for (int i = 0; i < way.events; ++i) {
+    const RefractedEvent& at = way.at[i];
     arrival += at.length * space_.follow_way(ray, at.length, through, transmission_);
-    at.model->delta_weight(at.out_local, refracted_->interfaces().lobe(at.material), static_cast<int>(knot),
-                           transmission_);
+    at.model->delta_weight(at.out_local, refracted_->interfaces().lobe(at.material, at.reflected),
+                           static_cast<int>(knot), transmission_);
     for (size_t b = 0; b < bins_; ++b) through[b] *= transmission_[b];
-    space_.cross_way(at.hit, at.material, at.in);
+    if (!at.reflected) space_.cross_way(at.hit, at.material, at.in);
     ray.origin = surface_.tracer().leave(at.hit, at.in);
     ray.direction = at.in;
   }
@@ -107,17 +107,24 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
     if (!at.two_sided) from.side = dot(path.direction, hit.normal) < 0 ? hit.normal : -hit.normal;
   }
   constexpr uint64_t kPurpose = 0x62656e74;
-  const auto way = refracted_->find(
-      from, q.direction, knot, hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot));
-  if (!way) return;
+  const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
+  for (const RefractedWay& way : refracted_->find(from, q.direction, knot, seed)) shine_along(way, q, knot);
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const RefractedWay& way, const Question& q,
+                                                                      size_t knot) {
+  const NodeAt& node = nodes_[q.node];
+  const uint32_t p = node.path;
+  const Path& path = paths_[p];
   const auto most = static_cast<uint32_t>(options_.max_nodes);
-  if (most > 0 && path.surfaces + static_cast<uint32_t>(way->crossings) >= most) return;
-  if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way->direction)) return;
+  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return;
+  if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way.direction)) return;
   const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
-  const Factor factor = evaluate(node, way->direction, memory);
+  const Factor factor = evaluate(node, way.direction, memory);
   for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
   double arrival = 0;
-  if (!weaken(node, *way, knot, through, arrival)) return;
+  if (!weaken(node, way, knot, through, arrival)) return;
   const float* radiance = q.spectrum;
   if (!radiance) {  // its shape changes with direction
     const std::span<float> own = throughputs_.take(p);
@@ -125,15 +132,15 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
     environment_.lights[q.light]->add(q.direction, path.time, 1, own);
     radiance = own.data();
   }
-  const double scale = q.scale / (q.density > 0 ? q.density : 1) * way->spreading * way->trials;
+  const double scale = q.scale / (q.density > 0 ? q.density : 1) * way.spreading * way.trials;
   for (const bool doubtful : {false, true}) {
-    if (doubtful && !way->doubtful) break;
+    if (doubtful && !way.doubtful) break;
     Contribution& c = contribution(p, q.light);
     c.events |= by_surface | by_dirac;
     if (node.event) c.events |= by_medium;
     c.asked = true;
     c.beam = q.beam;
-    c.order += static_cast<uint32_t>(way->crossings);
+    c.order += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(scale);
     c.factor = {1, through.data()};
     c.radiance = radiance;

@@ -6,7 +6,7 @@
 namespace suite {
 
 SmoothInterfaces::SmoothInterfaces(const Scene& scene, const Optics& optics)
-    : index_(scene.materials.size()), lobe_(scene.materials.size(), 0) {
+    : index_(scene.materials.size()), lobe_(scene.materials.size(), {0, kNoLobe}) {
   const size_t knots = optics.state().knots.size();
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
     const BakedMaterial& material = optics.material(i);
@@ -39,16 +39,27 @@ bool SmoothInterfaces::probe(const ScatterModel& model, uint32_t material, size_
       if (!mirrored->delta) return false;
       model.delta_probability(oblique, mirrored->lobe, static_cast<int>(k), reflected);
       all += double{reflected[k]};
+      lobe_[material][1] = mirrored->lobe;
     }
     if (std::fabs(all - 1) > 1e-6) return false;
     index.push_back(oblique.x / -through->in.x);
-    lobe_[material] = through->lobe;
+    lobe_[material][0] = through->lobe;
   }
   index_[material] = std::move(index);
   return true;
 }
 
 BentRay BentRay::from(Vec3 origin, const Frame& across) { return {origin, across.z, {}, {across.x, across.y}}; }
+
+namespace {
+
+// The change of a ray's place on a surface that it meets with parameter i.
+Vec3 moved_along(const BentRay& ray, const Hit& hit, int i) {
+  const Vec3 dp = ray.d_origin[i] + ray.d_direction[i] * hit.distance;
+  return dp - ray.direction * (dot(dp, hit.normal) / dot(ray.direction, hit.normal));
+}
+
+}  // namespace
 
 bool bend(BentRay& ray, const Hit& hit, const Interaction& at, double index, const NormalTurn& turn) {
   const Dir d = ray.direction;
@@ -64,12 +75,26 @@ bool bend(BentRay& ray, const Hit& hit, const Interaction& at, double index, con
   const Dir on = normalized(d * mu + n * along);
   if (dot(on, hit.normal) * slope <= 0) return false;
   for (int i : {0, 1}) {
-    const Vec3 dp = ray.d_origin[i] + ray.d_direction[i] * hit.distance;
-    const Vec3 moved = dp - d * (dot(dp, hit.normal) / slope);
-    const Vec3 dn = turn.over(moved) * side, dd = ray.d_direction[i];
+    const Vec3 moved = moved_along(ray, hit, i), dn = turn.over(moved) * side, dd = ray.d_direction[i];
     const double dc1 = -(dot(dd, n) + dot(d, dn)), dc2 = mu * mu * c1 * dc1 / c2;
     ray.d_origin[i] = moved;
     ray.d_direction[i] = dd * mu + n * (mu * dc1 - dc2) + dn * along;
+  }
+  ray.origin = hit.position;
+  ray.direction = on;
+  return true;
+}
+
+bool reflect(BentRay& ray, const Hit& hit, const Interaction& at, const NormalTurn& turn) {
+  const Dir d = ray.direction, n = at.frame.z;
+  const double slope = dot(d, hit.normal), along = dot(d, n);
+  if (slope == 0) return false;
+  const Dir on = normalized(d - n * (2 * along));
+  if (dot(on, hit.normal) * slope >= 0) return false;
+  for (int i : {0, 1}) {
+    const Vec3 moved = moved_along(ray, hit, i), dn = turn.over(moved), dd = ray.d_direction[i];
+    ray.d_origin[i] = moved;
+    ray.d_direction[i] = dd - n * (2 * (dot(dd, n) + dot(d, dn))) - dn * (2 * along);
   }
   ray.origin = hit.position;
   ray.direction = on;

@@ -43,8 +43,14 @@ Box3 bounds_of(const Tracer& tracer, uint32_t number, const TracedObject& object
 
 }  // namespace
 
+uint32_t RefractedWay::mirrors() const {
+  uint32_t bits = 0;
+  for (int i = 0; i < events; ++i) bits |= uint32_t{at[i].reflected} << i;
+  return bits;
+}
+
 RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
-    : surface_(surface), interfaces_(surface.tracer().scene(), optics) {
+    : surface_(surface), interfaces_(surface.tracer().scene(), optics), shares_(optics.state().knots.size()) {
   const Tracer& tracer = surface.tracer();
   const Scene& scene = tracer.scene();
   for (const Material& m : scene.materials) passes_.push_back(!optics.media().empty() && m.is_boundary());
@@ -81,74 +87,89 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
 int RefractedSight::crossings(Ray ray) {
   for (int n = 0;; ++n) {
     Hit hit;
-    if (!hit_next(ray, hit) || n > kMostCrossings) return n;
-    if (!interfaces_.has(surface_.material(hit))) return kMostCrossings + 1;
+    if (!hit_next(ray, hit) || n > RefractedWay::kMostEvents) return n;
+    if (!interfaces_.has(surface_.material(hit))) return RefractedWay::kMostEvents + 1;
     ray.origin = surface_.tracer().leave(hit, ray.direction);
   }
 }
 
-// One ray from the node through the interfaces that it meets. False when it meets none, or is totally reflected at one.
-bool RefractedSight::trace(const Node& node, Dir direction, Dir light, size_t knot, Traced& traced) {
+// One ray from the node through the interfaces that it meets, of which `mirrors` (a bit each) reflect it. False when it
+// meets none, or one does not let it on.
+bool RefractedSight::trace(const Search& s, Dir direction, uint32_t mirrors, Traced& traced) {
   const Tracer& tracer = surface_.tracer();
+  const Node& node = s.node;
   if (node.hit && dot(direction, node.side) < 0) return false;
   const Frame start = Frame::around(direction);
   RefractedWay& way = traced.way;
   way.origin = node.hit ? tracer.leave(*node.hit, direction) : node.place;
   way.direction = direction;
-  way.crossings = 0;
+  way.events = 0;
   traced.open = false;
   traced.end = BentRay::from(way.origin, start);
-  BentRay& bent = traced.end;
   Ray ray{way.origin, direction, node.time, node.draw};
   while (true) {
     Hit hit;
     if (!hit_next(ray, hit)) {
-      traced.open = way.crossings > 0;
+      traced.open = way.events > 0;
       break;
     }
     const uint32_t material = surface_.material(hit);
-    if (!interfaces_.has(material) || way.crossings == kMostCrossings) break;
-    surface_.interact(hit, -bent.direction, at_, node.time);
-    RefractedCrossing& at = way.at[way.crossings];
-    at.out = -bent.direction;
-    at.length = hit.distance;
-    const NormalTurn turn = normal_turn(surface_, hit, at.out, at_, beside_);
-    if (!bend(bent, hit, at_, interfaces_.index(material, knot), turn)) return false;
-    at.hit = hit;
-    at.in = bent.direction;
-    at.out_local = at_.frame.to_local(at.out);
-    at.material = material;
-    at.model = at_.baked->model;
-    ++way.crossings;
-    ray.origin = way.last = tracer.leave(hit, bent.direction);
-    ray.direction = bent.direction;
+    if (!interfaces_.has(material) || way.events == RefractedWay::kMostEvents) break;
+    if (!pass(s, hit, material, mirrors >> way.events & 1, traced)) return false;
+    ray.origin = tracer.leave(hit, traced.end.direction);
+    ray.direction = traced.end.direction;
   }
-  if (way.crossings == 0) return false;
-  aim(light, traced, start);
+  if (way.events == 0) return false;
+  aim(s.light, traced, start);
   return true;
 }
 
-// How far the end is off, and where Newton's method would start next.
+// Takes the ray on behind the interface at a hit; false where that is not possible.
+bool RefractedSight::pass(const Search& s, const Hit& hit, uint32_t material, bool reflected, Traced& traced) {
+  BentRay& bent = traced.end;
+  surface_.interact(hit, -bent.direction, at_, s.node.time);
+  RefractedEvent& at = traced.way.at[traced.way.events];
+  at.out = -bent.direction;
+  at.length = hit.distance;
+  const NormalTurn turn = normal_turn(surface_, hit, at.out, at_, beside_);
+  const bool on = reflected
+                      ? interfaces_.lobe(material, true) != SmoothInterfaces::kNoLobe && reflect(bent, hit, at_, turn)
+                      : bend(bent, hit, at_, interfaces_.index(material, s.knot), turn);
+  if (!on) return false;
+  at.hit = hit;
+  at.in = bent.direction;
+  at.out_local = at_.frame.to_local(at.out);
+  at.material = material;
+  at.model = at_.baked->model;
+  at.reflected = reflected;
+  ++traced.way.events;
+  return true;
+}
+
+// How far the end is off, and where Newton's method would start next: it turns the end towards the light on the
+// shortest way.
 void RefractedSight::aim(Dir light, Traced& traced, const Frame& start) {
-  const Frame to = Frame::around(light);
   const BentRay& end = traced.end;
-  const double xx = dot(end.d_direction[0], to.x), xy = dot(end.d_direction[1], to.x),
-               yx = dot(end.d_direction[0], to.y), yy = dot(end.d_direction[1], to.y), det = xx * yy - xy * yx;
-  const double fx = dot(end.direction, to.x), fy = dot(end.direction, to.y);
-  traced.off = dot(end.direction, light) > 0 ? std::hypot(fx, fy) : 2;
+  const Frame at = Frame::around(end.direction);
+  const double xx = dot(end.d_direction[0], at.x), xy = dot(end.d_direction[1], at.x),
+               yx = dot(end.d_direction[0], at.y), yy = dot(end.d_direction[1], at.y), det = xx * yy - xy * yx;
+  const double fx = dot(light, at.x), fy = dot(light, at.y), sine = std::hypot(fx, fy);
+  const bool away = dot(end.direction, light) <= 0;
+  traced.off = away ? 2 - sine : sine;
   traced.det = det;
   traced.next = start.z;
   traced.inverse = INFINITY;
   if (det == 0) return;
-  traced.inverse = std::sqrt((xx * xx + xy * xy + yx * yx + yy * yy)) / std::fabs(det);
-  double a = -(yy * fx - xy * fy) / det, b = -(xx * fy - yx * fx) / det;
-  const double turn = std::hypot(a, b);
-  if (turn > kLongestTurn) a *= kLongestTurn / turn, b *= kLongestTurn / turn;
-  traced.next = normalized(start.z + start.x * a + start.y * b);
+  traced.inverse = std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy) / std::fabs(det);
+  if (sine == 0) return;
+  const double angle = away ? kPi - std::asin(std::min(1.0, sine)) : std::asin(std::min(1.0, sine));
+  const double a = (yy * fx - xy * fy) / det * (angle / sine), b = (xx * fy - yx * fx) / det * (angle / sine);
+  const double wanted = std::hypot(a, b), turn = std::min(wanted, kLongestTurn);
+  traced.next = normalized(start.z * std::cos(turn) + (start.x * a + start.y * b) * (std::sin(turn) / wanted));
 }
 
 // Newton's method with halved steps. False where it does not end at a way that is open.
-bool RefractedSight::walk(const Node& node, const Traced& start, Dir light, size_t knot, Traced& found) {
+bool RefractedSight::walk(const Search& s, const Traced& start, uint32_t mirrors, Traced& found) {
   found = start;
   for (int step = 0; step < kMostSteps && found.off > kArrived; ++step) {
     const Dir from = found.way.direction;
@@ -156,7 +177,7 @@ bool RefractedSight::walk(const Node& node, const Traced& start, Dir light, size
     double share = 1;
     for (int n = 0; n < kMostHalvings && !nearer; ++n, share *= 0.5) {
       Traced next;
-      if (!trace(node, normalized(from + (found.next - from) * share), light, knot, next)) continue;
+      if (!trace(s, normalized(from + (found.next - from) * share), mirrors, next)) continue;
       nearer = next.off < found.off;
       if (nearer) found = next;
     }
@@ -165,22 +186,22 @@ bool RefractedSight::walk(const Node& node, const Traced& start, Dir light, size
   return found.off < kNearEnough && found.open && std::isfinite(found.inverse);
 }
 
-// A start from the straight line towards the light: itself where it leaves the second interface, else what a flat
+// A start from the straight line towards the light: itself where it leaves a second interface, else what a flat
 // interface where it meets the first one would make of it. False when it meets none.
-bool RefractedSight::guess(const Node& node, Dir light, size_t knot, Dir& direction) {
+bool RefractedSight::guess(const Search& s, Dir& direction) {
   const Tracer& tracer = surface_.tracer();
-  Ray ray{node.hit ? tracer.leave(*node.hit, light) : node.place, light, node.time, node.draw};
+  Ray ray{s.node.hit ? tracer.leave(*s.node.hit, s.light) : s.node.place, s.light, s.node.time, s.node.draw};
   Hit hit;
   if (!hit_next(ray, hit)) return false;
   const uint32_t material = surface_.material(hit);
   if (!interfaces_.has(material)) return false;
-  direction = light;
+  direction = s.light;
   Traced straight;
-  if (trace(node, light, light, knot, straight) && straight.way.crossings == 2) return true;
-  surface_.interact(hit, -light, at_, node.time);
-  const double index = interfaces_.index(material, knot);
+  if (trace(s, s.light, 0, straight) && straight.way.events > 1) return true;
+  surface_.interact(hit, -s.light, at_, s.node.time);
+  const double index = interfaces_.index(material, s.knot);
   // Met from behind: the light comes from the front, and the node lies in what is behind.
-  const auto inside = unbent(light, at_.frame.z, dot(light, hit.normal) > 0 ? 1 / index : index);
+  const auto inside = unbent(s.light, at_.frame.z, dot(s.light, hit.normal) > 0 ? 1 / index : index);
   if (inside) direction = *inside;
   return true;
 }
@@ -218,35 +239,67 @@ Dir RefractedSight::draw_start(const Node& node) {
 }
 
 // A random start, and the way that it leads to.
-bool RefractedSight::try_once(const Node& node, Dir light, size_t knot, Traced& found) {
+bool RefractedSight::try_once(const Search& s, bool mirrored, Traced& found) {
+  constexpr double kReflects = 0.4;
   for (int n = 0; n < kMostStarts; ++n) {
-    const Dir start = draw_start(node);
+    const Dir start = draw_start(s.node);
+    uint32_t mirrors = 0;
+    for (int i = 1; mirrored && i < RefractedWay::kMostEvents; ++i) mirrors |= uint32_t{random() < kReflects} << i;
     Traced probe;
-    if (trace(node, start, light, knot, probe)) return walk(node, probe, light, knot, found);
+    if (!trace(s, start, mirrors, probe)) continue;
+    if (mirrored && (probe.way.mirrors() == 0 || probe.off > 1)) return false;
+    return walk(s, probe, mirrors, found) && (found.way.mirrors() != 0) == mirrored;
   }
   return false;
 }
 
-std::optional<RefractedWay> RefractedSight::find(const Node& node, Dir light, size_t knot, uint64_t seed) {
-  seed_ = seed, counter_ = 0;
-  Dir direction;
-  guessed_.reset();
-  if (guess(node, light, knot, direction)) guessed_ = direction;
+// The share of the light that the interfaces send along a way.
+double RefractedSight::share(const RefractedWay& way, size_t knot) {
+  double all = 1;
+  for (int i = 0; i < way.events; ++i) {
+    const RefractedEvent& at = way.at[i];
+    at.model->delta_probability(at.out_local, interfaces_.lobe(at.material, at.reflected), static_cast<int>(knot),
+                                shares_);
+    all *= double{shares_[knot]};
+  }
+  return all;
+}
+
+// Of the ways with or without reflections.
+bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
+  constexpr double kWorthIt = 0.01;  // less light is followed up as rarely as it is weaker
   Traced first, again;
-  if (!try_once(node, light, knot, first)) return std::nullopt;
-  RefractedWay way = first.way;
+  if (!try_once(s, mirrored, first)) return false;
+  const double kept = mirrored ? std::min(1.0, share(first.way, s.knot) / kWorthIt) : 1;
+  if (kept < 1 && !(random() < kept)) return false;
+  way = first.way;
   way.spreading = 1 / std::fabs(first.det);
+  way.trials = 1;
+  way.doubtful = false;
   const auto same = [&] {
     const double near = std::max(kSame, 100 * (first.off + again.off)) * std::max(first.inverse, again.inverse);
-    return again.way.crossings == way.crossings && again.det * first.det > 0 &&
+    return again.way.events == way.events && again.way.mirrors() == way.mirrors() && again.det * first.det > 0 &&
            length(again.way.direction - way.direction) <= near;
   };
-  while (!(try_once(node, light, knot, again) && same()))
+  while (!(try_once(s, mirrored, again) && same()))
     if (++way.trials >= kMostTrials) {
       way.doubtful = true;
       break;
     }
-  return way;
+  way.trials /= kept;
+  return true;
+}
+
+std::span<const RefractedWay> RefractedSight::find(const Node& node, Dir light, size_t knot, uint64_t seed) {
+  const Search search{node, light, knot};
+  seed_ = seed, counter_ = 0;
+  Dir direction;
+  guessed_.reset();
+  if (guess(search, direction)) guessed_ = direction;
+  size_t n = 0;
+  for (const bool mirrored : {false, true})
+    if (find(search, mirrored, found_[n])) ++n;
+  return std::span(found_).first(n);
 }
 
 }  // namespace suite

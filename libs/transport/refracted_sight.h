@@ -1,17 +1,22 @@
-// Ways of light from far lights through one or two smooth interfaces: what a straight ray cannot ask for.
+// Ways of light through smooth interfaces: what a straight ray cannot ask for. They lead from a node to a far light or
+// to a place on a lamp, pass the first interface that they meet, and pass or are reflected by the next ones.
 //
 // From a node rays are shot that smooth interfaces bend; Newton's method turns a start until its end runs towards the
 // light (manifold walk). Which starts find which way is not known; so when a random start has found one, starts are
 // repeated until one finds the same again: the number of them is an unbiased estimate of the reciprocal of the
-// probability with which it was found, whatever the surfaces look like. All ways together count right in the mean.
-// Ways after more than kMostTrials such starts count as that many and are said to be doubtful.
+// probability with which it was found, whatever the surfaces look like. All ways together count right in the mean, and
+// the number of starts to be expected is that of the ways. Ways after more than kMostTrials such starts count as that
+// many and are said to be doubtful.
 // Starts: the straight line, or what flat water at its first interface would make of it; directions about that; points
-// and directions of the refracting objects. Every direction that meets one has a chance.
-// Assumes: rays that the interfaces bend run on freely behind the second of them or are no way at all; more interfaces,
-// reflections on the way and rough interfaces are left to continuations that meet a light by chance.
+// and directions of the refracting objects. Every direction that meets one has a chance. Ways that are only passed on
+// and ways with reflections are looked for one after the other, so that the rare second ones make no noise in the
+// first; which interfaces reflect is drawn with the start.
+// Assumes: at most kMostEvents interfaces; longer ways, those that begin with a reflection and rough interfaces are
+// left to continuations that meet a light by chance.
 // Based on: J. Hanika, M. Droske, L. Fascione, "Manifold next event estimation", EGSR 2015; T. Zeltner, I. Georgiev,
 // W. Jakob, "Specular manifold sampling for rendering high-frequency caustics and glints", ACM TOG 39(4), 2020.
 #pragma once
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,29 +26,32 @@
 namespace suite {
 
 // A smooth interface on a way.
-struct RefractedCrossing {
+struct RefractedEvent {
   Hit hit;
   double length = 0;  // m from the place before
   Dir out, in;        // back towards the node, on towards the light
   Dir out_local;      // `out` in the shading frame
   uint32_t material = kNone;
   const ScatterModel* model = nullptr;
+  bool reflected = false;
 };
 
 struct RefractedWay {
+  static constexpr int kMostEvents = 10;
   Vec3 origin;    // of the ray that leaves the node
   Dir direction;  // from the node
-  int crossings = 0;
-  RefractedCrossing at[2];
-  Vec3 last;             // where the free ray towards the light starts
+  int events = 0;
+  RefractedEvent at[kMostEvents];
   double spreading = 0;  // solid angle at the node over that at the light
   double trials = 1;     // the estimated reciprocal of the probability with which it was found
   bool doubtful = false;
+  // A bit for each event that reflects.
+  uint32_t mirrors() const;
 };
 
 class RefractedSight {
  public:
-  static constexpr int kMostCrossings = 2, kMostTrials = 512;
+  static constexpr int kMostTrials = 4096;
 
   // Keeps references. Whether any ray can be asked for: interfaces().any().
   RefractedSight(const Surface& surface, const Optics& optics);
@@ -57,28 +65,36 @@ class RefractedSight {
     double time = 0;           // s
     uint32_t draw = 0;         // Ray::draw
   };
-  // A way from the node towards a light at infinity, for the wavelengths of a knot. seed: of the random numbers.
-  // Nothing where none was found; in the mean over seeds all ways count.
-  std::optional<RefractedWay> find(const Node& node, Dir light, size_t knot, uint64_t seed);
-  // How many smooth interfaces a straight ray crosses before it is free; more than kMostCrossings = at least one more.
+  // Ways from the node towards a light at infinity, for the wavelengths of a knot: none, one or two. seed: of the
+  // random numbers. In the mean over seeds all ways count. What is returned lives until the next call.
+  std::span<const RefractedWay> find(const Node& node, Dir light, size_t knot, uint64_t seed);
+  // How many smooth interfaces a straight ray crosses before it is free; more than kMostEvents = at least one more.
   int crossings(Ray ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
+  struct Search {  // what is looked for
+    const Node& node;
+    Dir light;
+    size_t knot;
+  };
   struct Traced {
     RefractedWay way;
     BentRay end;
     bool open = false;   // nothing behind the last interface
-    double det = 0;      // of the change of the end's direction with that of the start, in the frame of the light
-    double off = 0;      // rad, the end's direction from the light's
+    double det = 0;      // of the change of the end's direction with that of the start
+    double off = 0;      // sine of the end's direction from the light's; 2 - sine where it runs away from it
     Dir next;            // Newton's next direction
     double inverse = 0;  // norm of the inverse of the change
   };
   bool hit_next(Ray& ray, Hit& hit);
-  bool trace(const Node& node, Dir direction, Dir light, size_t knot, Traced& traced);
-  bool walk(const Node& node, const Traced& start, Dir light, size_t knot, Traced& found);
-  bool guess(const Node& node, Dir light, size_t knot, Dir& direction);
-  bool try_once(const Node& node, Dir light, size_t knot, Traced& found);
+  bool trace(const Search& s, Dir direction, uint32_t mirrors, Traced& traced);
+  bool pass(const Search& s, const Hit& hit, uint32_t material, bool reflected, Traced& traced);
+  bool walk(const Search& s, const Traced& start, uint32_t mirrors, Traced& found);
+  bool guess(const Search& s, Dir& direction);
+  bool try_once(const Search& s, bool mirrored, Traced& found);
+  bool find(const Search& s, bool mirrored, RefractedWay& way);
+  double share(const RefractedWay& way, size_t knot);
   Dir draw_start(const Node& node);
   Dir draw_at_object(const Node& node);
   static void aim(Dir light, Traced& traced, const Frame& start);
@@ -92,6 +108,8 @@ class RefractedSight {
   TraceStatistics statistics_;
   uint64_t seed_ = 0, counter_ = 0;
   std::optional<Dir> guessed_;
+  std::vector<float> shares_;  // per knot
+  RefractedWay found_[2];
 };
 
 }  // namespace suite

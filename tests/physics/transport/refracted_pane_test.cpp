@@ -1,4 +1,4 @@
-// A floor under a pane of glass: light through two smooth interfaces.
+// A floor under panes of glass: light through two and four smooth interfaces, and what they reflect on its way.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,21 +11,23 @@ namespace {
 
 constexpr double kGlass = 1.5, kReflectance = 0.3;
 
-std::shared_ptr<Scene> floor_under_pane() {
+// Panes 10 mm thick, 0.1 m apart.
+std::shared_ptr<Scene> floor_under(int panes) {
   auto scene = std::make_shared<Scene>();
   scene->materials = {material("floor", lambert(kReflectance)),
                       material("glass", {"dielectric", {}, {{"index", Curve::constant(kGlass)}}, {}, nullptr})};
   place(*scene, PrimitiveKind::plane, {0, 0}, 0);
-  place(*scene, PrimitiveKind::box, {0, 0, 1, 0, 0, 1.01}, 1);
-  check_scene(*scene, "pane");
+  for (int i = 0; i < panes; ++i) place(*scene, PrimitiveKind::box, {0, 0, 1 + 0.1 * i, 0, 0, 1.01 + 0.1 * i}, 1);
+  check_scene(*scene, "panes");
   return scene;
 }
 
-// Two parallel faces of reflectance R, with all reflections between them (one polarisation state for both, as the
-// suite has it): (1 - R)^2 / (1 - R^2). Straight through: (1 - R)^2.
+// Parallel faces of reflectance R, with all reflections between them (one polarisation state for all, as the suite has
+// it): their R / (1 - R) add up, as layers that send on all that they do not reflect do (Stokes 1862). Straight
+// through one pane: (1 - R)^2.
 double reflectance(double cosine) { return fresnel_dielectric(cosine, kGlass).reflectance; }
 double straight(double c) { return (1 - reflectance(c)) * (1 - reflectance(c)); }
-double through(double c) { return (1 - reflectance(c)) / (1 + reflectance(c)); }
+double through(double c, int panes = 1) { return (1 - reflectance(c)) / (1 + (2 * panes - 1) * reflectance(c)); }
 
 // Means over cosine-distributed directions.
 template <class F>
@@ -37,15 +39,15 @@ double diffuse(const F& f) {
 }
 
 // Radiance of the floor: what comes down, and what it and the pane throw to and fro.
-double floor_radiance(double down) {
-  const double back = diffuse([](double c) { return 1 - through(c); });
+double floor_radiance(double down, int panes = 1) {
+  const double back = diffuse([&](double c) { return 1 - through(c, panes); });
   return kReflectance / kPi * down / (1 - kReflectance * back);
 }
 
 // Seen from between the pane and the floor.
-Seen run(const SourceSpecs& sources, uint32_t paths) {
+Seen run(const SourceSpecs& sources, uint32_t paths, int panes = 1) {
   const Dir view = dir_from_angles(20 * kDegree, 0.4);
-  return see(floor_under_pane(), sources, RaySensor(std::vector<Ray>{{view * 0.5, -view, 0}}, one_band(), paths));
+  return see(floor_under(panes), sources, RaySensor(std::vector<Ray>{{view * 0.5, -view, 0}}, one_band(), paths));
 }
 
 SourceSpecs sun(double half_angle, double zenith) {
@@ -62,19 +64,28 @@ void expect(const Seen& r, double truth) {
   EXPECT_LE(r.missing[0], 1e-3 * truth);  // flagged as not resolved beyond
 }
 
-// A collimated sun comes straight through; what the faces have thrown to and fro on its way, 0.2 % near the normal and
-// 0.8 % at 60 degrees, nothing finds.
-TEST(RefractedPane, CollimatedSunStraightThrough) {
+// With what the faces throw to and fro on its way: 0.2 % near the normal, 0.8 % at 60 degrees, 13 % at 80.
+TEST(RefractedPane, CollimatedSun) {
+  for (const double zenith : {5.0, 60.0, 80.0}) {
+    const double c = std::cos(zenith * kDegree);
+    expect(run(sun(0, zenith * kDegree), zenith < 70 ? 4096 : 32768), floor_radiance(c * through(c)));
+  }
+  // Negative control: the straight way alone would be told apart.
+  const double c = std::cos(60 * kDegree);
+  EXPECT_LT(straight(c), 0.993 * through(c));
+}
+
+// Four faces: more than ways through one pane can have.
+TEST(RefractedPane, DoubleGlazing) {
   for (const double zenith : {5.0, 60.0}) {
     const double c = std::cos(zenith * kDegree);
-    expect(run(sun(0, zenith * kDegree), 16384), floor_radiance(c * straight(c)));
-    EXPECT_NEAR(straight(c), through(c), 0.009 * through(c));
+    expect(run(sun(0, zenith * kDegree), 32768, 2), floor_radiance(c * through(c, 2), 2));
   }
 }
 
-// Of a disk part of it is met by chance. At 60 degrees the mean is 0.9 % low, as if those reflections were missing; 0.5
-// % was asked for, so that sun is held to 1 % here.
-TEST(RefractedPane, WideSunWithAllReflections) {
+// Bug: of a wide disk continuations met what the faces had reflected, so rarely that most runs missed it, and were low
+// by 0.9 % at 60 degrees with an error that did not tell.
+TEST(RefractedPane, WideSun) {
   constexpr double kDisk = 8 * kDegree;
   for (const double zenith : {5.0, 60.0}) {
     const Frame frame = Frame::around(dir_from_angles(zenith * kDegree, 0));
@@ -87,11 +98,7 @@ TEST(RefractedPane, WideSunWithAllReflections) {
         down += z * through(z) / (n * n);
       }
     down *= 2 * (1 - std::cos(kDisk)) / (std::sin(kDisk) * std::sin(kDisk));
-    const Seen r = run(sun(kDisk, zenith * kDegree), 65536);
-    if (zenith < 30)
-      expect(r, floor_radiance(down));
-    else
-      EXPECT_NEAR(r.radiance[0], floor_radiance(down), 0.01 * floor_radiance(down));
+    expect(run(sun(kDisk, zenith * kDegree), 4096), floor_radiance(down));
   }
 }
 
@@ -100,7 +107,7 @@ TEST(RefractedPane, SunAndSky) {
     const double c = std::cos(zenith * kDegree);
     SourceSpecs s = sun(0, zenith * kDegree);
     s.add(uniform_sky(0.1, false));
-    expect(run(s, 65536), floor_radiance(c * straight(c) + kPi * 0.1 * diffuse(through)));
+    expect(run(s, 65536), floor_radiance(c * through(c) + kPi * 0.1 * diffuse([](double z) { return through(z); })));
   }
 }
 

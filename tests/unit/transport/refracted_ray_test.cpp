@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 
 #include "optics/models.h"
@@ -29,8 +30,8 @@ struct World {
   Surface surface;
   SmoothInterfaces interfaces;
 
-  // Through as many interfaces; nothing where there are fewer.
-  std::optional<BentRay> run(Vec3 from, const Frame& across, int crossings) {
+  // Through as many interfaces, of which `mirrors` (a bit each) reflect; nothing where there are fewer.
+  std::optional<BentRay> run(Vec3 from, const Frame& across, int crossings, uint32_t mirrors = 0) {
     BentRay ray = BentRay::from(from, across);
     Interaction at, beside;
     TraceStatistics statistics;
@@ -42,21 +43,22 @@ struct World {
       if (!hit.hit()) return std::nullopt;
       surface.interact(hit, -ray.direction, at);
       const NormalTurn turn = normal_turn(surface, hit, -ray.direction, at, beside);
-      if (!bend(ray, hit, at, interfaces.index(at.material, 0), turn)) return std::nullopt;
+      if (mirrors >> i & 1 ? !reflect(ray, hit, at, turn) : !bend(ray, hit, at, interfaces.index(at.material, 0), turn))
+        return std::nullopt;
       origin = tracer.leave(hit, ray.direction);
     }
     return ray;
   }
   // Largest difference of derivatives from central differences of step h, over the size of the derivatives.
-  double error(Vec3 from, Dir towards, int crossings, double h) {
+  double error(Vec3 from, Dir towards, int crossings, double h, uint32_t mirrors = 0) {
     const Frame across = Frame::around(normalized(towards));
-    const auto ray = run(from, across, crossings);
+    const auto ray = run(from, across, crossings, mirrors);
     if (!ray) return INFINITY;
     double off = 0, size = 0;
     for (int i : {0, 1}) {
       const Vec3 step = (i ? across.y : across.x) * h;
-      const auto more = run(from, Frame::around(normalized(across.z + step)), crossings),
-                 less = run(from, Frame::around(normalized(across.z - step)), crossings);
+      const auto more = run(from, Frame::around(normalized(across.z + step)), crossings, mirrors),
+                 less = run(from, Frame::around(normalized(across.z - step)), crossings, mirrors);
       if (!more || !less) return INFINITY;
       const Vec3 difference = (more->direction - less->direction) / (2 * h);
       off = std::fmax(off, length(difference - ray->d_direction[i]));
@@ -105,6 +107,8 @@ TEST(RefractedRay, ExactSurfaces) {
   World ball(exact(PrimitiveKind::sphere, {0.5}, turned));
   EXPECT_LT(ball.error({}, up, 1, 1e-5), 1e-7);
   EXPECT_LT(ball.error({}, up, 2, 1e-5), kOffSurface);
+  EXPECT_LT(ball.error({}, up, 1, 1e-5, 1), 1e-7) << "reflected outside";
+  EXPECT_LT(ball.error({}, up, 4, 1e-5, 6), kOffSurface) << "twice inside";
   World rod(exact(PrimitiveKind::cylinder, {0.4, 3, 1}, translation({0.1, 1.5, 2}) * rotation({1, 0, 0}, kPi / 2)));
   EXPECT_LT(rod.error({}, up, 2, 1e-5), kOffSurface);
   World cone(exact(PrimitiveKind::cone, {0.5, 0.2, 3, 1}, translation({0.1, 1.5, 2}) * rotation({1, 0, 0}, kPi / 2)));
@@ -177,11 +181,12 @@ double mean_spreading(World& w, Vec3 from, Dir light, int seeds, int crossings) 
   node.place = from;
   double sum = 0;
   for (int seed = 0; seed < seeds; ++seed) {
-    const auto way = sight.find(node, light, 0, mix64(static_cast<uint64_t>(seed)));
-    if (!way) continue;
-    EXPECT_EQ(way->crossings, crossings);
-    EXPECT_FALSE(way->doubtful);
-    sum += way->spreading * way->trials;
+    for (const RefractedWay& way : sight.find(node, light, 0, mix64(static_cast<uint64_t>(seed)))) {
+      if (way.mirrors() != 0) continue;
+      EXPECT_EQ(way.events, crossings);
+      EXPECT_FALSE(way.doubtful);
+      sum += way.spreading * way.trials;
+    }
   }
   return sum / seeds;
 }
@@ -193,14 +198,34 @@ TEST(RefractedSight, FlatWaterHasOneWay) {
   for (const double zenith : {0.0, 0.5, 1.0, 1.3, 1.55}) {
     const Dir light = dir_from_angles(zenith, 0.3);
     const double n = sight.interfaces().index(0, 0), inside = std::asin(std::sin(zenith) / n);
-    const auto way = sight.find(node, light, 0, 7);
-    ASSERT_TRUE(way) << zenith;
-    EXPECT_LT(length(way->direction - dir_from_angles(inside, 0.3)), 1e-8);
-    EXPECT_NEAR(way->spreading, std::cos(zenith) / (n * n * std::cos(inside)), 1e-7);
+    const auto ways = sight.find(node, light, 0, 7);
+    ASSERT_EQ(ways.size(), 1u) << zenith;
+    const double spreading = ways[0].spreading;
+    EXPECT_LT(length(ways[0].direction - dir_from_angles(inside, 0.3)), 1e-8);
+    EXPECT_NEAR(spreading, std::cos(zenith) / (n * n * std::cos(inside)), 1e-7);
     // Every start finds it.
-    EXPECT_NEAR(mean_spreading(water, {}, light, 200, 1) / way->spreading, 1, 0.12) << zenith;
+    EXPECT_NEAR(mean_spreading(water, {}, light, 200, 1) / spreading, 1, 0.12) << zenith;
   }
-  EXPECT_FALSE(sight.find(node, dir_from_angles(100 * kDegree, 0), 0, 7));
+  EXPECT_TRUE(sight.find(node, dir_from_angles(100 * kDegree, 0), 0, 7).empty());
+}
+
+// Each sequence of faces that reflect is one way, found with a probability of its own; each counts once in the mean.
+TEST(RefractedSight, ReflectionsInAPane) {
+  World pane(exact(PrimitiveKind::box, {0, 0, 1, 0, 0, 1.1}));
+  RefractedSight sight(pane.surface, pane.optics);
+  RefractedSight::Node node;
+  constexpr int kSeeds = 20000;
+  double counted[3] = {};  // without, with two, with four reflections
+  for (uint64_t seed = 0; seed < kSeeds; ++seed)
+    for (const RefractedWay& way : sight.find(node, dir_from_angles(75 * kDegree, 1), 0, mix64(seed))) {
+      const int mirrors = std::popcount(way.mirrors());
+      EXPECT_EQ(way.events, 2 + mirrors);
+      EXPECT_NEAR(way.spreading, 1, 1e-6);
+      if (mirrors < 6) counted[mirrors / 2] += way.trials / kSeeds;
+    }
+  EXPECT_NEAR(counted[0], 1, 1e-12) << "every start finds it";
+  EXPECT_NEAR(counted[1], 1, 0.12);  // found with p = 0.1: 4 errors
+  EXPECT_NEAR(counted[2], 1, 0.9);   // with 0.015, one in three of them followed up
 }
 
 // Behind the focus of a ball three ways cross in the plane of the axis; all of them count. The reference adds up what
