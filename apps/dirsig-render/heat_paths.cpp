@@ -41,7 +41,7 @@ OperatorIdentity identity_of_search(const PreparedHeat& p, const SunCourse& cour
            {"seed", strf("%llu", static_cast<unsigned long long>(spec.seed))},
            {"span", strf("%.3f to %.3f s", spec.span.begin, spec.span.end)}},
           digest_of(course),
-          p.faces->outsides()};
+          p.faces->ends()};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "1";
+constexpr const char *kFormat = "suite heat operator", *kVersion = "2";
 constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
@@ -99,7 +99,7 @@ class Stored {
   template <class Found>
   FaceRange read(Found& into, size_t faces) {
     const std::string name = name_of(into);
-    ends_ = faces + identity_.outsides;
+    ends_ = identity_.ends;
     const std::vector<double> v = reader_.numbers(name + "_begin_end_rays_unfinished", 6);
     for (const double n : v)
       if (!(n >= 0 && n <= 4294967295.0 && n == std::floor(n))) reader_.fail("counts what cannot be");
@@ -143,7 +143,7 @@ class Stored {
 
   mutable h5::Reader reader_;
   const OperatorIdentity identity_;
-  size_t ends_ = 0;  // faces and outsides: what paths may end at
+  size_t ends_ = 0;  // numbers of what paths may end at
 };
 
 class Folder final : public HeatPieces {

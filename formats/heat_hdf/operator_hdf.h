@@ -16,7 +16,7 @@ using HeatIdentity = std::vector<std::pair<std::string, std::string>>;
 struct OperatorIdentity {
   HeatIdentity scene;  // of all of it
   std::string sun;     // digest_of its course: of the sunlight beside that
-  size_t outsides = 0;
+  size_t ends = 0;     // HeatFaces::ends()
 };
 
 // Whole or not at all. Error: not writable.

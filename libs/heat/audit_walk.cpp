@@ -180,17 +180,17 @@ bool AuditWalk::radiate(const Side& s, WalkNumbers& numbers) {
 // With M = sigma T^4 and h its slope, both as found, what a path brings is M' + h' (T' - found') less M: as if the face
 // touched something of the temperature found + (M' - M + h' (T' - found')) / h.
 bool AuditWalk::arrive(const Side& s, uint32_t end, const Hit& hit, double path_weight) {
-  const bool face = end < scene_.faces.size();
-  const double emitted =
-      face ? body(tables_.kelvin(end, t_)) : tables_.outside(end - static_cast<uint32_t>(scene_.faces.size()), t_);
+  const uint32_t face = scene_.faces.face_of(end);
+  const double emitted = face != kNone ? body(tables_.kelvin(face, t_))
+                                       : tables_.outside(end - static_cast<uint32_t>(scene_.faces.size()), t_);
   const double brought = path_weight * (emitted - body(s.found));
   sum_ += weight_ * (s.found - tables_.reference() + brought / s.radiation);
   more_ += weight_ * (brought - (tables_.received(s.face, t_) - body(s.found))) / s.radiation;
-  if (!face || path_weight == 0) return true;
-  const double there = tables_.kelvin(end, t_);
+  if (face == kNone || path_weight == 0) return true;
+  const double there = tables_.kelvin(face, t_);
   weight_ *= path_weight * 4 * body(there) / there / s.radiation;
   sum_ -= weight_ * (there - tables_.reference());
-  enter(end, hit);
+  enter(face, hit);
   return false;
 }
 

@@ -30,7 +30,7 @@ class ExchangeMatrix {
   // sum to 1 to rounding. Error: an unknown end, a share that is negative, a sum that is not 1 within 1e-6.
   void add_row(std::span<const Entry> row);
   // All rows at once, taking over what they are made of: of row i the entries begins[i] to begins[i + 1], with
-  // different ends and shares of any sum above 0.
+  // shares of any sum above 0; an end possibly more than once.
   static ExchangeMatrix of_rows(size_t outsides, std::vector<size_t> begins, std::vector<uint32_t> ends,
                                 std::vector<float> shares);
   size_t elements() const { return elements_; }

@@ -39,7 +39,7 @@ struct PathCount {
 struct ExchangePaths {
   static constexpr size_t kTogether = 128;  // faces that are traced together
   uint32_t blocks = 0, paths = 0;
-  std::vector<uint32_t> ends;      // [face][block][path]: a face or an outside
+  std::vector<uint32_t> ends;      // [face][block][path]: HeatFaces::end_at()
   std::vector<float> weights;      // the same; of a face they do not sum to anything in particular
   std::vector<double> emissivity;  // by face, hemispheric
   std::vector<double> area;        // m2, by face

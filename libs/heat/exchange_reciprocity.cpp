@@ -4,7 +4,8 @@
 // with a variance in proportion to the area x emissivity a of where they start, so that the weights a_j / (a_i + a_j)
 // and a_i / (a_i + a_j) are best. Rows then sum to a only within the noise; factors d with d_i d_j X[i][j] summing to a
 // in every row restore that without giving up the symmetry (P. A. Knight, D. Ruiz, B. Ucar, "A symmetry preserving
-// algorithm for matrix scaling", SIAM J. Matrix Anal. Appl. 35, 2014).
+// algorithm for matrix scaling", SIAM J. Matrix Anal. Appl. 35, 2014). Closed backs start no paths: what ends there is
+// known from one end only, as of the outsides.
 #include <algorithm>
 #include <cmath>
 
@@ -141,6 +142,8 @@ ExchangeMatrix ExchangePaths::matrix(size_t outsides) const {
       for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k) sum += exchanged(k);
       for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
         rows.exchanged[k] = static_cast<float>(exchanged(k) / sum);
+      for (size_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
+        if (rows.end[k] >= n + outsides) rows.end[k] -= static_cast<uint32_t>(n + outsides);
     }
   });
   return ExchangeMatrix::of_rows(outsides, std::move(rows.begin), std::move(rows.end), std::move(rows.exchanged));

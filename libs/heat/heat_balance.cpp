@@ -242,11 +242,12 @@ SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoad
 constexpr double kCavity = 0.8;
 
 // Of what all faces emit, the share that ends on faces and not outside.
-double enclosed(const ExchangePaths& exchange) {
+double enclosed(const ExchangePaths& exchange, size_t outsides) {
   double inside = 0, all = 0;
   for (size_t k = 0; k < exchange.ends.size(); ++k) {
     all += double{exchange.weights[k]};
-    if (exchange.ends[k] < exchange.faces()) inside += double{exchange.weights[k]};
+    if (exchange.ends[k] < exchange.faces() || exchange.ends[k] >= exchange.faces() + outsides)
+      inside += double{exchange.weights[k]};
   }
   return all > 0 ? inside / all : 0;
 }
@@ -274,7 +275,7 @@ SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const ExchangeP
   surfaces.start(mean_air);
   SurfaceOptions options;
   options.coupling.tolerance = spec.tolerance, options.past.tolerance = spec.tolerance;
-  if (enclosed(exchange) > kCavity) options.coupling.memory = 5;
+  if (enclosed(exchange, outside_count) > kCavity) options.coupling.memory = 5;
   if (!spec.periodic) {
     past_error = surfaces.solve(first_day(loads, weather, exchange.faces(), outside_count), options).past_distance;
     options.periodic = false;

@@ -23,7 +23,8 @@ uint32_t HeatFaces::end_at(const Hit& hit, Dir direction, uint32_t material) con
   const std::optional<uint32_t> element = elements_.at(hit, material);
   if (!element) return outside_moving();
   const bool front = dot(direction, hit.normal) < 0;
-  return front || back_[*element] == kNone ? *element : back_[*element];
+  if (front) return *element;
+  return back_[*element] == kNone ? closed_back(*element) : back_[*element];
 }
 
 }  // namespace suite

@@ -30,8 +30,16 @@ class HeatFaces {
   // Materials with temperatures of their own, in the order of their outsides.
   const std::vector<uint32_t>& materials() const { return materials_; }
 
-  // Where light ends that is absorbed at a hit of a material, coming along a direction.
+  // Where light ends that is absorbed at a hit of a material, coming along a direction. The back of an element that is
+  // not open is an end of its own: as warm as the element, but what it takes goes to what is behind and warms nothing.
   uint32_t end_at(const Hit& hit, Dir direction, uint32_t material) const;
+  uint32_t closed_back(uint32_t element) const { return count() + static_cast<uint32_t>(outsides()) + element; }
+  // All numbers of ends lie below: faces, outsides, closed backs.
+  size_t ends() const { return closed_back(static_cast<uint32_t>(elements_.size())); }
+  // The face as warm as an end; kNone: an outside's.
+  uint32_t face_of(uint32_t end) const {
+    return end < size() ? end : end < size() + outsides() ? kNone : end - static_cast<uint32_t>(size() + outsides());
+  }
 
  private:
   uint32_t count() const { return static_cast<uint32_t>(element_.size()); }

@@ -1,6 +1,7 @@
 #include "heat/heat_notes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -44,6 +45,29 @@ std::vector<std::string> lateral_notes(const Scene& scene, const Elements& eleme
   return notes;
 }
 
+// Infrared that ends on closed backs, whose sunlight is not followed: of what ends on a material, the share from
+// behind.
+std::vector<std::string> back_notes(const HeatScene& scene, const ExchangePaths& exchange) {
+  constexpr double kLittle = 1e-3;  // as the rounding of places on closed bodies may let through
+  const auto& [tracer, elements, faces, optics] = scene;
+  std::vector<std::array<double, 2>> ended(optics.has_heat.size(), {0, 0});  // m2 of emission, in front and behind
+  const size_t each = size_t{exchange.blocks} * exchange.paths;
+  for (size_t k = 0; k < exchange.ends.size(); ++k) {
+    const uint32_t end = exchange.ends[k], face = faces.face_of(end);
+    if (face != kNone)
+      ended[elements[faces.element(face)].material][end == face ? 0 : 1] +=
+          exchange.area[k / each] * double{exchange.weights[k]};
+  }
+  std::vector<std::string> notes;
+  for (size_t m = 0; m < ended.size(); ++m)
+    if (const double behind = ended[m][1]; behind > kLittle * (behind + ended[m][0]))
+      notes.push_back(
+          "material '" + optics.materials->materials[m].id + "': " + share_text(behind / (behind + ended[m][0])) +
+          " of the infrared that ends on it comes from behind, where its back is closed: that, and sunlight "
+          "from there, warms nothing; 'back: open' lets both sides take part");
+  return notes;
+}
+
 }  // namespace
 
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {
@@ -63,6 +87,7 @@ std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& 
              "another and on may be found in part only",
              sun.mirrored.endless));
   for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
+  for (const std::string& sentence : back_notes(scene, exchange)) notes.push_back(sentence);
   if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
   if (exchange.unfinished() > 1e-6)
     notes.push_back(

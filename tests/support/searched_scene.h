@@ -20,7 +20,7 @@ struct SearchedScene {
   }
   HeatScene heat_scene() const { return {*kit.tracer, *kit.elements, *kit.faces, kit.optics}; }
   OperatorIdentity identity(const std::string& sun = "the sun") const {
-    return {{{"scene", "a wall"}, {"number of paths", "16"}}, sun, kit.faces->outsides()};
+    return {{{"scene", "a wall"}, {"number of paths", "16"}}, sun, kit.faces->ends()};
   }
   HeatOperator found(HeatPieces* pieces = nullptr, const std::function<void(size_t)>& progress = {}) const {
     HeatOperator out;

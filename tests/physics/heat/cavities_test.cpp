@@ -57,6 +57,26 @@ TEST(Cavities, OneTemperatureStays) {
   EXPECT_LT(std::ranges::min(colder.kelvin.values()), 311);
 }
 
+// A black plate under the closed back of one that is held at 400 K: the back is as warm as its front. Parallel unit
+// squares half their side apart see each other by 0.41525 (e.g. Siegel & Howell, Thermal radiation heat transfer,
+// appendix C). Negative control: asked from both ends, of which the back knows nothing, half of that would be seen.
+TEST(Cavities, ClosedBackIsAsWarmAsItsElement) {
+  constexpr double kFactor = 0.41525;
+  HeatedScene s;
+  const uint32_t plate = s.heated(1, heat());
+  s.plane(1, 1, plate);
+  s.plane(1, 1, s.heated(1, held_at(400)), shifted({0, 0, 0.5}));
+  const HeatKit kit(std::move(s), 2);
+  const ExchangePaths paths = kit.exchange({8, 4096, 1});
+  const SurfaceHistory h = solve_exchange(kit, paths, outsides_at(kit, 200), 300);
+  const size_t cold = (*kit.elements)[0].material == plate ? 0 : 1;
+  ASSERT_EQ((*kit.elements)[cold].material, plate);
+  const double seen = (black(h.kelvin.at(cold, 0)) - black(200)) / (black(400) - black(200));
+  std::printf("closed back: seen by %.4f of %.4f\n", seen, kFactor);
+  EXPECT_NEAR(seen, kFactor, 0.01);
+  EXPECT_GT(std::fabs(kFactor / 2 / (1 - kFactor / 2) - kFactor), 0.05);
+}
+
 // Endless plates at 350 and 280 K, shields without heat capacity between them, all of one emissivity: the flux is
 // sigma (T1^4 - T2^4) / ((shields + 1) (2 / emissivity - 1)) (e.g. Siegel & Howell, Thermal radiation heat transfer).
 struct Stack {

@@ -1,4 +1,5 @@
-// Sunlight that mirrors and glass send on: closed forms, and mirrors that are all but perfect, found by other paths.
+// Sunlight that mirrors and glass send on: closed forms. Beside metal that is all but smooth:
+// mirror_and_ground_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
