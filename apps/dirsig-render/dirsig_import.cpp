@@ -12,6 +12,7 @@
 #include "base/outputs.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/tape5/tape5.h"
+#include "formats/weather/weather.h"
 
 namespace suite {
 
@@ -75,6 +76,16 @@ dirsig::DeckAir air_of_deck(const std::string& path) {
   return air;
 }
 
+// The seconds that a file of weather covers; read as the simulation's text will ask for it.
+double span_of_weather(const dirsig::WeatherAsked& asked) {
+  WeatherOptions options;
+  options.site = Geodetic{asked.site[0], asked.site[1], asked.site[2]};
+  options.utc_offset = asked.utc_offset_h * 3600;
+  options.date = parse_iso8601(asked.date);
+  const Weather weather = read_weather(asked.path, options);
+  return weather.table().rows.back().end - weather.table().rows.front().end;
+}
+
 // Whether an import may go on: nothing was left out that must not be.
 bool tell(const dirsig::Ledger& ledger, bool strict) {
   const auto counts = ledger.counts();
@@ -118,6 +129,7 @@ Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& 
   std::vector<std::string> taken;
   dirsig::SimulationHelp help;
   help.deck = air_of_deck;
+  help.weather = span_of_weather;
   help.prepared = [&](const std::string& scene, const dirsig::SceneMade&) {
     const std::string place = place_for(taken, o.output, scene);
     if (!alone && !file_exists(place))
@@ -152,6 +164,7 @@ int convert_simulation(const RenderOptions& o) {
   std::vector<std::pair<std::string, std::string>> texts;
   dirsig::SimulationHelp help;
   help.deck = air_of_deck;
+  help.weather = span_of_weather;
   help.prepared = [&](const std::string& scene, const dirsig::SceneMade& made) {
     const std::string place = place_for(taken, o.convert, scene);
     texts.emplace_back(std::filesystem::path(place).replace_extension("yaml").string(), made.text.yaml);

@@ -27,8 +27,7 @@ void SimulationWriter::read_atmosphere(const Item& atm) {
     throw atm.error("the root is <" + atm.name + ">", "<atmosphericconditions> is expected");
   if (const Item* metadata = atm.find("metadata")) metadata->mark_all(Fate::ignored, "for people");
   for (const char* weather : {"uniformweather", "weather"})
-    if (const Item* w = atm.find(weather))
-      w->mark_all(Fate::ignored, "weather acts on temperatures alone, which are not solved here");
+    if (const Item* w = atm.find(weather)) read_weather(*w);
   if (const Item* uniform = atm.find("uniformradiativetransfer")) return read_uniform(*uniform);
   if (const Item* simple = atm.find("simpleradiativetransfer")) {
     simple->mark(Fate::approximated,

@@ -102,7 +102,7 @@ class SectionReader {
 
   void key(std::string_view line, size_t equals) {
     Item& item = open_.back()->children.emplace_back();
-    item.name = std::string(trimmed(line.substr(0, equals)));
+    item.name = upper_case(trimmed(line.substr(0, equals)));
     item.where = here(line);
     std::string_view value = trimmed(line.substr(equals + 1));
     if (value.size() >= 2 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front())
@@ -113,7 +113,7 @@ class SectionReader {
 
   void section(std::string_view line, size_t brace) {
     Item& item = open_.back()->children.emplace_back();
-    item.name = std::string(trimmed(line.substr(0, brace)));
+    item.name = upper_case(trimmed(line.substr(0, brace)));
     item.where = here(line);
     if (item.name.empty()) throw item.error("a section without a name", "NAME {");
     const std::string_view rest = trimmed(line.substr(brace + 1));

@@ -9,7 +9,8 @@ Item parse_xml(std::string_view text, const std::string& file);
 // JSON: items of lists are children named "item".
 Item parse_json(std::string_view text, const std::string& file);
 // "tag + value" texts (.mat, .odb, .mov, .cfg, .adb): lines `KEY = VALUE` or `KEY:VALUE`, `NAME {` ... `}`; '#' begins
-// a comment. Keys that stand in no section are children of the root, which is called `root`.
+// a comment; keys may be of either case, and become upper. Keys that stand in no section are children of the root,
+// which is called `root`.
 Item parse_sections(std::string_view text, const std::string& file, const std::string& root);
 
 }  // namespace suite::dirsig

@@ -34,6 +34,8 @@ std::string ignoring_case(const std::string& folder, const std::string& name) {
   return file_exists(at.string()) ? at.string() : std::string();
 }
 
+constexpr const char* kNotSet = "a variable that is not set";
+
 std::string joined(const std::string& folder, const std::string& name) {
   if (fs::path(name).is_absolute() || folder.empty()) return name;
   return (fs::path(folder) / name).lexically_normal().string();
@@ -48,7 +50,7 @@ Import::Import(std::vector<std::string> search, std::string base) : search_(std:
   if (const char* home = std::getenv("DIRSIG_HOME")) variables_["DIRSIG_HOME"] = home;
 }
 
-std::string Import::replaced(const Item& at, std::string_view name, std::string& how) const {
+std::string Import::replaced(std::string_view name, std::string& how) const {
   std::string path(name);
   if (path.find('\\') != path.npos) {
     for (char& c : path) c = c == '\\' ? '/' : c;
@@ -60,10 +62,10 @@ std::string Import::replaced(const Item& at, std::string_view name, std::string&
     if (variable.size() > 2 && variable.front() == '{' && variable.back() == '}')
       variable = variable.substr(1, variable.size() - 2);
     const auto known = variables_.find(variable);
-    if (known == variables_.end())
-      throw at.error(
-          "'" + std::string(name.substr(0, 120)) + "' begins with $" + variable.substr(0, 60) + ", which is not set",
-          "set it in the environment (DIRSIG_HOME), or give --path");
+    if (known == variables_.end()) {
+      how = kNotSet;  // as of another machine
+      return "/" + path;
+    }
     path = known->second + path.substr(end);
     if (known->second.starts_with('$')) break;
     how = "$" + variable + " is " + known->second;
@@ -78,7 +80,7 @@ std::string Import::replaced(const Item& at, std::string_view name, std::string&
 std::string Import::path_of(const Item& at, std::string_view name, const Folders& folders, std::string& how) {
   if (name.empty()) throw at.error("'" + at.name + "' names no file");
   if (name.find('\0') != name.npos) throw at.error("the name of a file with a character 0");
-  const std::string path = replaced(at, name, how);
+  const std::string path = replaced(name, how);
   Folders all = folders;
   all.insert(all.end(), search_.begin(), search_.end());
   if (fs::path(path).is_absolute()) all = {""};
@@ -91,11 +93,17 @@ std::string Import::path_of(const Item& at, std::string_view name, const Folders
     }
   // Of an absolute name of another machine only its end can be right.
   const std::string last = fs::path(path).filename().string();
-  for (const std::string& folder : folders)
+  Folders near = folders;
+  near.insert(near.end(), search_.begin(), search_.end());
+  for (const std::string& folder : near)
     if (const std::string there = ignoring_case(folder, last); last != path && !there.empty()) {
       how = "found as " + there;
       return there;
     }
+  if (how == kNotSet)
+    throw at.error("'" + std::string(name.substr(0, 120)) +
+                       "' begins with a variable that is not set, and there is no '" + last.substr(0, 120) + "'",
+                   "set it in the environment (DIRSIG_HOME), or give --path");
   std::string looked;
   for (const std::string& folder : all) looked += (looked.empty() ? "" : ", ") + (folder.empty() ? "." : folder);
   throw at.error("there is no file '" + std::string(name.substr(0, 200)) + "'",

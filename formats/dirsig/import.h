@@ -40,7 +40,7 @@ class Import {
  private:
   static std::string text_of(const std::string& path, bool& latin);
   const Item& added(const std::string& path, const std::string& kind, Item root, bool latin);
-  std::string replaced(const Item& at, std::string_view name, std::string& how) const;
+  std::string replaced(std::string_view name, std::string& how) const;
   std::vector<std::string> search_;
   std::string base_;
   std::map<std::string, std::string> variables_;

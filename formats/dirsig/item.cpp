@@ -28,6 +28,12 @@ std::string lower_case(std::string_view text) {
   return low;
 }
 
+std::string upper_case(std::string_view text) {
+  std::string high(text);
+  for (char& c : high) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return high;
+}
+
 std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (size_t at = text.find_first_not_of(separators); at != text.npos;) {

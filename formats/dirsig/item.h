@@ -69,6 +69,7 @@ class Item {
 // A number as these files write them ("+5.0e-01", "1.", ".5"); nothing when it is none or not finite.
 std::optional<double> number_in_text(std::string_view text);
 std::string lower_case(std::string_view text);
+std::string upper_case(std::string_view text);
 std::string_view trimmed(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text, std::string_view separators);
 

@@ -1,4 +1,4 @@
-// Entries of material databases (.mat): solvers, bulk properties, sources of light.
+// Entries of material databases (.mat): what they are, bulk properties, sources of light.
 #include <algorithm>
 
 #include "base/files.h"
@@ -7,9 +7,6 @@
 namespace suite::dirsig {
 
 namespace {
-
-// THERM counts in calories, grams, centimetres and hours.
-constexpr double kCalorie = 4184;  // J/kg for 1 cal/g
 
 const Item* entry_of(const Item& database, const std::string& id) {
   for (const Item& entry : database.children) {
@@ -64,63 +61,10 @@ Tree SceneWriter::material_tree(const MaterialUse& use) {
     made.set("reflectance", Tree::number(0.18, bundle->where));
     return made;
   }
+  reach_um_.reset();
   read_surface(use, made);
   read_solvers(entry, made);
   return made;
-}
-
-void SceneWriter::read_solvers(const Item& entry, Tree& to) {
-  for (const char* key : {"RAD_SOLVER_NAME", "RAD_SOLVER"})
-    if (const Item* solver = entry.find(key)) solver->mark_all(Fate::ignored, "paths are followed in one way here");
-  // The old layout has THERM's numbers in the entry itself.
-  const bool flat = entry.has("SPECIFIC_HEAT") || entry.has("MASS_DENSITY");
-  if (flat) read_therm(entry, to);
-  const Item *name = entry.find("TEMP_SOLVER_NAME"), *solver = entry.find("TEMP_SOLVER");
-  if (!name) {
-    if (solver) solver->mark_all(Fate::unsupported, "which solver it belongs to is not said");
-    return;
-  }
-  const std::string kind = lower_case(name->value);
-  if (kind == "null" || kind == "none") {
-    name->mark(Fate::exact);
-    if (solver) solver->mark_all(Fate::ignored, "no temperature");
-  } else if (kind == "therm" || kind == "thermaltherm") {
-    name->mark(Fate::unsupported, "THERM is not run: the material does not emit until it is given a temperature");
-    if (solver) read_therm(*solver, to);
-  } else if (const Item* kelvin = solver ? solver->any({"TEMPERATURE", "CONSTANT_TEMPERATURE"}) : nullptr) {
-    name->mark(Fate::exact);
-    to.set("temperature_k", Tree::number(kelvin->number_in(1, 1e5), kelvin->where));
-  } else {
-    name->mark(Fate::unsupported,
-               "this solver is not known here: the material does not emit until it is given a temperature");
-    if (solver) solver->mark_all(Fate::unsupported, "of a solver that is not known here");
-  }
-}
-
-void SceneWriter::read_therm(const Item& solver, Tree& to) {
-  struct Row {
-    const char *key, *ours;
-    double factor;
-    const char* unit;
-  };
-  constexpr Row rows[] = {{"SPECIFIC_HEAT", "specific_heat_j_kg_k", kCalorie, "cal/(g C)"},
-                          {"MASS_DENSITY", "density_kg_m3", 1000, "g/cm3"},
-                          {"THERMAL_CONDUCTIVITY", "conductivity_w_m_k", kCalorie / 1000 / 36, "cal/(cm h C)"},
-                          {"THICKNESS", "thickness_m", 0.01, "cm"}};
-  Tree thermal = Tree::map(solver.where);
-  for (const Row& row : rows) {
-    const Item* value = solver.find(row.key);
-    if (!value) continue;
-    const double number = value->number(Fate::converted, std::string("taken as ") + row.unit);
-    if (number * row.factor >= 1e-12)
-      thermal.set(row.ours, Tree::number(number * row.factor, value->where));
-    else
-      value->mark(Fate::approximated, "a value of 0 is left out");
-  }
-  for (const char* key :
-       {"SOLAR_ABSORPTION", "VISIBLE_EMISSIVITY", "THERMAL_EMISSIVITY", "EXPOSED_AREA", "SPECULARITY_THERM"})
-    if (const Item* value = solver.find(key)) value->mark(Fate::unsupported, "of THERM, which is not run");
-  if (!thermal.empty()) to.set("thermal", std::move(thermal));
 }
 
 // What fills the body that the material bounds.

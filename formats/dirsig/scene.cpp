@@ -64,6 +64,11 @@ SceneMade SceneWriter::run() {
   made.text = print(root_, {"made from " + file_ + " by the import of DIRSIG's files"});
   made.lamps = lamps_;
   made.epoch = epoch_;
+  made.heat = heat_;
+  if (Tree* origin = root_.find("origin")) {
+    const auto number = [&](const char* key) { return number_in_text(origin->find(key)->text).value_or(0); };
+    made.origin = {number("latitude_deg"), number("longitude_deg"), origin->find("height_m") ? number("height_m") : 0};
+  }
   return made;
 }
 

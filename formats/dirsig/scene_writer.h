@@ -27,6 +27,10 @@ struct MaterialUse {
   Scope scope;  // in which its own maps name materials
 };
 
+// Whether a reflectance of this name (in lower case) has parameters of facets: Shell, NEF, Priest & Germer.
+bool is_facets(std::string_view kind);
+struct FacetFit;
+
 class SceneWriter {
  public:
   SceneWriter(Import& import, std::string file);
@@ -81,22 +85,30 @@ class SceneWriter {
   // materials.cpp
   std::string material(const std::string& id, const Scope& scope);
   Tree material_tree(const MaterialUse& use);
-  void read_solvers(const Item& entry, Tree& to);
-  void read_therm(const Item& solver, Tree& to);
   void read_bulk(const std::string& id, const MaterialUse& use, Tree& to);
   bool read_source_material(const Item& entry) const;
   void write_lamps();
+  // thermal.cpp
+  void read_solvers(const Item& entry, Tree& to);
+  void read_layer(const Item& solver, Tree& heat);
+  void read_therm(const Item& solver, Tree& to);
   // surfaces.cpp
   void read_surface(const MaterialUse& use, Tree& to);
   bool read_emissivity(const Item& properties, const Folders& folders, Tree& to);
   bool read_reflectance(const Item& properties, const Folders& folders, Tree& to);
   bool read_ward(const Item& name, const Item& section, Tree& to);
-  bool read_ross_li(const Item& name, const Item& section, Tree& to);
+  bool read_kernels(const Item& name, const Item& section, const Folders& folders, Tree& to);
   bool read_fit(const Item& name, const Item& section, const Folders& folders, Tree& to);
   void read_transmittance(const Item& properties, const Folders& folders, Tree& to);
   void flat_emissivity(const Item& entry, const Item& named, double specular, const Folders& folders, Tree& to);
   Tree curve_file(const Item& named, const Folders& folders, const char* what, double scale);
   const CurveFile& curves_of(const std::string& path, const char* kind);
+  void reaches(const CurveFile& file);
+  static CurveFile mean_reflectance(const CurveFile& file, const Item& named);
+  // facets.cpp
+  bool read_facets(const Item& name, const Item& section, const Folders& folders, Tree& to);
+  const Item* facet_file(const Item& section, const Folders& folders);
+  Tree body_of(const Item& section, const Folders& folders, const FacetFit& fit, const Where& where);
   // maps.cpp
   void read_maps(const Item& list, const Folders& folders);
   void read_map(const Item& map, const Folders& folders);
@@ -125,6 +137,8 @@ class SceneWriter {
   std::map<std::string, std::string> map_names_;                         // of a material: the map that chooses instead
   std::map<std::string, CurveFile> curves_;
   std::vector<std::pair<const Item*, Scope>> sources_;  // objects of lamps
+  std::optional<double> reach_um_;                      // where the first of a surface's curves ends
+  bool heat_ = false;                                   // a material's temperature follows from weather
   std::string epoch_;
   int depth_ = 0;
 };

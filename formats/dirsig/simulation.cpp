@@ -140,8 +140,12 @@ void SimulationWriter::read_plugin(const Item& plugin) {
     read_ephemeris(*inputs);
   } else if (kind == "SpiceEphemeris") {
     inputs->mark_all(Fate::ignored, "Sun and Moon stand where their theories of ERFA have them");
-  } else if (kind == "ThermWeather" || kind == "NsrdbWeather") {
-    inputs->mark_all(Fate::ignored, "weather acts on temperatures alone, which are not solved here");
+  } else if (kind == "ThermWeather") {
+    read_weather(*inputs);
+  } else if (kind == "NsrdbWeather") {
+    inputs->mark_all(heat_ ? Fate::unsupported : Fate::ignored,
+                     heat_ ? "this weather is not read: write it as CSV (formats/weather) for a converted simulation"
+                           : "no temperature of the scene follows from weather");
   } else {
     name.mark(Fate::unsupported, "a plugin that is not known here");
     inputs->mark_all(Fate::unsupported, "of a plugin that is not known here");
@@ -177,6 +181,8 @@ void SimulationWriter::read_ephemeris(const Item& inputs) {
 void SimulationWriter::add_scene(const Item& named, const std::string& path, const std::array<double, 3>& offset) {
   const SceneMade scene = scene_of(import_, path);
   for (const auto& [none, lamp] : scene.lamps.entries) lamps_.push(lamp);
+  if (!origin_) origin_ = scene.origin;
+  heat_ = heat_ || scene.heat;
   Tree one = Tree::map(named.where);
   one.set("file", Tree::word(import_.name_of(help_.prepared(path, scene)), named.where));
   one.set("translate", Tree::numbers({offset[0], offset[1], offset[2]}, named.where));
@@ -190,6 +196,7 @@ void SimulationWriter::find_epoch(const Item& tasks) {
   if (const Item* type = date->find("@type"); type && type->choice({"relative", "absolute"}) == 0)
     throw date->error("the reference of the tasks is no date", "type=\"absolute\"");
   epoch_ = utc_of(*date);
+  zone_h_ = zone_of(date->value);
 }
 
 Tree SimulationWriter::tasks_of(const Item& tasks) {

@@ -1,6 +1,7 @@
 // The parts of the translation of simulations. Not for users of the format.
 #pragma once
 #include <array>
+#include <optional>
 #include <set>
 
 #include "formats/dirsig/dirsig.h"
@@ -15,6 +16,9 @@ struct PlatformParts {
   const Item* tasks = nullptr;
   std::string prefix;  // of the names of images
 };
+
+// Hours ahead of UTC that a date ends with ("-07:00", "+0530"); none without, or with a Z.
+std::optional<double> zone_of(std::string_view date);
 
 class SimulationWriter {
  public:
@@ -34,6 +38,9 @@ class SimulationWriter {
   Tree tasks_of(const Item& tasks);
   void find_epoch(const Item& tasks);
   void finish();
+  // weather.cpp
+  void read_weather(const Item& section);
+  void use_weather(const Item& named);
   // atmosphere.cpp
   void read_atmosphere(const Item& atm);
   void read_uniform(const Item& uniform);
@@ -67,6 +74,9 @@ class SimulationWriter {
   Folders folders_;
   Tree root_, sun_, lamps_;
   std::string epoch_;
+  std::optional<double> zone_h_;                 // of the tasks' date
+  std::optional<std::array<double, 3>> origin_;  // of the first scene that has one
+  bool heat_ = false;                            // of a scene that waits for weather
   bool fixed_sun_ = false, air_ = false, no_sun_ = false;
   std::vector<PlatformParts> platforms_;
   // Of the platform that is being written.

@@ -18,6 +18,10 @@ inline dirsig::SimulationHelp dirsig_help() {
     return std::filesystem::path(scene).replace_extension("h5").string();
   };
   help.deck = [](const std::string&) { return dirsig::DeckAir{"tropical", "urban", 5}; };
+  help.weather = [](const dirsig::WeatherAsked& asked) {
+    if (asked.path.ends_with("winter.wth")) throw Error(Where{asked.path, 9, 1, {}, -1}, "the sun shines at night");
+    return 172800.0;
+  };
   return help;
 }
 

@@ -53,5 +53,16 @@ TEST(SampleScenes, RamiCanopy) {
   EXPECT_TRUE(file_exists(folder / "plot.svg"));
 }
 
+TEST(SampleScenes, OneAFeature) {
+  if (run_command("command -v python3").code != 0) GTEST_SKIP() << "python3 is not installed";
+  const TempFolder folder;
+  const CommandResult r = run_command(kPath + "'" + kSamples + "features/run' '" + folder.path() + "' && python3 '" +
+                                      kSamples + "features/expect.py' '" + folder.path() + "'");
+  EXPECT_EQ(r.code, 0) << r.out << r.err;
+  size_t lines = 0;
+  for (size_t at = r.out.find("  expected "); at != std::string::npos; at = r.out.find("  expected ", at + 1)) ++lines;
+  EXPECT_EQ(lines, 15u) << r.out;
+}
+
 }  // namespace
 }  // namespace suite

@@ -52,7 +52,12 @@ TEST_P(DirsigMutations, GiveATextOrOneLocatedMessage) {
   const std::string name = GetParam();
   const bool simulation = name.ends_with("sim") || name.ends_with("atm") || name.ends_with("platform") ||
                           name.ends_with("ppd") || name.ends_with("tasks");
-  const std::string start = folder / (name.ends_with("jsim") ? "plane.jsim" : simulation ? "plane.sim" : "range.scene");
+  const bool models = name.find("models") != name.npos || name.ends_with(".fit");
+  const std::string start = folder / (name.ends_with("jsim") ? name
+                                      : name == "warm.atm"   ? "warm.sim"
+                                      : simulation           ? "plane.sim"
+                                      : models               ? "models.scene"
+                                                             : "range.scene");
   const auto read = [&](std::span<const std::byte> bytes) {
     write_file(folder / name, bytes);
     dirsig::Import import({}, folder.path());
@@ -77,7 +82,8 @@ INSTANTIATE_TEST_SUITE_P(Files, DirsigMutations,
                          testing::Values("range.scene", "geometry/range.glist", "geometry/range.odb",
                                          "geometry/hood.gdb", "geometry/drive.mov", "geometry/boxes.grid",
                                          "geometry/local.mat", "materials/range.mat", "materials/old.ems",
-                                         "materials/several.ems", "materials/white.txt", "plane.sim", "plane.jsim",
+                                         "materials/several.ems", "materials/white.txt", "materials/models.mat",
+                                         "materials/paint.fit", "warm.jsim", "warm.atm", "plane.sim", "plane.jsim",
                                          "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"));
 
 }  // namespace
