@@ -153,7 +153,7 @@ def write_scene(path, land, planted):
             out.write("  %s_%d: {obj: %s_%d.obj, normals: facet}\n" % (kind, v, kind, v))
     for kind, size in HOUSES.items():
         town.house(*size).write(os.path.join(os.path.dirname(path), "house_%s.obj" % kind))
-        for wall in ("plaster_white", "plaster_yellow", "plaster_grey", "brick"):
+        for wall in ("brick",) if kind == "shed" else ("plaster_white", "plaster_yellow", "plaster_grey", "brick"):
             out.write("  %s_%s: {obj: house_%s.obj, normals: facet, materials: {wall: %s}}\n" % (kind, wall, kind, wall))
         town.panels(*size).write(os.path.join(os.path.dirname(path), "panels_%s.obj" % kind))
         out.write("  panels_%s: {obj: panels_%s.obj, normals: facet}\n" % (kind, kind))
