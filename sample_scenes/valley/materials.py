@@ -54,7 +54,7 @@ MATERIALS = {
     "maize": matte("maize_green", GRASSY, wetness=0.4, **OPEN),
     "wheat": matte("straw", GRASSY, wetness=0.1, **OPEN),
     "soil": matte("loam", EARTH, wetness=0.1, **OPEN),
-    "forest_floor": matte("litter", EARTH, wetness=0.3, **OPEN),
+    "forest_floor": matte("undergrowth", EARTH, wetness=0.3, **OPEN),
     "rock": matte("concrete_r", EARTH, **OPEN),
     "asphalt": matte("asphalt_r", ROAD, **OPEN),
     "paving": matte("concrete_r", ROAD, **OPEN),
