@@ -34,6 +34,13 @@ def samples(path):
             [(int(r[0]), tuple(float(v) for v in r[1:4]), [float(v) for v in r[4:]]) for r in rows[2:]])
 
 
+def finer(points, center, fwhm):
+    """The same curve over the rectangle, with points enough to be multiplied by others."""
+    steps = [center + fwhm * (k / 50 - 0.5) for k in range(51)]
+    at = lambda x: next(u + (v - u) * (x - a) / (b - a) for (a, u), (b, v) in zip(points, points[1:]) if a <= x <= b)
+    return [(x, at(x)) for x in steps]
+
+
 def curve_mean(points, center, fwhm):
     """Mean of straight lines between points over a rectangle."""
     def at(x):

@@ -163,8 +163,10 @@ def write_scene(path, land, planted):
     out.write("  mast: {obj: mast.obj, normals: facet}\n  wires: {obj: wires.obj, normals: facet}\n  pole: {cylinder: {radius: 0.08, height: 6.8}, material: steel}\n")
     for paint in ("red", "blue", "white", "grey", "black"):
         out.write("  car_%s: {obj: car.obj, normals: facet, materials: {paint: paint_%s}}\n" % (paint, paint))
+    out.write("  plot: {plane: {width: 12, depth: 12}, material: meadow}\n")  # of the weather station: a temperature of its own
     out.write("\nworld:\n  - {place: ground, tag: ground}\n  - {place: water, translate: [-1290, 100, 0], tag: water}\n"
               "  - {place: bridge, translate: [%g, 0, 0], tag: bridge}\n" % ground.BRIDGE_X)
+    out.write("  - {place: plot, translate: [-260, -314, %g], tag: weather station}\n" % (ground.TOWN_M + 0.01))
     for k in range(6):  # a power line over the plain in the west
         x, y = -960, -680 + 150 * k
         z = land.at(x, y)
