@@ -2,7 +2,7 @@
 """Writes the valley into a folder: make_scene.py FOLDER [TREES]
 
 Ground from the shipped elevation raster, a river, a lake, a town, fields, forest, traffic, the weather of a clear day in June, and scene.yaml.
-TREES (default 9000) is the most that are planted. Needs Python 3 and its standard library only; some 20 seconds.
+TREES (default 30000, more than there are places) is the most that are planted. Needs Python 3 and its standard library only; some 20 seconds.
 """
 import math
 import os
@@ -51,7 +51,7 @@ def write_table(path, rows):
             out.write(struct.pack("<8d", x, y, z, math.cos(turn / 2), 0, 0, math.sin(turn / 2), scale))
 
 
-SIMULATIONS = ("drone", "strip", "satellite", "thermal", "night", "forest")
+TEXTS = ("drone", "strip", "satellite", "thermal", "night", "forest", "canopy", "mat")
 HOUSES = {"small": (5.0, 4.0, 4.2, 7.2), "wide": (7.5, 4.6, 5.6, 9.2), "tall": (5.5, 4.6, 8.4, 12.0), "shed": (4.0, 3.2, 2.9, 4.6)}
 
 
@@ -153,7 +153,7 @@ def write_scene(path, land, planted):
             out.write("  %s_%d: {obj: %s_%d.obj, normals: facet}\n" % (kind, v, kind, v))
     for kind, size in HOUSES.items():
         town.house(*size).write(os.path.join(os.path.dirname(path), "house_%s.obj" % kind))
-        for wall in ("plaster_white", "plaster_yellow", "plaster_grey", "brick"):
+        for wall in ("brick",) if kind == "shed" else ("plaster_white", "plaster_yellow", "plaster_grey", "brick"):
             out.write("  %s_%s: {obj: house_%s.obj, normals: facet, materials: {wall: %s}}\n" % (kind, wall, kind, wall))
         town.panels(*size).write(os.path.join(os.path.dirname(path), "panels_%s.obj" % kind))
         out.write("  panels_%s: {obj: panels_%s.obj, normals: facet}\n" % (kind, kind))
@@ -163,8 +163,10 @@ def write_scene(path, land, planted):
     out.write("  mast: {obj: mast.obj, normals: facet}\n  wires: {obj: wires.obj, normals: facet}\n  pole: {cylinder: {radius: 0.08, height: 6.8}, material: steel}\n")
     for paint in ("red", "blue", "white", "grey", "black"):
         out.write("  car_%s: {obj: car.obj, normals: facet, materials: {paint: paint_%s}}\n" % (paint, paint))
+    out.write("  plot: {plane: {width: 12, depth: 12}, material: meadow}\n")  # of the weather station: a temperature of its own
     out.write("\nworld:\n  - {place: ground, tag: ground}\n  - {place: water, translate: [-1290, 100, 0], tag: water}\n"
               "  - {place: bridge, translate: [%g, 0, 0], tag: bridge}\n" % ground.BRIDGE_X)
+    out.write("  - {place: plot, translate: [-260, -314, %g], tag: weather station}\n" % (ground.TOWN_M + 0.01))
     for k in range(6):  # a power line over the plain in the west
         x, y = -960, -680 + 150 * k
         z = land.at(x, y)
@@ -194,11 +196,11 @@ def main():
     land.write(os.path.join(folder, "heights.img"))
     cover = ground.Cover(land)
     cover.write(os.path.join(folder, "cover.png"))
-    write_scene(os.path.join(folder, "scene.yaml"), land, plant(land, cover, int(sys.argv[2]) if len(sys.argv) > 2 else 9000))
+    write_scene(os.path.join(folder, "scene.yaml"), land, plant(land, cover, int(sys.argv[2]) if len(sys.argv) > 2 else 30000))
     weather(os.path.join(folder, "weather.csv"))
     bands = "".join("              - {name: b%03d, center_um: %.4f, fwhm_um: 0.02, shape: rectangular}\n" % (k + 1, 0.4 + 0.02 * k) for k in range(100))
     posts = "".join("      - [%.1f, %.1f, %g]\n" % p for p in lamps())
-    for name in SIMULATIONS:
+    for name in TEXTS:
         with open(os.path.join(HERE, name + ".yaml")) as text, open(os.path.join(folder, name + ".yaml"), "w") as out:
             out.write(text.read().replace("BANDS\n", bands).replace("LAMPS\n", posts))
 

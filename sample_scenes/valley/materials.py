@@ -40,37 +40,35 @@ def points(*pairs):
     return {"points": [list(p) for p in pairs]}
 
 
-PAINTS = {"red": points((0.38, 0.03), (0.58, 0.04), (0.63, 0.35), (2.5, 0.4), (8, 0.05), (14, 0.05)),
-          "blue": points((0.38, 0.12), (0.46, 0.25), (0.53, 0.06), (0.7, 0.04), (2.5, 0.3), (8, 0.05), (14, 0.05)),
-          "white": points((0.38, 0.5), (0.45, 0.75), (2.5, 0.6), (8, 0.05), (14, 0.05)),
-          "grey": points((0.38, 0.2), (2.5, 0.25), (8, 0.05), (14, 0.05)),
-          "black": points((0.38, 0.03), (2.5, 0.04), (8, 0.05), (14, 0.05))}
+PAINTS = {"red": points((0.3, 0.03), (0.58, 0.04), (0.63, 0.35), (2.5, 0.4), (8, 0.05), (14, 0.05), (100, 0.05)),
+          "blue": points((0.3, 0.12), (0.46, 0.25), (0.53, 0.06), (0.7, 0.04), (2.5, 0.3), (8, 0.05), (14, 0.05), (100, 0.05)),
+          "white": points((0.3, 0.5), (0.45, 0.75), (2.5, 0.6), (8, 0.05), (14, 0.05), (100, 0.05)),
+          "grey": points((0.3, 0.2), (2.5, 0.25), (8, 0.05), (14, 0.05), (100, 0.05)),
+          "black": points((0.3, 0.03), (2.5, 0.04), (8, 0.05), (14, 0.05), (100, 0.05))}
 
 MATERIALS = {
-    "covered": {"map": "cover"},
-    "water": {"model": "dielectric", "inside": "river"},
+    "covered": {"map": "cover", "temperature_k": 293},
+    "water": {"model": "sea", "wind_m_s": 2.5, "index": "water_index", "k": "water_k", "below": "river_below", "temperature_k": 292},
     "bed": {"model": "lambert", "reflectance": "loam", "temperature_k": 292},
     "meadow": matte("grass", GRASSY, wetness=0.4, **OPEN),
     "maize": matte("maize_green", GRASSY, wetness=0.4, **OPEN),
     "wheat": matte("straw", GRASSY, wetness=0.1, **OPEN),
     "soil": matte("loam", EARTH, wetness=0.1, **OPEN),
-    "forest_floor": matte("litter", EARTH, wetness=0.3, **OPEN),
+    "forest_floor": matte("undergrowth", EARTH, wetness=0.3, **OPEN),
     "rock": matte("concrete_r", EARTH, **OPEN),
     "asphalt": matte("asphalt_r", ROAD, **OPEN),
     "paving": matte("concrete_r", ROAD, **OPEN),
-    "wall": matte("white_r", WALL, **ROOM),
     "plaster_white": matte("white_r", WALL, **ROOM),
     "plaster_yellow": matte("yellow_r", WALL, **ROOM),
     "plaster_grey": matte("concrete_r", WALL, **ROOM),
     "brick": matte("brick_r", WALL, **ROOM),
     "gravel": matte("slate_r", WALL, **ROOM),
     "tile": matte("tile_r", TILE, **LOFT),
-    "pane": glossy(0.03, points((0.38, 0.06), (2.5, 0.06), (8, 0.08), (9.2, 0.2), (10, 0.12), (14, 0.06)), 0.01, GLASS,
+    "pane": glossy(0.03, points((0.3, 0.06), (2.5, 0.06), (8, 0.08), (9.2, 0.2), (10, 0.12), (14, 0.06), (100, 0.06)), 0.01, GLASS,
                    absorptance=0.25, **{**ROOM, "back_film_w_m2_k": 2.5}),
     "solar": glossy(0.03, 0.05, 0.03, GLASS, convection="tarp", back="open"),
-    "steel": matte(points((0.38, 0.35), (2.5, 0.5), (8, 0.3), (14, 0.3)), STEEL, convection="mcadams"),
+    "steel": matte(points((0.3, 0.35), (2.5, 0.5), (8, 0.3), (14, 0.3), (100, 0.3)), STEEL, convection="mcadams"),
     "dark": matte(0.04, BODY, convection="mcadams"),
-    "paint": matte(0.3, BODY, convection="mcadams"),
     **{"paint_" + name: glossy(curve, 0.04, 0.05, BODY, convection="mcadams") for name, curve in PAINTS.items()},
     "bark": matte("bark_r", layers((0.1, 700, 1900, 0.2)), convection="mcadams"),
     # Without heat capacity: both faces, and water that evaporates.
