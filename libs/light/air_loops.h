@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 
+#include "light/local_air.h"
 #include "math/falling.h"
 
 namespace suite::air_loops {
@@ -93,6 +94,28 @@ inline void scatter_thin(size_t n, const float* __restrict extinction, float len
   const float way = length + beam.way, share = beam.share;
   for (size_t i = 0; i < n; ++i)
     S[i] += T[i] * light[i] * scattered[i] * length * mean_of_thin(extinction[i] * way + depth[i] * share);
+}
+// Of a beam near the scene's middle, from tables: its depth, and what is left of it,
+inline float depth_here(const LocalAir::BeamDepth& b, size_t i) {
+  const float depth = (b.low[i] + b.rise[i] * b.share) * b.stretch + b.curve[i] * b.bend;
+  return depth < 0 ? 0 : depth;
+}
+inline void fall_here(size_t n, const LocalAir::BeamDepth& beam, float* __restrict T) {
+  for (size_t i = 0; i < n; ++i) T[i] = exp_falling(depth_here(beam, i));
+}
+// and its light that is scattered once on a way that begins there, of n bins from the first on; grows: the way over
+// which extinction adds to the depth, m; share: as of ThinBeam.
+template <bool thin>
+inline void scatter_here(size_t first, size_t n, const float* __restrict extinction, float length,
+                         const LocalAir::BeamDepth& beam, const LocalAir::Scattered& scattered, float grows,
+                         float share, float* __restrict S) {
+  const float* __restrict low = scattered.low, * __restrict high = scattered.high;
+  for (size_t i = first; i < first + n; ++i) {
+    const float depth = depth_here(beam, i), sent = low[i] + scattered.share * (high[i] - low[i]);
+    const float more = extinction[i] * grows + depth * share, end = depth + more, near = exp_falling(depth);
+    S[i] +=
+        sent * length * (thin ? near * mean_of_thin(more) : mean_of_change(near, exp_falling(end < 0 ? 0 : end), more));
+  }
 }
 // weigh() and send() of a thin way at once.
 inline void send_thin(size_t n, const float* __restrict extinction, float length, const float* __restrict at_near,

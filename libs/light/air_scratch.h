@@ -16,7 +16,7 @@ struct AirScratch {
   };
   Row depth, keep, even, change;  // of the piece
   Row at_near, at_far;            // its source there
-  air_loops::Weights weights() { return {depth.data(), keep.data(), even.data(), change.data()}; }
+  air_loops::Weights weights(size_t i = 0) { return {&depth[i], &keep[i], &even[i], &change[i]}; }
   std::vector<BeamAt> near, far;         // per beam, at the ends of the piece
   BeamAt edge;                           // where the shadow of the Earth begins
   Row dark_T, lit_depth, lit_keep;       // up to the lit part of a piece, and of it

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "math/quick_angle.h"
 
 namespace suite {
 
@@ -93,8 +94,8 @@ double SkyTable::column(double azimuth) const {
 }
 
 void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
-  const double row = std::min(polar_angle(d) * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)),
-               col = column(azimuth(d));
+  const double row = std::min(quick_polar_angle(d) * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)),
+               col = column(quick_azimuth(d));
   const auto r = std::min(static_cast<size_t>(row), kRows - 2), c = std::min(static_cast<size_t>(col), columns_ - 1);
   const size_t next = c + 1 < columns_ ? c + 1 : symmetric_ || columns_ == 1 ? c : 0;
   const auto v = static_cast<float>(row - static_cast<double>(r)), u = static_cast<float>(col - static_cast<double>(c));

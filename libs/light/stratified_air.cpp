@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "air/beam_table.h"
 #include "air/column.h"
@@ -9,7 +10,10 @@
 #include "light/air_loops.h"
 #include "light/air_scratch.h"
 #include "light/air_vertices.h"
+#include "light/beam_light.h"
 #include "light/sky_table.h"
+#include "light/thin_bins.h"
+#include "math/quick_angle.h"
 
 namespace suite {
 
@@ -17,8 +21,6 @@ namespace {
 
 using Row = std::vector<float>;
 using Scratch = AirScratch;
-using BeamAt = AirScratch::BeamAt;
-constexpr float kShadow = 1e4f;  // depth of a beam in the shadow of the Earth
 
 class StratifiedAir final : public Atmosphere {
  public:
@@ -85,8 +87,8 @@ class StratifiedAir final : public Atmosphere {
   // Whether a way comes through all of the air down to a place where the table of views holds, and not too slant.
   bool seen_from_above(Vec3 from, Dir d, Vec3 end) const {
     constexpr double kSlant = 0.17;
-    return near_origin(end) && d.z < -kSlant && SkyTable::covers(column_.shells.height(end), -d) &&
-           column_.shells.height(from) >= bounds_.back();
+    return d.z < -kSlant && near_origin(end) && column_.shells.height(from) >= bounds_.back() &&
+           SkyTable::covers(column_.shells.height(end), -d);
   }
   // What of the light is wanted.
   struct Which {
@@ -97,30 +99,18 @@ class StratifiedAir final : public Atmosphere {
     std::fill(T.begin(), T.end(), 1.0f);
     std::fill(S.begin(), S.end(), 0.0f);
     Scratch& s = scratch();
-    for (size_t b = 0; b < beams_.size(); ++b) begin_phases(b, d, s), s.near[b].known = false;
+    once_.begin(d, s);
     column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
       const float* const k = extinction_of(piece);
       const auto length = static_cast<float>(piece.length);
-      const bool thin = greatest_[piece.layer] * piece.length < double{air_loops::kThin};
+      bool weighed = false;
       pass(piece, s, from + d * (0.5 * (piece.near + piece.far)), d, which);
-      if (!thin) air_loops::weigh(bins_, k, length, s.weights());
-      for (size_t b = 0; which.single && b < beams_.size(); ++b) {
-        BeamAt &near = s.near[b], &far = s.far[b];
-        if (!near.known) look_up(b, from + d * piece.near, piece.near_height, near);
-        scattered_once(b, piece.layer, s, s.scattered);
-        if (thin && scatter_thin(b, piece, from, d, s, T, S)) continue;
-        if (thin) air_loops::weigh(bins_, k, length, s.weights());
-        look_up(b, from + d * piece.far, piece.far_height, far);
-        if (near.lit == far.lit)
-          scatter(near, far, length, s.weights(), s, T, S);
-        else
-          scatter_lit(b, piece, from, d, s, T, S);
-        std::swap(near, far);
-      }
-      if (thin)
-        air_loops::send_thin(bins_, k, length, s.at_near.data(), s.at_far.data(), T.data(), S.data());
-      else
-        air_loops::send(bins_, s.weights(), s.at_near.data(), s.at_far.data(), T.data(), S.data());
+      if (which.single) once_.add(piece, from, d, s, weighed, T, S);
+      thin_.over(piece.layer, piece.length, [&](size_t i, size_t n, bool thin) {
+        if (thin) return air_loops::send_thin(n, k + i, length, &s.at_near[i], &s.at_far[i], &T[i], &S[i]);
+        if (!weighed) air_loops::weigh(n, k + i, length, s.weights(i));
+        air_loops::send(n, s.weights(i), &s.at_near[i], &s.at_far[i], &T[i], &S[i]);
+      });
     });
     if (bent(distance)) arrive(from, d, T);
   }
@@ -131,9 +121,13 @@ class StratifiedAir final : public Atmosphere {
   // Transmittance of a straight way out of the air that rises well, from the table of the beams. False: another way.
   bool outwards(Vec3 from, Dir d, std::span<float> T) const {
     constexpr double kLevel = 0.05;
-    const double cosine = dot(column_.shells.up(from), d);
+    const double cosine = dot(column_.shells.up(from), d), height = column_.shells.height(from);
     if (!column_.refractivity.empty() || cosine < kLevel) return false;
-    tables_[0].depth(column_.shells.height(from), cosine, T);
+    if (const auto depth = once_.local().depth(height, cosine)) {
+      air_loops::fall_here(bins_, *depth, T.data());
+      return true;
+    }
+    tables_[0].depth(height, cosine, T);
     for (float& t : T) t = exp_falling(t);
     return true;
   }
@@ -179,13 +173,13 @@ class StratifiedAir final : public Atmosphere {
   size_t beams() const override { return beams_.size(); }
   void beam(size_t b, size_t l, Vec3 from, Dir d, BeamAlong along) const override {
     Scratch& s = scratch();
-    begin_phases(b, d, s);
-    beam_depth(b, from, column_.shells.height(from), along.depth);
+    once_.begin(d, s);
+    once_.depth(b, from, column_.shells.height(from), along.depth);
     // Growth of the depth over a way so short that it stays in the layer.
     const double step = 1e-2 * (bounds_[l + 1] - bounds_[l]);
     const Vec3 on = from + d * step;
-    beam_depth(b, on, column_.shells.height(on), along.slope);
-    scattered_once(b, l, s, along.scattered);
+    once_.depth(b, on, column_.shells.height(on), along.slope);
+    once_.source(b, l, s, along.scattered);
     for (size_t i = 0; i < bins_; ++i) along.slope[i] = (along.slope[i] - along.depth[i]) / static_cast<float>(step);
   }
 
@@ -196,18 +190,10 @@ class StratifiedAir final : public Atmosphere {
     return s;
   }
 
-  // What a layer emits at its ends, over its extinction; and which layers do anything at all.
+  // What a layer emits at its ends, over its extinction; and which layers shine at all.
   void bake_emission() {
     constexpr float kDark = 1e-12f;  // W/(m2 sr um)
-    const auto any = [&](const float* row, float more) {
-      return std::any_of(row, row + bins_, [more](float v) { return v > more; });
-    };
-    for (const AirColumn::Kind& kind : column_.kinds)
-      for (size_t l = 0; l < column_.layers(); ++l) scatters_.push_back(any(&kind.scattering[l * bins_], 0));
-    for (size_t l = 0; l < column_.layers(); ++l) {
-      const float* const k = &column_.extinction[l * bins_];
-      greatest_.push_back(static_cast<double>(*std::max_element(k, k + bins_)));
-    }
+    const auto any = [&](const float* row) { return std::any_of(row, row + bins_, [](float v) { return v > kDark; }); };
     emission_.resize(2 * column_.layers() * bins_);
     for (size_t l = 0; l < column_.layers(); ++l)
       for (size_t i = 0; i < bins_; ++i) {
@@ -220,7 +206,7 @@ class StratifiedAir final : public Atmosphere {
               static_cast<float>(absorbed * column_.blackbody[(l + end) * bins_ + i]);
       }
     for (size_t l = 0; l < column_.layers(); ++l)
-      emits_.push_back(any(&emission_[2 * l * bins_], kDark) || any(&emission_[(2 * l + 1) * bins_], kDark));
+      emits_.push_back(any(&emission_[2 * l * bins_]) || any(&emission_[(2 * l + 1) * bins_]));
   }
 
   // up: flux that leaves the even ground, W/(m2 um).
@@ -280,94 +266,8 @@ class StratifiedAir final : public Atmosphere {
 
   DiffuseSource::Corners corners_of(Vec3 at, Dir d) const {
     const Dir local = to_local(at, d);
-    return diffuse_->corners(local.z, azimuth(local));
+    return diffuse_->corners(local.z, quick_azimuth(local));
   }
-  // Light comes along -beam and goes on along -d: angles for phase functions, which are looked up where they matter.
-  void begin_phases(size_t b, Dir d, Scratch& s) const {
-    s.cosines[b] = std::clamp(dot(beams_[b].direction, d), -1.0, 1.0);
-    for (Row& p : s.phases[b]) p.clear();
-  }
-  const Row& phase_of(size_t b, size_t kind, Scratch& s) const {
-    Row& p = s.phases[b][kind];
-    if (!p.empty()) return p;
-    p.resize(bins_);
-    const PhaseFunction& phase = *column_.kinds[kind].phase;
-    phase.eval(s.cosines[b], phase.spectrally_uniform() ? std::span(p).first(1) : std::span(p));
-    if (phase.spectrally_uniform()) std::fill(p.begin(), p.end(), p[0]);
-    return p;
-  }
-  // False in the shadow of the Earth.
-  bool beam_depth(size_t b, Vec3 p, double height, std::span<float> depth) const {
-    const bool lit = tables_[b].spread_depth(height, dot(column_.shells.up(p), beams_[b].direction), depth);
-    if (!lit) std::fill(depth.begin(), depth.end(), kShadow);
-    return lit;
-  }
-  void look_up(size_t b, Vec3 p, double height, BeamAt& at) const {
-    at.known = true;
-    at.lit = beam_depth(b, p, height, at.depth);
-    air_loops::fall(bins_, at.depth.data(), at.light.data());
-  }
-
-  // Scattering times phase function, summed over the kinds, times the irradiance of the beam above the air.
-  void scattered_once(size_t b, size_t layer, Scratch& s, std::span<float> to) const {
-    std::fill(to.begin(), to.end(), 0.0f);
-    for (size_t k = 0; k < column_.kinds.size(); ++k) {
-      if (scatters_[k * column_.layers() + layer])
-        air_loops::multiply_add(bins_, &column_.kinds[k].scattering[layer * bins_], phase_of(b, k, s).data(),
-                                to.data());
-    }
-    for (size_t i = 0; i < bins_; ++i) to[i] *= beams_[b].irradiance[i];
-  }
-  // Light of a beam that is scattered once on a way; s.scattered: how.
-  void scatter(const BeamAt& near, const BeamAt& far, float length, const air_loops::Weights& weights, const Scratch& s,
-               std::span<const float> T, std::span<float> S) const {
-    air_loops::scatter(bins_, s.scattered.data(), length, weights, {near.depth.data(), near.light.data()},
-                       {far.depth.data(), far.light.data()}, T.data(), S.data());
-  }
-  // The same of a thin piece under a straight beam that comes down well; s.near: where it begins. False: not so.
-  // With d = (D - M / (R c^2)) / c, D the depth over a height and M its first moment, the beam's depth grows by
-  // -k dh / c and by d (c_near / c - 1 + dh / (R c^2)): within 2e-4 of what is scattered
-  // (tests/physics/light/thin_air_test.cpp).
-  bool scatter_thin(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, Scratch& s, std::span<const float> T,
-                    std::span<float> S) const {
-    constexpr double kLow = 0.2, kTurn = 0.01;
-    const Dir beam = beams_[b].direction;
-    const double near = dot(column_.shells.up(from + d * piece.near), beam),
-                 far = dot(column_.shells.up(from + d * piece.far), beam);
-    const double rise = piece.far_height - piece.near_height, way = -rise / far;
-    const double share = near / far - 1 + rise * column_.shells.curvature() / (far * far);
-    if (!column_.refractivity.empty() || near < kLow || far < kLow || std::fabs(share) > kTurn) return false;
-    if (greatest_[piece.layer] * (piece.length + std::fabs(way)) > 0.8 * double{air_loops::kThin}) return false;
-    air_loops::scatter_thin(bins_, extinction_of(piece), static_cast<float>(piece.length),
-                            {s.near[b].light.data(), s.near[b].depth.data(), s.scattered.data(),
-                             static_cast<float>(way), static_cast<float>(share)},
-                            T.data(), S.data());
-    s.near[b].known = false;
-    return true;
-  }
-  // The same of a piece that goes into the shadow of the Earth or comes out of it: only the part outside is lit.
-  void scatter_lit(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, Scratch& s, std::span<const float> T,
-                   std::span<float> S) const {
-    const bool near_lit = s.near[b].lit;
-    double lit = near_lit ? piece.near : piece.far, dark = near_lit ? piece.far : piece.near;
-    const auto at = [&](double t) { return from + d * t; };
-    for (int i = 0; i < 30; ++i) {
-      const double middle = 0.5 * (lit + dark);
-      const Vec3 p = at(middle);
-      const double cosine = dot(column_.shells.up(p), beams_[b].direction);
-      (tables_[b].seen(column_.shells.height(p), cosine) ? lit : dark) = middle;
-    }
-    look_up(b, at(lit), column_.shells.height(at(lit)), s.edge);
-    const auto share = static_cast<float>(std::fabs(lit - (near_lit ? piece.near : piece.far)) / piece.length);
-    for (size_t i = 0; i < bins_; ++i) {
-      s.lit_depth[i] = share * s.depth[i];
-      s.lit_keep[i] = exp_falling(s.lit_depth[i]);
-      s.dark_T[i] = near_lit ? T[i] : T[i] * exp_falling((1 - share) * s.depth[i]);
-    }
-    scatter(near_lit ? s.near[b] : s.edge, near_lit ? s.edge : s.far[b], share * static_cast<float>(piece.length),
-            {s.lit_depth.data(), s.lit_keep.data(), nullptr, nullptr}, s, s.dark_T, S);
-  }
-
   std::shared_ptr<const AirColumn> made_;
   const AirColumn& column_;
   std::vector<Beam> beams_;
@@ -375,10 +275,10 @@ class StratifiedAir final : public Atmosphere {
   size_t bins_;
   std::vector<double> bounds_;
   std::vector<BeamTable> tables_;
-  std::vector<float> emission_;    // [layer][end][bin]
-  std::vector<uint8_t> emits_;     // per layer
-  std::vector<double> greatest_;   // extinction of all bins, per layer
-  std::vector<uint8_t> scatters_;  // [kind][layer]
+  BeamLight once_{column_, beams_, tables_};
+  ThinBins thin_{column_};
+  std::vector<float> emission_;  // [layer][end][bin]
+  std::vector<uint8_t> emits_;   // per layer
   std::unique_ptr<SkyTable> sky_, view_;
   std::unique_ptr<const AirVertices> vertices_;
 };

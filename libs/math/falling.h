@@ -39,8 +39,7 @@ inline float mean_of_rising(float x, float keep) {
 
 // Mean over a way of what changes evenly by a factor on it, from a >= 0 to b = a exp(-x), of any sign of x.
 inline float mean_of_change(float a, float b, float x) {
-  const float sum = a + b, q = (a - b) / (sum < 1e-37f ? 1e-37f : sum), q2 = q * q;  // x = 2 artanh(q)
-  const float small = 0.5f * sum / (1 + q2 * (1 / 3.0f + q2 * (0.2f + q2 * (1 / 7.0f))));
+  const float small = a * (1 - x * (0.5f - x * (1 / 6.0f - x * (1 / 24.0f - x * (1 / 120.0f - x * (1 / 720.0f))))));
   const float size = x < 0 ? -x : x, safe = size < 0.4f ? 1.0f : x, large = (a - b) / safe;
   return size < 0.4f ? small : large;
 }

@@ -101,6 +101,7 @@ class PathKernel final : public PathTracing {
   void request_hits(TraceRequest& request);
   void fly();
   void fly_one(size_t slot);
+  bool meets_outside(const Path& path) const;
   void arrive();
   SUITE_INLINE bool meet(uint32_t p, uint32_t slot);
   bool meet_earth(uint32_t p, uint32_t slot);

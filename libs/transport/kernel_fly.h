@@ -175,7 +175,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
   Contribution& c = contribution(p, Space::kEmitter);
   if constexpr (Space::kGoesBack) passed_[p].before = path;
-  flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, through, emitted);
+  const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
+  flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
   const Flight& flight = flights_[slot];
   c.radiance = flight.emitted;
   if (flight.difference) c.light = kFromAir;
@@ -187,6 +188,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   if (c.radiance) return contribute();
   throughputs_.give_back(p);
   if (!flight.through.spectrum) throughputs_.give_back(p);
+}
+
+// Whether anything but what fills space shines at a path that leaves the scene.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meets_outside(const Path& path) const {
+  return std::any_of(outside_.begin(), outside_.end(), [&](const Asked& light) {
+    return light.light->met_outside(path.direction, path.time).has_value();
+  });
 }
 
 // Sorts paths by what they have come to.

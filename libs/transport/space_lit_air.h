@@ -23,12 +23,12 @@ class LitAirSpace : public AirSpace {
     places_.start(p);
   }
   template <class L>
-  Flight fly(uint32_t p, L& lane, PathRecord& record, Hit& hit, const Ray& ray, double length, std::span<float> through,
-             std::span<float> emitted) {
+  Flight fly(uint32_t p, L& lane, PathRecord& record, Hit& hit, const Ray& ray, double length, bool ends,
+             std::span<float> through, std::span<float> emitted) {
     Flight flight{Arrival::met, {1, through.data()}, true, emitted.data()};
     const bool left = places_.leave(p);
     if (!left) {
-      flight = AirSpace::fly(p, lane, record, hit, ray, length, through, emitted);
+      flight = AirSpace::fly(p, lane, record, hit, ray, length, ends, through, emitted);
     } else if (length == std::numeric_limits<double>::infinity()) {  // the even ground or the sky, as everywhere
       record.end = PathEnd::escaped;
       record.escape = lane.direction;

@@ -90,10 +90,16 @@ class AirSpace : public NothingSpace {
   static constexpr uint32_t kDense = 2;
   explicit AirSpace(const SpaceContext& c) : NothingSpace(c), air_(*c.environment.atmosphere) {}
 
+  // ends: light from the end of the way is to come through it.
   template <class L>
-  Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, std::span<float> through,
+  Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
              std::span<float> emitted) const {
-    if (lane.surfaces > 0 && length == std::numeric_limits<double>::infinity())
+    const bool sky = lane.surfaces > 0 && length == std::numeric_limits<double>::infinity();
+    if (sky && !ends) {
+      air_.sky_radiance(lane.origin, lane.direction, through, emitted);
+      return {Arrival::met, {}, false, emitted.data()};
+    }
+    if (sky)
       air_.skylight(lane.origin, lane.direction, through, emitted);
     else
       air_.path(lane.origin, lane.direction, length, through, emitted);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/quick_angle.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -136,12 +137,16 @@ void Sky::bake_density() {
   }
   for (double& v : cdf_) v /= sum;
   cdf_.back() = 1;
+  for (size_t i = 0, cell = 0; i < cdf_.size(); ++i) {
+    while (cdf_[cell] * static_cast<double>(cdf_.size()) <= static_cast<double>(i)) ++cell;
+    begins_.push_back(static_cast<uint32_t>(cell));
+  }
 }
 
 Sky::Place Sky::place_of(Dir d) const {
-  double phi = azimuth(d) / (2 * kPi);
+  double phi = quick_azimuth(d) / (2 * kPi);
   phi -= std::floor(phi);
-  return {std::clamp(polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_),
+  return {std::clamp(quick_polar_angle(d) / theta_max_, 0.0, 1.0) * static_cast<double>(rows_),
           phi * static_cast<double>(columns_)};
 }
 
@@ -225,8 +230,9 @@ std::optional<LightMet> Sky::met_outside(Dir d, double) const {
 }
 
 DirectionSample Sky::draw(Vec2 u) const {
-  const size_t cell =
-      std::min(cdf_.size() - 1, static_cast<size_t>(std::upper_bound(cdf_.begin(), cdf_.end(), u.x) - cdf_.begin()));
+  const size_t last = cdf_.size() - 1;
+  size_t cell = begins_[std::min(last, static_cast<size_t>(u.x * static_cast<double>(cdf_.size())))];
+  while (cell < last && cdf_[cell] <= u.x) ++cell;
   const double before = cell ? cdf_[cell - 1] : 0, probability = cdf_[cell] - before;
   const size_t row = cell / columns_;
   // Uniform in solid angle inside the cell; what is left of u.x after choosing the cell is uniform again.

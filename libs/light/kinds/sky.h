@@ -95,6 +95,7 @@ class Sky final : public Light {
   };
   std::vector<Mix> mix_;
   std::vector<double> cdf_;                       // over cells, row-major, last = 1
+  std::vector<uint32_t> begins_;                  // the first cell whose cdf exceeds i / cells
   std::vector<double> edges_;                     // cosines of the zenith angles between rows of cells
   size_t rows_ = 0, columns_ = 0, channels_ = 1;  // cells: rows x columns
   double theta_max_ = kPi / 2;

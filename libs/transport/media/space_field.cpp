@@ -37,7 +37,7 @@ void FieldSpace::start(uint32_t p, const LivePath& live) {
   if (bodies_.any()) stacks_[p] = bodies_.around(live.origin, live.time, statistics_);
 }
 
-Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool,
                        std::span<float> through, std::span<float> emitted) {
   Way& way = ways_[p];
   if (way.gap > 0) bodies_.settle(hit, ray, way.gap);

@@ -26,7 +26,7 @@ class FieldSpace {
   Vec3 ray_from(uint32_t p, const LivePath& live) const { return ways_[p].gap > 0 ? ways_[p].from : live.origin; }
   // One flight of path p towards `hit`, which `ray` found, over `length` m at most. through, emitted: memory for
   // spectra.
-  Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+  Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
   // Flights bring all light of the air: media on the way dim it in parts.

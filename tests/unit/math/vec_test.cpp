@@ -1,8 +1,10 @@
 // Frames, angles and affine maps, degenerate directions included.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
+#include "math/quick_angle.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "math/warps.h"
@@ -111,4 +113,21 @@ TEST(Box, GrowsAndKnowsEmpty) {
   EXPECT_EQ(box.low, (Vec3{-1, 2, 0}));
   EXPECT_EQ(box.high, (Vec3{1, 5, 3}));
   EXPECT_EQ(box.center(), (Vec3{0, 3.5, 1.5}));
+}
+
+TEST(QuickAngle, IsTheExactOneWithin5e8) {
+  double worst = 0;
+  const auto off = [&](double y, double x) {
+    worst = std::max(worst, std::fabs(quick_atan2(y, x) - std::atan2(y, x)));
+  };
+  Pcg32 rng(5);
+  for (int i = 0; i < 100000; ++i) off(2 * rng.uniform() - 1, 2 * rng.uniform() - 1);
+  for (const double y : {-1.0, -1e-12, 0.0, 1e-300, 1.0})
+    for (const double x : {-1.0, -1e-12, 1e-300, 1.0}) off(y, x);
+  EXPECT_LT(worst, 5e-8);
+  EXPECT_GT(worst, 1e-10);  // it is another function
+  EXPECT_EQ(quick_atan2(0, 0), 0);
+  for (const Dir d : directions()) {
+    EXPECT_NEAR(quick_polar_angle(d), polar_angle(d), 5e-8);
+  }
 }

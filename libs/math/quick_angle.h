@@ -1,0 +1,27 @@
+// Angles of directions, for places in tables: within 5e-8 rad, in a fraction of the time of the exact ones (vec.h).
+// Based on: M. Abramowitz, I. Stegun, "Handbook of mathematical functions", 1964, 4.4.49.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec.h"
+
+namespace suite {
+
+// 0 at the origin, where there is no angle.
+inline double quick_atan2(double y, double x) {
+  const double ax = std::fabs(x), ay = std::fabs(y), large = std::max(ax, ay);
+  const double t = large > 0 ? std::min(ax, ay) / large : 0, s = t * t;
+  double p = 0.0028662257;
+  for (const double c :
+       {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944, 0.1999355085, -0.3333314528, 1.0})
+    p = p * s + c;
+  double angle = p * t;
+  if (ay > ax) angle = kPi / 2 - angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? -angle : angle;
+}
+inline double quick_polar_angle(Dir d) { return quick_atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z); }
+inline double quick_azimuth(Dir d) { return quick_atan2(d.y, d.x); }
+
+}  // namespace suite
