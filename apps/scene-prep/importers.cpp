@@ -3,13 +3,14 @@
 #include "base/files.h"
 #include "dirsig_import.h"
 #include "formats/scene_text/scene_text.h"
+#include "helios_import.h"
 #include "model_import.h"
 
 namespace suite {
 
 const Registry<ImporterRow>& importers() {
-  static const Registry<ImporterRow> table("importer", "",
-                                           {dirsig_importer(), model_importer(), scene_text_importer()});
+  static const Registry<ImporterRow> table(
+      "importer", "", {dirsig_importer(), helios_importer(), model_importer(), scene_text_importer()});
   return table;
 }
 

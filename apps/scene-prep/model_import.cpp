@@ -8,10 +8,13 @@
 #include "base/inputs.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
+#include "base/yaml_text.h"
+#include "formats/city/city.h"
 #include "formats/gltf/gltf.h"
 #include "formats/ply/ply.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/stl/stl.h"
+#include "motion/map_system.h"
 #include "scene/issues.h"
 
 namespace suite {
@@ -30,23 +33,11 @@ std::string extension_of(const std::string& path) {
 std::string kind_of(const std::string& path, std::string_view head) {
   const std::string e = extension_of(path);
   if (e == ".ply" || e == ".stl") return e.substr(1);
+  if (!city_format(path, head).empty()) return "city";
   return is_gltf(path, head) ? "gltf" : "";
 }
 
 bool sniff(const std::string& path, std::string_view head) { return !kind_of(path, head).empty(); }
-
-// As a text between double quotes, for YAML.
-std::string quoted(const std::string& text) {
-  std::string q = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') q += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
-      q += strf("\\x%02x", c);
-    else
-      q += c;
-  }
-  return q + "\"";
-}
 
 // A curve from a display colour: three flat parts with ramps between them, which sum to 1, so that grey stays grey.
 // What lies outside of the visible is held; that is a guess and no measurement.
@@ -59,6 +50,7 @@ std::string uplifted(const std::array<double, 3>& rgb) {
 
 struct Made {
   std::string yaml;
+  std::string told, origin;  // what is assumed; where on the Earth it is
   std::vector<SourceMaterial> materials;
   bool colours = false;  // the format has display colours at all
 };
@@ -77,24 +69,57 @@ std::vector<SourceMaterial> materials_of(const std::string& path, const ImportOp
   return model.materials;
 }
 
+// The materials of a city, and its place: the middle of what it holds, at its lowest height, becomes the origin.
+// Returns what its object has to say of that.
+std::string place_city(const std::string& path, Made& made) {
+  Report unheard(scene_issues());
+  const CityModel city = read_city(path, std::nullopt, unheard);
+  std::set<std::string> kinds;
+  for (const CityModel::Object& object : city.objects)
+    for (const CityModel::Surface& surface : object.surfaces) kinds.insert(surface.kind);
+  for (const std::string& kind : kinds) made.materials.push_back({kind, {}});
+  const Box3 box = extent_of(city);
+  if (box.empty() || !finite(box.center())) return "";
+  const Vec3 at{box.center().x, box.center().y, box.low.z};
+  const auto epsg = epsg_of_name(city.system);
+  const auto system = epsg ? map_system_of_epsg(*epsg) : std::nullopt;
+  if (!system) {
+    made.told = "its reference system '" + printable(city.system) +
+                "' is not known here: its map is taken as flat, with no place on the Earth";
+    return strf(", local: [%.3f, %.3f, %.3f]", at.x, at.y, at.z);
+  }
+  Geodetic g{at.x, at.y, at.z};
+  if (system->zone) g = geodetic_from_utm({*system->zone, at.x, at.y, at.z});
+  check_geodetic(g);
+  if (system->heights != MapSystem::Heights::ellipsoid)
+    made.told =
+        "heights are taken as above the ellipsoid; above the geoid with --set origin.geoid=FILE.pgm --set "
+        "origin.height=geoid --set objects.NAME.height=geoid";
+  made.origin = strf("origin: {latitude_deg: %.9f, longitude_deg: %.9f, height_m: %.3f}\n", g.latitude_deg,
+                     g.longitude_deg, g.height_m);
+  return ", height: ellipsoid";
+}
+
 Made text_of(const std::string& path, const std::string& file, const std::string& kind, const ImportOptions& options) {
   Made made;
   bool nameless = true;
   if (kind == "gltf") made.materials = materials_of(path, options, nameless), made.colours = true;
-  const std::string name = quoted(std::filesystem::path(path).stem().string());
+  std::string keys;
+  if (kind == "city") keys = place_city(path, made), nameless = false;
+  const std::string name = yaml_quoted(std::filesystem::path(path).stem().string());
   std::string& y = made.yaml;
-  y = "scene: 1\nname: " + name + "\nmaterials:\n";
+  y = "scene: 1\nname: " + name + "\n" + made.origin + "materials:\n";
   for (const SourceMaterial& m : made.materials) {
-    const bool uplift = options.uplift;
+    const bool uplift = options.uplift && made.colours;
     y += strf("  %s: {model: lambert, reflectance: %s, description: \"%s, display colour %.3f %.3f %.3f\"}\n",
-              quoted(m.name).c_str(), uplift ? uplifted(m.rgb).c_str() : strf("%g", kStandIn).c_str(),
+              yaml_quoted(m.name).c_str(), uplift ? uplifted(m.rgb).c_str() : strf("%g", kStandIn).c_str(),
               uplift ? "guessed" : "stand-in", m.rgb[0], m.rgb[1], m.rgb[2]);
   }
   if (nameless) {
     made.materials.push_back({kNameless, {}});
     y += strf("  %s: {model: lambert, reflectance: %g, description: stand-in}\n", kNameless, kStandIn);
   }
-  y += "objects:\n  " + name + ": {" + kind + ": " + quoted(file) +
+  y += "objects:\n  " + name + ": {" + kind + ": " + yaml_quoted(file) + keys +
        (nameless ? std::string(", material: ") + kNameless : "") + "}\nworld: [{place: " + name + ", tag: " + name +
        "}]\n";
   return made;
@@ -102,9 +127,10 @@ Made text_of(const std::string& path, const std::string& file, const std::string
 
 Draft read(const std::string& path, const ImportOptions& options, Report& report) {
   const std::string file = std::filesystem::path(path).filename().string();
-  std::string head(std::min<size_t>(file_size(path), 4), '\0');
+  std::string head(std::min<size_t>(file_size(path), 4096), '\0');
   RandomAccessFile(path).read_at(0, std::as_writable_bytes(std::span(head)));
   const Made made = text_of(path, file, kind_of(path, head), options);
+  if (!made.told.empty()) report.add("SP707", path, {Where{path, 0, 0, {}, -1}, made.told});
   if (options.uplift && !made.colours) warn("--uplift: " + file + " has no materials with display colours");
   for (const SourceMaterial& m : made.materials) {
     const std::string setting = "materials." + m.name;
@@ -128,7 +154,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
 
 bool convert(const std::string& path, const ImportOptions& options, const std::string& folder) {
   namespace fs = std::filesystem;
-  std::string head(std::min<size_t>(file_size(path), 4), '\0');
+  std::string head(std::min<size_t>(file_size(path), 4096), '\0');
   RandomAccessFile(path).read_at(0, std::as_writable_bytes(std::span(head)));
   const std::string file = fs::proximate(fs::absolute(path), fs::absolute(folder)).string();
   const std::string text = (fs::path(folder) / fs::path(path).stem()).string() + ".yaml";
@@ -143,7 +169,9 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
 }  // namespace
 
 ImporterRow model_importer() {
-  return {{"model", "a model: glTF or GLB, PLY, STL (formats/gltf, ply and stl)", "", read}, sniff, convert};
+  return {{"model", "a model: glTF or GLB, PLY, STL, CityJSON, CityGML (formats/gltf, ply, stl and city)", "", read},
+          sniff,
+          convert};
 }
 
 }  // namespace suite

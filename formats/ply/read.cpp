@@ -9,14 +9,13 @@
 #include "base/files.h"
 #include "base/number_text.h"
 #include "formats/ply/header.h"
-#include "math/polygon.h"
+#include "scene/mesh_builder.h"
 
 namespace suite {
 
 namespace ply {
 namespace {
 
-constexpr double kFarthest = 1e15;           // of the file's units
 constexpr size_t kLongestPolygon = 100'000;  // corners
 
 // The values behind the header, one after the other, and where they stand.
@@ -99,9 +98,11 @@ class Values {
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, Report& report)
-      : header_(header_of(text, file)), values_(text, header_, file), file_(file), report_(report) {
-    mesh_.file = file;
-  }
+      : header_(header_of(text, file)),
+        values_(text, header_, file),
+        file_(file),
+        builder_(file, report),
+        mesh_(builder_.mesh()) {}
   SourceMesh run();
 
  private:
@@ -113,15 +114,15 @@ class Reader {
   size_t list_count(const Property& p);
   void face(std::span<const double> corner);
   bool known(std::span<const double> corner);
-  void triangle(uint32_t a, uint32_t b, uint32_t c) { mesh_.indices.insert(mesh_.indices.end(), {a, b, c}); }
-  void add(const char* code, const std::string& what) { report_.add(code, file_, {values_.here(), what}); }
-  void tell(const char* code, const std::string& what) { report_.add(code, file_, {Where{file_, 0, 0, {}, -1}, what}); }
+  void add(const char* code, const std::string& what) { builder_.add(code, values_.here(), what); }
+  void tell(const char* code, const std::string& what) { builder_.add(code, Where{file_, 0, 0, {}, -1}, what); }
 
   const Header header_;
   Values values_;
   const std::string& file_;
-  Report& report_;
-  SourceMesh mesh_;
+  MeshBuilder builder_;
+  SourceMesh& mesh_;  // the builder's
+  std::vector<uint32_t> corners_;
 };
 
 // Every value takes a byte at least, so that a count that cannot be is refused before room is made for it.
@@ -172,9 +173,7 @@ void Reader::vertices(const Element& e) {
     }
     const auto at = [&](int c) { return row[static_cast<size_t>(c)]; };
     mesh_.positions.push_back({at(place[0]), at(place[1]), at(place[2])});
-    const Vec3 v = mesh_.positions.back();
-    if (!(std::fabs(v.x) < kFarthest && std::fabs(v.y) < kFarthest && std::fabs(v.z) < kFarthest))
-      add("SP203", strf("(%g, %g, %g) is no place, or absurdly far away", v.x, v.y, v.z));
+    builder_.is_place(mesh_.positions.back(), values_.here());
     if (has_normal) {
       const Vec3 n{at(normal[0]), at(normal[1]), at(normal[2])};
       const double size = length(n);
@@ -199,17 +198,10 @@ bool Reader::known(std::span<const double> corner) {
 }
 
 void Reader::face(std::span<const double> corner) {
-  if (corner.size() < 3) return add("SP202", strf("%zu corners", corner.size()));
   if (corner.size() > kLongestPolygon) throw values_.fault(strf("a polygon of %zu corners", corner.size()));
-  if (!known(corner)) return;
-  const auto index = [&](size_t k) { return static_cast<uint32_t>(corner[k]); };
-  if (corner.size() == 3) return triangle(index(0), index(1), index(2));
-  std::vector<Vec3> ring;
-  for (size_t k = 0; k < corner.size(); ++k) ring.push_back(mesh_.positions[index(k)]);
-  bool clean = true;
-  for (const auto& t : split_polygon(ring, clean))
-    triangle(index(static_cast<size_t>(t[0])), index(static_cast<size_t>(t[1])), index(static_cast<size_t>(t[2])));
-  if (!clean) add("SP206", strf("a polygon of %zu corners", corner.size()));
+  if (corner.size() >= 3 && !known(corner)) return;
+  corners_.assign(corner.begin(), corner.end());
+  builder_.polygon(corners_, values_.here());
 }
 
 void Reader::faces(const Element& e) {
@@ -257,9 +249,9 @@ void Reader::strips(const Element& e) {
                    d = static_cast<uint32_t>(last[2]);
         if (a == b || b == d || d == a) continue;  // only leads to where the strip goes on
         if (length % 2)
-          triangle(a, b, d);
+          builder_.triangle(a, b, d);
         else
-          triangle(b, a, d);
+          builder_.triangle(b, a, d);
       }
     }
     values_.end_row();
@@ -288,8 +280,7 @@ SourceMesh Reader::run() {
   if (mesh_.indices.empty())
     tell("SP204", mesh_.positions.empty() ? "neither vertices nor faces"
                                           : strf("%zu points and no face", mesh_.positions.size()));
-  mesh_.runs.push_back({"", "", 0, 0});
-  return std::move(mesh_);
+  return builder_.take();
 }
 
 }  // namespace

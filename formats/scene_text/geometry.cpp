@@ -19,7 +19,8 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   const size_t slot = draft_.geometry.size();
   draft_.geometry.push_back(g);
   draft_.geometry[slot].failed = true;
-  std::vector<std::string> kinds{"obj", "obj_text", "gdb", "ply", "stl", "gltf", "terrain", "voxels", "waves"};
+  std::vector<std::string> kinds{"obj",  "obj_text", "gdb",     "ply",    "stl",  "gltf",
+                                 "city", "points",   "terrain", "voxels", "waves"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
   for (const std::string& k : kinds)
@@ -29,10 +30,12 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
     }
   if (kind.empty()) throw p.error("object '" + name + "' has no geometry", name_hint("", kinds));
   if (kind == "gltf") return read_model(p, std::move(g), slot);
-  if (kind == "obj" || kind == "obj_text" || kind == "gdb" || kind == "ply" || kind == "stl")
+  if (kind == "obj" || kind == "obj_text" || kind == "gdb" || kind == "ply" || kind == "stl" || kind == "city")
     read_mesh(p, kind, g);
   else if (kind == "terrain")
     read_terrain(p, g);
+  else if (kind == "points")
+    read_points(p, g);
   else if (kind == "voxels")
     read_voxel_geometry(p, g);
   else if (kind == "waves")
@@ -59,19 +62,14 @@ std::function<Vec3(double, double, double)> local_grid(const Params& p) {
   };
 }
 
-// Where a GeoTIFF's samples are, through WGS84 into the scene's frame. separation: geoid above ellipsoid, m.
-std::function<Vec3(double, double, double)> georeferenced_grid(const GeoReference& ref, double separation,
-                                                               const GeodeticOrigin& origin, const Where& where) {
-  const auto zone = ref.geographic ? std::nullopt : utm_zone_of_epsg(ref.epsg);
-  if (ref.geographic ? ref.epsg != 4326 && ref.epsg != 4258 : !zone)
-    throw Error(where, strf("EPSG:%d is not known here", ref.epsg), "WGS84 or ETRS89, geographic or UTM, are", "SP504");
-  const SceneFrame frame({origin.latitude_deg, origin.longitude_deg, origin.ellipsoid_height_m});
-  return [=](double column, double row, double height) {
+// Where a GeoTIFF's samples are, through `place` from its map.
+std::function<Vec3(double, double, double)> georeferenced_grid(const GeoReference& ref,
+                                                               std::function<Vec3(Vec3)> place) {
+  return [ref, place = std::move(place)](double column, double row, double height) {
     const double c = column + 0.5, r = row + 0.5;  // samples are at pixel centres
     const double x = ref.to_map[0] + ref.to_map[1] * c + ref.to_map[2] * r,
                  y = ref.to_map[3] + ref.to_map[4] * c + ref.to_map[5] * r;
-    const double h = height + separation;
-    return zone ? frame.enu_from_utm({*zone, x, y, h}) : frame.enu_from_geodetic({y, x, h});
+    return ref.geographic ? place({y, x, height}) : place({x, y, height});
   };
 }
 
@@ -127,15 +125,18 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   if (const auto local = p.find("local")) {
     g.terrain.place = local_grid(*local);
   } else {
-    const Params datum = p.at("height");
-    const bool geoid = datum.as_choice({"ellipsoid", "geoid"}) == 1;
-    const double separation = geoid ? p.number_in("geoid_separation_m", -200, 200, "m, geoid above ellipsoid") : 0;
+    p.at("height");
+    const GeoidRule rule = read_heights_rule(p);
     if (!draft_.origin.given)
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
     const GeoReference ref = read_georeference(path);
     if (!no_data) no_data = ref.no_data;
     g.terrain.georeferenced = true;
-    g.terrain.place = georeferenced_grid(ref, separation, draft_.origin, Where{path, 0, 0, {}, -1});
+    const auto system = map_system_of_epsg(ref.epsg);
+    if (!system || system->zone.has_value() == ref.geographic)
+      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg),
+                  "WGS84 or ETRS89, geographic or UTM, are", "SP504");
+    g.terrain.place = georeferenced_grid(ref, on_earth(*system, rule));
   }
   read_heights(path, no_data, g.terrain);
   const double scale = p.number("height_scale", 1), offset = p.number("height_offset", 0);

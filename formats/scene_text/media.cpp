@@ -75,6 +75,10 @@ void Reader::read_medium(const std::string& id, const Params& p) {
     for (const char* name : {"absorption", "scattering", "extinction", "albedo", "phase", "index"})
       if (p.has(name)) throw p.at(name).error(strf("'%s' and 'water' cannot be combined", name), "water gives it");
     read_water(*water, m);
+  } else if (const auto leaves = p.find("leaves")) {
+    for (const char* name : {"absorption", "scattering", "extinction", "albedo", "phase"})
+      if (p.has(name)) throw p.at(name).error(strf("'%s' and 'leaves' cannot be combined", name), "leaves give it");
+    read_leaves(*leaves, m);
   } else {
     read_coefficients(p, m);
     if (const auto phase = p.find("phase")) read_phase(*phase, m.phase);
@@ -84,6 +88,22 @@ void Reader::read_medium(const std::string& id, const Params& p) {
   m.priority = static_cast<int>(p.integer("priority", -1000, 1000, 0));
   check_medium(m, p.where());
   draft_.media[slot].medium = std::move(m);
+}
+
+// Turbid leaves: a density of 1 is one square metre of leaves, counted on one side, in a cubic metre.
+void Reader::read_leaves(const Params& p, Medium& m) {
+  const Curve r = read_curve_value(p.at("reflectance")), t = read_curve_value(p.at("transmittance"));
+  const double g = p.number_in("projection", 0.01, 1, "m2 of shadow of a m2 of leaves", 0.5);
+  for (const Curve* c : {&r, &t})
+    if (!(c->min() >= 0 && c->max() <= 1)) throw p.error("a leaf's reflectance or transmittance outside of 0 to 1");
+  m.scattering = combined(r, t, [&](double a, double b) { return g * (a + b); });
+  if (m.scattering.max() > g * (1 + 1e-9))
+    throw p.error(strf("leaves that reflect and transmit %g in all", m.scattering.max() / g), "at most 1", "SP105");
+  m.absorption = combined(r, t, [&](double a, double b) { return std::max(0.0, g * (1 - a - b)); });
+  m.phase.model = "leaves";
+  m.phase.curves.insert_or_assign("transmitted",
+                                  combined(r, t, [](double a, double b) { return a + b > 0 ? b / (a + b) : 0.5; }));
+  check_phase(m.phase, p.where());
 }
 
 // Absorption and scattering from the two coefficients that are given.
@@ -144,6 +164,9 @@ VoxelData Reader::read_voxel_input(const Params& p) {
 // The grids of an OpenVDB file, or voxels as text.
 VoxelData Reader::read_any_voxels(const Params& p, const Params& file) {
   const std::string name = file.as_text();
+  if (name.size() > 4 && (name.ends_with(".las") || name.ends_with(".LAS") || name.ends_with(".laz")))
+    return read_point_voxels(p, file);
+  if (is_amapvox(input(file))) return read_amapvox(input(file), p.text("column", ""), report_);
   if (name.size() < 4 || name.compare(name.size() - 4, 4, ".vdb") != 0) return read_voxel_input(file);
   return read_vdb(input(file), p.text("density_grid", "density"), p.text("temperature_grid", ""));
 }

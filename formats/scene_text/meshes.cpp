@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/files.h"
+#include "formats/city/city.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/gltf/gltf.h"
 #include "formats/obj/obj.h"
@@ -43,21 +44,11 @@ bool y_up(const Params& p, bool otherwise) {
   return up ? up->as_choice({"z", "y"}) == 1 : otherwise;
 }
 
-// What is wrong with a file is no fault of the text that names it.
-template <class Read>
-auto of_file(const Read& read) {
-  try {
-    return read();
-  } catch (const Error& e) {
-    if (!e.code().empty()) throw;
-    throw Error(e.where(), e.message(), e.hint(), "SP003");
-  }
-}
-
 }  // namespace
 
 void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& g) {
   read_mesh_rules(p, g);
+  if (kind == "city") return read_city_mesh(p, g);
   const double unit = unit_of(p);
   g.to_local = scaling({unit, unit, unit});
   if (y_up(p, false)) g.to_local = g.to_local * kFromYUp;
@@ -73,6 +64,20 @@ void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& 
   } else {
     g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
   }
+}
+
+// Where a city is: on the Earth by the file's reference system (or the one that is given in its place), or as if its
+// map were flat, around a place of it.
+void Reader::read_city_mesh(const Params& p, DraftGeometry& g) {
+  const Params file = p.at("city");
+  std::optional<std::string> lod;
+  if (const auto given = p.find("lod")) {
+    lod = given->as_text();
+    given->as_number_in(0, 9.9, "");
+  }
+  const std::string path = input(file);
+  const CityModel city = of_file([&] { return read_city(path, lod, report_); });
+  g.mesh = of_file([&] { return mesh_of(city, map_place(p, city.system, file, false), report_); });
 }
 
 // The model becomes a group of the object's name; its meshes are objects of their own. slot: where the object's name

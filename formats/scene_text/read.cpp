@@ -64,13 +64,7 @@ void Reader::read_head(const Params& root) {
   draft_.name = root.text("name", "");
   draft_.description = root.text("description", "");
   draft_.author = root.text("author", "");
-  if (const auto o = root.find("origin"))
-    item("SP001", *o, [&] {
-      draft_.origin.latitude_deg = o->number_in("latitude_deg", -90, 90, "degrees");
-      draft_.origin.longitude_deg = o->number_in("longitude_deg", -180, 360, "degrees");
-      draft_.origin.ellipsoid_height_m = o->number_in("height_m", -12000, 1e7, "m above the WGS84 ellipsoid", 0);
-      draft_.origin.given = true;
-    });
+  if (const auto o = root.find("origin")) item("SP001", *o, [&] { read_origin(*o); });
   if (const auto c = root.find("curvature")) item("SP001", *c, [&] { read_curvature(*c, root); });
   if (const auto e = root.find("epoch"))
     item("SP001", *e, [&] {

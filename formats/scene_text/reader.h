@@ -10,7 +10,7 @@
 #include "formats/motion/motion.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/voxel/voxel.h"
-#include "motion/scene_frame.h"
+#include "motion/map_system.h"
 
 namespace suite {
 struct WaterSpec;
@@ -20,6 +20,17 @@ namespace suite::scene_text {
 
 // projection and drape of a map.
 void read_projection(const Params& p, Projection& projection, Drape& drape);
+
+// What is wrong with a file is no fault of the text that names it.
+template <class Read>
+auto of_file(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    if (!e.code().empty()) throw;
+    throw Error(e.where(), e.message(), e.hint(), "SP003");
+  }
+}
 
 class Reader {
  public:
@@ -43,6 +54,7 @@ class Reader {
   // media.cpp
   void read_medium(const std::string& id, const Params& p);
   void read_coefficients(const Params& p, Medium& m);
+  void read_leaves(const Params& p, Medium& m);
   // water.cpp
   void read_water(const Params& p, Medium& m);
   void read_waves(const Params& p, DraftGeometry& g);
@@ -66,6 +78,21 @@ class Reader {
   void read_mesh_rules(const Params& p, DraftGeometry& g);
   void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_model(const Params& p, DraftGeometry g, size_t slot);
+  void read_city_mesh(const Params& p, DraftGeometry& g);
+  // points.cpp
+  void read_points(const Params& p, DraftGeometry& g);
+  VoxelData read_point_voxels(const Params& p, const Params& file);
+  // map_places.cpp
+  void read_origin(const Params& p);
+  // How far heights over a geoid are to be raised: nothing for such over the ellipsoid.
+  struct GeoidRule {
+    bool geoid = false;
+    std::optional<double> separation_m;  // none: by the origin's grid
+  };
+  GeoidRule read_heights_rule(const Params& p);
+  std::function<Vec3(Vec3)> map_place(const Params& p, const std::string& system, const Params& file,
+                                      bool longitude_first);
+  std::function<Vec3(Vec3)> on_earth(const MapSystem& system, const GeoidRule& rule) const;
   // placements.cpp
   void read_group(const std::string& name, const Params& p);
   DraftPlacement read_placement(const Params& p, bool world);
@@ -96,6 +123,7 @@ class Reader {
   std::map<std::string, Curve> curves_;
   std::map<std::string, std::shared_ptr<const sqt::Bundle>> stored_;  // name in the scene -> what it holds
   std::map<std::string, std::string> embedded_;                       // resolved path -> name in the scene
+  std::optional<Geoid> geoid_;                                        // the origin's
   std::vector<DraftGroup> models_;                                    // of objects that are groups; after `world`
 };
 

@@ -2,71 +2,44 @@
 // Fabrication", 1993, section 6.5).
 #include "formats/stl/stl.h"
 
-#include <cmath>
+#include <array>
 #include <cstring>
-#include <unordered_map>
 
 #include "base/files.h"
 #include "base/number_text.h"
+#include "scene/mesh_builder.h"
 
 namespace suite {
 
 namespace {
 
-constexpr double kFarthest = 1e15;  // of the file's units
 constexpr size_t kHeader = 84, kFacet = 50;
-
-struct HashOfPlace {
-  size_t operator()(const Vec3& v) const {
-    size_t h = 0;
-    for (const double c : {v.x, v.y, v.z}) h = (h ^ std::hash<double>()(c)) * 0x9E3779B97F4A7C15u;
-    return h ^ (h >> 29);
-  }
-};
 
 class Collector {
  public:
-  Collector(const std::string& file, Report& report) : file_(file), report_(report) { mesh_.file = file; }
+  Collector(const std::string& file, Report& report) : builder_(file, report), whole_{file, 0, 0, {}, -1} {}
 
-  void solid(std::string name, int line) { group_ = std::move(name), line_ = line, new_run_ = true; }
+  void solid(std::string name, int line) { builder_.part(std::move(name), "", line); }
   // The file's normal is compared with the corners and then left: it says nothing that they do not.
   void facet(Vec3 normal, const std::array<Vec3, 3>& corner, const Where& where) {
     for (const Vec3& c : corner)
-      if (!(std::fabs(c.x) < kFarthest && std::fabs(c.y) < kFarthest && std::fabs(c.z) < kFarthest)) {
-        report_.add("SP203", file_, {where, strf("(%g, %g, %g) is no place, or absurdly far away", c.x, c.y, c.z)});
-        return;
-      }
+      if (!builder_.is_place(c, where)) return;
     turned_ += dot(normal, cross(corner[1] - corner[0], corner[2] - corner[0])) < 0;
-    if (new_run_) mesh_.runs.push_back({group_, "", static_cast<uint32_t>(mesh_.indices.size() / 3), line_});
-    new_run_ = false;
-    for (const Vec3& c : corner) {
-      const Vec3 place{c.x + 0.0, c.y + 0.0, c.z + 0.0};  // -0 is the same place as 0
-      const auto [at, fresh] = vertices_.try_emplace(place, static_cast<uint32_t>(mesh_.positions.size()));
-      if (fresh) mesh_.positions.push_back(place);
-      mesh_.indices.push_back(at->second);
-    }
-    if (mesh_.positions.size() > kNone - 4) throw Error(where, "more than 2^32 - 4 vertices");
+    const uint32_t a = builder_.vertex(corner[0], where), b = builder_.vertex(corner[1], where);
+    builder_.triangle(a, b, builder_.vertex(corner[2], where));
   }
   SourceMesh take() {
-    const Where whole{file_, 0, 0, {}, -1};
-    if (mesh_.indices.empty()) report_.add("SP204", file_, {whole, "no facet"});
+    if (builder_.empty()) builder_.add("SP204", whole_, "no facet");
     if (turned_)
-      report_.add(
-          "SP706", file_,
-          {whole, strf("%zu normals look to the other side than their corners' order says, which holds", turned_)},
-          turned_);
-    if (mesh_.runs.empty()) mesh_.runs.push_back({"", "", 0, 0});
-    return std::move(mesh_);
+      builder_.add("SP706", whole_,
+                   strf("%zu normals look to the other side than their corners' order says, which holds", turned_),
+                   turned_);
+    return builder_.take();
   }
 
  private:
-  const std::string& file_;
-  Report& report_;
-  SourceMesh mesh_;
-  std::unordered_map<Vec3, uint32_t, HashOfPlace> vertices_;
-  std::string group_;
-  int line_ = 0;
-  bool new_run_ = true;
+  MeshBuilder builder_;
+  Where whole_;
   size_t turned_ = 0;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/report.h"
 #include "math/vec.h"
 
 namespace suite {
@@ -24,6 +24,14 @@ struct VoxelData {
 // Error located in the text: unknown keys, sizes that do not match the files, negative or infinite values, whole
 // numbers that are none. Files are compared with the declared size before anything is allocated.
 VoxelData read_voxels(const std::string& path);
+
+// Voxels of AMAPVox (`VOXEL SPACE`): a column of area densities, m2 of leaves (or plants) in a m3, over the whole grid;
+// column: its name, else PadBVTotal or PAD. Cells that have no value were not seen; they count as empty and are told
+// (SP705). Error, located: no such file or column, cells outside the grid or told twice, negative densities.
+VoxelData read_amapvox(const std::string& path, const std::string& column, Report& report);
+VoxelData parse_amapvox(std::string_view text, const std::string& file, const std::string& column, Report& report);
+// By the file's first line. Error: no such file.
+bool is_amapvox(const std::string& path);
 
 // Fog volumes of an OpenVDB file: the float grid `density` over the box of its active voxels, and `temperature` (K;
 // empty = none) over the same cells. Error: not built with OpenVDB, no such grid, another type, a level set, different

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "mesh/check.h"
+#include "mesh/cut.h"
 #include "mesh/decimate.h"
 #include "mesh/fill_holes.h"
 #include "mesh/repair.h"
@@ -30,6 +31,7 @@ struct Outcome {
   MeshRepairs repairs;
   FilledHoles filled;
   std::optional<Decimated> decimated;
+  std::optional<Tin> tin;
 };
 
 double meters_per_unit(const DraftGeometry& g) { return std::cbrt(std::fabs(g.to_local.determinant())); }
@@ -43,6 +45,7 @@ bool measurable(const SourceMesh& mesh) {
 
 Outcome work_on(DraftGeometry& g, const MeshCheck& options, bool repair) {
   Outcome done;
+  if (g.tin) done.tin = make_tin(g.mesh, g.tin->error_m / meters_per_unit(g), g.tin->longest_m / meters_per_unit(g));
   if (repair) done.repairs = repair_mesh(g.mesh);
   const bool workable = measurable(g.mesh);
   if (g.fill_holes && workable) done.filled = fill_holes(g.mesh, g.fill_holes);
@@ -63,6 +66,11 @@ void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
   const auto tell = [&](const char* code, const std::string& text) {
     report.add(code, asset, {{asset, 0, 0, {}, -1}, text});
   };
+  if (done.tin)
+    tell("SP322",
+         strf("a surface of %zu triangles through %zu of %zu points; the others are at most %.3g m above or "
+              "below it",
+              g.mesh.indices.size() / 3, done.tin->used, done.tin->points, done.tin->error * meters_per_unit(g)));
   const MeshRepairs& r = done.repairs;
   if (r.welded + r.dropped + r.turned)
     tell("SP320", strf("%zu positions welded, %zu triangles dropped, %zu turned", r.welded, r.dropped, r.turned));
@@ -84,6 +92,7 @@ void tell_changes(const DraftGeometry& g, const Outcome& done, Report& report) {
 }  // namespace
 
 void check_draft_meshes(Draft& draft, const MeshCheck& options, bool repair, Report& report) {
+  for (DraftGeometry& g : draft.geometry) cut_holed(g.mesh, report);
   std::vector<Outcome> outcomes(draft.geometry.size());
   parallel_for(0, draft.geometry.size(), 1, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {

@@ -16,7 +16,7 @@ Dir scattered_direction(Dir out, double cos_scatter, double u) {
 const Registry<PhaseRow>& phases() {
   static const Registry<PhaseRow> table("phase function", "OP111",
                                         {hg_row(), double_hg_row(), rayleigh_row(), tabulated_row(), sqt_phase_row(),
-                                         fournier_forand_row(), petzold_row(), sea_phase_row()});
+                                         fournier_forand_row(), petzold_row(), sea_phase_row(), leaves_row()});
   return table;
 }
 

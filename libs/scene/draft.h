@@ -40,6 +40,13 @@ struct SourceMesh {
   std::vector<int> lines;           // source line of each triangle, or empty
   std::vector<uint32_t> smoothing;  // group of each triangle, 0 = flat where there is no normal; or empty: all flat
   std::vector<Run> runs;            // ascending
+  struct Holed {                    // a polygon with holes
+    std::string group, material;    // as of a run
+    std::vector<uint32_t> corners;  // its outer ring, then its holes
+    std::vector<size_t> ring_ends;  // where they end among the corners
+    Where where;
+  };
+  std::vector<Holed> holed;  // not among the triangles yet: cut_holed of libs/mesh puts them there
 };
 
 // Heights on a grid, as a raster gives them. Samples are at pixel centres.
@@ -59,6 +66,12 @@ struct DecimationRule {
   double to = 0, error_m = 0;  // error_m 0: by any distance
 };
 
+// A surface over scattered ground points: at most so far from any of them in height, m (0: through all of them);
+// triangles with an edge longer than longest_m in plan (0: none are) are left out, as gaps.
+struct TinRule {
+  double error_m = 0, longest_m = 0;
+};
+
 struct DraftGeometry {
   std::string name;
   Where where;
@@ -73,8 +86,9 @@ struct DraftGeometry {
   double crease_rad = kPi;  // facets that bend by more keep an edge where normals are made
   size_t fill_holes = 0;    // holes of at most so many edges are closed
   std::optional<DecimationRule> decimate;
-  double tile_m = 0;    // largest extent of one terrain tile
-  bool failed = false;  // could not be read, which has been filed: only the name is sure
+  std::optional<TinRule> tin;  // the mesh has positions only, which libs/mesh puts triangles through
+  double tile_m = 0;           // largest extent of one terrain tile
+  bool failed = false;         // could not be read, which has been filed: only the name is sure
 };
 
 // When a placement is there and what it is made of.

@@ -12,6 +12,7 @@ PhaseRow sqt_phase_row();
 PhaseRow fournier_forand_row();
 PhaseRow petzold_row();
 PhaseRow sea_phase_row();
+PhaseRow leaves_row();
 
 template <class Phase>
 std::unique_ptr<const PhaseFunction> make_phase(const ModelSpec& spec, const SpectralState& state) {

@@ -1,0 +1,9 @@
+// Scenes of HELIOS++.
+#pragma once
+#include "scene/importer.h"
+
+namespace suite {
+
+ImporterRow helios_importer();
+
+}  // namespace suite

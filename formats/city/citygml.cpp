@@ -1,0 +1,214 @@
+// Based on: OGC 12-019, "CityGML Encoding Standard" 2.0, 2012; OGC 21-006r2, "CityGML 3.0 GML Encoding", 2023; OGC
+// 07-036 (GML 3.2.1), chapters 10 and 11. Names are taken without their namespaces, which differ between versions; a
+// surface's meaning and level of detail are those of the elements that it stands in.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/number_text.h"
+#include "formats/city/internal.h"
+#include "formats/xml/xml.h"
+
+namespace suite::city {
+
+namespace {
+
+std::string_view local(std::string_view name) {
+  const size_t colon = name.find(':');
+  return colon == name.npos ? name : name.substr(colon + 1);
+}
+
+std::optional<std::string> attribute_of(const XmlElement& e, std::string_view name) {
+  std::optional<std::string> found;
+  e.each_attribute([&](std::string_view key, std::string_view value) {
+    if (local(key) == name) found = std::string(value);
+  });
+  return found;
+}
+
+// Thematic surfaces and openings of buildings, bridges, tunnels, roads and waters.
+bool is_kind(std::string_view name) {
+  static const std::set<std::string_view> kinds{"Window",
+                                                "Door",
+                                                "WindowSurface",
+                                                "DoorSurface",
+                                                "TrafficArea",
+                                                "AuxiliaryTrafficArea",
+                                                "BuildingInstallation",
+                                                "BuildingFurniture"};
+  static const std::set<std::string_view> shapes{"Surface",           "MultiSurface",        "CompositeSurface",
+                                                 "PolyhedralSurface", "TriangulatedSurface", "OrientableSurface"};
+  return kinds.count(name) || (name.ends_with("Surface") && !shapes.count(name) && name[0] >= 'A' && name[0] <= 'Z');
+}
+
+// lod2Solid, lod3MultiSurface, lod0FootPrint, ...: 2, 3, 0.
+std::optional<double> level_in(std::string_view name) {
+  if (name.size() > 4 && name.substr(0, 3) == "lod" && name[3] >= '0' && name[3] <= '4') return name[3] - '0';
+  return std::nullopt;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, const std::optional<std::string>& lod, Report& report) : lod_(lod), report_(report) {
+    model_.file = file;
+  }
+  void look(const XmlElement& e);
+  void member(const XmlElement& e);
+  CityModel finish();
+
+ private:
+  // What holds for everything within an element.
+  struct Around {
+    std::string kind;
+    double level = -1;
+    bool turned = false;
+  };
+  struct Found {
+    double level;
+    CityModel::Surface surface;
+  };
+  void references(const XmlElement& e, const std::string& kind);
+  void walk(const XmlElement& e, Around around, std::vector<Found>& to);
+  void polygon(const XmlElement& e, const Around& around, std::vector<Found>& to);
+  void ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const;
+  std::vector<double> numbers(const XmlElement& e) const;
+
+  const std::optional<std::string>& lod_;
+  Report& report_;
+  CityModel model_;
+  std::map<std::string, std::string> kinds_;  // of polygons that are elsewhere than what says their kind
+  size_t implicit_ = 0, lines_ = 0, none_ = 0, other_systems_ = 0;
+};
+
+// The reference system, and members of the model.
+void Reader::look(const XmlElement& e) {
+  if (local(e.name()) != "CityModel") throw e.fault("'" + printable(e.name()) + "' is no CityModel");
+  references(e, "");
+  e.each_child([&](const XmlElement& child) {
+    const std::string_view name = local(child.name());
+    if (name == "cityObjectMember" || name == "featureMember")
+      child.each_child([&](const XmlElement& object) { member(object); });
+  });
+}
+
+void Reader::references(const XmlElement& e, const std::string& kind) {
+  const std::string_view name = local(e.name());
+  const std::string within = is_kind(name) ? std::string(name) : kind;
+  if (const auto system = attribute_of(e, "srsName"); system && !system->empty()) {
+    if (model_.system.empty())
+      model_.system = *system;
+    else
+      other_systems_ += *system != model_.system;
+  }
+  if (!within.empty())
+    if (const auto to = attribute_of(e, "href"); to && to->size() > 1 && to->front() == '#')
+      kinds_[to->substr(1)] = within;
+  e.each_child([&](const XmlElement& child) { references(child, within); });
+}
+
+std::vector<double> Reader::numbers(const XmlElement& e) const {
+  std::vector<double> all;
+  const std::string text = e.text();
+  for (size_t at = text.find_first_not_of(" \t\r\n"); at != text.npos;) {
+    const size_t stop = std::min(text.find_first_of(" \t\r\n", at), text.size());
+    const auto value = number_of(std::string_view(text).substr(at, stop - at));
+    if (!value) throw e.fault("'" + printable(text.substr(at, std::min<size_t>(stop - at, 40))) + "' is no number");
+    all.push_back(*value);
+    at = text.find_first_not_of(" \t\r\n", stop);
+  }
+  return all;
+}
+
+void Reader::ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const {
+  std::vector<double> all;
+  e.each_child([&](const XmlElement& child) {
+    const std::string_view name = local(child.name());
+    if (name == "LinearRing") return ring(child, to);
+    if (name != "posList" && name != "pos") return;
+    if (const auto size = attribute_of(child, "srsDimension"); size && *size != "3")
+      throw child.fault("places of '" + printable(*size).substr(0, 20) + "' numbers", "three are expected");
+    const std::vector<double> more = numbers(child);
+    all.insert(all.end(), more.begin(), more.end());
+  });
+  if (all.empty()) return;
+  if (all.size() % 3) throw e.fault(strf("%zu numbers are no places of three", all.size()));
+  std::vector<Vec3> corners;
+  for (size_t k = 0; k < all.size(); k += 3) corners.push_back({all[k], all[k + 1], all[k + 2]});
+  // The last place of a ring repeats the first.
+  if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+  to.push_back(std::move(corners));
+}
+
+void Reader::polygon(const XmlElement& e, const Around& around, std::vector<Found>& to) {
+  CityModel::Surface made{around.kind, {}, e.where().line};
+  if (const auto id = attribute_of(e, "id"))
+    if (const auto kind = kinds_.find(*id); kind != kinds_.end()) made.kind = kind->second;
+  e.each_child([&](const XmlElement& child) {
+    if (local(child.name()) == "exterior") ring(child, made.rings);
+  });
+  if (made.rings.empty()) return;
+  if (made.rings.size() > 1) throw e.fault("a polygon with several outer rings");
+  e.each_child([&](const XmlElement& child) {
+    if (local(child.name()) == "interior") ring(child, made.rings);
+  });
+  if (around.turned)
+    for (auto& r : made.rings) std::reverse(r.begin(), r.end());
+  to.push_back({around.level, std::move(made)});
+}
+
+void Reader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
+  const std::string_view name = local(e.name());
+  if (is_kind(name)) around.kind = std::string(name);
+  if (const auto level = level_in(name)) around.level = *level;
+  if (name == "OrientableSurface" && attribute_of(e, "orientation") == "-") around.turned = !around.turned;
+  if (name == "ImplicitGeometry") {
+    ++implicit_;
+    return;
+  }
+  if (name == "LineString" || name == "MultiCurve" || name == "Point" || name == "MultiPoint") {
+    ++lines_;
+    return;
+  }
+  if (name == "Polygon" || name == "PolygonPatch" || name == "Triangle" || name == "Rectangle")
+    return polygon(e, around, to);
+  e.each_child([&](const XmlElement& child) { walk(child, around, to); });
+}
+
+void Reader::member(const XmlElement& e) {
+  CityModel::Object made;
+  made.type = std::string(local(e.name()));
+  made.line = e.where().line;
+  made.id = attribute_of(e, "id").value_or(strf("object_%zu", model_.objects.size()));
+  std::vector<Found> all;
+  walk(e, {made.type, -1, false}, all);
+  std::vector<double> levels;
+  for (const Found& f : all) levels.push_back(f.level);
+  const auto taken = chosen(levels, lod_);
+  none_ += !taken && !all.empty();
+  for (Found& f : all)
+    if (taken && f.level == *taken) made.surfaces.push_back(std::move(f.surface));
+  if (taken) made.lod = *taken;
+  model_.objects.push_back(std::move(made));
+}
+
+CityModel Reader::finish() {
+  const auto tell = [&](const char* code, size_t count, const char* what) {
+    if (count) report_.add(code, model_.file, {Where{model_.file, 0, 0, {}, -1}, strf("%zu %s", count, what)}, count);
+  };
+  tell("SP205", lines_, "geometries of points or lines");
+  tell("SP705", none_, "objects have no geometry of the level of detail that is asked for");
+  tell("SP705", implicit_, "implicit geometries (prototypes that are placed) are left out");
+  tell("SP705", other_systems_, "elements name another reference system than the first, which is taken for all");
+  return std::move(model_);
+}
+
+}  // namespace
+
+CityModel parse_gml(std::string_view text, const std::string& file, const std::optional<std::string>& lod,
+                    Report& report) {
+  Reader reader(file, lod, report);
+  reader.look(XmlElement::parse(text, file));
+  return reader.finish();
+}
+
+}  // namespace suite::city

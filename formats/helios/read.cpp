@@ -1,0 +1,261 @@
+// Based on: L. Winiwarter et al., "Virtual laser scanning with HELIOS++", Remote Sens. Environ. 269, 2022, and its
+// public scenes and documentation (https://github.com/3dgeo-heidelberg/helios): a part is loaded by its first filter,
+// then turned, scaled and moved.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/number_text.h"
+#include "base/yaml_text.h"
+#include "formats/helios/helios.h"
+#include "formats/xml/xml.h"
+
+namespace suite {
+
+namespace helios {
+namespace {
+
+// Lines of YAML, each with the place that it comes from.
+struct Lines {
+  std::string yaml;
+  std::vector<Where> origins;
+  void add(const std::string& line, const Where& where) {
+    yaml += line + "\n";
+    origins.push_back(where);
+  }
+  void add(const Lines& more) {
+    yaml += more.yaml;
+    origins.insert(origins.end(), more.origins.begin(), more.origins.end());
+  }
+};
+
+constexpr const char *kSurface = "surface", *kFoliage = "foliage";
+constexpr double kGrey = 0.18, kLeaf = 0.4;  // of what nothing is known of
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+double number(const XmlElement& e, const std::string& text) {
+  const auto value = number_of(text);
+  if (!value || !(std::abs(*value) <= kLargestNumber))
+    throw e.fault("'" + printable(text).substr(0, 40) + "' is no number");
+  return *value;
+}
+
+class Reader {
+ public:
+  Reader(const std::function<std::array<double, 4>(const std::string&)>& corner_of, const std::string& file,
+         Report& report)
+      : corner_of_(corner_of), file_(file), report_(report) {}
+  HeliosText run(const XmlElement& document);
+
+ private:
+  // What a part is made of, and where it stands.
+  struct Part {
+    std::string object, grid;
+    double scale = 1;
+    std::vector<double> shift{0, 0, 0};
+    std::string turns;
+  };
+  void part(const XmlElement& e);
+  void filter(const XmlElement& e, Part& part);
+  void load(const XmlElement& e, const std::string& kind, Part& part);
+  void load_terrain(const XmlElement& e, const std::string& path, Part& part);
+  void load_voxels(const XmlElement& e, const std::string& path, Part& part);
+  void rotate(const XmlElement& e, Part& part);
+  void translate(const XmlElement& e, Part& part);
+  // Whether it is new.
+  bool name_for(const std::string& path, std::map<std::string, std::string>& names, std::string& name);
+  static std::optional<std::string> value_of(const XmlElement& e, std::string_view key);
+  void tell(const char* code, const XmlElement& e, const std::string& what) {
+    report_.add(code, file_, {e.where(), what});
+  }
+
+  const std::function<std::array<double, 4>(const std::string&)>& corner_of_;
+  const std::string& file_;
+  Report& report_;
+  Lines objects_, grids_, volumes_, world_;
+  std::map<std::string, std::string> object_of_, grid_of_;
+  std::set<std::string> used_;
+};
+
+std::optional<std::string> Reader::value_of(const XmlElement& e, std::string_view key) {
+  std::optional<std::string> found;
+  e.each_child("param", [&](const XmlElement& p) {
+    if (p.attribute("key").value_or("") == key) found = p.attribute("value").value_or("");
+  });
+  return found;
+}
+
+// One name for each file: its stem.
+bool Reader::name_for(const std::string& path, std::map<std::string, std::string>& names, std::string& name) {
+  const auto [at, fresh] = names.try_emplace(path);
+  if (fresh) {
+    const std::string stem = std::filesystem::path(path).stem().string();
+    at->second = stem;
+    for (int k = 2; !used_.insert(at->second).second; ++k) at->second = stem + strf("-%d", k);
+  }
+  name = at->second;
+  return fresh;
+}
+
+void Reader::load_terrain(const XmlElement& e, const std::string& path, Part& part) {
+  if (!name_for(path, object_of_, part.object)) return;
+  const auto c = corner_of_(path);
+  objects_.add("  " + yaml_quoted(part.object) + ": {terrain: " + yaml_quoted(path) +
+                   strf(", local: {origin: [%.17g, %.17g], gsd: [%.17g, %.17g]}, material: %s}", c[0], c[1], c[2], c[3],
+                        kSurface),
+               e.where());
+}
+
+void Reader::load_voxels(const XmlElement& e, const std::string& path, Part& part) {
+  if (const std::string mode = lower(value_of(e, "intersectionMode").value_or("transmittive")); mode != "transmittive")
+    tell("SP707", e,
+         "voxels of mode '" + printable(mode) + "' are solid cubes there; here their leaves fill their cells evenly");
+  if (name_for(path, grid_of_, part.grid))
+    grids_.add("  " + yaml_quoted(part.grid) + ": {voxels: " + yaml_quoted(path) + ", medium: " + kFoliage + "}",
+               e.where());
+}
+
+void Reader::load(const XmlElement& e, const std::string& kind, Part& part) {
+  if (kind == "xyzloader")
+    return tell("SP705", e, "a point cloud of text; as LAS it can be ground or leaves (formats/las)");
+  std::string path = value_of(e, "filepath").value_or("");
+  if (path.empty()) throw e.fault("there is no param 'filepath'");
+  std::replace(path.begin(), path.end(), '\\', '/');
+  if (path.find('*') != path.npos) return tell("SP705", e, "several files at once, '" + printable(path) + "'");
+  if (kind == "geotiffloader") return load_terrain(e, path, part);
+  if (kind == "detailedvoxels") return load_voxels(e, path, part);
+  const bool y_up = lower(value_of(e, "up").value_or("z")) == "y";
+  if (name_for(path + (y_up ? " y" : ""), object_of_, part.object))
+    objects_.add("  " + yaml_quoted(part.object) + ": {obj: " + yaml_quoted(path) + (y_up ? ", up: y" : "") +
+                     ", material: " + kSurface + "}",
+                 e.where());
+}
+
+// Turns one after the other about the axes of the scene.
+void Reader::rotate(const XmlElement& e, Part& part) {
+  e.each_child("param", [&](const XmlElement& p) {
+    p.each_child("rot", [&](const XmlElement& rot) {
+      const std::string axis = lower(rot.attribute("axis").value_or(""));
+      const double angle = number(rot, rot.attribute("angle_deg").value_or(""));
+      const char* about = nullptr;
+      if (axis == "x" || axis == "pitch") about = "[1, 0, 0]";
+      if (axis == "y" || axis == "roll") about = "[0, 1, 0]";
+      if (axis == "z" || axis == "yaw") about = "[0, 0, 1]";
+      if (!about) throw rot.fault("'" + printable(axis) + "' is no axis", "x, y, z; pitch, roll, yaw");
+      part.turns += strf("%s{axis: %s, angle_deg: %.17g}", part.turns.empty() ? "" : ", ", about, angle);
+    });
+  });
+}
+
+void Reader::translate(const XmlElement& e, Part& part) {
+  std::string offset = value_of(e, "offset").value_or("");
+  std::vector<double> values;
+  for (size_t at = 0; at <= offset.size();) {
+    const size_t stop = std::min(offset.find(';', at), offset.size());
+    std::string word = offset.substr(at, stop - at);
+    word.erase(std::remove(word.begin(), word.end(), ' '), word.end());
+    values.push_back(number(e, word));
+    at = stop + 1;
+  }
+  if (values.size() != 3) throw e.fault(strf("an offset of %zu numbers", values.size()), "x;y;z");
+  for (size_t c = 0; c < 3; ++c) part.shift[c] += values[c];
+  if (const auto ground = value_of(e, "onGround"); ground && number(e, *ground) != 0)
+    tell("SP705", e, "'onGround': it stands at its offset, not on the ground");
+}
+
+void Reader::filter(const XmlElement& e, Part& part) {
+  const std::string kind = lower(e.attribute("type").value_or(""));
+  if (kind == "objloader" || kind == "geotiffloader" || kind == "xyzloader" || kind == "detailedvoxels") {
+    if (!part.object.empty() || !part.grid.empty()) throw e.fault("a part that is loaded twice");
+    load(e, kind, part);
+  } else if (kind == "scale") {
+    const double factor = number(e, value_of(e, "scale").value_or(""));
+    if (!(factor > 0)) throw e.fault(strf("a scale of %g", factor), "above 0");
+    part.scale *= factor;
+  } else if (kind == "rotate") {
+    rotate(e, part);
+  } else if (kind == "translate") {
+    translate(e, part);
+  } else {
+    tell("SP705", e, "filter '" + printable(kind) + "'");
+  }
+}
+
+void Reader::part(const XmlElement& e) {
+  Part part;
+  e.each_child([&](const XmlElement& child) {
+    if (child.name() == "filter")
+      filter(child, part);
+    else
+      tell("SP705", child, "'" + printable(child.name()) + "': parts stay as and where they are loaded");
+  });
+  if (part.object.empty() && part.grid.empty()) return;
+  const bool volume = !part.grid.empty();
+  std::string line = "  - {place: " + yaml_quoted(volume ? part.grid : part.object);
+  if (part.scale != 1) line += strf(", scale: %.17g", part.scale);
+  if (!part.turns.empty()) line += ", rotate: [" + part.turns + "]";
+  line += strf(", translate: [%.17g, %.17g, %.17g]", part.shift[0], part.shift[1], part.shift[2]);
+  if (const auto id = e.attribute("id"); id && !id->empty() && !volume) line += ", tag: " + yaml_quoted(*id);
+  (volume ? volumes_ : world_).add(line + "}", e.where());
+}
+
+HeliosText Reader::run(const XmlElement& document) {
+  std::optional<XmlElement> scene;
+  size_t scenes = 0;
+  document.each_child("scene", [&](const XmlElement& e) {
+    if (!scenes++) scene = e;
+  });
+  if (!scene) throw document.fault("there is no scene in it");
+  if (scenes > 1) tell("SP705", *scene, strf("the first of %zu scenes is taken", scenes));
+  scene->each_child([&](const XmlElement& e) {
+    if (e.name() == "part")
+      part(e);
+    else
+      tell("SP706", e, "'" + printable(e.name()) + "' belongs to the simulation");
+  });
+  const Where where = scene->where();
+  Lines all;
+  const std::string name = scene->attribute("name").value_or(scene->attribute("id").value_or("helios"));
+  all.add("scene: 1", where);
+  all.add("name: " + yaml_quoted(name), where);
+  all.add(strf("materials: {%s: {model: lambert, reflectance: %g}}", kSurface, kGrey), where);
+  tell("SP708", *scene, strf("all surfaces: a grey of reflectance %g stands in (material '%s')", kGrey, kSurface));
+  if (!grids_.yaml.empty()) {
+    all.add(strf("media: {%s: {leaves: {reflectance: %g, transmittance: %g}}}", kFoliage, kLeaf, kLeaf), where);
+    tell("SP708", *scene,
+         strf("all voxels: leaves that reflect and transmit %g stand in (--set media.%s.leaves.reflectance=...)", kLeaf,
+              kFoliage));
+  }
+  const auto section = [&](const char* key, const Lines& lines) {
+    if (lines.yaml.empty()) return;
+    all.add(key, where);
+    all.add(lines);
+  };
+  section("grids:", grids_), section("volumes:", volumes_), section("objects:", objects_);
+  if (world_.yaml.empty()) all.add("world: []", where);
+  section("world:", world_);
+  return {std::move(all.yaml), std::move(all.origins)};
+}
+
+}  // namespace
+}  // namespace helios
+
+HeliosText parse_helios(std::string_view text, const std::string& file,
+                        const std::function<std::array<double, 4>(const std::string& name)>& corner_of,
+                        Report& report) {
+  return helios::Reader(corner_of, file, report).run(XmlElement::parse(text, file));
+}
+
+bool is_helios(const std::string& path, std::string_view head) {
+  return path.ends_with(".xml") && head.find("<document") != head.npos && head.find("<scene") != head.npos;
+}
+
+}  // namespace suite

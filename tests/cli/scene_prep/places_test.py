@@ -1,0 +1,252 @@
+"""Cities, point clouds and voxels of plants through scene-prep, beside readers in Python that share nothing with it.
+
+places_test.py BIN DATA WORK, as models_test.py, whose helpers are used. Areas of surfaces are those of their rings (shoelace, holes
+taken off), places go from UTM to the scene by Krueger's series and the ellipsoid, heights of the ground are those of the triangles.
+"""
+import json
+import math
+import os
+import struct
+import unittest
+
+from models_test import WORK, np, prepare, read_obj
+import models_test
+
+A, F = 6378137.0, 1 / 298.257223563
+
+
+def geodetic_of_utm(zone, easting, northing):
+    """Degrees. C. F. F. Karney, J. Geodesy 85, 2011, equation 36 to fourth order."""
+    n = F / (2 - F)
+    beta = [n / 2 - 2 * n**2 / 3 + 37 * n**3 / 96 - n**4 / 360, n**2 / 48 + n**3 / 15 - 437 * n**4 / 1440,
+            17 * n**3 / 480 - 37 * n**4 / 840, 4397 * n**4 / 161280]
+    radius = A / (1 + n) * (1 + n**2 / 4 + n**4 / 64) * 0.9996
+    xi, eta = northing / radius, (easting - 500000) / radius
+    x = xi - sum(b * math.sin(2 * (j + 1) * xi) * math.cosh(2 * (j + 1) * eta) for j, b in enumerate(beta))
+    e = eta - sum(b * math.cos(2 * (j + 1) * xi) * math.sinh(2 * (j + 1) * eta) for j, b in enumerate(beta))
+    tau1 = math.sin(x) / math.hypot(math.sinh(e), math.cos(x))
+    ecc, tau = math.sqrt(F * (2 - F)), tau1
+    for _ in range(8):
+        sigma = math.sinh(ecc * math.atanh(ecc * tau / math.hypot(1, tau)))
+        value = tau * math.hypot(1, sigma) - sigma * math.hypot(1, tau)
+        tau += (tau1 - value) / math.hypot(1, value) * (1 + (1 - ecc**2) * tau**2) / ((1 - ecc**2) * math.hypot(1, tau))
+    return math.degrees(math.atan(tau)), 6 * zone - 183 + math.degrees(math.atan2(math.sinh(e), math.cos(x)))
+
+
+def ecef(latitude, longitude, height):
+    p, l = math.radians(latitude), math.radians(longitude)
+    e2 = F * (2 - F)
+    radius = A / math.sqrt(1 - e2 * math.sin(p)**2)
+    return np.array([(radius + height) * math.cos(p) * math.cos(l), (radius + height) * math.cos(p) * math.sin(l),
+                     (radius * (1 - e2) + height) * math.sin(p)])
+
+
+def enu_of_utm(zone, origin, place):
+    """Scene ENU of (easting, northing, height) around such a place."""
+    lat, lon = geodetic_of_utm(zone, origin[0], origin[1])
+    p, l = math.radians(lat), math.radians(lon)
+    axes = np.array([[-math.sin(l), math.cos(l), 0],
+                     [-math.sin(p) * math.cos(l), -math.sin(p) * math.sin(l), math.cos(p)],
+                     [math.cos(p) * math.cos(l), math.cos(p) * math.sin(l), math.sin(p)]])
+    return axes @ (ecef(*geodetic_of_utm(zone, place[0], place[1]), place[2]) - ecef(lat, lon, origin[2]))
+
+
+def area(ring):
+    """Of a flat ring in space."""
+    r = np.asarray(ring) - ring[0]
+    return np.linalg.norm(sum(np.cross(r[k], r[k + 1]) for k in range(1, len(r) - 1))) / 2
+
+
+class Town:
+    """Prisms over polygons with courts, windows in their walls, at whole millimetres."""
+
+    def __init__(self, system, base, seed):
+        self.random, self.base, self.vertices, self.objects = np.random.default_rng(seed), base, [], {}
+        self.system, self.areas, self.triangles = system, {}, 0
+        for k in range(12):
+            self.house(f"house-{k}", 60.0 * (k % 4), 60.0 * (k // 4))
+
+    def index(self, p):
+        self.vertices.append([round(1000 * c) for c in p])
+        return len(self.vertices) - 1
+
+    def surface(self, kind, rings, wanted):
+        exact = [[np.array(self.vertices[i]) / 1000 for i in ring] for ring in rings]
+        one = area(exact[0]) - sum(area(r) for r in exact[1:])
+        assert abs(one - wanted) < 0.2 * wanted
+        self.areas[kind] = self.areas.get(kind, 0) + one
+        self.triangles += sum(len(r) for r in rings) + 2 * (len(rings) - 1) - 2
+        return rings
+
+    def house(self, name, x, y):
+        n, height = int(self.random.integers(4, 9)), float(self.random.uniform(3, 20))
+        angles = np.arange(n) * 2 * np.pi / n
+        outer = [(x + 20 * np.cos(a), y + 20 * np.sin(a)) for a in angles]
+        court = [(x + 6 * np.cos(a), y + 6 * np.sin(a)) for a in angles[::-1]]
+        whole = n / 2 * math.sin(2 * math.pi / n) * (400 - 36)
+        at = {(k, z): [self.index((*p, z * height)) for p in ring] for z in (0, 1) for k, ring in enumerate((outer, court))}
+        roof = self.surface("RoofSurface", [at[0, 1], at[1, 1]], whole)
+        floor = self.surface("GroundSurface", [at[0, 0][::-1], at[1, 0][::-1]], whole)
+        shell, values = [roof, floor], [0, 1]
+        for k, ring in ((0, outer), (1, court)):
+            for i in range(n):
+                j = (i + 1) % n
+                p, q = np.array([*ring[i], 0]), np.array([*ring[j], 0])
+                hole = [self.index(p + (q - p) * u + [0, 0, height * v]) for u, v in ((.3, .4), (.3, .7), (.6, .7), (.6, .4))]
+                wall = [at[k, 0][i], at[k, 0][j], at[k, 1][j], at[k, 1][i]]
+                shell.append(self.surface("WallSurface", [wall, hole], np.linalg.norm(q - p) * height * 0.91))
+                values.append(2)
+        self.objects[name] = {"type": "Building", "geometry": [{
+            "type": "Solid", "lod": "2.2", "boundaries": [shell],
+            "semantics": {"surfaces": [{"type": t} for t in ("RoofSurface", "GroundSurface", "WallSurface")], "values": [values]}}]}
+
+    def write(self, path, sequence=False):
+        head = {"type": "CityJSON", "version": "2.0", "transform": {"scale": [0.001] * 3, "translate": list(self.base)},
+                "metadata": {"referenceSystem": self.system}, "CityObjects": {}, "vertices": []}
+        with open(path, "w", encoding="utf-8") as f:
+            if not sequence:
+                json.dump(head | {"CityObjects": self.objects, "vertices": self.vertices}, f)
+                return path
+            f.write(json.dumps(head) + "\n")
+            for name, thing in self.objects.items():
+                f.write(json.dumps({"type": "CityJSONFeature", "id": name, "CityObjects": {name: thing},
+                                    "vertices": self.vertices}) + "\n")
+        return path
+
+
+def exported():
+    models_test.subprocess.run([models_test.BIN + "/scene-prep", WORK + "/m.h5", "--export-obj", WORK + "/m.obj"], check=True)
+    return read_obj(WORK + "/m.obj")
+
+
+def areas_of(triangles, materials):
+    sums = {}
+    for t, m in zip(triangles, materials):
+        sums[m] = sums.get(m, 0) + np.linalg.norm(np.cross(t[1] - t[0], t[2] - t[0])) / 2
+    return sums
+
+
+class Cities(unittest.TestCase):
+    def check(self, town, path, *options):
+        code, said = prepare(path, "--no-crossing-check", *options)
+        self.assertEqual(code, 0, said)
+        triangles, materials = exported()
+        self.assertEqual(len(triangles), town.triangles)
+        for kind, one in areas_of(triangles, materials).items():
+            self.assertAlmostEqual(one / town.areas[kind], 1, delta=2e-3 if town.base[0] > 1e5 else 1e-6)
+        self.assertEqual(set(materials), set(town.areas))
+        return said, triangles
+
+    def test_on_the_earth(self):
+        base = (648213.0, 5412345.0, 310.0)
+        town = Town("urn:ogc:def:crs:EPSG::25832", base, 1)
+        for sequence in (False, True):
+            path = town.write(WORK + ("/town.city.jsonl" if sequence else "/town.city.json"), sequence)
+            said, triangles = self.check(town, path)
+            self.assertIn("heights are taken as above the ellipsoid", said)
+            places = np.array(town.vertices) / 1000 + base
+            origin = [*(places.min(0)[:2] + places.max(0)[:2]) / 2, places[:, 2].min()]
+            wanted = np.array([enu_of_utm(32, origin, p) for p in places])
+            got = np.unique(np.round(triangles.reshape(-1, 3), 3), axis=0)
+            far = max(np.linalg.norm(got - w, axis=1).min() for w in wanted)
+            print(f"{os.path.basename(path)}: farthest corner {far:.2g} m from Krueger's series")
+            self.assertLess(far, 2e-3)  # the millimetres that corners are rounded to here
+            shifted = max(np.linalg.norm(got - w - [0, 0, 0.01], axis=1).min() for w in wanted)
+            self.assertGreater(shifted, 2e-3)
+
+    def test_on_a_flat_map(self):
+        town = Town("https://www.opengis.net/def/crs/EPSG/0/7415", (85000.0, 446000.0, 0.0), 2)
+        said, triangles = self.check(town, town.write(WORK + "/flat.city.json"))
+        self.assertIn("is not known here: its map is taken as flat", said)
+        wanted = np.array(town.vertices) / 1000
+        middle = (wanted.min(0) + wanted.max(0)) / 2
+        got = triangles.reshape(-1, 3) + [middle[0], middle[1], wanted[:, 2].min()]
+        far = max(np.linalg.norm(got - w, axis=1).min() for w in wanted)
+        self.assertLess(far, 1e-3)
+
+    def test_materials_and_faults_in_a_scene(self):
+        town = Town("EPSG:25832", (648213.0, 5412345.0, 310.0), 3)
+        town.write(WORK + "/scene.city.json")
+        head = ("scene: 1\nmaterials: {tiles: {model: lambert, reflectance: 0.3}, plaster: {model: lambert, reflectance: 0.6}}\n")
+        def scene(origin, keys):
+            with open(WORK + "/city.yaml", "w", encoding="utf-8") as f:
+                f.write(head + origin + "objects: {town: {city: scene.city.json, material: plaster, materials: {RoofSurface: tiles, "
+                        "WallSurface: plaster, GroundSurface: plaster}" + keys + "}}\nworld: [{place: town}]\n")
+            return prepare(WORK + "/city.yaml", "--no-crossing-check")
+        origin = "origin: {latitude_deg: 48.85, longitude_deg: 11.02, height_m: 350}\n"
+        code, said = scene(origin, ", height: ellipsoid")
+        self.assertEqual(code, 0, said)
+        self.assertEqual(set(exported()[1]), {"tiles", "plaster"})
+        code, said = scene("", ", height: ellipsoid")
+        self.assertIn("what is on a map needs the scene's 'origin'", said)
+        code, said = scene(origin, ", height: geoid")
+        self.assertEqual(code, 1)
+        self.assertIn("heights above the geoid need to know how high that is", said)
+        code, said = scene(origin.replace("350", "350, geoid: egm96-5.pgm"), ", height: geoid")
+        self.assertEqual(code, 1)
+        self.assertIn("egm96-5.pgm (19 MB) and others are had from", said)
+        code, said = scene(origin, ", epsg: 28992")
+        self.assertIn("EPSG:28992, which is not known here", said)
+
+
+def las(path, points, kinds):
+    """LAS 1.2, point format 0, in centimetres."""
+    head = struct.pack("<4sHHIHH8sBB32s32sHHHIIBHI5I3d3d6d", b"LASF", 0, 0, 0, 0, 0, b"", 1, 2, b"", b"", 1, 2024, 227, 227, 0, 0, 20,
+                       len(points), 0, 0, 0, 0, 0, 0.01, 0.01, 0.01, 1000, 2000, 0, 0, 0, 0, 0, 0, 0)
+    with open(path, "wb") as f:
+        f.write(head)
+        for p, kind in zip(points, kinds):
+            whole = np.rint((np.asarray(p) - (1000, 2000, 0)) * 100).astype(int)
+            f.write(struct.pack("<iiiHBBbBH", *(int(c) for c in whole), 0, 0x09, kind, 0, 0, 0))
+
+
+class Clouds(unittest.TestCase):
+    def test_ground_within_the_error(self):
+        random = np.random.default_rng(4)
+        xy = random.uniform(0, 80, (4000, 2)) + (1000, 2000)
+        ground = np.column_stack([xy, 4 * np.sin(xy[:, 0] / 12) + 2 * np.cos(xy[:, 1] / 9)])
+        ground = np.rint(ground * 100) / 100
+        canopy = ground + [0, 0, 12]
+        las(WORK + "/stand.las", np.concatenate([ground, canopy]), [2] * len(ground) + [5] * len(canopy))
+        with open(WORK + "/stand.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {soil: {model: lambert, reflectance: 0.2}}\nmedia: {foliage: {leaves: {reflectance: 0.45, "
+                    "transmittance: 0.4}}}\ngrids: {canopy: {voxels: stand.las, cell_m: 4, density: leaf_area, medium: foliage, local: "
+                    "[1000, 2000, 0]}}\nvolumes: [{place: canopy}]\nobjects: {ground: {points: stand.las, material: soil, error_m: 0.2, "
+                    "local: [1000, 2000, 0]}}\nworld: [{place: ground}]\n")
+        code, said = prepare(WORK + "/stand.yaml", "--no-crossing-check")
+        self.assertEqual(code, 0, said)
+        self.assertIn("leaf area by contact frequency", said)
+        triangles, _ = exported()
+        worst, seen = 0, 0
+        a, e1, e2 = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+        twice = e1[:, 0] * e2[:, 1] - e1[:, 1] * e2[:, 0]
+        for p in ground - (1000, 2000, 0):
+            d = p - a
+            u, v = (d[:, 0] * e2[:, 1] - d[:, 1] * e2[:, 0]) / twice, (e1[:, 0] * d[:, 1] - e1[:, 1] * d[:, 0]) / twice
+            inside = np.flatnonzero((u > -1e-4) & (v > -1e-4) & (u + v < 1 + 1e-4))
+            seen += len(inside) > 0
+            worst = max([worst] + [abs(d[k, 2] - u[k] * e1[k, 2] - v[k] * e2[k, 2]) for k in inside[:1]])
+        print(f"{len(triangles)} triangles for {len(ground)} points, farthest {worst:.3f} m")
+        self.assertGreaterEqual(seen, len(ground) - 2)
+        self.assertLess(worst, 0.2 + 0.01)
+        self.assertGreater(worst, 0.1)
+        self.assertLess(len(triangles), 4000)
+
+    def test_voxels_of_amapvox(self):
+        with open(WORK + "/crown.vox", "w", encoding="utf-8") as f:
+            f.write("VOXEL SPACE\n#min_corner: 0 0 0\n#max_corner: 2 2 2\n#split: 2 2 2\ni j k PadBVTotal\n"
+                    + "".join(f"{i} {j} {k} {0.5 * (i + j + k)}\n" for i in (0, 1) for j in (0, 1) for k in (0, 1)))
+        with open(WORK + "/crown.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {soil: {model: lambert, reflectance: 0.2}}\nmedia: {foliage: {leaves: {reflectance: 0.45, "
+                    "transmittance: 0.4}}}\ngrids: {crown: {voxels: crown.vox, medium: foliage}}\nvolumes: [{place: crown}]\n"
+                    "objects: {ground: {plane: {width: 10, depth: 10}, material: soil}}\nworld: [{place: ground}]\n")
+        code, said = prepare(WORK + "/crown.yaml")
+        self.assertEqual(code, 0, said)
+        code, said = prepare(WORK + "/crown.yaml", "--set", "media.foliage.leaves.reflectance=0.7")
+        self.assertEqual(code, 1)
+        self.assertIn("leaves that reflect and transmit 1.1 in all", said)
+
+
+if __name__ == "__main__":
+    os.makedirs(WORK, exist_ok=True)
+    unittest.main(argv=["places_test.py"], verbosity=2)
