@@ -19,7 +19,7 @@ places() {
   sed 's/^/    /' <<<"$found"
   if [ "$n" -ne "$wanted" ]; then failed=1; echo "    ^ expected $wanted"; fi
 }
-places "roulette"            1 'std::clamp\(brightness, kLeast, 1\.0\)' libs
+places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
 places "questions to lights" 1 '(light|light->)(\.light)?->sample\(' libs/transport
