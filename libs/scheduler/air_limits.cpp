@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/primitives.h"
+#include "scheduler/air_left_out.h"
 #include "scheduler/doubts.h"
 #include "scheduler/moments.h"
 
@@ -105,6 +106,21 @@ bool looks_along_limb(const Sensor& sensor, const Shells& shells) {
   return false;
 }
 
+// Where media fill the scene, the size of what that leaves out.
+std::optional<std::string> left_out(const AirSpec& air, const Scene& scene, const Sensor& sensor) {
+  const std::shared_ptr<const Scene> borrowed(std::shared_ptr<void>(), &scene);
+  const auto out = left_out_of_air(air, borrowed, sensor);
+  if (!out || (out->adjacency < kLeastLeftOut && out->shadows < kLeastLeftOut)) return std::nullopt;
+  return strf(
+      "air: sensor '%s' looks at %.3g um through scattering of depth %.2g; as media fill the scene, the light of its "
+      "single places that is scattered there (their albedos differ by up to %.2g from the even ground's) is left out, "
+      "at "
+      "most %.2g in reflectance at the top of the air, and shadows in it, at most %.2g of the sunlight that it "
+      "scatters "
+      "once (`scattering: traced` has both)",
+      sensor.name().c_str(), out->um, out->depth, out->contrast, out->adjacency, out->shadows);
+}
+
 constexpr double kLowLimb = 85 * kDegree;
 
 bool sees_sunlight(const Sensor& sensor) {
@@ -145,6 +161,9 @@ std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene
     else if (const auto sentence = beyond(air, written, scene, job))
       said.push_back(*sentence);
   }
+  for (const auto& sensor : sensors)
+    if (air.adjacency && !scene.media.empty() && sees_sunlight(*sensor))
+      if (const auto sentence = left_out(air, scene, *sensor)) said.push_back(*sentence);
   if (!air.round) return said;
   const Lowest body = lowest_body(written, scene, sensors);
   if (body.zenith > kLowSun) said.push_back(low(body));

@@ -24,6 +24,7 @@ struct Told {
   AirSpec air = {};
   std::optional<EarthSpec> earth = {};
   JobOptions job = {};
+  bool smoke = false;  // a medium fills the scene
 
   std::vector<std::string> said() const {
     SourceSpecs sources;
@@ -34,6 +35,7 @@ struct Told {
     sources.add(SunSpec{{dir_from_angles(sun_zenith_deg * kDegree, 0), 0, Curve::constant(1)}});
     auto scene = test::scene_of({test::quad(half_width, 0, 0)}, {test::material("grey", test::lambert(0.5))});
     scene->bounds = scene_bounds(*scene);
+    if (smoke) scene->media.emplace_back();
     std::vector<std::unique_ptr<Sensor>> sensors;
     sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>{{from, towards, 0}},
                                                         std::vector<Band>{Band::rectangular("b", um, 0.01)}, 4));
@@ -75,6 +77,19 @@ TEST(AirLimits, EstimatorsThatDoNotGoBack) {
     ASSERT_THAT(said, SizeIs(1));
     EXPECT_THAT(said[0], HasSubstr("(adjacency) and shadows in it are left out"));
   }
+}
+
+// Molecules have a depth of 0.0973 at 0.55 um (tests/unit/air); a ground of 0.5 differs from the field's 0.2 by 0.3.
+TEST(AirLimits, WhatMediaLeaveOutIsTold) {
+  const auto about = Contains(HasSubstr("sensor 'rays' looks at 0.55 um through scattering of depth 0.097"));
+  EXPECT_THAT((Told{.half_width = 3e5, .smoke = true}).said(), about);
+  EXPECT_THAT((Told{.half_width = 3e5, .smoke = true}).said(),
+              Contains(HasSubstr("up to 0.3 from the even ground's) is left out, at most 0.028 in reflectance")));
+  EXPECT_THAT((Told{.half_width = 3e5, .um = 10, .smoke = true}).said(), IsEmpty());
+  EXPECT_THAT(Told{.half_width = 3e5}.said(), IsEmpty());
+  AirSpec even;
+  even.adjacency = false;
+  EXPECT_THAT((Told{.half_width = 3e5, .air = even, .smoke = true}).said(), IsEmpty());
 }
 
 TEST(AirLimits, LowSuns) {
