@@ -16,7 +16,7 @@ parser = argparse.ArgumentParser()
 parser.add_argument("folder", nargs="?", default=".")
 parser.add_argument("--trees", type=int, default=160, help="on a tile")
 parser.add_argument("--leaves", type=int, default=220, help="of a tree")
-parser.add_argument("--paths", type=int, default=1200000, help="of the goniometer, for each view")
+parser.add_argument("--paths", type=int, default=2400000, help="of the goniometer, for each view")
 parser.add_argument("--views", type=int, default=8192, help="paths of each view of the comparison")
 args = parser.parse_args()
 random.seed(5)
@@ -92,7 +92,7 @@ sensors:
     patch: {patch}
     height_m: {TOP}
     view_zenith_deg: [0, 7.5, 15, 22.5, 30, 37.5, 45, 52.5, 60, 67.5, 75, 82.5]
-    rings: 12
+    rings: 24
     azimuths: 24
     paths: {args.paths}
 """)
