@@ -9,6 +9,7 @@
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "base/yaml_text.h"
+#include "formats/assimp/assimp.h"
 #include "formats/city/city.h"
 #include "formats/gltf/gltf.h"
 #include "formats/ply/ply.h"
@@ -33,6 +34,7 @@ std::string extension_of(const std::string& path) {
 std::string kind_of(const std::string& path, std::string_view head) {
   const std::string e = extension_of(path);
   if (e == ".ply" || e == ".stl") return e.substr(1);
+  if (is_assimp(path)) return "model";
   if (!city_format(path, head).empty()) return "city";
   return is_gltf(path, head) ? "gltf" : "";
 }
@@ -56,13 +58,14 @@ struct Made {
 };
 
 // What the materials of a model are called; its findings are those of the second reading.
-std::vector<SourceMaterial> materials_of(const std::string& path, const ImportOptions& options, bool& nameless) {
+std::vector<SourceMaterial> materials_of(const std::string& path, const std::string& kind, const ImportOptions& options,
+                                         bool& nameless) {
   Report unheard(scene_issues());
   TrackedInputs inputs(path, options.search);
   SourceModelOptions how;
   how.name = "model", how.where = {path, 0, 0, {}, -1}, how.animation = "none";
   how.resolve = [&](const std::string& name) { return inputs.path_of(name); };
-  const SourceModel model = read_gltf(path, how, unheard);
+  const SourceModel model = kind == "gltf" ? read_gltf(path, how, unheard) : read_assimp(path, how, nullptr, unheard);
   nameless = std::any_of(model.meshes.begin(), model.meshes.end(), [](const SourceModel::Part& part) {
     return std::any_of(part.mesh.runs.begin(), part.mesh.runs.end(), [](auto& run) { return run.material.empty(); });
   });
@@ -103,7 +106,8 @@ std::string place_city(const std::string& path, Made& made) {
 Made text_of(const std::string& path, const std::string& file, const std::string& kind, const ImportOptions& options) {
   Made made;
   bool nameless = true;
-  if (kind == "gltf") made.materials = materials_of(path, options, nameless), made.colours = true;
+  if (kind == "gltf" || kind == "model")
+    made.materials = materials_of(path, kind, options, nameless), made.colours = true;
   std::string keys;
   if (kind == "city") keys = place_city(path, made), nameless = false;
   const std::string name = yaml_quoted(std::filesystem::path(path).stem().string());
@@ -169,9 +173,12 @@ bool convert(const std::string& path, const ImportOptions& options, const std::s
 }  // namespace
 
 ImporterRow model_importer() {
-  return {{"model", "a model: glTF or GLB, PLY, STL, CityJSON, CityGML (formats/gltf, ply, stl and city)", "", read},
-          sniff,
-          convert};
+  return {
+      {"model",
+       "a model: glTF or GLB, FBX, Collada, 3DS, PLY, STL, CityJSON, CityGML (formats/gltf, assimp, ply, stl and city)",
+       "", read},
+      sniff,
+      convert};
 }
 
 }  // namespace suite

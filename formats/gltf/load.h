@@ -6,7 +6,6 @@
 #define TINYGLTF_NO_FS
 #include <tiny_gltf.h>
 
-#include <set>
 #include <span>
 
 #include "base/report.h"
@@ -41,17 +40,6 @@ struct Values {
 };
 Values values_of(const tinygltf::Model& model, const std::string& file, int accessor, const std::string& pointer,
                  std::initializer_list<size_t> components);
-
-// A name that no other part of the model has: NAME/given, or NAME/otherwise, with #2, #3 ... behind it.
-class Names {
- public:
-  explicit Names(std::string model) : model_(std::move(model)) {}
-  std::string make(const std::string& given, const std::string& otherwise);
-
- private:
-  std::string model_;
-  std::set<std::string> used_;
-};
 
 // The materials' names, of all of the file; unnamed ones are material_N.
 std::vector<std::string> material_names(const tinygltf::Model& model);

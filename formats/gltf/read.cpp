@@ -9,13 +9,6 @@ namespace suite {
 
 namespace gltf {
 
-std::string Names::make(const std::string& given, const std::string& otherwise) {
-  const std::string base = model_ + "/" + (given.empty() ? otherwise : given);
-  std::string name = base;
-  for (size_t k = 2; !used_.insert(name).second; ++k) name = base + strf("#%zu", k);
-  return name;
-}
-
 namespace {
 
 // The nodes of a scene become groups, but for those that only place a mesh.
@@ -43,7 +36,7 @@ class Builder {
   const std::string& file_;
   const SourceModelOptions& options_;
   Report& report_;
-  Names names_;
+  PartNames names_;
   std::vector<Local> locals_;
   std::vector<size_t> order_;  // reachable nodes, parents first
   std::vector<size_t> roots_;

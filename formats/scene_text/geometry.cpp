@@ -19,8 +19,8 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
   const size_t slot = draft_.geometry.size();
   draft_.geometry.push_back(g);
   draft_.geometry[slot].failed = true;
-  std::vector<std::string> kinds{"obj",  "obj_text", "gdb",     "ply",    "stl",  "gltf",
-                                 "city", "points",   "terrain", "voxels", "waves"};
+  std::vector<std::string> kinds{"obj",   "obj_text", "gdb",    "ply",     "stl",    "gltf",
+                                 "model", "city",     "points", "terrain", "voxels", "waves"};
   for (const PrimitiveRow& row : primitive_rows()) kinds.push_back(row.name);
   std::string kind;
   for (const std::string& k : kinds)
@@ -29,7 +29,7 @@ void Reader::read_geometry(const std::string& name, const Params& p) {
       kind = k;
     }
   if (kind.empty()) throw p.error("object '" + name + "' has no geometry", name_hint("", kinds));
-  if (kind == "gltf") return read_model(p, std::move(g), slot);
+  if (kind == "gltf" || kind == "model") return read_model(p, kind, std::move(g), slot);
   if (kind == "obj" || kind == "obj_text" || kind == "gdb" || kind == "ply" || kind == "stl" || kind == "city")
     read_mesh(p, kind, g);
   else if (kind == "terrain")

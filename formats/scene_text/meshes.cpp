@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/files.h"
+#include "formats/assimp/assimp.h"
 #include "formats/city/city.h"
 #include "formats/dirsig/dirsig.h"
 #include "formats/gltf/gltf.h"
@@ -82,15 +83,15 @@ void Reader::read_city_mesh(const Params& p, DraftGeometry& g) {
 
 // The model becomes a group of the object's name; its meshes are objects of their own. slot: where the object's name
 // stands among the geometry until then.
-void Reader::read_model(const Params& p, DraftGeometry g, size_t slot) {
+void Reader::read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot) {
   read_mesh_rules(p, g);
   SourceModelOptions options;
   options.name = g.name;
   options.where = g.where;
   options.unit_m = unit_of(p);
   options.y_up = y_up(p, true);
-  options.animation = p.text("animation", "");
-  const Params file = p.at("gltf");
+  if (kind == "gltf") options.animation = p.text("animation", "");
+  const Params file = p.at(kind);
   const std::filesystem::path folder = std::filesystem::path(file.as_text()).parent_path();
   options.resolve = [&](const std::string& name) {
     try {
@@ -99,7 +100,10 @@ void Reader::read_model(const Params& p, DraftGeometry g, size_t slot) {
       throw Error(file.where(), "buffer '" + printable(name) + "' " + e.message(), e.hint(), "SP003");
     }
   };
-  SourceModel model = of_file([&] { return read_gltf(input(file), options, report_); });
+  SourceModel model = of_file([&] {
+    if (kind == "gltf") return read_gltf(input(file), options, report_);
+    return read_assimp(input(file), options, p.has("up") ? &options.y_up : nullptr, report_);
+  });
   draft_.geometry.erase(draft_.geometry.begin() + static_cast<std::ptrdiff_t>(slot));
   for (SourceModel::Part& part : model.meshes) {
     DraftGeometry& made = draft_.geometry.emplace_back(g);

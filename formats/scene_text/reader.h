@@ -77,7 +77,7 @@ class Reader {
   // meshes.cpp
   void read_mesh_rules(const Params& p, DraftGeometry& g);
   void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
-  void read_model(const Params& p, DraftGeometry g, size_t slot);
+  void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);

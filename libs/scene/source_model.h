@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,22 @@ struct SourceModelOptions {
   std::string animation = {};  // name or number (from 0) of the one that is taken; "none"; empty: the first
   // Where a file that the model names is to be found. Error: it is not there.
   std::function<std::string(const std::string&)> resolve = {};
+};
+
+// A name that no other part of the model has: NAME/given, or NAME/otherwise, with #2, #3 ... behind it.
+class PartNames {
+ public:
+  explicit PartNames(std::string model) : model_(std::move(model)) {}
+  std::string make(const std::string& given, const std::string& otherwise) {
+    const std::string base = model_ + "/" + (given.empty() ? otherwise : given);
+    std::string name = base;
+    for (size_t k = 2; !used_.insert(name).second; ++k) name = base + "#" + std::to_string(k);
+    return name;
+  }
+
+ private:
+  std::string model_;
+  std::set<std::string> used_;
 };
 
 // y up, z towards the viewer (the usual modelling tools) becomes z up, -y towards the viewer.

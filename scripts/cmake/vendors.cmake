@@ -57,6 +57,16 @@ else()
   message(STATUS "OpenVDB was not found: .vdb files will be refused")
 endif()
 
+# Optional: models of FBX, Collada and 3DS.
+find_path(ASSIMP_INCLUDE assimp/scene.h)
+find_library(ASSIMP_LIBRARY assimp)
+if(ASSIMP_INCLUDE AND ASSIMP_LIBRARY)
+  suite_vendor(assimp ${ASSIMP_LIBRARY})
+  target_include_directories(vendor_assimp SYSTEM INTERFACE ${ASSIMP_INCLUDE})
+else()
+  message(STATUS "assimp was not found: .fbx, .dae and .3ds files will be refused")
+endif()
+
 # Optional: runs on several machines. Of C++ only the C calls are used.
 set(MPI_CXX_SKIP_MPICXX ON)
 find_package(MPI COMPONENTS CXX)

@@ -71,6 +71,16 @@ def in_order(triangles):
     return np.array([t for _, t in made])
 
 
+def apart(some, others):
+    """How far the farthest triangle's centre is from the nearest of others."""
+    a, b = some.mean(1), others.mean(1)
+    return max(np.linalg.norm(b - p, axis=1).min() for p in a)
+
+
+def area(triangles):
+    return np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1).sum() / 2
+
+
 def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
     """A PLY file of five places, a triangle and a concave polygon, which can be cut in one way only."""
     places = [(0, 0, 0), (2, 0, 0), (0.5, 0.5, 0), (0, 2.125, 0), (2, 2, 2)]
@@ -86,6 +96,47 @@ def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
             f.write(b"".join(struct.pack(order + "3d", *p) for p in places))
             f.write(b"".join(struct.pack(order + f"B{len(c)}i", len(c), *c) for c in faces))
     return path
+
+
+def fbx(path, places, polygon, unit_cm):
+    """A binary FBX 7.4 of one polygon; its bytes."""
+    def property_of(p):
+        if isinstance(p, str):
+            return b"S" + struct.pack("<I", len(p.encode())) + p.encode()
+        if isinstance(p, list):
+            kind, code = (b"d", "d") if isinstance(p[0], float) else (b"i", "i")
+            data = struct.pack(f"<{len(p)}{code}", *p)
+            return kind + struct.pack("<III", len(p), 0, len(data)) + data
+        if isinstance(p, float):
+            return b"D" + struct.pack("<d", p)
+        return b"I" + struct.pack("<i", p) if p > 2 else b"L" + struct.pack("<q", p)  # 0 to 2: ids
+
+    def node(at, name, properties=(), children=()):
+        data = b"".join(property_of(p) for p in properties)
+        head = 13 + len(name)
+        inner, where = b"", at + head + len(data)
+        for child in children:
+            inner += node(where + len(inner), *child)
+        if children:
+            inner += bytes(13)
+        return struct.pack("<IIIB", where + len(inner), len(properties), len(data), len(name)) + name.encode() + data + inner
+
+    name = "\x00\x01"
+    all_nodes = [
+        ("FBXHeaderExtension", (), [("FBXVersion", (7400,))]),
+        ("GlobalSettings", (), [("Properties70", (), [("P", ("UnitScaleFactor", "double", "Number", "", unit_cm))])]),
+        ("Objects", (), [("Geometry", (1, "tri" + name + "Geometry", "Mesh"),
+                          [("Vertices", ([float(c) for p in places for c in p],)),
+                           ("PolygonVertexIndex", (polygon[:-1] + [~polygon[-1]],))]),
+                         ("Model", (2, "tri" + name + "Model", "Mesh"), [("Version", (232,))])]),
+        ("Connections", (), [("C", ("OO", 1, 2)), ("C", ("OO", 2, 0))])]
+    data = b"Kaydara FBX Binary  \x00\x1a\x00" + struct.pack("<I", 7400)
+    for one in all_nodes:
+        data += node(len(data), *one)
+    data += bytes(13)
+    with open(path, "wb") as f:
+        f.write(data)
+    return data
 
 
 class Models(unittest.TestCase):
@@ -108,6 +159,46 @@ class Models(unittest.TestCase):
         self.assertIn("SP708", said)
         self.assertEqual(set(materials), {"Red"})
         self.same(DATA + "/gltf/ShapeCollection.glb", True, "ShapeCollection")
+
+    def test_fbx_and_collada(self):
+        for kind, name in (("fbxa", "fa"), ("collada", "c")):
+            path = f"{WORK}/{name}.{'dae' if kind == 'collada' else 'fbx'}"
+            subprocess.run(["assimp", "export", DATA + "/gltf/ShapeCollection.glb", path, "-f" + kind], check=True,
+                           stdout=subprocess.DEVNULL)
+            if kind == "fbxa":  # z up, in inches: what its heading says is done
+                with open(path, encoding="utf-8") as f:
+                    text = f.read()
+                turned = text.replace('P: "UpAxis", "int", "Integer", "", 1', 'P: "UpAxis", "int", "Integer", "", 2')
+                turned = turned.replace('"UnitScaleFactor", "double", "Number", "", 1', '"UnitScaleFactor", "double", "Number", "", 2.54')
+                self.assertNotEqual(text, turned)
+                with open(path, "w", encoding="utf-8") as f:
+                    f.write(turned)
+            unit = {"fbxa": 100 / 2.54, "collada": 1}[kind]
+            code, said = prepare(path, "--set", f"objects.{name}.unit_m={SCALE * unit!r}")
+            self.assertEqual(code, 0, said)
+            ours, theirs = exported()[0], by_assimp(DATA + "/gltf/ShapeCollection.glb", kind != "fbxa")
+            self.assertEqual(len(ours), len(theirs))
+            worst = max(apart(ours, theirs), apart(theirs, ours))
+            print(f"{os.path.basename(path)}: {len(ours)} triangles, farthest {worst:.2g} m")
+            self.assertLess(worst, 1e-5)  # texts have six digits
+            self.assertGreater(apart(ours, theirs + [0, 0, 1e-3]), 1e-5)
+            self.assertAlmostEqual(area(ours) / area(theirs), 1, delta=1e-5)
+
+    def test_binary_fbx(self):
+        places = [(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 5)]
+        whole = fbx(WORK + "/bin.fbx", places, [0, 1, 2, 3], 100.0)
+        code, said = prepare(WORK + "/bin.fbx", "--set", f"objects.bin.unit_m={SCALE:g}")
+        self.assertEqual(code, 0, said)
+        ours = exported()[0]
+        wanted = {(x, -z, y) for x, y, z in places}  # y up
+        self.assertEqual({tuple(np.round(p, 6)) for p in ours.reshape(-1, 3)}, wanted)
+        self.assertEqual(len(ours), 2)
+        for bad in (whole[:200], whole[:27] + b"\xff" * 400, whole.replace(b"PolygonVertexIndex", b"PolygonVortexIndex")):
+            with open(WORK + "/bad.fbx", "wb") as f:
+                f.write(bad)
+            code, said = prepare(WORK + "/bad.fbx")
+            self.assertEqual(code, 1, said)
+            self.assertIn("bad.fbx: error: ", said)
 
     def test_more_models(self):
         for path in os.environ.get("SUITE_MORE_MODELS", "").split():

@@ -247,6 +247,44 @@ class Clouds(unittest.TestCase):
         self.assertIn("leaves that reflect and transmit 1.1 in all", said)
 
 
+class Leaves(unittest.TestCase):
+    """A layer of leaves of AMAPVox, rendered: what comes through black ones, and what stays of an even light in ones that lose nothing."""
+
+    def render(self, leaf, light, paths):
+        with open(WORK + "/slab.vox", "w", encoding="utf-8") as f:
+            f.write("VOXEL SPACE\n#min_corner: -5000 -5000 0\n#max_corner: 5000 5000 2\n#split: 1 1 2\ni j k PadBVTotal\n0 0 0 1.5\n0 0 1 0.5\n")
+        with open(WORK + "/slab.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: 1\nmaterials: {white: {model: lambert, reflectance: 1}}\nmedia: {foliage: {leaves: {reflectance: %g, "
+                    "transmittance: %g}}}\ngrids: {slab: {voxels: slab.vox, medium: foliage}}\nvolumes: [{place: slab}]\nobjects: {ground: "
+                    "{plane: {width: 0, depth: 0}, material: white}}\nworld: [{place: ground, translate: [0, 0, -0.01]}]\n" % leaf)
+        with open(WORK + "/level.txt", "w", encoding="utf-8") as f:
+            f.write("0.3 1\n2.5 1\n")
+        with open(WORK + "/sim.yaml", "w", encoding="utf-8") as f:
+            f.write("scene: m.h5\nseed: 1\nmax_nodes: 1000\n" + light + "sensors:\n  - {kind: orthographic, name: map, columns: 8, rows: 8, gsd_m: 1, "
+                    "center_m: [0, 0], bands: [{name: nir, center_um: 0.8, fwhm_um: 0.02}], paths: %d}\n" % paths)
+        code, said = prepare(WORK + "/slab.yaml")
+        self.assertEqual(code, 0, said)
+        done = models_test.subprocess.run([models_test.BIN + "/dirsig-render", WORK + "/sim.yaml", "-o", WORK + "/out"], capture_output=True,
+                                          text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        seen = np.fromfile(WORK + "/out/map.img", dtype="<f4")
+        return seen.mean(), seen.std() / 8
+
+    def test_black_leaves(self):
+        sun = "sun: {direction: {zenith_deg: 60, azimuth_deg: 140}, irradiance: level.txt}\n"
+        mean, _ = self.render((0, 0), sun, 64)
+        # Half of the area of leaves of index 2 lies in the way straight down, twice that on the way of the sun.
+        wanted = 0.5 / math.pi * math.exp(-0.5 * 2 * (1 + 2))
+        self.assertAlmostEqual(mean / wanted, 1, delta=2e-4)
+
+    def test_nothing_is_lost(self):
+        for leaf in ((0.5, 0.5), (0.9, 0.1)):
+            mean, error = self.render(leaf, "sky: {radiance: level.txt}\n", 1024)
+            print(f"leaves that reflect {leaf[0]} and transmit {leaf[1]}: {mean:.5f} +- {error:.5f} of an even light of 1")
+            self.assertLess(error, 2e-3)
+            self.assertLess(abs(mean - 1), 4 * error + 2e-4)
+
+
 if __name__ == "__main__":
     os.makedirs(WORK, exist_ok=True)
     unittest.main(argv=["places_test.py"], verbosity=2)

@@ -1,0 +1,49 @@
+// What the part `assimp` and its only caller share: a model as plain arrays.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace suite {
+
+struct AssimpMesh {
+  std::string name;
+  uint32_t material = 0;
+  std::vector<Vec3> positions, normals;  // normals: one per position, or none
+  std::vector<float> uvs;                // two per position, or none
+  std::vector<uint32_t> indices;         // three per triangle
+};
+
+struct AssimpNode {
+  std::string name;
+  int32_t parent = -1;  // before it in the list; -1: the root
+  Affine3 to_parent;
+  std::vector<uint32_t> meshes;
+};
+
+struct AssimpMaterial {
+  std::string name;
+  std::array<double, 3> rgb{1, 1, 1};  // as the file has it
+};
+
+struct AssimpModel {
+  std::string fault;  // not empty: nothing else holds
+  std::vector<AssimpMesh> meshes;
+  std::vector<AssimpNode> nodes;
+  std::vector<AssimpMaterial> materials;
+  double unit_cm = 0;    // of a file of FBX; 0: it does not say
+  int32_t up_axis = -1;  // of FBX: 1 y, 2 z
+  // What a scene has no place for.
+  uint64_t animations = 0, cameras = 0, lights = 0, textures = 0, bones = 0, morphs = 0, colours = 0, lines = 0;
+};
+
+// extension: of the file's name, which says what it is.
+struct AssimpCalls {
+  AssimpModel (*read)(const void* bytes, size_t size, const char* extension);
+};
+
+}  // namespace suite

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/files.h"
+#include "base/late_part.h"
+#include "formats/assimp/apart.h"
+#include "formats/assimp/assimp.h"
+#include "formats/assimp/pack.h"
+
+namespace suite {
+
+namespace {
+
+std::string extension_of(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e.empty() ? e : e.substr(1);
+}
+
+// What came out of the library is checked: indices, numbers, parents.
+void check(const AssimpModel& model, const Where& where) {
+  const auto bad = [&](const char* what) {
+    return Error(where, std::string("the library that reads it (assimp) made ") + what + " of it",
+                 "the file is damaged");
+  };
+  for (const AssimpMesh& m : model.meshes) {
+    if (m.positions.size() >= kNone) throw bad("too many vertices");
+    for (const uint32_t v : m.indices)
+      if (v >= m.positions.size()) throw bad("a vertex that is not there");
+    if (m.indices.size() % 3 || (!m.normals.empty() && m.normals.size() != m.positions.size()) ||
+        (!m.uvs.empty() && m.uvs.size() != 2 * m.positions.size()) || m.material >= model.materials.size())
+      throw bad("a mesh without all its parts");
+  }
+  for (size_t n = 0; n < model.nodes.size(); ++n) {
+    const AssimpNode& node = model.nodes[n];
+    if (n ? !(node.parent >= 0 && static_cast<size_t>(node.parent) < n) : node.parent != -1)
+      throw bad("a node without a parent");
+    for (const double a : node.to_parent.a)
+      if (!std::isfinite(a)) throw bad("a transform that is none");
+    if (!finite(node.to_parent.b)) throw bad("a transform that is none");
+    for (const uint32_t m : node.meshes)
+      if (m >= model.meshes.size()) throw bad("a mesh that is not there");
+  }
+}
+
+class Builder {
+ public:
+  Builder(AssimpModel model, const std::string& file, const SourceModelOptions& options, Report& report)
+      : model_(std::move(model)),
+        whole_{file, 0, 0, {}, -1},
+        options_(options),
+        report_(report),
+        names_(options.name) {}
+  SourceModel run(bool y_up);
+
+ private:
+  DraftPlacement place(const std::string& target, const Affine3& to_parent) const {
+    DraftPlacement p;
+    p.where = p.target.where = options_.where;
+    p.target.name = target;
+    p.to_parent = to_parent;
+    return p;
+  }
+  void mesh(size_t k);
+  void materials();
+  void tell() const;
+  double unit() const { return options_.unit_m * (model_.unit_cm > 0 ? model_.unit_cm / 100 : 1); }
+
+  AssimpModel model_;
+  Where whole_;
+  const SourceModelOptions& options_;
+  Report& report_;
+  PartNames names_;
+  std::vector<std::string> mesh_names_;  // empty: has no triangles
+  SourceModel result_;
+};
+
+void Builder::mesh(size_t k) {
+  const AssimpMesh& from = model_.meshes[k];
+  mesh_names_.emplace_back();
+  if (from.indices.empty()) return;
+  SourceMesh made;
+  made.file = whole_.file;
+  for (const Vec3& p : from.positions) {
+    const Vec3 place = p * unit();
+    if (!finite(place) || length(place) > 1e15)
+      report_.add("SP203", whole_.file, {whole_, "mesh '" + printable(from.name) + "': a place that is none"});
+    made.positions.push_back(place);
+  }
+  for (const Vec3& n : from.normals) {
+    const double size = length(n);
+    made.normals.push_back(size > 0 && std::isfinite(size) ? oct_encode(n / size) : kNoNormal);
+  }
+  for (const float c : from.uvs) made.uvs.push_back(std::isfinite(c) ? c : 0);
+  made.indices = from.indices;
+  made.runs.push_back({printable(from.name), model_.materials[from.material].name, 0, 0});
+  mesh_names_.back() = names_.make(printable(from.name), strf("mesh_%zu", k));
+  result_.meshes.push_back({mesh_names_.back(), std::move(made)});
+}
+
+void Builder::materials() {
+  std::set<std::string> used;
+  for (const SourceModel::Part& part : result_.meshes)
+    for (const SourceMesh::Run& run : part.mesh.runs) used.insert(run.material);
+  for (const AssimpMaterial& m : model_.materials)
+    if (!m.name.empty() && used.erase(m.name)) {
+      SourceMaterial& made = result_.materials.emplace_back(SourceMaterial{m.name, m.rgb});
+      for (double& c : made.rgb) c = std::isfinite(c) ? std::clamp(c, 0.0, 1.0) : 1;
+    }
+}
+
+void Builder::tell() const {
+  const auto say = [&](const char* code, uint64_t count, const char* what) {
+    if (count) report_.add(code, whole_.file, {whole_, strf("%zu %s", static_cast<size_t>(count), what)}, count);
+  };
+  say("SP705", model_.animations, "animations: everything stands as it is stored");
+  say("SP705", model_.bones, "meshes with bones: they keep their basic shape");
+  say("SP705", model_.morphs, "meshes with morph targets: they keep their basic shape");
+  say("SP705", model_.textures, "textures: display colours are no spectra, maps are");
+  say("SP705", model_.lights, "lights: lights belong to the simulation");
+  say("SP706", model_.cameras, "cameras: cameras belong to the simulation");
+  say("SP706", model_.colours, "meshes with colours of vertices: display colours are no spectra");
+  say("SP205", model_.lines, "points or lines");
+}
+
+// Nodes become groups, children before their parents.
+SourceModel Builder::run(bool y_up) {
+  result_.groups.push_back({options_.name, options_.where, {}});
+  for (size_t k = 0; k < model_.meshes.size(); ++k) mesh(k);
+  std::vector<DraftGroup> groups(model_.nodes.size());
+  size_t flat = 0;
+  for (size_t n = model_.nodes.size(); n-- > 0;) {
+    const AssimpNode& node = model_.nodes[n];
+    DraftGroup& group = groups[n];
+    for (const uint32_t m : node.meshes)
+      if (!mesh_names_[m].empty()) group.placements.push_back(place(mesh_names_[m], {}));
+    Affine3 to_parent = node.to_parent;
+    to_parent.b *= unit();
+    if (group.placements.empty()) continue;
+    if (!(to_parent.determinant() != 0)) {
+      ++flat;
+      continue;
+    }
+    group.name = names_.make(printable(node.name), strf("node_%zu", n));
+    group.where = options_.where;
+    DraftGroup& parent = n ? groups[static_cast<size_t>(node.parent)] : result_.groups[0];
+    parent.placements.push_back(place(group.name, n || !y_up ? to_parent : kFromYUp * to_parent));
+  }
+  if (result_.groups[0].placements.empty()) throw Error(whole_, "places no triangle", "it must hold a mesh", "SP204");
+  for (DraftGroup& group : groups)
+    if (!group.name.empty()) result_.groups.push_back(std::move(group));
+  if (flat) report_.add("SP706", whole_.file, {whole_, strf("%zu nodes are flattened to nothing", flat)}, flat);
+  materials();
+  tell();
+  return std::move(result_);
+}
+
+}  // namespace
+
+SourceModel parse_assimp(std::span<const std::byte> bytes, const std::string& file, const SourceModelOptions& options,
+                         const bool* y_up, Report& report) {
+  static const auto* const calls = static_cast<const AssimpCalls*>(late_symbol("assimp", "suite_assimp_calls"));
+  const Where whole{file, 0, 0, {}, -1};
+  const std::string extension = extension_of(file);
+  const std::string made =
+      apart(file, bytes.size(), [&] { return packed(calls->read(bytes.data(), bytes.size(), extension.c_str())); });
+  AssimpModel model;
+  if (!unpack(made, model)) throw Error(whole, "the library that reads it (assimp) broke down", "the file is damaged");
+  if (!model.fault.empty()) throw Error(whole, "cannot be read: " + printable(model.fault).substr(0, 300));
+  check(model, whole);
+  // Files of FBX say which way is up; the library turns those of Collada y up.
+  const bool up_is_y = y_up ? *y_up : extension == "3ds" ? false : model.up_axis != 2;
+  return Builder(std::move(model), file, options, report).run(up_is_y);
+}
+
+SourceModel read_assimp(const std::string& path, const SourceModelOptions& options, const bool* y_up, Report& report) {
+  return parse_assimp(read_bytes(path), path, options, y_up, report);
+}
+
+bool is_assimp(const std::string& path) {
+  const std::string e = extension_of(path);
+  return e == "fbx" || e == "dae" || e == "3ds";
+}
+
+}  // namespace suite
