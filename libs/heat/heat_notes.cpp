@@ -45,9 +45,8 @@ std::vector<std::string> lateral_notes(const Scene& scene, const Elements& eleme
   return notes;
 }
 
-// Infrared that ends on closed backs, whose sunlight is not followed: of what ends on a material, the share from
-// behind.
-std::vector<std::string> back_notes(const HeatScene& scene, const ExchangePaths& exchange) {
+// Infrared that ends on closed backs: of what ends on a material, the share from behind.
+std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
   constexpr double kLittle = 1e-3;  // as the rounding of places on closed bodies may let through
   const auto& [tracer, elements, faces, optics] = scene;
   std::vector<std::array<double, 2>> ended(optics.has_heat.size(), {0, 0});  // m2 of emission, in front and behind
@@ -58,14 +57,16 @@ std::vector<std::string> back_notes(const HeatScene& scene, const ExchangePaths&
       ended[elements[faces.element(face)].material][end == face ? 0 : 1] +=
           exchange.area[k / each] * double{exchange.weights[k]};
   }
-  std::vector<std::string> notes;
+  std::string seen;
   for (size_t m = 0; m < ended.size(); ++m)
     if (const double behind = ended[m][1]; behind > kLittle * (behind + ended[m][0]))
-      notes.push_back(
-          "material '" + optics.materials->materials[m].id + "': " + share_text(behind / (behind + ended[m][0])) +
-          " of the infrared that ends on it comes from behind, where its back is closed: that, and sunlight "
-          "from there, warms nothing; 'back: open' lets both sides take part");
-  return notes;
+      seen += strf("%s'%s' (%.2g %%)", seen.empty() ? "" : ", ", optics.materials->materials[m].id.c_str(),
+                   100 * behind / (behind + ended[m][0]));
+  if (seen.empty()) return {};
+  return "closed backs are seen, of materials (with the share of the infrared ending on each that comes from behind) " +
+         seen +
+         ": they are as warm as their fronts, and nothing that falls there, sunlight neither, warms them; "
+         "'back: open' lets both sides take part";
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& 
              "another and on may be found in part only",
              sun.mirrored.endless));
   for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
-  for (const std::string& sentence : back_notes(scene, exchange)) notes.push_back(sentence);
+  if (const std::string sentence = back_note(scene, exchange); !sentence.empty()) notes.push_back(sentence);
   if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
   if (exchange.unfinished() > 1e-6)
     notes.push_back(

@@ -105,7 +105,7 @@ struct HeatKit {
     check_scene(*scene, "test scene");
     tracer = std::make_unique<const Tracer>(scene, std::nullopt, span);
     optics = heat_optics(*scene, used_materials(*tracer), {});
-    const DaySun by = sun ? day_sun(*tracer, span, sun) : DaySun{};
+    const DaySun by = sun ? day_sun(*tracer, sun_moments(span, sun)) : DaySun{};
     elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin, sun ? &by : nullptr);
     faces = std::make_unique<const HeatFaces>(*elements, optics);
   }
