@@ -6,19 +6,21 @@
 
 #include "base/error.h"
 #include "heat/heat_walk.h"
+#include "spectral/planck.h"
 
 namespace suite {
 
 namespace {
 
+constexpr double kFilm = 12;  // W/(m2 K), of a light wind with radiation
+
 std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
 
-// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as in a
-// light wind with radiation; d no deeper than a day's warmth goes); elements that are smaller differ more than they
-// should.
+// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as kFilm;
+// d no deeper than a day's warmth goes); elements that are smaller differ more than they should.
 double evened_over(const std::vector<SlabLayer>& layers) {
-  constexpr double kFilm = 12, kDay = 86400;  // W/(m2 K), s
-  double sheet = 0;                           // W/K
+  constexpr double kDay = 86400;  // s
+  double sheet = 0;               // W/K
   for (const SlabLayer& layer : layers) {
     const double k = layer.conductivity[0], deep = std::sqrt(k * kDay / (kPi * layer.density * layer.specific_heat[0]));
     sheet += k * std::min(layer.thickness, deep);
@@ -69,7 +71,72 @@ std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
          "'back: open' lets both sides take part";
 }
 
+// Whether a place that may come and go is there all the time: at 17 times, looked at from just off it.
+bool stays(const Tracer& tracer, const Hit& place) {
+  const std::optional<TimeSpan> window = tracer.window();
+  if (!window) return true;
+  constexpr int kTimes = 16;
+  const double off = 16 * double{place.step};
+  std::vector<Ray> rays;
+  for (int k = 0; k <= kTimes; ++k)
+    rays.push_back({place.position + place.normal * off, -place.normal,
+                    window->begin + (window->end - window->begin) * k / kTimes, static_cast<uint32_t>(k)});
+  std::vector<Hit> hits(rays.size());
+  TraceStatistics ignored;
+  tracer.nearest(rays, hits, false, ignored);
+  return std::ranges::all_of(hits, [&](const Hit& h) { return h.hit() && h.distance <= 2 * off; });
+}
+
+// By face: whether it belongs to what comes and goes.
+std::vector<bool> visitors(const HeatScene& s) {
+  std::vector<bool> out;
+  for (size_t f = 0; f < s.faces.size(); ++f) {
+    const Hit hit = s.elements.point(s.faces.element(f), {SampleStream(0, 0, 0), 0, 0});
+    out.push_back(s.tracer.object(hit.object).node != kNone && !stays(s.tracer, hit));
+  }
+  return out;
+}
+
+// W/m2: what a face takes of the infrared of visitors beyond what it would take without them, as a mean over the span.
+double taken_of_visitors(const ExchangePaths& exchange, const HeatScene& scene, const SurfaceHistory& history,
+                         const std::vector<bool>& visits, size_t face) {
+  constexpr size_t kEvery = 8;  // moments
+  const size_t each = size_t{exchange.blocks} * exchange.paths, moments = history.moments;
+  double all = 0, more = 0, looks = 0;
+  for (size_t k = face * each; k < (face + 1) * each; ++k) all += double{exchange.weights[k]};
+  for (size_t m = 0; m < moments; m += kEvery) {
+    ++looks;
+    for (size_t k = face * each; k < (face + 1) * each; ++k) {
+      const uint32_t from = scene.faces.face_of(exchange.ends[k]);
+      if (from == kNone || !visits[from]) continue;
+      const double T = history.kelvin.at(from, m), emitted = kStefanBoltzmann * T * T * T * T;
+      more += double{exchange.weights[k]} * (emitted - double{history.received[face * moments + m]});
+    }
+  }
+  return all > 0 ? exchange.emissivity[face] * more / (all * looks) : 0;
+}
+
 }  // namespace
+
+std::string visitors_note(const HeatScene& scene, const ExchangePaths& exchange, const SurfaceHistory& history) {
+  constexpr double kLittle = 1;  // W/m2
+  const std::vector<bool> visits = visitors(scene);
+  if (std::ranges::find(visits, true) == visits.end()) return {};
+  double most = 0, sum = 0;
+  size_t felt = 0;
+  for (size_t f = 0; f < visits.size(); ++f) {
+    if (visits[f]) continue;
+    const double taken = std::fabs(taken_of_visitors(exchange, scene, history, visits, f));
+    most = std::max(most, taken);
+    if (taken > kLittle) ++felt, sum += taken;
+  }
+  return strf(
+      "%zu faces are of what comes and goes: they are followed through the whole span, and others exchange "
+      "infrared with them for their share of it, evenly; that is %.3g W/m2 (about %.2g K) at most, and in the "
+      "mean %.3g W/m2 on the %zu faces that feel more than %g W/m2; shade and sunlight have their times",
+      static_cast<size_t>(std::ranges::count(visits, true)), most, most / kFilm,
+      felt > 0 ? sum / static_cast<double>(felt) : 0, felt, kLittle);
+}
 
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {
   const auto& [tracer, elements, faces, optics] = scene;

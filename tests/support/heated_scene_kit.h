@@ -74,6 +74,13 @@ class HeatedScene {
     scene_->meshes.push_back(std::move(m));
     put(TargetKind::mesh, scene_->meshes.size() - 1, place);
   }
+  // The last one is there for a part of the time only.
+  void there(TimeSpan life) {
+    Schedule s;
+    s.name = "comes and goes", s.life = life;
+    scene_->schedules.push_back(s);
+    scene_->groups.front().placements.back().schedule = static_cast<uint32_t>(scene_->schedules.size() - 1);
+  }
   std::shared_ptr<Scene> scene() { return scene_; }
 
  private:
