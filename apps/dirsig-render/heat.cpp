@@ -12,6 +12,7 @@
 #include "base/run_app.h"
 #include "base/stopwatch.h"
 #include "formats/heat_hdf/heat_hdf.h"
+#include "formats/heat_hdf/operator_hdf.h"
 #include "heat/day_sun.h"
 #include "heat/heat_field.h"
 #include "heat/target_paths.h"
@@ -81,7 +82,7 @@ HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
           [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
 }
 
-// cut: as a file says; none = as the simulation asks.
+// cut: as a file has it; none = as the simulation asks.
 PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
                      const std::optional<HeatCut>& cut = {}) {
   PreparedHeat p;
@@ -90,12 +91,12 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
   p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
   p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
   p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
-  const HeatCut by = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, p.spec.span});
   const HeatWeather weather = weather_of(sim, *scene);
-  const DaySun sun =
-      by.by_sun ? day_sun(*p.tracer, by.span, [&](double t) { return weather.sun(t).direction; }) : DaySun{};
-  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, by.elements, p.spec.span.begin,
-                                          by.by_sun ? &sun : nullptr);
+  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}});
+  if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
+  const DaySun sun = day_sun(*p.tracer, p.cut.sun);
+  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
+                                          p.cut.by_sun ? &sun : nullptr);
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
   return p;
 }
@@ -171,7 +172,7 @@ void keep(const HeatResult& h, const WeatherLoads& weather, const PreparedHeat& 
   make_folders_of({in_folder(folder, "heat.h5")});
   std::vector<std::string> names;
   for (const Material& m : scene.materials) names.push_back(m.id);
-  write_heat(in_folder(folder, "heat.h5"), h, *p.elements, *p.faces, names, p.spec.cut_by_sun, command_line());
+  write_heat(in_folder(folder, "heat.h5"), h, *p.elements, *p.faces, names, p.cut, command_line());
   write_file(in_folder(folder, "heat.csv"), heat_table(h, p, scene, sim));
   write_file(in_folder(folder, "heat.html"), heat_page(h, p, weather, scene, sim, sentences));
   if (const std::string probes = heat_probes(h, p, weather, scene, sim); !probes.empty())
@@ -238,7 +239,13 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   if (!options.heat.empty() && !options.heat_operator.empty())
     throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
   std::optional<HeatCut> cut;
-  if (!options.heat.empty()) cut = heat_cut(options.heat);
+  if (!options.heat.empty())
+    cut = heat_cut(options.heat);
+  else if (const std::string from = operator_file(sim, options, folder); !from.empty()) {
+    // As many elements as are asked for; else the file is refused when it is read, with what differs.
+    cut = operator_cut(from);
+    if (cut->elements != sim.heat->spec.elements || cut->by_sun != sim.heat->spec.cut_by_sun) cut.reset();
+  }
   auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut));
   const auto result = std::make_shared<HeatResult>();
   if (!ranks || ranks->leads()) *result = found_or_read(*p, *scene, sim, options, folder);

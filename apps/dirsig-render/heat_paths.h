@@ -7,6 +7,9 @@
 
 namespace suite {
 
+// The file of paths that the command or, of one that was kept, the folder has; empty: none.
+std::string operator_file(const Simulation& simulation, const RenderOptions& options, const std::string& folder);
+
 // Also told (notes): where it is from. Keeps FOLDER/heat_operator.h5 where the simulation asks for it and a folder is
 // given, and in FOLDER/heat_operator.pieces what is found until it is there. Error: a file (--heat-operator, or that in
 // the folder) or pieces of another search.

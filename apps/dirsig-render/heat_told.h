@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/sim_text/sim_text.h"
+#include "heat/day_sun.h"
 #include "heat/heat_balance.h"
 #include "heat/heat_optics.h"
 
@@ -17,6 +18,7 @@ struct PreparedHeat {
   std::shared_ptr<Elements> elements;
   std::unique_ptr<HeatFaces> faces;
   HeatSpec spec;
+  HeatCut cut;  // what the elements were made with
 };
 
 // Elements, rays, errors, the balance: sentences.

@@ -4,12 +4,13 @@
 
 #include "base/files.h"
 #include "formats/hdf5/h5.h"
+#include "formats/heat_hdf/cut_hdf.h"
 
 namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat", *kVersion = "2";
+constexpr const char *kFormat = "suite heat", *kVersion = "3";
 
 // A number of 64 bits as two of 32, exactly.
 std::vector<uint32_t> halves(uint64_t v) { return {static_cast<uint32_t>(v >> 32), static_cast<uint32_t>(v)}; }
@@ -29,15 +30,15 @@ void check_finite(h5::Reader& r, const std::vector<float>& values, const char* n
 }  // namespace
 
 void write_heat(const std::string& path, const HeatResult& h, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by) {
+                const std::vector<std::string>& materials, const HeatCut& cut, const std::string& made_by) {
   AtomicFile file(path);
   h5::Writer w(file.temporary(), path, [](const std::string&) { return 4; });
   w.attribute("format", kFormat);
   w.attribute("version", kVersion);
   w.attribute("arguments", made_by);
-  const double span[4] = {h.span.begin, h.span.end, h.periodic ? 1.0 : 0.0, static_cast<double>(elements.budget())};
-  w.attribute("begin_s_end_s_repeats_budget", span);
-  w.attribute("elements_by", by_sun ? "sun" : "area");
+  const double span[3] = {h.span.begin, h.span.end, h.periodic ? 1.0 : 0.0};
+  w.attribute("begin_s_end_s_repeats", span);
+  put_cut(w, cut);
   const double errors[4] = {h.past_error, h.sweep_error, static_cast<double>(h.sweeps), h.unfinished};
   w.attribute("past_error_K_sweep_error_K_sweeps_unfinished", errors);
   const auto& b = h.balance;
@@ -78,11 +79,7 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
 HeatCut heat_cut(const std::string& path) {
   h5::Reader r(path, "find the temperatures again");
   check_kind(r);
-  const std::vector<double> v = r.numbers("begin_s_end_s_repeats_budget", 4);
-  if (!(v[3] >= 1 && v[3] <= 1e8)) r.fail(strf("was made for %g elements", v[3]));
-  const std::string by = r.text("elements_by");
-  if (by != "sun" && by != "area") r.fail("has elements cut by '" + by + "', sun or area are known");
-  return {static_cast<size_t>(v[3]), by == "sun", {v[0], v[1]}};
+  return take_cut(r);
 }
 
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces) {
@@ -91,7 +88,7 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   if (r.get<uint32_t>("/fingerprint", "1", 1, 2) != halves(elements.fingerprint()))
     r.fail("is of another scene, or of one with other materials");
   HeatResult h;
-  const std::vector<double> span = r.numbers("begin_s_end_s_repeats_budget", 4);
+  const std::vector<double> span = r.numbers("begin_s_end_s_repeats", 3);
   h.span = {span[0], span[1]}, h.periodic = span[2] != 0;
   if (!(h.span.begin < h.span.end)) r.fail("has a span of time that ends before it begins");
   const std::vector<double> errors = r.numbers("past_error_K_sweep_error_K_sweeps_unfinished", 4);

@@ -2,22 +2,18 @@
 #pragma once
 #include <string>
 
+#include "heat/day_sun.h"
 #include "heat/heat_balance.h"
 
 namespace suite {
 
-// Whole or not at all. by_sun: how the elements were cut. made_by: the command line. Error: not writable.
+// Whole or not at all. cut: what the elements were made with. made_by: the command line. Error: not writable.
 void write_heat(const std::string& path, const HeatResult& result, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by);
+                const std::vector<std::string>& materials, const HeatCut& cut, const std::string& made_by);
 
 // Error: no such file, damaged, or of another scene, other materials or another number of elements.
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces);
 // What the elements have to be made with.
-struct HeatCut {
-  size_t elements = 0;
-  bool by_sun = false;
-  TimeSpan span;  // s
-};
 HeatCut heat_cut(const std::string& path);
 
 }  // namespace suite

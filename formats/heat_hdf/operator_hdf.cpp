@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "formats/hdf5/h5.h"
+#include "formats/heat_hdf/cut_hdf.h"
 
 namespace suite {
 
@@ -17,6 +18,7 @@ constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
                      *kByMirrors = "/sunlight/beam_by_mirrors";
+constexpr const char* kRadius = "radius_rad_of_the_sun";
 constexpr const char* kHint = "remove it to find the paths again, or write to another folder";
 
 // The datasets of a part, each with its values a face, and the least that a value can be.
@@ -77,19 +79,61 @@ void put_mirrored(h5::Writer& w, const Sunlight& s) {
   if (!s.beam_by_mirrors.empty()) w.put(kByMirrors, s.beam_by_mirrors, "1", s.moments);
 }
 
+// Of a whole one: for which days it serves.
+void put_path(h5::Writer& w, const SunPath& path) {
+  std::vector<double> towards;
+  std::vector<float> beam;
+  for (const Dir d : path.towards)
+    for (int k = 0; k < 3; ++k) towards.push_back(d[k]);
+  for (const auto& spectrum : path.beam) beam.insert(beam.end(), spectrum.begin(), spectrum.end());
+  const double radius[1] = {path.angular_radius};
+  w.attribute(kRadius, radius);
+  w.put("/sun/moment", path.moments, "s");
+  w.put("/sun/towards", towards, "1", 3);
+  w.put("/sun/beam_spectrum", beam, "1", path.sky.size());
+  w.put("/sun/sky_spectrum", path.sky, "1");
+}
+
+SunPath take_path(h5::Reader& r) {
+  SunPath path;
+  path.angular_radius = r.numbers(kRadius, 1)[0];
+  path.moments = r.get<double>("/sun/moment", "s");
+  path.sky = r.get<float>("/sun/sky_spectrum", "1");
+  const auto n = static_cast<long long>(path.moments.size());
+  const std::vector<double> towards = r.get<double>("/sun/towards", "1", 3, n);
+  if (path.sky.empty()) r.fail("has a sky without a spectrum");
+  const std::vector<float> beam = r.get<float>("/sun/beam_spectrum", "1", path.sky.size(), n);
+  for (size_t k = 0; k < path.moments.size(); ++k) {
+    const Dir d{towards[3 * k], towards[3 * k + 1], towards[3 * k + 2]};
+    if (!(std::fabs(length(d) - 1) < 1e-6) || !std::isfinite(path.moments[k])) r.fail("has the sun where it cannot be");
+    path.towards.push_back(d);
+    const auto from = beam.begin() + static_cast<std::ptrdiff_t>(k * path.sky.size());
+    path.beam.emplace_back(from, from + static_cast<std::ptrdiff_t>(path.sky.size()));
+  }
+  for (const std::vector<float>* spectrum : std::initializer_list<const std::vector<float>*>{&path.sky, &beam})
+    for (const float share : *spectrum)
+      if (!(share >= 0 && share <= 1)) r.fail(strf("has a spectrum with a share of %g", double{share}));
+  return path;
+}
+
+void check_kind(h5::Reader& r) {
+  if (r.text("format") != kFormat) r.fail("holds no paths of a balance of heat");
+  if (const std::string version = r.text("version"); version != kVersion)
+    r.fail("is of version '" + version + "', version " + kVersion + " is read");
+}
+
 // What is in a file of this kind and fits.
 class Stored {
  public:
   Stored(const std::string& path, const OperatorIdentity& identity) : reader_(path, kHint), identity_(identity) {
-    if (reader_.text("format") != kFormat) reader_.fail("holds no paths of a balance of heat");
-    if (const std::string version = reader_.text("version"); version != kVersion)
-      reader_.fail("is of version '" + version + "', version " + kVersion + " is read");
+    check_kind(reader_);
     for (const auto& [name, text] : identity.scene)
       if (const std::string there = reader_.text("of_" + name); there != text)
         reader_.fail("was found with another " + name + " (" + there.substr(0, 60) + ", here " + text.substr(0, 60) +
                      ")");
   }
   bool same_sun() { return reader_.text("of_sun") == identity_.sun; }
+  SunPath sun_path() { return take_path(reader_); }
   void check_sun() {
     if (!same_sun())
       reader_.fail("was found with the sun elsewhere: on another day, at another place or in other steps");
@@ -207,6 +251,8 @@ void write_operator(const std::string& path, const HeatOperator& found, const Op
   put(w, found.exchange, all, found.exchange.count, identity.sun);
   put(w, found.sun, all, found.sun.count, identity.sun);
   put_mirrored(w, found.sun);
+  put_path(w, identity.path);
+  put_cut(w, identity.cut);
   w.close();
   file.commit();
 }
@@ -223,11 +269,17 @@ StoredOperator::StoredOperator(const std::string& path, const OperatorIdentity& 
     : file_(std::make_unique<File>(path, identity)) {}
 StoredOperator::~StoredOperator() = default;
 bool StoredOperator::same_sun() const { return file_->same_sun(); }
+SunPath StoredOperator::sun_path() const { return file_->sun_path(); }
 void StoredOperator::read(ExchangePaths& into) const { file_->read_all(into); }
 void StoredOperator::read(Sunlight& into) const {
-  file_->check_sun();
   file_->read_all(into);
   file_->read_mirrored(into);
+}
+
+HeatCut operator_cut(const std::string& path) {
+  h5::Reader r(path, kHint);
+  check_kind(r);
+  return take_cut(r);
 }
 
 std::unique_ptr<HeatPieces> pieces_in(const std::string& folder, const OperatorIdentity& identity, double seconds) {

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "heat/day_sun.h"
 #include "heat/heat_operator.h"
+#include "heat/sun_path.h"
 
 namespace suite {
 
@@ -17,6 +19,8 @@ struct OperatorIdentity {
   HeatIdentity scene;  // of all of it
   std::string sun;     // digest_of its course: of the sunlight beside that
   size_t ends = 0;     // HeatFaces::ends()
+  SunPath path = {};   // of the sun; and
+  HeatCut cut = {};    // what the elements were made with: both are kept, and need not agree
 };
 
 // Whole or not at all. Error: not writable.
@@ -30,8 +34,9 @@ class StoredOperator {
   StoredOperator(const std::string& path, const OperatorIdentity& identity);
   ~StoredOperator();
   bool same_sun() const;  // it has the sunlight, too
+  SunPath sun_path() const;
   // into: as untraced_exchange() and untraced_sunlight() make them. Error, naming the file: other sizes, or values that
-  // cannot be.
+  // cannot be. The sunlight is that of sun_path().
   void read(ExchangePaths& into) const;
   void read(Sunlight& into) const;
 
@@ -39,6 +44,9 @@ class StoredOperator {
   struct File;
   std::unique_ptr<File> file_;
 };
+
+// What the elements of an operator in a file were made with. Error, naming the file: none, or damaged.
+HeatCut operator_cut(const std::string& path);
 
 // Pieces as files in a folder, which is made for the first one; each is there whole or not at all. Error of take() and
 // keep(): pieces of another search, damaged or overlapping ones, a folder that cannot be written to.

@@ -1,5 +1,7 @@
 #include "formats/sim_text/heat.h"
 
+#include <array>
+
 #include "formats/weather/weather.h"
 
 namespace suite {
@@ -12,7 +14,8 @@ Weather read_the_weather(const Params& p) {
   if (map) {
     if (const auto model = p.find("longwave"))
       options.longwave =
-          model->as_choice({"clark_allen", "brutsaert"}) ? LongwaveModel::brutsaert : LongwaveModel::clark_allen;
+          std::array{LongwaveModel::dilley_obrien, LongwaveModel::clark_allen,
+                     LongwaveModel::brutsaert}[model->as_choice({"dilley_obrien", "clark_allen", "brutsaert"})];
     if (const auto year = p.find("year")) options.year = static_cast<int>(year->as_integer(1972, 2199));
     if (const auto offset = p.find("utc_offset_h")) options.utc_offset = 3600 * offset->as_number_in(-14, 14, "h");
     if (const auto date = p.find("date")) options.date = parse_iso8601(date->as_text());

@@ -15,7 +15,7 @@ struct WeatherOptions {
   std::optional<double> utc_offset = {};  // s, local standard time minus UTC; .wth and CSV with time_local without one
   std::optional<Utc> date = {};           // .wth: local day of its first row; its time of day is not used
   std::optional<int> year = {};  // EPW and TMY3: the calendar year in which the rows are placed, whatever theirs
-  LongwaveModel longwave = LongwaveModel::clark_allen;  // where the file has none
+  LongwaveModel longwave = LongwaveModel::dilley_obrien;  // where the file has none
 };
 
 // The kind is told by the content, not by the name. Error, located: no known kind, no such number, date or time, times

@@ -11,15 +11,10 @@ namespace {
 
 constexpr int kLooks = 1000;  // times of the span at which the sun is looked for
 
-struct Moment {
-  double time, direct;
-  Dir towards;
-};
-
 }  // namespace
 
-DaySun day_sun(const Tracer& tracer, TimeSpan span, const std::function<Dir(double t)>& towards, size_t most) {
-  std::vector<Moment> sunny, asked;
+std::vector<SunMoment> sun_moments(TimeSpan span, const std::function<Dir(double t)>& towards, size_t most) {
+  std::vector<SunMoment> sunny, asked;
   for (int k = 0; k < kLooks; ++k) {
     const double t = span.begin + (span.end - span.begin) * (k + 0.5) / kLooks;
     const Dir d = towards(t);
@@ -27,7 +22,12 @@ DaySun day_sun(const Tracer& tracer, TimeSpan span, const std::function<Dir(doub
   }
   const size_t count = std::min(most, sunny.size());
   for (size_t k = 0; k < count; ++k) asked.push_back(sunny[(2 * k + 1) * sunny.size() / (2 * count)]);
-  return {count, [&tracer, asked](std::span<const Hit> places, std::span<float> sun) {
+  return asked;
+}
+
+DaySun day_sun(const Tracer& tracer, std::vector<SunMoment> moments) {
+  const size_t count = moments.size();
+  return {count, [&tracer, asked = std::move(moments)](std::span<const Hit> places, std::span<float> sun) {
             std::ranges::fill(sun, 0.0f);
             std::vector<Ray> rays;
             std::vector<size_t> to;

@@ -318,6 +318,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   keep(h, loads, exchange, found.sun, weather, spec, result);
   result.assumed = scene.optics.assumed;
   result.notes = heat_notes(scene, found, !weather.humid);
+  if (const std::string note = visitors_note(scene, exchange, h); !note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
   tell_done(progress, 1);
   begin(progress, "errors", 1);

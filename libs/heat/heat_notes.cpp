@@ -6,19 +6,21 @@
 
 #include "base/error.h"
 #include "heat/heat_walk.h"
+#include "spectral/planck.h"
 
 namespace suite {
 
 namespace {
 
+constexpr double kFilm = 12;  // W/(m2 K), of a light wind with radiation
+
 std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
 
-// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as in a
-// light wind with radiation; d no deeper than a day's warmth goes); elements that are smaller differ more than they
-// should.
+// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as kFilm;
+// d no deeper than a day's warmth goes); elements that are smaller differ more than they should.
 double evened_over(const std::vector<SlabLayer>& layers) {
-  constexpr double kFilm = 12, kDay = 86400;  // W/(m2 K), s
-  double sheet = 0;                           // W/K
+  constexpr double kDay = 86400;  // s
+  double sheet = 0;               // W/K
   for (const SlabLayer& layer : layers) {
     const double k = layer.conductivity[0], deep = std::sqrt(k * kDay / (kPi * layer.density * layer.specific_heat[0]));
     sheet += k * std::min(layer.thickness, deep);
@@ -45,9 +47,8 @@ std::vector<std::string> lateral_notes(const Scene& scene, const Elements& eleme
   return notes;
 }
 
-// Infrared that ends on closed backs, whose sunlight is not followed: of what ends on a material, the share from
-// behind.
-std::vector<std::string> back_notes(const HeatScene& scene, const ExchangePaths& exchange) {
+// Infrared that ends on closed backs: of what ends on a material, the share from behind.
+std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
   constexpr double kLittle = 1e-3;  // as the rounding of places on closed bodies may let through
   const auto& [tracer, elements, faces, optics] = scene;
   std::vector<std::array<double, 2>> ended(optics.has_heat.size(), {0, 0});  // m2 of emission, in front and behind
@@ -58,17 +59,84 @@ std::vector<std::string> back_notes(const HeatScene& scene, const ExchangePaths&
       ended[elements[faces.element(face)].material][end == face ? 0 : 1] +=
           exchange.area[k / each] * double{exchange.weights[k]};
   }
-  std::vector<std::string> notes;
+  std::string seen;
   for (size_t m = 0; m < ended.size(); ++m)
     if (const double behind = ended[m][1]; behind > kLittle * (behind + ended[m][0]))
-      notes.push_back(
-          "material '" + optics.materials->materials[m].id + "': " + share_text(behind / (behind + ended[m][0])) +
-          " of the infrared that ends on it comes from behind, where its back is closed: that, and sunlight "
-          "from there, warms nothing; 'back: open' lets both sides take part");
-  return notes;
+      seen += strf("%s'%s' (%.2g %%)", seen.empty() ? "" : ", ", optics.materials->materials[m].id.c_str(),
+                   100 * behind / (behind + ended[m][0]));
+  if (seen.empty()) return {};
+  return "closed backs are seen, of materials (with the share of the infrared ending on each that comes from behind) " +
+         seen +
+         ": they are as warm as their fronts, and nothing that falls there, sunlight neither, warms them; "
+         "'back: open' lets both sides take part";
+}
+
+// Whether a place that may come and go is there all the time: at 17 times, looked at from just off it.
+bool stays(const Tracer& tracer, const Hit& place) {
+  const std::optional<TimeSpan> window = tracer.window();
+  if (!window) return true;
+  constexpr int kTimes = 16;
+  const double off = 16 * double{place.step};
+  std::vector<Ray> rays;
+  for (int k = 0; k <= kTimes; ++k)
+    rays.push_back({place.position + place.normal * off, -place.normal,
+                    window->begin + (window->end - window->begin) * k / kTimes, static_cast<uint32_t>(k)});
+  std::vector<Hit> hits(rays.size());
+  TraceStatistics ignored;
+  tracer.nearest(rays, hits, false, ignored);
+  return std::ranges::all_of(hits, [&](const Hit& h) { return h.hit() && h.distance <= 2 * off; });
+}
+
+// By face: whether it belongs to what comes and goes.
+std::vector<bool> visitors(const HeatScene& s) {
+  std::vector<bool> out;
+  for (size_t f = 0; f < s.faces.size(); ++f) {
+    const Hit hit = s.elements.point(s.faces.element(f), {SampleStream(0, 0, 0), 0, 0});
+    out.push_back(s.tracer.object(hit.object).node != kNone && !stays(s.tracer, hit));
+  }
+  return out;
+}
+
+// W/m2: what a face takes of the infrared of visitors beyond what it would take without them, as a mean over the span.
+double taken_of_visitors(const ExchangePaths& exchange, const HeatScene& scene, const SurfaceHistory& history,
+                         const std::vector<bool>& visits, size_t face) {
+  constexpr size_t kEvery = 8;  // moments
+  const size_t each = size_t{exchange.blocks} * exchange.paths, moments = history.moments;
+  double all = 0, more = 0, looks = 0;
+  for (size_t k = face * each; k < (face + 1) * each; ++k) all += double{exchange.weights[k]};
+  for (size_t m = 0; m < moments; m += kEvery) {
+    ++looks;
+    for (size_t k = face * each; k < (face + 1) * each; ++k) {
+      const uint32_t from = scene.faces.face_of(exchange.ends[k]);
+      if (from == kNone || !visits[from]) continue;
+      const double T = history.kelvin.at(from, m), emitted = kStefanBoltzmann * T * T * T * T;
+      more += double{exchange.weights[k]} * (emitted - double{history.received[face * moments + m]});
+    }
+  }
+  return all > 0 ? exchange.emissivity[face] * more / (all * looks) : 0;
 }
 
 }  // namespace
+
+std::string visitors_note(const HeatScene& scene, const ExchangePaths& exchange, const SurfaceHistory& history) {
+  constexpr double kLittle = 1;  // W/m2
+  const std::vector<bool> visits = visitors(scene);
+  if (std::ranges::find(visits, true) == visits.end()) return {};
+  double most = 0, sum = 0;
+  size_t felt = 0;
+  for (size_t f = 0; f < visits.size(); ++f) {
+    if (visits[f]) continue;
+    const double taken = std::fabs(taken_of_visitors(exchange, scene, history, visits, f));
+    most = std::max(most, taken);
+    if (taken > kLittle) ++felt, sum += taken;
+  }
+  return strf(
+      "%zu faces are of what comes and goes: they are followed through the whole span, and others exchange "
+      "infrared with them for their share of it, evenly; that is %.3g W/m2 (about %.2g K) at most, and in the "
+      "mean %.3g W/m2 on the %zu faces that feel more than %g W/m2; shade and sunlight have their times",
+      static_cast<size_t>(std::ranges::count(visits, true)), most, most / kFilm,
+      felt > 0 ? sum / static_cast<double>(felt) : 0, felt, kLittle);
+}
 
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {
   const auto& [tracer, elements, faces, optics] = scene;
@@ -87,7 +155,7 @@ std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& 
              "another and on may be found in part only",
              sun.mirrored.endless));
   for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
-  for (const std::string& sentence : back_notes(scene, exchange)) notes.push_back(sentence);
+  if (const std::string sentence = back_note(scene, exchange); !sentence.empty()) notes.push_back(sentence);
   if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
   if (exchange.unfinished() > 1e-6)
     notes.push_back(

@@ -4,10 +4,14 @@
 #include <vector>
 
 #include "heat/heat_operator.h"
+#include "heat/surfaces.h"
 
 namespace suite {
 
 // A sentence each. dry_air: the weather says nothing of humidity.
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air);
+// What of the exchange is spread over the span though it has its times: of things at rest that come and go; empty when
+// there are none.
+std::string visitors_note(const HeatScene& scene, const ExchangePaths& exchange, const SurfaceHistory& history);
 
 }  // namespace suite

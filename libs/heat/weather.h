@@ -22,7 +22,7 @@ namespace suite {
 class Weather {
  public:
   // Completes and checks the table (weather_completion.h). Error, located: as there.
-  explicit Weather(WeatherTable table, LongwaveModel longwave = LongwaveModel::clark_allen);
+  explicit Weather(WeatherTable table, LongwaveModel longwave = LongwaveModel::dilley_obrien);
 
   // In the quantity's unit; NaN where it is missing and outside span(). Azimuths are -pi to pi.
   double at(WeatherQuantity quantity, double t) const;

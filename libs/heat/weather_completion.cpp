@@ -225,8 +225,7 @@ void complete_longwave(WeatherTable& table, LongwaveModel model) {
     row.value(Q::longwave_down) = modelled_longwave(model, air, dew, cover);
     modelled.add(row);
   }
-  say(table, modelled,
-      "longwave_down is modelled (" + std::string(longwave_model_name(model)) + ", clouds after Walton 1983)");
+  say(table, modelled, "longwave_down is modelled (" + std::string(longwave_model_name(model)) + ")");
   say(table, clear, "longwave_down is that of a sky without clouds, for no cover is given");
 }
 

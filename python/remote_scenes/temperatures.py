@@ -39,7 +39,7 @@ def open_temperatures(path: FileName) -> xr.Dataset:
 def _dataset(file: Any) -> xr.Dataset:
     faces, elements = file["faces"], file["elements"]
     element = np.asarray(faces["element"][:])
-    begin, end, repeats, _ = (float(x) for x in file.begin_s_end_s_repeats_budget)
+    begin, end, repeats = (float(x) for x in file.begin_s_end_s_repeats)
     dataset = xr.Dataset(attrs={"begin_s": begin, "end_s": end, "repeats": bool(repeats), "description": str(file.arguments)})
     for name, second in _OF_FACES.items():
         dims = ("face", second) if second else ("face",)

@@ -8,6 +8,7 @@ namespace suite::test {
 struct HeatedFile {
   HeatKit kit;
   HeatResult result;
+  HeatCut cut{6, true, {{3600, 500, {0, 0, 1}}, {7200, 600, {0.6, 0, 0.8}}}};
 
   explicit HeatedFile(size_t budget = 6) : kit(scene(), budget) {
     HeatSpec run;
@@ -17,7 +18,7 @@ struct HeatedFile {
     result = kit.solve(still_loads(w, run.span, 24), run);
   }
   void write(const std::string& path) const {
-    write_heat(path, result, *kit.elements, *kit.faces, {"m0", "m1"}, false, "a test");
+    write_heat(path, result, *kit.elements, *kit.faces, {"m0", "m1"}, cut, "a test");
   }
 
  private:

@@ -74,6 +74,13 @@ class HeatedScene {
     scene_->meshes.push_back(std::move(m));
     put(TargetKind::mesh, scene_->meshes.size() - 1, place);
   }
+  // The last one is there for a part of the time only.
+  void there(TimeSpan life) {
+    Schedule s;
+    s.name = "comes and goes", s.life = life;
+    scene_->schedules.push_back(s);
+    scene_->groups.front().placements.back().schedule = static_cast<uint32_t>(scene_->schedules.size() - 1);
+  }
   std::shared_ptr<Scene> scene() { return scene_; }
 
  private:
@@ -105,7 +112,7 @@ struct HeatKit {
     check_scene(*scene, "test scene");
     tracer = std::make_unique<const Tracer>(scene, std::nullopt, span);
     optics = heat_optics(*scene, used_materials(*tracer), {});
-    const DaySun by = sun ? day_sun(*tracer, span, sun) : DaySun{};
+    const DaySun by = sun ? day_sun(*tracer, sun_moments(span, sun)) : DaySun{};
     elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin, sun ? &by : nullptr);
     faces = std::make_unique<const HeatFaces>(*elements, optics);
   }

@@ -20,7 +20,11 @@ struct SearchedScene {
   }
   HeatScene heat_scene() const { return {*kit.tracer, *kit.elements, *kit.faces, kit.optics}; }
   OperatorIdentity identity(const std::string& sun = "the sun") const {
-    return {{{"scene", "a wall"}, {"number of paths", "16"}}, sun, kit.faces->ends()};
+    return {{{"scene", "a wall"}, {"number of paths", "16"}},
+            sun,
+            kit.faces->ends(),
+            path_of(course),
+            {1500, true, {{3600, 500, {0, 0, 1}}}}};
   }
   HeatOperator found(HeatPieces* pieces = nullptr, const std::function<void(size_t)>& progress = {}) const {
     HeatOperator out;

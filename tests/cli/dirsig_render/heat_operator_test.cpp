@@ -16,15 +16,20 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kFew =
-    " --set heat.elements=600 --set heat.paths=16 --set heat.step_s=1800 --set heat.keep=operator"
-    " --set heat.elements_by=area";  // by the sun, another day has other elements
+const std::string kFew = " --set heat.elements=600 --set heat.paths=16 --set heat.step_s=1800 --set heat.keep=operator";
 
 class HeatOperatorRun : public ProgramsTest<HeatOperatorRun> {
  protected:
   static void SetUpTestSuite() {
     make_folder();
     run_command("cp -r " SUITE_SOURCE_DIR "/sample_scenes/summer_street/. " + folder_->path());
+    // No car leaves on a date of its own, so that other days have the same scene.
+    std::string scene = read_text(*folder_ / "scene.yaml");
+    const std::string leaves = ", disappears: 2001-07-14T23:00:00Z";
+    ASSERT_NE(scene.find(leaves), std::string::npos);
+    write_file(*folder_ / "leaving.yaml", std::string_view(scene));
+    scene.erase(scene.find(leaves), leaves.size());
+    write_file(*folder_ / "scene.yaml", std::string_view(scene));
     const CommandResult prep = run("scene-prep scene.yaml -o scene.h5 -q");
     ASSERT_EQ(prep.code, 0) << prep.err;
     const CommandResult first = run("dirsig-render sim.yaml -o first --heat-only" + kFew);
@@ -74,10 +79,32 @@ TEST_F(HeatOperatorRun, OtherWeatherIsThatOfAFreshSearch) {
   EXPECT_EQ(text("again/heat.csv"), text("anew/heat.csv"));
 }
 
-TEST_F(HeatOperatorRun, AnotherDayFindsOnlyItsSunlight) {
+// Elements are those of the file, cut by the sun of its day.
+TEST_F(HeatOperatorRun, TheNextDayNeedsNoNewRays) {
+  const std::string next = "--heat-only --set epoch=2001-07-15T07:00:00Z" + kFew;
+  const CommandResult day = run("dirsig-render sim.yaml -o next --heat-operator first/heat_operator.h5 " + next);
+  ASSERT_EQ(day.code, 0) << day.err;
+  EXPECT_THAT(day.err, HasSubstr("no new rays; the sun is at most 0.1"));
+  EXPECT_THAT(day.err, Not(HasSubstr("heat: sunlight")));
+  EXPECT_NE(text("next/heat.csv"), text("first/heat.csv"));
+}
+
+// A car that leaves on a date is another scene on the next day.
+TEST_F(HeatOperatorRun, WhatLeavesOnItsDateIsAnotherScene) {
+  ASSERT_EQ(run("scene-prep leaving.yaml -o leaving.h5 -q").code, 0);
+  const std::string leaving = "--heat-only --set scene=leaving.h5" + kFew;
+  ASSERT_EQ(run("dirsig-render sim.yaml -o leaving " + leaving).code, 0);
+  const CommandResult day =
+      run("dirsig-render sim.yaml -o left --heat-operator leaving/heat_operator.h5 --set epoch=2001-07-15T07:00:00Z " +
+          leaving);
+  EXPECT_EQ(day.code, 1);
+  EXPECT_THAT(day.err, HasSubstr("was found with another scene"));
+}
+
+TEST_F(HeatOperatorRun, TwoDaysLaterFindsOnlyItsSunlight) {
   const CommandResult day =
       run("dirsig-render sim.yaml -o day --heat-operator first/heat_operator.h5 --heat-only "
-          "--set epoch=2001-07-15T07:00:00Z" +
+          "--set epoch=2001-07-16T07:00:00Z" +
           kFew);
   ASSERT_EQ(day.code, 0) << day.err;
   EXPECT_THAT(day.err, HasSubstr("the sun is elsewhere"));

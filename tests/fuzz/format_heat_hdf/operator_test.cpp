@@ -14,6 +14,8 @@ TEST(FuzzHeatOperator, File) {
   const std::vector<std::byte> bytes = read_bytes(path);
   test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
     write_file(path, mutated);
+    operator_cut(path);
+    StoredOperator(path, s.identity()).sun_path();
     const HeatOperator found = s.stored(path, s.identity());
     found.exchange.matrix(s.kit.faces->outsides());
   });

@@ -17,7 +17,8 @@
 // are left out: none stands in the courtyard. These have not been changed since. That run was 12.2 W/m2 off in what
 // comes from below, of which 9.9 are a mean that follows from the sky: what comes from above is 42 too much, as in
 // SOLWEIG itself (39 to 45). So the library's other model of the sky (Brutsaert 1975) runs, too, with 12 W/m2 asked of
-// it and 14 of the first.
+// it and 14 of the first. The library's default has since become Dilley & O'Brien 1998, for what the literature says of
+// it (libs/heat/sky_models.h) and a night in Oklahoma, before it was run here; 12 are asked of it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -217,14 +218,15 @@ TEST(Courtyard, SixSides) {
   spec.step = 600, spec.elements = 16000, spec.paths = 64, spec.ground_albedo = 0.18;
   const HeatedScene scene = scene_at(folder, spec);
   const Measured measured(folder);
-  for (const LongwaveModel model : {LongwaveModel::clark_allen, LongwaveModel::brutsaert}) {
+  for (const LongwaveModel model :
+       {LongwaveModel::dilley_obrien, LongwaveModel::clark_allen, LongwaveModel::brutsaert}) {
     const Weather weather = parse_weather(weather_text(folder), "MetFile_Prepared.txt", {.longwave = model});
     for (const std::string& note : weather.notes()) std::printf("%s\n", note.c_str());
     const HeatResult result = scene.solve(weather_loads(as_it_is(weather), spec), spec);
     std::printf("%zu elements of %.3g m2 at most, %.3g rays, %d sweeps; hours 7 to 18, found/measured:\n",
                 scene.elements->size(), scene.elements->largest(), result.rays, result.sweeps);
     const double up = compare(scene, result, measured);
-    EXPECT_LT(up, model == LongwaveModel::brutsaert ? 12 : 14);
+    EXPECT_LT(up, model == LongwaveModel::clark_allen ? 14 : 12);
   }
 }
 

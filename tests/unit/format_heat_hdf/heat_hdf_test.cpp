@@ -23,9 +23,7 @@ TEST(HeatHdf, ThereAndBack) {
   const HeatedFile file;
   file.write(folder / "heat.h5");
   const HeatCut cut = heat_cut(folder / "heat.h5");
-  EXPECT_EQ(cut.elements, file.kit.elements->budget());
-  EXPECT_EQ(cut.span, file.result.span);
-  EXPECT_FALSE(cut.by_sun);
+  EXPECT_EQ(cut, file.cut);
   const HeatResult a = file.result, b = read_heat(folder / "heat.h5", *file.kit.elements, *file.kit.faces);
   EXPECT_EQ(a.kelvin, b.kelvin);
   EXPECT_EQ(a.path_error, b.path_error);

@@ -111,7 +111,13 @@ TEST(HeatOperatorHdf, Messages) {
               AllOf(HasSubstr("heat_operator.h5"), HasSubstr("another number of paths (16, here 32)")));
   EXPECT_THAT(message_of([&] { s.stored(folder / "none.h5", s.identity()); }), HasSubstr("none.h5"));
   EXPECT_FALSE(StoredOperator(path, s.identity("of another day")).same_sun());
-  EXPECT_THAT(message_of([&] { s.stored(path, s.identity("of another day")); }), HasSubstr("the sun elsewhere"));
+  EXPECT_EQ(operator_cut(path), s.identity().cut);
+  const SunPath sun = StoredOperator(path, s.identity("of another day")).sun_path();
+  EXPECT_EQ(sun.moments, s.identity().path.moments);
+  EXPECT_EQ(sun.towards, s.identity().path.towards);
+  EXPECT_EQ(sun.beam, s.identity().path.beam);
+  EXPECT_EQ(sun.sky, s.identity().path.sky);
+  EXPECT_THAT(message_of([&] { operator_cut(folder / "none.h5"); }), HasSubstr("none.h5"));
   const SearchedScene more(900);
   EXPECT_THAT(message_of([&] { more.stored(path, more.identity()); }), HasSubstr("heat_operator.h5"));
   // Pieces of another search, and ones that overlap.

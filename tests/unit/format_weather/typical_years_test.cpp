@@ -128,10 +128,11 @@ TEST(Epw, InfraredThatIsMissingIsModelled) {
   for (Row& r : rows) r.infrared = "9999";
   rows[1].infrared = "0";
   const Weather w = read(rows);
-  EXPECT_NEAR(w.at(Q::longwave_down, 1800), modelled_longwave(LongwaveModel::clark_allen, 283.15, 278.15, 0.1), 1e-9);
+  EXPECT_NEAR(w.at(Q::longwave_down, 1800), modelled_longwave(LongwaveModel::dilley_obrien, 283.15, 278.15, 0.1), 1e-9);
   EXPECT_THAT(w.notes(), Contains("horizontal infrared of 0 is taken as missing in 1 rows"));
   EXPECT_THAT(w.notes(),
-              Contains(HasSubstr("longwave_down is modelled (Clark & Allen 1978, clouds after Walton 1983): 4 of 4")));
+              Contains(HasSubstr(
+                  "longwave_down is modelled (Dilley & O'Brien 1998, clouds after Unsworth & Monteith 1975): 4 of 4")));
 }
 
 TEST(Epw, DaylightSavingInTheHeadIsNotApplied) {
@@ -197,7 +198,8 @@ TEST(Tmy3, RowsAndTraps) {
   // TMY3 has no infrared.
   EXPECT_THAT(
       w.notes(),
-      Contains(HasSubstr("longwave_down is modelled (Clark & Allen 1978, clouds after Walton 1983): 96 of 96")));
+      Contains(HasSubstr(
+          "longwave_down is modelled (Dilley & O'Brien 1998, clouds after Unsworth & Monteith 1975): 96 of 96")));
   EXPECT_TRUE(w.table().meaning_of(Q::longwave_down) == WeatherMeaning::instant);
   EXPECT_EQ(w.table().rows[0].value(Q::precipitation), 0) << "nothing in 99 hours, which are unknown ones";
 }

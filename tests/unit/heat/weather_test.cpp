@@ -84,14 +84,15 @@ TEST(Weather, LongwaveIsModelledAndSaid) {
   t.rows[0].value(Q::longwave_down) = 300;
   t.rows[1].value(Q::cloud_cover) = 0.9;
   t.rows[1].value(Q::opaque_cover) = 0.4;
-  for (const LongwaveModel model : {LongwaveModel::clark_allen, LongwaveModel::brutsaert}) {
+  for (const LongwaveModel model :
+       {LongwaveModel::dilley_obrien, LongwaveModel::clark_allen, LongwaveModel::brutsaert}) {
     const Weather w(t, model);
     const double dew = dew_point_of(0.5, 283.15);
     EXPECT_NEAR(w.table().rows[1].value(Q::longwave_down), modelled_longwave(model, 283.15, dew, 0.4), 1e-9);
     EXPECT_NEAR(w.mean(Q::longwave_down, 7200, 10800), modelled_longwave(model, 283.15, dew, 0), 1e-9);
     EXPECT_EQ(w.table().rows[0].value(Q::longwave_down), 300);
     EXPECT_THAT(w.notes(), Contains("longwave_down is modelled (" + std::string(longwave_model_name(model)) +
-                                    ", clouds after Walton 1983): 2 of 3 rows, first in line 11"));
+                                    "): 2 of 3 rows, first in line 11"));
     EXPECT_THAT(w.notes(), Contains(HasSubstr("a sky without clouds, for no cover is given: 1 of 3 rows")));
   }
   EXPECT_NEAR(std::pow(Weather(t).sky_temperature(1800), 4) * kStefanBoltzmann, Weather(t).at(Q::longwave_down, 1800),
