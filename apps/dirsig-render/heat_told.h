@@ -17,6 +17,7 @@ struct PreparedHeat {
   std::shared_ptr<Elements> elements;
   std::unique_ptr<HeatFaces> faces;
   HeatSpec spec;
+  std::vector<uint32_t> kept;  // elements that were kept of all, where some were left out; ascending
 };
 
 // Elements, rays, errors, the balance: sentences.

@@ -29,7 +29,8 @@ void check_finite(h5::Reader& r, const std::vector<float>& values, const char* n
 }  // namespace
 
 void write_heat(const std::string& path, const HeatResult& h, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by) {
+                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by,
+                const std::vector<uint32_t>& kept) {
   AtomicFile file(path);
   h5::Writer w(file.temporary(), path, [](const std::string&) { return 4; });
   w.attribute("format", kFormat);
@@ -55,6 +56,7 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   std::vector<uint8_t> back;
   for (size_t f = 0; f < faces.size(); ++f) element.push_back(faces.element(f)), back.push_back(faces.is_back(f));
   w.put_names("/materials", materials);
+  if (!kept.empty()) w.put("/elements/kept", kept, "1");
   w.put("/elements/material", material, "1");
   w.put("/elements/area", area, "m2");
   w.put("/elements/centre", centre, "m", 3);
@@ -69,6 +71,7 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   w.put("/faces/step_error", h.step_error, "K", kHeatParts);
   w.put("/faces/temperature", h.kelvin, "K", h.moments);
   w.put("/faces/absorbed_sunlight", h.absorbed, "W/m2", h.moments);
+  if (!h.straight.empty()) w.put("/faces/straight_sunlight", h.straight, "W/m2", h.moments);
   w.put("/faces/received_infrared", h.received, "W/m2", h.moments);
   w.put("/air/temperature", h.air_kelvin, "K");
   w.close();
@@ -82,7 +85,9 @@ HeatCut heat_cut(const std::string& path) {
   if (!(v[3] >= 1 && v[3] <= 1e8)) r.fail(strf("was made for %g elements", v[3]));
   const std::string by = r.text("elements_by");
   if (by != "sun" && by != "area") r.fail("has elements cut by '" + by + "', sun or area are known");
-  return {static_cast<size_t>(v[3]), by == "sun", {v[0], v[1]}};
+  HeatCut cut{static_cast<size_t>(v[3]), by == "sun", {v[0], v[1]}, {}};
+  if (r.has("/elements/kept")) cut.kept = r.get<uint32_t>("/elements/kept", "1");
+  return cut;
 }
 
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces) {
@@ -113,6 +118,8 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   h.sun_hours = r.get<float>("/faces/sun_hours", "h", 1, n);
   h.absorbed = r.get<float>("/faces/absorbed_sunlight", "W/m2", h.moments, n);
   h.received = r.get<float>("/faces/received_infrared", "W/m2", h.moments, n);
+  if (r.has("/faces/straight_sunlight")) h.straight = r.get<float>("/faces/straight_sunlight", "W/m2", h.moments, n);
+  check_finite(r, h.straight, "/faces/straight_sunlight", -1e5f, 1e5f);
   check_finite(r, h.kelvin, "/faces/temperature", 1, 1e4f);
   check_finite(r, h.air_kelvin, "/air/temperature", 1, 1e4f);
   check_finite(r, h.path_error, "/faces/path_error", 0, 1e4f);

@@ -6,9 +6,11 @@
 
 namespace suite {
 
-// Whole or not at all. by_sun: how the elements were cut. made_by: the command line. Error: not writable.
+// Whole or not at all. by_sun: how the elements were cut. made_by: the command line. kept: of all elements, where some
+// were left out. Error: not writable.
 void write_heat(const std::string& path, const HeatResult& result, const Elements& elements, const HeatFaces& faces,
-                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by);
+                const std::vector<std::string>& materials, bool by_sun, const std::string& made_by,
+                const std::vector<uint32_t>& kept = {});
 
 // Error: no such file, damaged, or of another scene, other materials or another number of elements.
 HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces);
@@ -16,7 +18,8 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
 struct HeatCut {
   size_t elements = 0;
   bool by_sun = false;
-  TimeSpan span;  // s
+  TimeSpan span;                    // s
+  std::vector<uint32_t> kept = {};  // of these, where some were left out
 };
 HeatCut heat_cut(const std::string& path);
 
