@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "base/files.h"
 #include "base/outputs.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/run_app.h"
 #include "base/stopwatch.h"
@@ -16,6 +18,7 @@
 #include "heat/day_sun.h"
 #include "heat/heat_field.h"
 #include "heat/target_paths.h"
+#include "heat_left_out.h"
 #include "heat_paths.h"
 #include "heat_told.h"
 #include "motion/scene_frame.h"
@@ -92,12 +95,16 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
   p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
   p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
   const HeatWeather weather = weather_of(sim, *scene);
-  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}});
+  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}});
   if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
   const DaySun sun = day_sun(*p.tracer, p.cut.sun);
   p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
                                           p.cut.by_sun ? &sun : nullptr);
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
+  if (const std::vector<uint32_t> kept = p.cut.kept; !kept.empty()) {
+    check_kept(*p.elements, sim, kept);
+    keep_elements(p, kept);
+  }
   return p;
 }
 
@@ -127,6 +134,15 @@ void check_size(const PreparedHeat& p, const Simulation& sim) {
                 "fewer elements or paths (2^32 paths at most), or a larger step_s");
 }
 
+// Sunlight of the elements that are left, with the exchange that is there.
+HeatOperator operator_of_left(const PreparedHeat& p, LeftOut& left, const SunCourse& course,
+                              const HeatProgress& progress) {
+  progress.begin("sunlight", static_cast<double>(p.faces->size()));
+  return {left.take_exchange(),
+          find_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, course, path_options(p.spec), nullptr,
+                        [&](size_t more) { progress.done(static_cast<double>(more)); })};
+}
+
 struct Found {
   HeatResult result;
   WeatherLoads weather;
@@ -153,10 +169,25 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
       warn(strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target));
     check_size(p, sim);
   }
-  HeatOperator paths = operator_of(p, found.weather.course, sim, options, folder, progress);
+  std::optional<LeftOut> left_out;
+  if (sim.heat->leave_out > 0) {
+    const auto [cold, warm] = std::ranges::minmax(found.weather.air_kelvin);
+    left_out.emplace(p, sim, std::array{cold, warm}, progress);
+  }
+  HeatOperator paths = left_out ? operator_of_left(p, *left_out, found.weather.course, progress)
+                                : operator_of(p, found.weather.course, sim, options, folder, progress);
   found.result =
       solve_heat({*p.tracer, *p.elements, *p.faces, p.optics}, std::move(paths), found.weather, p.spec, progress);
+  if (sim.heat->final_gather) {
+    progress.begin("straight sunlight", 1);
+    found.result.straight =
+        straight_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, found.weather, found.result, p.spec);
+    progress.done(1);
+  }
   if (bar) bar->finish();
+  if (left_out) note("heat: " + left_out->sentence(found.result));
+  if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
+    warn(strf("heat: that is more than the %g K of leave_out_k", sim.heat->leave_out));
   return found;
 }
 
@@ -192,12 +223,60 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
     return std::move(found.result);
   }
   HeatResult result = read_heat(options.heat, *p.elements, *p.faces);
+  if (sim.heat->final_gather && result.straight.empty())
+    throw Error(options.heat + ": holds temperatures of elements alone, and `final_gather` asks for points",
+                "find them anew with it, or drop it");
   if (result.span.begin != p.spec.span.begin || result.span.end != p.spec.span.end)
     warn(strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
               options.heat.c_str(), result.span.begin, result.span.end, p.spec.span.begin, p.spec.span.end));
   tell(result, p, seconds_since(begun));
   return result;
 }
+
+// Which elements the first rank left out.
+void share_kept(PreparedHeat& p, Ranks& ranks) {
+  std::vector<std::byte> bytes;
+  if (ranks.leads()) bytes.assign(std::as_bytes(std::span(p.cut.kept)).begin(), std::as_bytes(std::span(p.cut.kept)).end());
+  ranks.share(bytes);
+  if (ranks.leads()) return;
+  std::vector<uint32_t> kept(bytes.size() / sizeof(uint32_t));
+  std::memcpy(kept.data(), bytes.data(), bytes.size());
+  keep_elements(p, kept);
+}
+
+// Points, and what they are found with.
+struct FoundPoints {
+  WeatherLoads weather;
+  PointHeat points;
+  FoundPoints(WeatherLoads loads, const PreparedHeat& p, const HeatResult& result)
+      : weather(std::move(loads)), points({*p.tracer, *p.elements, *p.faces, p.optics}, weather, result) {}
+};
+
+// Null where they are not asked for.
+std::shared_ptr<const FoundPoints> points_of(const PreparedHeat& p, const HeatResult& result, const Simulation& sim,
+                                             const Scene& scene) {
+  if (!sim.heat->final_gather) return nullptr;
+  HeatSpec spec = p.spec;
+  spec.span = result.span, spec.step = result.step, spec.periodic = result.periodic;
+  return std::make_shared<const FoundPoints>(weather_loads(weather_of(sim, scene), spec), p, result);
+}
+
+// The field, with what it looks things up in.
+struct FoundField final : ExplainedField {
+  std::shared_ptr<const PreparedHeat> prepared;
+  std::shared_ptr<const FoundPoints> points;
+  HeatField field;
+  FoundField(std::shared_ptr<const PreparedHeat> all, std::shared_ptr<const HeatResult> found,
+             std::shared_ptr<const FoundPoints> told)
+      : prepared(std::move(all)),
+        points(std::move(told)),
+        field(prepared->elements, std::move(found),
+              points ? std::shared_ptr<const PointHeat>(points, &points->points) : nullptr) {}
+  double kelvin(const HeatedPlace& place, double time) const override { return field.kelvin(place, time); }
+  double error(const HeatedPlace& place, double time) const override { return field.error(place, time); }
+  Cause cause(const HeatedPlace& place, double time) const override { return field.cause(place, time); }
+  std::array<double, 2> range() const override { return field.range(); }
+};
 
 }  // namespace
 
@@ -207,7 +286,9 @@ bool sees_heat(const Simulation& sim, const RenderOptions& options) {
     for (const SpectralState& s : sensor->states())
       if (planck_radiance(s.high_um, kHottest) > kGlowing) return true;
     for (const std::string& truth : sensor->truth())
-      if (truth.starts_with("temperature")) return true;
+      if (truth.starts_with("temperature") || truth == "sun_hours" || truth == "absorbed_sun" ||
+          truth == "longwave_received")
+        return true;
   }
   return false;
 }
@@ -244,6 +325,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   else if (const std::string from = operator_file(sim, options, folder); !from.empty()) {
     // As many elements as are asked for; else the file is refused when it is read, with what differs.
     cut = operator_cut(from);
+    cut->kept.clear();  // what is left out is found again
     if (cut->elements != sim.heat->spec.elements || cut->by_sun != sim.heat->spec.cut_by_sun) cut.reset();
   }
   auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut));
@@ -254,19 +336,53 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     if (ranks->leads()) bytes = packed_field(*result);
     ranks->share(bytes);
     if (!ranks->leads()) *result = unpacked_field(bytes);
+    if (sim.heat->leave_out > 0 && options.heat.empty()) share_kept(*p, *ranks);
   }
-  // The field keeps what it looks things up in.
-  struct Held final : TemperatureField {
-    std::shared_ptr<PreparedHeat> prepared;
-    HeatField field;
-    Held(std::shared_ptr<PreparedHeat> all, std::shared_ptr<const HeatResult> found)
-        : prepared(all), field(all->elements, std::move(found)) {}
-    double kelvin(const HeatedPlace& place, double time) const override { return field.kelvin(place, time); }
-    double error(const HeatedPlace& place, double time) const override { return field.error(place, time); }
-    std::array<double, 2> range() const override { return field.range(); }
-  };
-  return {.field = std::make_shared<const Held>(p, result)};
+  return {.field = std::make_shared<const FoundField>(p, result, points_of(*p, *result, sim, *scene))};
 }
+
+void tell_of_points(const Heating& heating) {
+  const auto* found = dynamic_cast<const FoundField*>(heating.field.get());
+  if (!found || !found->points || found->points->points.asked() == 0) return;
+  const PointHeat& points = found->points->points;
+  note(strf("heat: the temperatures of %s points took %.1f s of all threads together, %.0f us each",
+            human_count(static_cast<double>(points.asked())).c_str(), points.seconds(),
+            1e6 * points.seconds() / static_cast<double>(points.asked())));
+}
+
+namespace {
+
+// s of one thread that finding temperatures takes: a few faces, spread over all, are traced.
+double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& scene) {
+  constexpr size_t kLooks = 4;
+  constexpr double kMore =
+      1.3;  // of that: the balance and its errors beside tracing, as of a street of 24 000 elements
+  const WeatherLoads weather = weather_loads(weather_of(sim, scene), p.spec);
+  const PathOptions paths = path_options(p.spec);
+  const size_t n = p.faces->size();
+  // Waves are traced by one thread each.
+  const auto seconds = [&](size_t together, const std::function<void(FaceRange)>& trace) {
+    const size_t waves = (n + together - 1) / together, looks = std::min(kLooks, waves);
+    size_t faces = 0;
+    const Stopwatch::time_point begun = Stopwatch::now();
+    for (size_t k = 0; k < looks; ++k) {
+      const size_t begin = waves * k / looks * together, end = std::min(n, begin + together);
+      trace({begin, end}), faces += end - begin;
+    }
+    return seconds_since(begun) * static_cast<double>(n) / static_cast<double>(faces);
+  };
+  ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
+  Sunlight sun = untraced_sunlight(*p.faces, weather.course, paths);
+  return kMore *
+         (seconds(
+              ExchangePaths::kTogether,
+              [&](FaceRange r) { trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange); }) +
+          seconds(Sunlight::kTogether, [&](FaceRange r) {
+            trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
+          }));
+}
+
+}  // namespace
 
 std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& sim) {
   if (!sim.heat || !waits_for_heat(*scene)) return {};
@@ -276,9 +392,14 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   // of the moments straight.
   const double points = std::max(double{HeatSpec::kBlocks}, p.spec.paths / 4.0);
   const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p) / 2);
-  return strf("heat: %zu elements (%zu faces, %.3g m2 at most), %.0f moments, some %s rays, some %s\n",
-              p.elements->size(), p.faces->size(), p.elements->largest(), moments_of(p), human_count(rays).c_str(),
-              human_bytes(bytes_of(p)).c_str()) +
+  check_size(p, sim);
+  const double seconds = seconds_of(p, sim, *scene);
+  return strf(
+             "heat: %zu elements (%zu faces, %.3g m2 at most), %u paths of each, %.0f moments, some %s rays, some %.0f "
+             "s "
+             "with %d threads, some %s\n",
+             p.elements->size(), p.faces->size(), p.elements->largest(), p.spec.paths, moments_of(p),
+             human_count(rays).c_str(), seconds / threads(), threads(), human_bytes(bytes_of(p)).c_str()) +
          (p.spec.target > 0
               ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});

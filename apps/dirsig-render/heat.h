@@ -23,6 +23,9 @@ std::vector<std::array<double, 2>> heat_windows_um();
 Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& simulation, const JobOptions& job,
                    const RenderOptions& options, const std::string& folder, Ranks* ranks);
 
+// Tells what the temperatures at points took (`final_gather`).
+void tell_of_points(const Heating& heating);
+
 // --dry-run: elements, rays, memory.
 std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& simulation);
 

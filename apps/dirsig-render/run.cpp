@@ -179,6 +179,7 @@ void tell(const JobReport& r) {
 }
 
 void tell(const JobReport& r, const JobOptions& options, const std::string& folder) {
+  tell_of_points(options.heating);
   if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
   tell(r);
 }

@@ -14,6 +14,7 @@ void put_cut(h5::Writer& w, const HeatCut& cut) {
   w.attribute("elements_by", cut.by_sun ? "sun" : "area");
   const double numbers[2] = {static_cast<double>(cut.elements), static_cast<double>(cut.sun.size())};
   w.attribute("elements_asked_and_moments_of_the_sun", numbers);
+  if (!cut.kept.empty()) w.put("/cut/kept", cut.kept, "1");
   if (cut.sun.empty()) return;
   std::vector<double> time, direct, towards;
   for (const SunMoment& m : cut.sun) {
@@ -31,7 +32,8 @@ HeatCut take_cut(h5::Reader& r) {
   const std::vector<double> v = r.numbers("elements_asked_and_moments_of_the_sun", 2);
   if (!(v[0] >= 1 && v[0] <= kMostElements)) r.fail(strf("was made for %g elements", v[0]));
   if (!(v[1] >= 0 && v[1] <= kMostMoments)) r.fail(strf("has elements cut by %g places of the sun", v[1]));
-  HeatCut cut{static_cast<size_t>(v[0]), by == "sun", {}};
+  HeatCut cut{static_cast<size_t>(v[0]), by == "sun", {}, {}};
+  if (r.has("/cut/kept")) cut.kept = r.get<uint32_t>("/cut/kept", "1");
   const auto n = static_cast<long long>(v[1]);
   if (n == 0) return cut;
   const std::vector<double> time = r.get<double>("/cut/time", "s", 1, n),

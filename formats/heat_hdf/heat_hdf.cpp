@@ -70,6 +70,7 @@ void write_heat(const std::string& path, const HeatResult& h, const Elements& el
   w.put("/faces/step_error", h.step_error, "K", kHeatParts);
   w.put("/faces/temperature", h.kelvin, "K", h.moments);
   w.put("/faces/absorbed_sunlight", h.absorbed, "W/m2", h.moments);
+  if (!h.straight.empty()) w.put("/faces/straight_sunlight", h.straight, "W/m2", h.moments);
   w.put("/faces/received_infrared", h.received, "W/m2", h.moments);
   w.put("/air/temperature", h.air_kelvin, "K");
   w.close();
@@ -110,6 +111,8 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   h.sun_hours = r.get<float>("/faces/sun_hours", "h", 1, n);
   h.absorbed = r.get<float>("/faces/absorbed_sunlight", "W/m2", h.moments, n);
   h.received = r.get<float>("/faces/received_infrared", "W/m2", h.moments, n);
+  if (r.has("/faces/straight_sunlight")) h.straight = r.get<float>("/faces/straight_sunlight", "W/m2", h.moments, n);
+  check_finite(r, h.straight, "/faces/straight_sunlight", -1e5f, 1e5f);
   check_finite(r, h.kelvin, "/faces/temperature", 1, 1e4f);
   check_finite(r, h.air_kelvin, "/air/temperature", 1, 1e4f);
   check_finite(r, h.path_error, "/faces/path_error", 0, 1e4f);

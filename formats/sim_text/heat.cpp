@@ -33,6 +33,36 @@ Weather read_the_weather(const Params& p) {
   return read_weather(map ? p.at("file").as_path() : p.as_path(), options);
 }
 
+// What is kept, what is left out, and what is looked at.
+void read_what_is_kept(const Params& heat, HeatRequest& out) {
+  if (const auto keep = heat.find("keep")) {
+    if (keep->as_text() != "operator")
+      throw keep->error("the balance of heat cannot keep '" + keep->as_text() + "'", "keep: operator");
+    out.keep_operator = true;
+    out.save_every = heat.number_in("save_every_s", 0, 86400, "s", out.save_every);
+  }
+  if (const auto least = heat.find("leave_out_k")) {
+    out.leave_out = least->as_number_in(0, 10, "K");
+    if (out.leave_out > 0 && out.keep_operator)
+      throw least->error("paths of all elements are kept, and some are to be left out", "drop 'leave_out_k' or 'keep'");
+  }
+  if (const auto probes = heat.find("probes"))
+    for (const std::string& name : probes->keys()) {
+      const std::vector<double> v = probes->at(name).as_numbers();
+      if (v.size() != 3) throw probes->at(name).error("a probe stands at three numbers: east, north, up");
+      out.probes.emplace_back(name, Vec3{v[0], v[1], v[2]});
+    }
+}
+
+void read_points(const Params& heat, HeatRequest& out) {
+  const auto gather = heat.find("final_gather");
+  if (!gather) return;
+  out.final_gather = gather->as_bool();
+  if (out.final_gather && !out.spec.periodic)
+    throw gather->error("points are told apart from their elements in a span that repeats alone",
+                        "'repeats: true', or no final_gather");
+}
+
 }  // namespace
 
 std::optional<HeatRequest> read_heat_request(const Params& root, const Simulation& sim, const SensorContext& context) {
@@ -67,18 +97,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   if (s.audit == 1)
     throw heat->at("audit").error("one probe has no error", "two at least, thousands for tenths of a kelvin");
   s.seed = sim.pipeline.seed;
-  if (const auto keep = heat->find("keep")) {
-    if (keep->as_text() != "operator")
-      throw keep->error("the balance of heat cannot keep '" + keep->as_text() + "'", "keep: operator");
-    out.keep_operator = true;
-    out.save_every = heat->number_in("save_every_s", 0, 86400, "s", out.save_every);
-  }
-  if (const auto probes = heat->find("probes"))
-    for (const std::string& name : probes->keys()) {
-      const std::vector<double> v = probes->at(name).as_numbers();
-      if (v.size() != 3) throw probes->at(name).error("a probe stands at three numbers: east, north, up");
-      out.probes.emplace_back(name, Vec3{v[0], v[1], v[2]});
-    }
+  read_what_is_kept(*heat, out);
   const auto from = heat->find("from"), to = heat->find("to");
   if (static_cast<bool>(from) != static_cast<bool>(to))
     throw heat->error("a span of time has 'from' and 'to'", "give both, or none: the day of the captures");
@@ -90,6 +109,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   }
   const double length = out.span ? out.span->end - out.span->begin : 86400;
   s.periodic = heat->boolean("repeats", length <= 90000);
+  read_points(*heat, out);
   if (!s.periodic && length < 86400)
     throw heat->error("a span that does not repeat begins with a whole day",
                       "make it a day or longer, or 'repeats: true'");

@@ -59,6 +59,8 @@ struct HeatRequest {
   std::vector<std::pair<std::string, Vec3>> probes;  // m, scene ENU
   bool keep_operator = false;                        // what paths find, for other weather and to go on from
   double save_every = 20;                            // s
+  bool final_gather = false;                         // temperatures at points, as sharp as shadows are
+  double leave_out = 0;  // K, what elements that are left out may do to what is seen; 0 = none
   Where where;
 };
 

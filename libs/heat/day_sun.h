@@ -29,6 +29,7 @@ struct HeatCut {
   size_t elements = 0;         // as asked for
   bool by_sun = false;         // else of about equal areas
   std::vector<SunMoment> sun;  // of these moments, none where it never rose
+  std::vector<uint32_t> kept;  // of these elements, ascending, where some were left out
   bool operator==(const HeatCut&) const = default;
 };
 

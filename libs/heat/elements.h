@@ -59,8 +59,13 @@ class Elements {
   // of this material, as at the edges of maps, the largest one of the cell.
   std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;
   std::optional<uint32_t> at(const Hit& hit, uint32_t material) const;
+  // The place as a hit; nothing where its instance has no elements.
+  std::optional<Hit> hit_at(const HeatedPlace& place) const;
   // False beyond the places where surfaces without end are cut off, and on what has no elements.
   bool covers(const Hit& hit) const;
+
+  // Leaves out those that are not kept, by element: their places have none. The others keep their order.
+  void keep(const std::vector<bool>& kept);
 
   size_t budget() const { return budget_; }  // as asked
   double total_area() const { return total_area_; }

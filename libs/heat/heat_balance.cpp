@@ -124,10 +124,13 @@ double HeatResult::position(double t) const {
 }
 
 double HeatResult::kelvin_at(size_t face, double t) const {
+  return between_moments({&kelvin[face * moments], moments}, t);
+}
+
+double HeatResult::between_moments(std::span<const float> row, double t) const {
   const double x = position(t);
   const auto k = std::min(static_cast<size_t>(x), moments - 2);
-  const float *row = &kelvin[face * moments + k], share = static_cast<float>(x - static_cast<double>(k));
-  return static_cast<double>(row[0] + (row[1] - row[0]) * share);
+  return static_cast<double>(row[k] + (row[k + 1] - row[k]) * static_cast<float>(x - static_cast<double>(k)));
 }
 
 HeatErrors HeatResult::errors_at(size_t face, double t) const {

@@ -15,6 +15,7 @@
 #pragma once
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,11 +67,13 @@ struct HeatResult {
   bool periodic = true;
   double step = 0;  // s
   size_t moments = 0;
-  std::vector<float> kelvin;                              // [face][moment]
-  std::vector<float> path_error;                          // K, standard error of the paths, [face][part]
-  std::vector<float> size_error;                          // K, of the elements' size, [face][part]: path_errors.h
-  std::vector<float> step_error;                          // K, of the steps, [face][part]: step_errors.h
-  std::vector<float> absorbed, received;                  // W/m2 of sunlight, of infrared that arrives; [face][moment]
+  std::vector<float> kelvin;              // [face][moment]
+  std::vector<float> path_error;          // K, standard error of the paths, [face][part]
+  std::vector<float> size_error;          // K, of the elements' size, [face][part]: path_errors.h
+  std::vector<float> step_error;          // K, of the steps, [face][part]: step_errors.h
+  std::vector<float> absorbed, received;  // W/m2 of sunlight, of infrared that arrives; [face][moment]
+  std::vector<float>
+      straight;  // W/m2 absorbed straight from the sun, where points are to be told (point_heat.h), or empty
   std::vector<float> emissivity, absorptance, sun_hours;  // by face
   std::vector<float> air_kelvin;                          // by moment
   double past_error = 0, sweep_error = 0;                 // K
@@ -89,6 +92,8 @@ struct HeatResult {
   // K at a time (s), straight between moments; a span that repeats goes on for ever, of others the nearer end holds.
   double kelvin_at(size_t face, double t) const;
   double air_at(double t) const;
+  // The same of one row of values by moment.
+  double between_moments(std::span<const float> row, double t) const;
   // K, of the part of the span.
   HeatErrors errors_at(size_t face, double t) const;
 

@@ -8,28 +8,52 @@
 
 namespace suite {
 
-HeatField::HeatField(std::shared_ptr<const Elements> elements, std::shared_ptr<const HeatResult> result)
-    : elements_(std::move(elements)), result_(std::move(result)) {
+namespace {
+
+// K, by which points may be warmer or colder than all elements.
+constexpr double kPointsBeyond = 60;
+
+}  // namespace
+
+HeatField::HeatField(std::shared_ptr<const Elements> elements, std::shared_ptr<const HeatResult> result,
+                     std::shared_ptr<const PointHeat> points)
+    : elements_(std::move(elements)), result_(std::move(result)), points_(std::move(points)) {
   const auto [low, high] = std::minmax_element(result_->kelvin.begin(), result_->kelvin.end());
   const auto [cold, warm] = std::minmax_element(result_->air_kelvin.begin(), result_->air_kelvin.end());
   range_ = {double{std::min(*low, *cold)}, double{std::max(*high, *warm)}};
+  if (points_) range_ = {std::max(range_[0] - kPointsBeyond, range_[0] / 2), range_[1] + kPointsBeyond};
 }
 
 double HeatField::kelvin(const HeatedPlace& place, double time) const {
   const std::optional<uint32_t> element = elements_->at(place, place.material);
-  return element ? result_->kelvin_at(*element, time) : result_->air_at(time);
+  if (!element) return result_->air_at(time);
+  const double kelvin = result_->kelvin_at(*element, time);
+  if (!points_ || !points_->tells(*element, time)) return kelvin;
+  return std::clamp(kelvin + points_->above(*element, place, time), range_[0], range_[1]);
 }
 
 double HeatField::error(const HeatedPlace& place, double time) const {
   const std::optional<uint32_t> element = elements_->at(place, place.material);
-  return element ? result_->errors_at(*element, time).total() : NAN;
+  if (!element) return NAN;
+  HeatErrors errors = result_->errors_at(*element, time);
+  if (points_ && points_->tells(*element, time)) errors.size = 0;
+  return errors.total();
+}
+
+ExplainedField::Cause HeatField::cause(const HeatedPlace& place, double time) const {
+  const std::optional<uint32_t> element = elements_->at(place, place.material);
+  if (!element) return {};
+  const auto at = [&](const std::vector<float>& rows) {
+    return result_->between_moments({&rows[*element * result_->moments], result_->moments}, time);
+  };
+  return {double{result_->sun_hours[*element]}, at(result_->absorbed), at(result_->received)};
 }
 
 namespace {
 
 struct Head {
   double begin, end, step, sweep_error, past_error;
-  uint64_t periodic, moments, faces;
+  uint64_t periodic, moments, faces, points;
 };
 
 template <class Value>
@@ -37,33 +61,45 @@ std::span<const std::byte> bytes_of(const std::vector<Value>& values) {
   return std::as_bytes(std::span(values));
 }
 
+// What of a result travels, besides its head.
+constexpr std::vector<float> HeatResult::*kRows[] = {
+    &HeatResult::kelvin,    &HeatResult::path_error, &HeatResult::size_error, &HeatResult::step_error,
+    &HeatResult::absorbed,  &HeatResult::received,   &HeatResult::straight,   &HeatResult::emissivity,
+    &HeatResult::sun_hours, &HeatResult::air_kelvin};
+
 }  // namespace
 
 std::vector<std::byte> packed_field(const HeatResult& r) {
   const std::vector<Head> head{{r.span.begin, r.span.end, r.step, r.sweep_error, r.past_error, r.periodic, r.moments,
-                                r.kelvin.size() / r.moments}};
-  std::vector<std::byte> out;
-  for (const auto bytes : {bytes_of(head), bytes_of(r.kelvin), bytes_of(r.path_error), bytes_of(r.size_error),
-                           bytes_of(r.step_error), bytes_of(r.air_kelvin)})
-    out.insert(out.end(), bytes.begin(), bytes.end());
+                                r.kelvin.size() / r.moments, !r.straight.empty()}};
+  size_t size = bytes_of(head).size(), at = 0;
+  for (const auto rows : kRows) size += bytes_of(r.*rows).size();
+  std::vector<std::byte> out(size);
+  const auto add = [&](std::span<const std::byte> bytes) {
+    if (!bytes.empty()) std::memcpy(&out[at], bytes.data(), bytes.size());
+    at += bytes.size();
+  };
+  add(bytes_of(head));
+  for (const auto rows : kRows) add(bytes_of(r.*rows));
   return out;
 }
 
 HeatResult unpacked_field(std::span<const std::byte> bytes) {
   const auto take = [&](void* to, size_t count) {
     SUITE_CHECK(count <= bytes.size());
-    std::memcpy(to, bytes.data(), count);
+    if (count > 0) std::memcpy(to, bytes.data(), count);
     bytes = bytes.subspan(count);
   };
   Head head{};
   take(&head, sizeof head);
   HeatResult r;
   r.span = {head.begin, head.end}, r.step = head.step, r.periodic = head.periodic != 0, r.moments = head.moments;
-  r.kelvin.resize(head.faces * r.moments), r.path_error.resize(head.faces * kHeatParts);
-  r.size_error.resize(r.path_error.size()), r.step_error.resize(r.path_error.size());
-  r.air_kelvin.resize(r.moments), r.sweep_error = head.sweep_error, r.past_error = head.past_error;
-  for (auto* values : {&r.kelvin, &r.path_error, &r.size_error, &r.step_error, &r.air_kelvin})
-    take(values->data(), values->size() * sizeof(float));
+  r.sweep_error = head.sweep_error, r.past_error = head.past_error;
+  for (auto* values : {&r.kelvin, &r.absorbed, &r.received}) values->resize(head.faces * r.moments);
+  for (auto* values : {&r.path_error, &r.size_error, &r.step_error}) values->resize(head.faces * kHeatParts);
+  for (auto* values : {&r.emissivity, &r.sun_hours}) values->resize(head.faces);
+  r.straight.resize(head.points ? r.kelvin.size() : 0), r.air_kelvin.resize(r.moments);
+  for (const auto rows : kRows) take((r.*rows).data(), (r.*rows).size() * sizeof(float));
   return r;
 }
 

@@ -3,23 +3,29 @@
 #include <cstddef>
 #include <span>
 
-#include "heat/heat_balance.h"
+#include "heat/point_heat.h"
+#include "thermal/explained_field.h"
 
 namespace suite {
 
-class HeatField final : public TemperatureField {
+class HeatField final : public ExplainedField {
  public:
-  // Elements of the scene's surfaces at rest; the result belongs to them.
-  HeatField(std::shared_ptr<const Elements> elements, std::shared_ptr<const HeatResult> result);
-  // Of the element at the place. Where there is none, as of what moves, that of the air.
+  // Elements of the scene's surfaces at rest; the result belongs to them. points: of the same; null = elements as
+  // wholes.
+  HeatField(std::shared_ptr<const Elements> elements, std::shared_ptr<const HeatResult> result,
+            std::shared_ptr<const PointHeat> points = nullptr);
+  // Of the element at the place, or of the point. Where there is none, as of what moves, that of the air.
   double kelvin(const HeatedPlace& place, double time) const override;
-  // By all that is told (HeatErrors); NaN where there is no element.
+  // By all that is told (HeatErrors; where points are told without the elements' size); NaN where there is no element.
   double error(const HeatedPlace& place, double time) const override;
+  // Of the element.
+  Cause cause(const HeatedPlace& place, double time) const override;
   std::array<double, 2> range() const override { return range_; }
 
  private:
   std::shared_ptr<const Elements> elements_;
   std::shared_ptr<const HeatResult> result_;
+  std::shared_ptr<const PointHeat> points_;
   std::array<double, 2> range_;
 };
 

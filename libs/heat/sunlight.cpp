@@ -64,6 +64,26 @@ void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFa
   out.count += {rays, unfinished};
 }
 
+std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                                  const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
+                                  const std::function<bool(size_t)>& wanted) {
+  constexpr size_t kWave = Sunlight::kTogether;
+  const size_t n = faces.size();
+  Sunlight out = untraced_sunlight(faces, course, options);
+  parallel_for(0, (n + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
+    const FlushDenormals denormals;
+    const AtWork work(tracer);
+    SunlightWave wave(tracer, elements, faces, optics, course, options, kSunJoins, out);
+    for (size_t w = first; w < last; ++w) {
+      const size_t begin = w * kWave, end = std::min(n, begin + kWave);
+      bool any = false;
+      for (size_t f = begin; f < end; ++f) any = any || wanted(f);
+      if (any) wave.beam(begin, end);
+    }
+  });
+  return std::move(out.beam);
+}
+
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
                         const std::function<void(size_t)>& progress) {

@@ -77,6 +77,11 @@ inline constexpr uint32_t kSunJoins = 4;
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                     const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
                     const std::function<void(size_t)>& progress = {});
+// Straight from the sun alone, without reflections: what the tracing functions find of it, from the same points. As
+// Sunlight::beam; of faces that wanted() says, else 0.
+std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
+                                  const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
+                                  const std::function<bool(size_t face)>& wanted);
 // Of all faces.
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options,

@@ -234,6 +234,24 @@ void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const Po
     for (const double v : contrast) *to++ = static_cast<float>(v * std::sqrt(variance / met));
 }
 
+void SunlightWave::of_point(const Hit& hit, bool back, Vec2 disk, std::span<float> takes) {
+  std::ranges::fill(takes, 0.0f);
+  if (sunny_.empty()) return;
+  std::vector<Watch> one(1);
+  one[0].face = 0, one[0].block = 0, one[0].hit = hit, one[0].normal = back ? -hit.normal : hit.normal;
+  one[0].disk_x = disk.x, one[0].disk_y = disk.y;
+  look(one);
+  std::vector<Edge> edges;
+  find_edges(one, edges);
+  const PointDay day = day_of(one[0], edges);
+  if (!day.lit_first && day.changes.empty()) return;
+  lit_.clear();
+  lit_.add(day, 1);
+  lit_.spread(one[0].takes, [&](size_t moment, double value) {
+    takes[moment] += static_cast<float>((moment == 0 || moment + 1 == takes.size() ? 2 : 1) * value);
+  });
+}
+
 // What a block's points miss of an edge that passes over the element: it is told from the other blocks' points, once
 // for these points and once for many others. All of them take what the other blocks' do.
 void SunlightWave::add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block) {

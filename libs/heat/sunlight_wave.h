@@ -15,6 +15,9 @@ class SunlightWave {
                const SunCourse& course, const PathOptions& options, uint32_t joins, Sunlight& out);
   void beam(size_t begin, size_t end);       // straight from the sun
   void scattered(size_t begin, size_t end);  // along paths
+  // What a point takes straight from the sun through the day, by moment and for a beam of 1, as beam() has it of faces.
+  // disk: where on the sun it looks, radii. back: of the surface's back.
+  void of_point(const Hit& hit, bool back, Vec2 disk, std::span<float> takes);
   uint64_t rays() const { return trace_.rays; }
   double unfinished() const { return unfinished_; }
 

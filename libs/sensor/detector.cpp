@@ -72,7 +72,8 @@ Detector::Character Detector::character(uint64_t detector) const {
   return c;
 }
 
-uint16_t Detector::counts(double electrons, double exposure, const Character& of, uint64_t read_out) const {
+uint16_t Detector::counts(double electrons, double exposure, const Character& of, uint64_t read_out,
+                          double more) const {
   const double most = std::ldexp(1.0, spec_.bits) - 1;
   if (of.dead) return 0;
   if (of.hot) return static_cast<uint16_t>(most);
@@ -80,8 +81,22 @@ uint16_t Detector::counts(double electrons, double exposure, const Character& of
   const double mean = std::max(0.0, electrons) * of.response + spec_.dark_current * of.dark * exposure;
   double charge = spec_.shot_noise ? poisson(mean, random) : mean;
   if (spec_.full_well > 0) charge = std::min(charge, spec_.full_well);
-  if (spec_.read_noise > 0) charge += spec_.read_noise * normal(random);
+  if (spec_.read_noise > 0 || more > 0) charge += std::hypot(spec_.read_noise, more) * normal(random);
   return static_cast<uint16_t>(std::clamp(std::round(charge / spec_.gain + spec_.bias), 0.0, most));
+}
+
+NoiseAtBackground noise_at_background(const DetectorSpec& d, double signal, double slope, double exposure) {
+  NoiseAtBackground n;
+  n.slope = slope;
+  const double shot = d.shot_noise ? signal + d.dark_current * exposure : 0;
+  n.own = std::sqrt(shot + d.read_noise * d.read_noise + d.gain * d.gain / 12);
+  const double wanted = d.netd * slope;
+  if (d.netd > 0 && wanted < n.own)
+    throw Error(strf("a NETD of %g K at %g K, where shot noise, read noise and quantisation make %.3g K", d.netd,
+                     d.background, n.own / slope),
+                "a larger netd_k, or a detector with more light or less noise");
+  if (d.netd > 0) n.more = std::sqrt(wanted * wanted - n.own * n.own);
+  return n;
 }
 
 std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context) {
@@ -114,6 +129,11 @@ std::optional<DetectorSpec> read_detector(const Params& params, const SensorCont
       d.bad.push_back({static_cast<uint32_t>(at[0]), static_cast<uint32_t>(at[1])});
     }
   d.seed = static_cast<uint64_t>(p->integer("seed", 0, 1LL << 53, 1));
+  if (const auto background = p->find("background_k")) d.background = background->as_number_in(20, 5000, "K");
+  if (const auto netd = p->find("netd_k")) {
+    d.netd = netd->as_number_in(1e-6, 100, "K");
+    if (!(d.background > 0)) throw netd->error("a NETD is of a background", "background_k: 300");
+  }
   return d;
 }
 

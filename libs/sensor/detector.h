@@ -5,6 +5,7 @@
 // N. Slater, "Remote Sensing: Optics and Optical Systems", 1980 (G# = (1 + 4 N^2) / (tau pi), E = L / G#); J. R.
 // Janesick, "Photon Transfer", SPIE 2007 (shot, read and fixed-pattern noise).
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -32,7 +33,22 @@ struct DetectorSpec {
   double dead = 0, hot = 0;                  // shares of detectors that give 0, or full scale, always
   std::vector<std::array<uint32_t, 2>> bad;  // column, row of further dead ones
   uint64_t seed = 0;                         // of everything random; fixed pattern depends on it alone
+  // Of thermal instruments: K, a blackbody that fills the view, 0 = not one; and the noise-equivalent temperature
+  // difference against it that is to be met, 0 = as the other terms make it.
+  double background = 0, netd = 0;
 };
+
+// Temporal noise against a blackbody that fills the view.
+struct NoiseAtBackground {
+  double own = 0;    // electrons, standard deviation: shot noise of signal and dark current, read noise, quantisation
+  double slope = 0;  // electrons/K
+  double more = 0;   // electrons, standard deviation of what has to be added to meet the spec's NETD
+  double netd() const { return std::sqrt(own * own + more * more) / slope; }  // K
+};
+// signal: electrons that the background gives; slope: electrons/K there; exposure: s. NETD = noise / slope, all terms
+// independent (Holst, "Electro-Optical Imaging System Performance", 2008, section on NEDT). Error: a NETD that is below
+// what the other terms make.
+NoiseAtBackground noise_at_background(const DetectorSpec& spec, double signal, double slope, double exposure);
 
 // Reads key `detector`; nothing when absent.
 std::optional<DetectorSpec> read_detector(const Params& params, const SensorContext& context);
@@ -57,8 +73,12 @@ class Detector {
   };
   Character character(uint64_t detector) const;
   // Counts of one read-out: signal electrons (before the detector's own response), exposure time (s) and a number that
-  // tells this read-out from all others.
-  uint16_t counts(double electrons, double exposure, const Character& of, uint64_t read_out) const;
+  // tells this read-out from all others. more: electrons, standard deviation of noise beside that of the spec.
+  uint16_t counts(double electrons, double exposure, const Character& of, uint64_t read_out, double more = 0) const;
+  // Signal electrons as they are told from counts: bias and mean dark current taken off.
+  double signal_of(double counts, double exposure) const {
+    return (counts - spec_.bias) * spec_.gain - spec_.dark_current * exposure;
+  }
 
  private:
   DetectorSpec spec_;

@@ -33,7 +33,9 @@ void Surface::interact(const Hit& hit, Dir out, Interaction& at, double time) co
   if (!maps || !maps->varies()) return;
   place.normal = hit.normal, place.instance = object.instance, place.triangle = hit.triangle;
   if (!at.own) at.own = std::make_unique<Interaction::Own>();
-  at.own->field = maps->field.get();
+  // A map comes before the model.
+  const bool mapped = maps->field && maps->temperature && value_at(*maps->temperature, place);
+  at.own->field = mapped ? nullptr : maps->field.get();
   at.own->place = {hit.position, hit.normal, object.instance, hit.triangle, at.material};
   at.baked =
       material_here(*material, optics_.state(), place, time, at.frame.to_local(out), at.own->memory, at.own->made);

@@ -192,6 +192,7 @@ class Platform final : public Sensor {
     std::string spread;
     if (const auto& psf = spec_.segments[array.segments[0]].psf; psf && psf->cut() > 0)
       spread = strf("; point spread cut where %.2f %% of the light remain", 100 * psf->cut());
+    spread += noise_text(spec_, spec_.segments[array.segments[0]]);
     d.description = who + strf(", %.9g to %.9g s", c.window.begin, c.window.end) + spread;
     if (array.scans()) {
       const std::vector<std::string>& lines = lines_of(part.array);

@@ -129,6 +129,10 @@ std::string lines_text(const PlatformSpec& spec, size_t task, size_t array, cons
 // platform_products.cpp: electrons and counts of a result whose bands are a segment's; strips the photon bands.
 // read_out: tells this event from all others.
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result, uint64_t read_out);
+// Noise of a band's detectors on the axis, of a chip of gain 1. Error: a NETD that cannot be.
+NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, size_t band);
+// For headers: NETD of every band; empty where there is no background.
+std::string noise_text(const PlatformSpec& spec, const Segment& segment);
 // platform_log.cpp: pose and time of an instrument over the tasks, as CSV.
 std::string pose_log(const PlatformSpec& spec, const Instrument& instrument, const SensorContext& context);
 // The pose of the instrument at a time, without tables.

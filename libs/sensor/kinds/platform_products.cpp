@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sensor/kinds/platform.h"
+#include "spectral/thermometer.h"
 
 namespace suite {
 
@@ -41,7 +42,35 @@ void drop_truth_of(CaptureResult& r, const std::vector<Band>& bands, size_t keep
   r.truth = std::move(values);
 }
 
+// Signal electrons on the axis for 1 W/(m2 sr um) in a photon band that counts one electron for each.
+double electrons_per_radiance(const PlatformSpec& spec, const FocalArray& array) {
+  const Lens& lens = spec.instruments[array.instrument].lens;
+  return array.pitch.x * array.pitch.y * array.detector->fill_factor /
+         g_number(lens.f_number(), lens.throughput, lens.obscuration) * array.readout.exposure();
+}
+
 }  // namespace
+
+NoiseAtBackground noise_of(const PlatformSpec& spec, const Segment& segment, size_t band) {
+  const FocalArray& array = spec.arrays[segment.array];
+  const DetectorSpec& d = *array.detector;
+  const BandThermometer thermometer(segment.bands[segment.radiance_bands + band]);
+  const double L = thermometer.radiance(d.background),
+               factor = electrons_per_radiance(spec, array) * segment.electrons[band];
+  return noise_at_background(d, factor * L, factor / thermometer.read(L).slope, array.readout.exposure());
+}
+
+std::string noise_text(const PlatformSpec& spec, const Segment& segment) {
+  const auto& detector = spec.arrays[segment.array].detector;
+  if (!detector || !(detector->background > 0)) return {};
+  std::string out = strf("; NETD at %g K:", detector->background);
+  for (size_t b = 0; b < segment.radiance_bands; ++b) {
+    const NoiseAtBackground n = noise_of(spec, segment, b);
+    out += strf(" %s %.4g K (%.4g K of it shot noise, read noise and quantisation)", segment.bands[b].name.c_str(),
+                n.netd(), n.own / n.slope);
+  }
+  return out;
+}
 
 std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, CaptureResult& result,
                             uint64_t read_out) {
@@ -51,18 +80,25 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   const Detector detector(*array.detector);
   const DetectorSpec& d = detector.spec();
   const size_t bands = segment.radiance_bands, n = result.problems();
-  const double area = array.pitch.x * array.pitch.y * d.fill_factor,
-               g = g_number(lens.f_number(), lens.throughput, lens.obscuration);
+  const double axis = electrons_per_radiance(spec, array), exposure = array.readout.exposure();
   Product electrons{"electrons", "electrons", false, {}, std::vector<double>(n * bands)};
   Product counts{"dn", "DN", true, {}, std::vector<double>(n * bands)};
-  for (size_t b = 0; b < bands; ++b) electrons.bands.push_back(segment.bands[b].name);
-  counts.bands = electrons.bands;
+  Product kelvin{"apparent_temperature", "K", false, {}, std::vector<double>(d.background > 0 ? n * bands : 0)};
+  std::vector<double> more(bands, 0.0);
+  std::vector<BandThermometer> thermometers;
+  for (size_t b = 0; b < bands; ++b) {
+    electrons.bands.push_back(segment.bands[b].name);
+    if (!(d.background > 0)) continue;
+    more[b] = noise_of(spec, segment, b).more;
+    thermometers.emplace_back(segment.bands[bands + b]);
+  }
+  kelvin.bands = counts.bands = electrons.bands;
   const Capture& capture = spec.tasks[result.task].captures[result.capture];
   for (size_t i = 0; i < n; ++i) {
     const Exposed from = exposed(spec, capture, i);
     const DetectorPlace place = place_of(array, from.column, from.row, 0.5, 0.5);
     const double cosine = lens.cos4 ? -lens.look(place.place).z : 1;
-    const double factor = area / g * array.readout.exposure() * place.chip->gain * cosine * cosine * cosine * cosine;
+    const double factor = axis * place.chip->gain * cosine * cosine * cosine * cosine;
     const bool bad =
         std::find(d.bad.begin(), d.bad.end(), std::array<uint32_t, 2>{from.column, from.row}) != d.bad.end();
     for (size_t b = 0; b < bands; ++b) {
@@ -75,9 +111,12 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
       Detector::Character character = detector.character(own);
       character.dead = character.dead || bad;
+      const uint16_t read = detector.counts(signal, exposure, character, hash_of(own, read_out, i), more[b]);
       electrons.values[i * bands + b] = signal;
-      counts.values[i * bands + b] =
-          detector.counts(signal, array.readout.exposure(), character, hash_of(own, read_out, i));
+      counts.values[i * bands + b] = read;
+      if (!thermometers.empty())
+        kelvin.values[i * bands + b] =
+            thermometers[b].read(detector.signal_of(read, exposure) / (factor * segment.electrons[b])).kelvin;
     }
   }
   drop_truth_of(result, segment.bands, bands);
@@ -85,6 +124,7 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
   std::vector<Product> out;
   out.push_back(std::move(electrons));
   out.push_back(std::move(counts));
+  if (!thermometers.empty()) out.push_back(std::move(kelvin));
   return out;
 }
 

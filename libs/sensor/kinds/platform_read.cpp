@@ -118,6 +118,11 @@ void add_segment(PlatformSpec& spec, size_t array_number, size_t first_chip, siz
   if (choice.widest_um == 0 && s.psf && s.psf->with_bins(spec.states.back())) choice.widest_um = kDefaultStep;
   array.segments.push_back(spec.segments.size());
   spec.segments.push_back(std::move(s));
+  try {
+    noise_text(spec, spec.segments.back());
+  } catch (const Error& e) {
+    throw p.at("detector").error(e.message(), e.hint());
+  }
 }
 
 // Chips are beside each other, and bad pixels in the image.

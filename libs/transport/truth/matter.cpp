@@ -175,35 +175,6 @@ void add_matter_rows(std::vector<TruthRow>& table) {
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Reflectance>(c);
                    }});
-  table.push_back({"temperature", "mean temperature that was rendered, of the first hits that have one", "K",
-                   [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
-                     return std::make_unique<SimpleCollector>(
-                         c, 2, std::vector<std::string>{"temperature [K]"},
-                         [](const TruthContext&, const TruthSample& s, double* sum) {
-                           if (!s.first || !s.first->at->baked || !(s.first->at->baked->kelvin > 0)) return;
-                           sum[0] += s.first->at->baked->kelvin, ++sum[1];
-                         },
-                         [](const TruthContext&, const double* sum, const TruthCounts&, double* v) {
-                           if (sum[1] > 0) v[0] = sum[0] / sum[1];
-                         });
-                   }});
-  table.push_back({"temperature_error",
-                   "error of temperatures that were found from weather (paths, size of elements, steps, sweeps), root "
-                   "mean square over the first hits "
-                   "that have one",
-                   "K", [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
-                     return std::make_unique<SimpleCollector>(
-                         c, 2, std::vector<std::string>{"temperature error [K]"},
-                         [](const TruthContext&, const TruthSample& s, double* sum) {
-                           const Interaction* at = s.first ? s.first->at : nullptr;
-                           if (!at || !at->own || at->baked != &at->own->made || !at->own->field) return;
-                           const double error = at->own->field->error(at->own->place, s.path.time);
-                           if (std::isfinite(error)) sum[0] += error * error, ++sum[1];
-                         },
-                         [](const TruthContext&, const double* sum, const TruthCounts&, double* v) {
-                           if (sum[1] > 0) v[0] = std::sqrt(sum[0] / sum[1]);
-                         });
-                   }});
 }
 
 }  // namespace suite

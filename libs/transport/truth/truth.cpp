@@ -11,6 +11,7 @@ const Registry<TruthRow>& truth_rows() {
     add_place_rows(rows);
     add_angle_rows(rows);
     add_matter_rows(rows);
+    add_warmth_rows(rows);
     add_air_rows(rows);
     add_account_rows(rows);
     return rows;

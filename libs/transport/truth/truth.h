@@ -77,10 +77,11 @@ class TruthPlan {
 };
 
 // The rows of the table, by what they are about.
-void add_place_rows(std::vector<TruthRow>& table);   // place.cpp: location, range, time
-void add_angle_rows(std::vector<TruthRow>& table);   // place.cpp: normals and angles
-void add_matter_rows(std::vector<TruthRow>& table);  // matter.cpp: materials, instances, tags, temperature, reflectance
-void add_air_rows(std::vector<TruthRow>& table);     // air.cpp: parts of the air's light in view
+void add_place_rows(std::vector<TruthRow>& table);    // place.cpp: location, range, time
+void add_angle_rows(std::vector<TruthRow>& table);    // place.cpp: normals and angles
+void add_matter_rows(std::vector<TruthRow>& table);   // matter.cpp: materials, instances, tags, reflectance
+void add_warmth_rows(std::vector<TruthRow>& table);   // warmth.cpp: temperature, its error, what makes it
+void add_air_rows(std::vector<TruthRow>& table);      // air.cpp: parts of the air's light in view
 void add_account_rows(std::vector<TruthRow>& table);  // account.cpp: counts of paths and nodes, visibility, state
 
 // Collectors made of functions, which is what most rows are.

@@ -87,6 +87,52 @@ TEST(Detector, NoiseHasItsMomentsAndTheSeedItsBits) {
   EXPECT_GT(std::fabs(s.variance() / (variance - 25) - 1), 4 * std::sqrt(2 / n));
 }
 
+// A blackbody seen by a thermal instrument: NETD = noise electrons / (dN/dT), N = t A / G# x integral of
+// QE lambda / (h c) B dlambda, whose derivative is taken here by differences of a sum of its own.
+TEST(Detector, NoiseEquivalentTemperatureDifference) {
+  const double t = 1e-4, area = 1e-10, g = 65 / kPi, qe = 0.6;
+  const auto electrons = [&](double kelvin) {
+    double sum = 0;
+    constexpr int n = 4000;
+    for (int i = 0; i < n; ++i) {
+      const double um = 8 + 4 * (i + 0.5) / n;
+      sum += planck_radiance(um, kelvin) * um * 4 / n;
+    }
+    return t * area / g * qe * sum * 1e-6 / (kPlanckConstant * kSpeedOfLight);
+  };
+  const double N = electrons(300), slope = (electrons(300.5) - electrons(299.5));
+  const std::string band = "{name: lw, center_um: 10, fwhm_um: 4, shape: rectangular}";
+  auto body = plane(0);
+  body->materials[0].temperature_k = 300;
+  const auto run = [&](const std::string& more) {
+    PlatformKit kit;
+    const std::string text =
+        camera(strf("{quantum_efficiency: 0.6, gain_e_per_dn: %.6g, read_noise_e: 300, %s}", N / 30000, more.c_str()),
+               "", "spectral_error: 1.0e-5, ", band);
+    std::string timed = text;
+    timed.replace(timed.find("0.002"), 5, "0.0001");
+    kit.render(body, {}, timed);
+    const test::Shot shot = kit.shots.at(0);
+    EXPECT_NEAR(shot.products[0].values[7] / N, 1, 1e-4);
+    EXPECT_EQ(shot.products.at(2).name, "apparent_temperature");
+    RunningStats s;
+    for (const double kelvin : shot.products[2].values) s.add(kelvin);
+    return s;
+  };
+  const double gain = N / 30000, own = std::sqrt(N + 300.0 * 300.0 + gain * gain / 12) / slope;
+  const RunningStats bare = run("background_k: 300"), noisy = run(strf("background_k: 300, netd_k: %.6g", 3 * own));
+  const double sure = 4.5 * std::sqrt(0.5 / 1600);  // of a standard deviation of 1600
+  std::printf("%.4g electrons, NETD %.5f K (closed form %.5f), asked for %.5f: %.5f\n", N, std::sqrt(bare.variance()),
+              own, 3 * own, std::sqrt(noisy.variance()));
+  EXPECT_NEAR(std::sqrt(bare.variance()) / own, 1, sure);
+  EXPECT_NEAR(std::sqrt(noisy.variance()) / (3 * own), 1, sure);
+  EXPECT_NEAR(bare.mean(), 300, 4.5 * own / 40 + 0.002);
+  EXPECT_NEAR(noisy.mean(), 300, 4.5 * 3 * own / 40 + 0.002);
+  // Negative control: the read noise alone would be another.
+  EXPECT_GT(std::fabs(std::sqrt(bare.variance()) * slope / 300 - 1), sure);
+  EXPECT_THROW(run(strf("background_k: 300, netd_k: %.6g", 0.9 * own)), Error);
+}
+
 TEST(Detector, PoissonHasItsMeanAndVarianceOnBothBranches) {
   for (const double mean : {0.3, 7.0, 29.0, 31.0, 400.0, 1e6}) {
     Pcg32 random(11, static_cast<uint64_t>(mean * 10));

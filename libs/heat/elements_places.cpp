@@ -1,0 +1,44 @@
+// Elements that are left, and places on them as hits.
+#include "base/error.h"
+#include "heat/elements.h"
+
+namespace suite {
+
+void Elements::keep(const std::vector<bool>& kept) {
+  SUITE_CHECK_EQ(kept.size(), elements_.size());
+  std::vector<HeatElement> left;
+  std::vector<uint32_t> first{0};
+  total_area_ = 0;
+  for (size_t c = 0; c + 1 < first_element_.size(); ++c) {
+    for (uint32_t e = first_element_[c]; e < first_element_[c + 1]; ++e)
+      if (kept[e]) left.push_back(elements_[e]), total_area_ += elements_[e].area;
+    first.push_back(static_cast<uint32_t>(left.size()));
+  }
+  elements_ = std::move(left), first_element_ = std::move(first);
+}
+
+std::optional<Hit> Elements::hit_at(const HeatedPlace& place) const {
+  const auto found = slot_of_.find(place.instance);
+  if (found == slot_of_.end() || slots_.empty()) return std::nullopt;
+  const Slot& slot = slots_[found->second];
+  const Group& group = groups_[slot.group];
+  const Vec3 local = slot.to_local.point(place.position);
+  if (!group.mesh) {
+    const PrimitiveFaces& faces = grids_[group.grid].faces;
+    const PrimitiveFaces::Place p = faces.place(local);
+    return tracer_.on_exact(slot.object, local, slot.to_local.normal(place.normal), faces.point(p.face, p.a, p.b).uv,
+                            time_);
+  }
+  const Mesh& mesh = tracer_.scene().meshes[tracer_.object(slot.object).mesh];
+  const auto corner = [&](size_t k) {
+    const float* at = &mesh.positions[3 * size_t{mesh.indices[3 * size_t{place.triangle} + k]}];
+    return mesh.origin + Vec3{double{at[0]}, double{at[1]}, double{at[2]}};
+  };
+  const Vec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a, n = cross(ab, ac);
+  const double scale = dot(n, n);
+  if (!(scale > 0)) return std::nullopt;
+  const double u = dot(cross(local - a, ac), n) / scale, v = dot(cross(ab, local - a), n) / scale;
+  return tracer_.on_triangle(slot.object, place.triangle, u, v, time_);
+}
+
+}  // namespace suite

@@ -1,0 +1,97 @@
+// A roof and a yard under weather, through both programs: the table of expect.md, points against elements, the bands of
+// the mid-wave infrared, and what is refused.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "base/files.h"
+#include "support/sample_kit.h"
+
+namespace suite {
+namespace {
+
+using testing::HasSubstr;
+
+class RoofInWeather : public SampleScene {
+ protected:
+  RoofInWeather() : SampleScene("roof_in_weather") {
+    // What the text names beside its own folder.
+    run_command("mkdir -p " + folder_.path() +
+                "/in && cp " SUITE_SOURCE_DIR "/sample_scenes/summer_street/denver_july.epw " + folder_.path());
+  }
+  void SetUp() override {
+    SampleScene::SetUp();
+    std::string text = read_text(folder_ / "sim.yaml");
+    const std::string from = "../summer_street/";
+    text.erase(text.find(from), from.size());
+    write_file(folder_ / "sim.yaml", text);
+  }
+};
+
+TEST_F(RoofInWeather, ShowsWhatIsExpected) {
+  std::string few = "--paths 2";
+  for (int s = 0; s < 3; ++s) few += strf(" --set sensors.%d.truth=[temperature,temperature_error,sun_hours]", s);
+  render("out", few);
+  struct Place {
+    size_t column, row;
+  };
+  constexpr Place kRoof{40, 36}, kYard{10, 10}, kShade{68, 36};
+  const auto expect = [&](const char* picture, size_t band, std::array<double, 3> kelvin) {
+    for (const auto& [place, wanted] : {std::pair{kRoof, kelvin[0]}, {kYard, kelvin[1]}, {kShade, kelvin[2]}})
+      EXPECT_NEAR(value(picture, place.column, place.row, band), wanted, 1) << picture << band << " " << place.column;
+  };
+  expect("out/night.img", 0, {285.5, 289.9, 290.1});
+  expect("out/afternoon.img", 0, {314.1, 310.6, 304.7});
+  expect("out/midwave.img", 0, {318.3, 315.4, 303.5});
+  expect("out/midwave.img", 1, {313.8, 310.3, 303.2});
+
+  // The same temperatures, of elements alone: the edge of the shadow lies where they have theirs.
+  render("elements", "--heat out/heat.h5 --set heat.final_gather=false " + few);
+  double sharpest[2] = {0, 0}, most = 0;
+  for (size_t column = 70; column < 78; ++column)
+    for (int k = 0; k < 2; ++k) {
+      const char* picture = k == 0 ? "out/afternoon_truth.img" : "elements/afternoon_truth.img";
+      sharpest[k] = std::fmax(sharpest[k], value(picture, column + 1, 36, 0) - value(picture, column, 36, 0));
+      most = std::fmax(most, std::fabs(value("out/afternoon_truth.img", column, 36, 0) -
+                                       value("elements/afternoon_truth.img", column, 36, 0)));
+    }
+  std::printf("points differ from elements by up to %.2f K at the shadow's edge\n", most);
+  EXPECT_GT(most, 1);
+  // Both know as little of the rest; points do not suffer from the size of elements.
+  EXPECT_LT(value("out/afternoon_truth.img", 72, 36, 1), value("elements/afternoon_truth.img", 72, 36, 1));
+}
+
+TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
+  render("out", "--heat-only --set heat.final_gather=false");
+  const CommandResult r = run("dirsig-render sim.yaml -o again --heat out/heat.h5");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("holds temperatures of elements alone, and `final_gather` asks for points"));
+  const CommandResult twice = run("dirsig-render sim.yaml -o again --set heat.repeats=false");
+  EXPECT_EQ(twice.code, 1);
+  EXPECT_THAT(twice.err, HasSubstr("points are told apart from their elements in a span that repeats alone"));
+}
+
+// Elements that the cameras do not see, and that matter less than a hundredth of a kelvin, are left out; the file
+// knows, and refuses those who look elsewhere.
+TEST_F(RoofInWeather, WhatDoesNotMatterIsLeftOut) {
+  const std::string narrow =
+      " --set heat.final_gather=false --set heat.elements=1000 --set sensors.0.columns=12 --set sensors.0.rows=12 "
+      "--set sensors.1.columns=12 "
+      "--set sensors.1.rows=12 --set sensors.2.columns=12 --set sensors.2.rows=12 --paths 2";
+  const CommandResult r =
+      run_command("cd '" + folder_.path() +
+                  "' && " SUITE_BIN_DIR "/dirsig-render sim.yaml -o out --set heat.leave_out_k=0.01" + narrow);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("elements are left out"));
+  const size_t at = r.err.find("elements are left out");
+  if (at != std::string::npos) std::printf("%s\n", r.err.substr(at - 20, 220).c_str());
+  EXPECT_THAT(r.err, testing::Not(HasSubstr("of leave_out_k")));
+  render("again", "--heat out/heat.h5" + narrow);
+  EXPECT_EQ(read_text(folder_ / "again/afternoon.img"), read_text(folder_ / "out/afternoon.img"));
+  const CommandResult wide = run("dirsig-render sim.yaml -o wide --heat out/heat.h5 --set heat.final_gather=false");
+  EXPECT_EQ(wide.code, 1);
+  EXPECT_THAT(wide.err, HasSubstr("elements that the sensors may see were left out"));
+}
+
+}  // namespace
+}  // namespace suite
