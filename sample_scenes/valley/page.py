@@ -40,9 +40,11 @@ def swatch(colour, text):
 
 
 def relative_errors(folder, name):
-    """Of all pixels at the reference band, of radiance (of kelvin: over kelvin)."""
+    """Of the radiance of all pixels at the reference band; of temperatures by the slope of Planck's law at 10.5 um."""
     cube, error = envi.Cube("%s/%s.img" % (folder, name)), envi.Cube("%s/%s_error.img" % (folder, name))
     band = REFERENCE[name]
+    if cube.header.get("data units") == "K":
+        return cube, [e * 14387.77 / (10.5 * v * v) for v, e in zip(cube[band], error[band])]
     return cube, [e / abs(v) if v else 1e9 for v, e in zip(cube[band], error[band])]
 
 
