@@ -155,6 +155,8 @@ def write_scene(path, land, planted):
         town.house(*size).write(os.path.join(os.path.dirname(path), "house_%s.obj" % kind))
         for wall in ("brick",) if kind == "shed" else ("plaster_white", "plaster_yellow", "plaster_grey", "brick"):
             out.write("  %s_%s: {obj: house_%s.obj, normals: facet, materials: {wall: %s}}\n" % (kind, wall, kind, wall))
+        if kind == "shed":
+            continue
         town.panels(*size).write(os.path.join(os.path.dirname(path), "panels_%s.obj" % kind))
         out.write("  panels_%s: {obj: panels_%s.obj, normals: facet}\n" % (kind, kind))
     for name, mesh in (("court", town.courtyard(34, 11, 9.5)), ("car", town.car()), ("bridge", town.bridge(150, 6.1)), ("mast", town.mast()), ("wires", town.wires(150, 5))):
