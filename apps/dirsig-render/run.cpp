@@ -371,6 +371,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   check_sensors(sim, *scene, options);
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
+  options.prepasses = facts.light_above().passes();
   options.heating = warmed(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);

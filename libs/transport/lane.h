@@ -7,6 +7,7 @@
 #include "math/sampling.h"
 #include "optics/scatter_model.h"
 #include "surface/surface.h"
+#include "transport/contribution.h"
 
 namespace suite {
 
@@ -19,20 +20,21 @@ struct Lane {
   uint32_t draw = 0;  // Ray::draw
   Vec3 origin;        // of the next segment
   Dir direction;
-  double time = 0;                           // s
-  std::array<double, 4> u;                   // numbers of the current node
-  double length = 0;                         // m so far
-  double arrival = 0;                        // m so far, times the index of refraction
-  double relative[K];                        // r_k (shares.h)
-  double throughput[K];                      // at the knots, for roulette
-  double before = 1;                         // A before the last event over A after it
-  double last_density = 0;                   // p_h of the last event, without roulette; 0 after a Dirac event or none
-  int knot = 0;                              // whose shapes draw this path
-  uint32_t surfaces = 0;                     // met so far, the receiver included
-  uint32_t scatterings = 0;                  // in media so far
-  uint32_t flights = 0;                      // through media so far
-  uint8_t events = 0;                        // EventKind so far
-  uint8_t received = 0;                      // 1: starts at a receiver
+  double time = 0;           // s
+  std::array<double, 4> u;   // numbers of the current node
+  double length = 0;         // m so far
+  double arrival = 0;        // m so far, times the index of refraction
+  double relative[K];        // r_k (shares.h)
+  double throughput[K];      // at the knots, for roulette
+  double before = 1;         // A before the last event over A after it
+  double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
+  int knot = 0;              // whose shapes draw this path
+  uint32_t surfaces = 0;     // met so far, the receiver included
+  uint32_t scatterings = 0;  // in media so far
+  uint32_t flights = 0;      // through media so far
+  uint8_t events = 0;        // EventKind so far
+  uint8_t received = 0;      // 1: starts at a receiver
+  WaterSeen water = WaterSeen::nothing;
   uint8_t bends = kUnasked;                  // smooth interfaces passed since it last asked for light through them
   static constexpr uint8_t kUnasked = 0xff;  // it never did, or something else happened since
   uint32_t order() const { return surfaces + scatterings; }
