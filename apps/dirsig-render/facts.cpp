@@ -7,7 +7,8 @@
 
 namespace suite {
 
-Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)), light_above_(sim.sensors) {
+Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), light_above_(sim.sensors) {
   if (sim.epoch) clock_ = Clock(*sim.epoch);
   if (const LightSpecPtr sun = sim.sources.sun()) sun_.lights = {sun};
   sun_.dut1 = sim.sources.dut1;

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "formats/sim_text/sim_text.h"
-#include "light_above.h"
 #include "light/environment.h"
+#include "light_above.h"
 #include "scene/scene.h"
 
 namespace suite {

@@ -63,8 +63,7 @@ LightAbove::LightAbove(std::span<const std::unique_ptr<Sensor>> sensors) {
 }
 
 LightAbove::Irradiance LightAbove::of(const Delivery& d, const Band& band) const {
-  const auto asked =
-      std::find_if(asked_.begin(), asked_.end(), [&](const Asked& a) { return a.sensor == &d.sensor; });
+  const auto asked = std::find_if(asked_.begin(), asked_.end(), [&](const Asked& a) { return a.sensor == &d.sensor; });
   SUITE_CHECK(asked != asked_.end());
   const Capture& capture = d.sensor.tasks()[d.result.task].captures[d.result.capture];
   const ImageWishes wishes = d.sensor.wishes(capture);

@@ -20,8 +20,8 @@ QuantityText text_of(Quantity quantity, OutputSpec::Units units);
 // Turns the numbers of one capture. Radiance: times what the units want. Reflectance: pi L / (E cos), E the band's mean
 // of the sun's irradiance on a plane facing it and cos that of its zenith angle at the scene's origin, in the middle of
 // the capture. Temperature: of the blackbody with that radiance over the band, its error by the slope there; NaN where
-// there is none. Remote-sensing reflectance: over the downward irradiance that the pre-passes have found, with its error
-// in that of each value. Columns with responses of their own are turned by these.
+// there is none. Remote-sensing reflectance: over the downward irradiance that the pre-passes have found, with its
+// error in that of each value. Columns with responses of their own are turned by these.
 class Conversion {
  public:
   Conversion(const Delivery& delivery, Quantity quantity, OutputSpec::Units units, const Facts& facts);
