@@ -1,12 +1,14 @@
 #include "facts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scheduler/moments.h"
 
 namespace suite {
 
-Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+Facts::Facts(const Simulation& sim, std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), light_above_(sim.sensors) {
   if (sim.epoch) clock_ = Clock(*sim.epoch);
   if (const LightSpecPtr sun = sim.sources.sun()) sun_.lights = {sun};
   sun_.dut1 = sim.sources.dut1;
@@ -25,6 +27,18 @@ std::array<double, 2> azimuth_elevation_deg(Dir d) {
   return {azimuth < 0 ? azimuth + 360 : azimuth, std::atan2(d.z, std::hypot(d.x, d.y)) / kDegree};
 }
 
+namespace {
+
+// Remote-sensing reflectance is that of a part of the light.
+void check_water(const Sensor& sensor, const ImageWishes& wishes) {
+  const std::span<const std::string> channels = sensor.channels();
+  if (std::find(channels.begin(), channels.end(), "water_leaving") == channels.end())
+    throw Error(wishes.where, "units: remote_sensing_reflectance is that of the light that leaves water",
+                "channels: [water_leaving]");
+}
+
+}  // namespace
+
 void check_wishes(const Simulation& sim, const Facts& facts) {
   for (size_t s = 0; s < sim.sensors.size(); ++s) {
     const std::unique_ptr<Sensor>& sensor = sim.sensors[s];
@@ -36,6 +50,7 @@ void check_wishes(const Simulation& sim, const Facts& facts) {
               sim.sensor_where[s],
               "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
               "leave out one of the two");
+        if (wishes.quantity == Quantity::remote_sensing_reflectance) check_water(*sensor, wishes);
         if (wishes.quantity != Quantity::toa_reflectance) continue;
         const std::optional<FarDisk> sun = facts.sun(moment_of(c));
         if (!sun)

@@ -199,7 +199,8 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
 // Which elements the first rank left out.
 void share_kept(PreparedHeat& p, Ranks& ranks) {
   std::vector<std::byte> bytes;
-  if (ranks.leads()) bytes.assign(std::as_bytes(std::span(p.cut.kept)).begin(), std::as_bytes(std::span(p.cut.kept)).end());
+  if (ranks.leads())
+    bytes.assign(std::as_bytes(std::span(p.cut.kept)).begin(), std::as_bytes(std::span(p.cut.kept)).end());
   ranks.share(bytes);
   if (ranks.leads()) return;
   std::vector<uint32_t> kept(bytes.size() / sizeof(uint32_t));

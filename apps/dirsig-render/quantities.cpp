@@ -22,6 +22,8 @@ QuantityText text_of(Quantity quantity, OutputSpec::Units units) {
   static const char* const kUnits[] = {"W/(m2 sr um)", "W/(cm2 sr um)", "photons/(s m2 sr um)"};
   if (quantity == Quantity::toa_reflectance) return {"top-of-atmosphere reflectance", "reflectance"};
   if (quantity == Quantity::brightness_temperature) return {"brightness temperature", "K"};
+  if (quantity == Quantity::remote_sensing_reflectance)
+    return {"radiance over the downward irradiance above the water", "1/sr"};
   return {"spectral radiance", kUnits[static_cast<size_t>(units)]};
 }
 
@@ -33,13 +35,19 @@ Conversion::Conversion(const Delivery& d, Quantity quantity, OutputSpec::Units u
   if (quantity == Quantity::toa_reflectance)
     sun = facts.sun(moment_of(d.sensor.tasks()[d.result.task].captures[d.result.capture]));
   for (const ColumnBands& c : columns) {
-    Part part{c.columns, {}, {}};
+    Part part{c.columns, {}, {}, {}};
     for (const Band& b : c.bands) {
-      if (quantity == Quantity::brightness_temperature)
+      part.doubt.push_back(0);
+      if (quantity == Quantity::brightness_temperature) {
         part.thermometers.emplace_back(b);
-      else
+      } else if (quantity == Quantity::remote_sensing_reflectance) {
+        const LightAbove::Irradiance down = facts.light_above().of(d, b);
+        part.factor.push_back(1 / down.mean);
+        part.doubt.back() = down.error / down.mean;
+      } else {
         part.factor.push_back(sun ? kPi / (band_mean(b, sun->irradiance) * normalized(sun->direction).z)
                                   : unit_factor(units, b));
+      }
     }
     parts_.push_back(std::move(part));
   }
@@ -53,7 +61,8 @@ void Conversion::apply(std::span<double> values, std::span<double> errors) const
       for (size_t v = 0; v < part.columns * per_pixel_; ++v, ++at) {
         const size_t band = v % per_pixel_ % bands_;
         if (part.thermometers.empty()) {
-          values[at] *= part.factor[band], errors[at] *= part.factor[band];
+          values[at] *= part.factor[band];
+          errors[at] = std::hypot(errors[at] * part.factor[band], values[at] * part.doubt[band]);
           continue;
         }
         const BandThermometer::Reading t = part.thermometers[band].read(values[at]);

@@ -20,7 +20,8 @@ QuantityText text_of(Quantity quantity, OutputSpec::Units units);
 // Turns the numbers of one capture. Radiance: times what the units want. Reflectance: pi L / (E cos), E the band's mean
 // of the sun's irradiance on a plane facing it and cos that of its zenith angle at the scene's origin, in the middle of
 // the capture. Temperature: of the blackbody with that radiance over the band, its error by the slope there; NaN where
-// there is none. Columns with responses of their own are turned by these.
+// there is none. Remote-sensing reflectance: over the downward irradiance that the pre-passes have found, with its
+// error in that of each value. Columns with responses of their own are turned by these.
 class Conversion {
  public:
   Conversion(const Delivery& delivery, Quantity quantity, OutputSpec::Units units, const Facts& facts);
@@ -31,6 +32,7 @@ class Conversion {
   struct Part {
     size_t columns = 0;
     std::vector<double> factor;                 // of each band
+    std::vector<double> doubt;                  // its relative standard error
     std::vector<BandThermometer> thermometers;  // of each band, or none
   };
   size_t per_pixel_ = 0, bands_ = 0, columns_ = 0;

@@ -327,11 +327,12 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   return options;
 }
 
-// Temperatures that the weather makes, when all wishes can be met; kept of a run that has results.
-Heating warmed(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
-               const RenderOptions& o, const Facts& facts, Ranks* ranks) {
+// Temperatures that the weather makes, kept of a run that has results, and what finds the light from above.
+void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation& sim, JobOptions& options,
+                     const RenderOptions& o, const Facts& facts, Ranks* ranks) {
   if (!o.heat_only) check_wishes(sim, facts);
-  return heating_of(scene, sim, options, o, o.ranks.empty() && o.study.empty() ? o.output : "", ranks);
+  options.heating = heating_of(scene, sim, options, o, o.ranks.empty() && o.study.empty() ? o.output : "", ranks);
+  options.prepasses = facts.light_above().passes();
 }
 
 }  // namespace
@@ -372,7 +373,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   check_sensors(sim, *scene, options);
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
-  options.heating = warmed(scene, sim, options, o, facts, ranks);
+  find_beforehand(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
   if (!o.study.empty()) return run_study_command(o, scene, sim, options, study);

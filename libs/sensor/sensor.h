@@ -123,13 +123,14 @@ enum QualityFlag : uint8_t {
 
 // What the numbers of an image are, and what goes with it. Paths, errors, targets and products know radiance only: it
 // is turned into the quantity when it is delivered.
-enum class Quantity { radiance, toa_reflectance, brightness_temperature };
+enum class Quantity { radiance, toa_reflectance, brightness_temperature, remote_sensing_reflectance };
 struct ImageWishes {
   Quantity quantity = Quantity::radiance;
   Where where = {};          // where the user asked for it, for messages
   bool geolocation = false;  // the place of every pixel and a table that maps it, beside the image; needs the truth
                              // `location`
   double pixel_m = 0;        // of the table's grid; 0 = from the data
+  Vec3 irradiance_at = {};   // m, ENU: where light from above is taken that remote-sensing reflectance is over
 };
 
 // A text that a sensor writes: a log, a table of results.

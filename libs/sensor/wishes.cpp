@@ -7,8 +7,12 @@ namespace suite {
 void read_units(const Params& params, ImageWishes& wishes) {
   const auto units = params.find("units");
   if (!units) return;
-  wishes.quantity = static_cast<Quantity>(units->as_choice({"radiance", "toa_reflectance", "brightness_temperature"}));
+  wishes.quantity = static_cast<Quantity>(
+      units->as_choice({"radiance", "toa_reflectance", "brightness_temperature", "remote_sensing_reflectance"}));
   wishes.where = units->where();
+  if (wishes.quantity != Quantity::remote_sensing_reflectance) return;
+  const auto [x, y, z] = params.at("irradiance_at_m").as_vec3();
+  wishes.irradiance_at = {x, y, z};
 }
 
 ImageWishes read_wishes(const Params& params, std::vector<std::string>& truth) {

@@ -1,5 +1,7 @@
 #include "transport/channels.h"
 
+#include <algorithm>
+
 namespace suite {
 
 const Registry<ChannelRow>& channel_rows() {
@@ -28,13 +30,31 @@ const Registry<ChannelRow>& channel_rows() {
        {{"adjacency",
          "what media scatter on the way; with real air: the difference that the scene makes to the field over an even "
          "ground, light of single places and shadows, which may be negative",
-         "W/(m2 sr um)", when([](const Contribution& c) { return (c.events & by_medium) != 0; })}}});
+         "W/(m2 sr um)", when([](const Contribution& c) { return (c.events & by_medium) != 0; })}},
+       {{"water_leaving", "what comes out of water through its surface, whatever it met there", "W/(m2 sr um)",
+         when([](const Contribution& c) { return c.water == WaterSeen::entered; })},
+        false,
+        true},
+       {{"glint", "sun and moon that surfaces of water reflect", "W/(m2 sr um)",
+         when([](const Contribution& c) { return c.water == WaterSeen::mirrored && c.beam; })},
+        false,
+        true},
+       {{"sky_reflection", "sky, its clouds and its air that surfaces of water reflect", "W/(m2 sr um)",
+         when([](const Contribution& c) {
+           return c.water == WaterSeen::air || (c.water == WaterSeen::mirrored && !c.beam);
+         })},
+        false,
+        true}});
   return table;
 }
 
 ChannelPlan::ChannelPlan(std::span<const std::string> names) {
   for (const std::string& name : names) rows_.push_back(&channel_rows().find(name));
   SUITE_CHECK(!rows_.empty() && rows_.front() == &*channel_rows().begin());
+}
+
+bool ChannelPlan::of_water() const {
+  return std::any_of(rows_.begin(), rows_.end(), [](const ChannelRow* row) { return row->of_water; });
 }
 
 ChannelPlan::ChannelPlan(std::vector<const ChannelRow*> rows) : rows_(std::move(rows)) { SUITE_CHECK(!rows_.empty()); }

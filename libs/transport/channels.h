@@ -15,6 +15,7 @@ struct ChannelRow : RegistryRow<float(const Contribution&)> {
   // Shares may be negative, and so may what a path brings: a sample that is not finite is rejected, but none for its
   // sign.
   bool is_signed = false;
+  bool of_water = false;  // looks at Contribution::water
 };
 // The first is `radiance`, all light.
 const Registry<ChannelRow>& channel_rows();
@@ -29,6 +30,7 @@ class ChannelPlan {
   // Of a channel beside radiance, 1 .. size() - 1.
   float share(size_t channel, const Contribution& c) const { return rows_[channel]->make(c); }
   bool is_signed(size_t channel) const { return rows_[channel]->is_signed; }
+  bool of_water() const;  // one of them is
   bool operator==(const ChannelPlan&) const = default;
 
  private:

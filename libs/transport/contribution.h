@@ -34,15 +34,26 @@ inline constexpr uint16_t kFromAir = 0xfffe;     // path radiance of the air
 // What happened to the light between its source and the sensor.
 enum EventKind : uint8_t { by_surface = 1, by_medium = 2, by_dirac = 4 };
 
+// What a line of sight has come to since it left the sensor, as far as water tells it apart. Water: whatever is
+// looked into through a refracting surface (models `dielectric` and `ggx_dielectric`), and the model `sea`.
+enum class WaterSeen : uint8_t {
+  nothing,   // yet; or nobody asks (KernelContext::waters)
+  mirrored,  // reflected by surfaces of water, from outside, and met nothing else
+  air,       // so, and then scattered in what fills space above
+  entered,   // went into water, whatever it met there
+  other,     // anything else came first
+};
+
 struct Contribution {
-  uint32_t path = 0;                // lane of the kernel
-  uint32_t order = 0;               // scattering events between the light and the sensor
-  uint16_t light = kFromMatter;     // index into Environment::lights, or kFromMatter, kFromAir
-  uint8_t events = 0;               // kinds of events on the way, a set of EventKind
-  bool asked = false;               // an explicit sample; else met by chance
-  bool beam = false;                // of the sun's or the moon's disk
-  float scale = 1;                  // shares and densities (shares.h); may be negative where a sink allows it
-  Factor factor;                    // stays valid while the sink runs
+  uint32_t path = 0;                     // lane of the kernel
+  uint32_t order = 0;                    // scattering events between the light and the sensor
+  uint16_t light = kFromMatter;          // index into Environment::lights, or kFromMatter, kFromAir
+  uint8_t events = 0;                    // kinds of events on the way, a set of EventKind
+  bool asked = false;                    // an explicit sample; else met by chance
+  bool beam = false;                     // of the sun's or the moon's disk
+  WaterSeen water = WaterSeen::nothing;  // on the way to the light; `mirrored` for lights outside the scene only
+  float scale = 1;                       // shares and densities (shares.h); may be negative where a sink allows it
+  Factor factor;                         // stays valid while the sink runs
   const float* radiance = nullptr;  // of the light, per bin, W/(m2 sr um) (times what its density lacks); null = ones
   double arrival = 0;               // m, optical path (index of refraction times way) from the light to the sensor
   // Light that is known of, but did not arrive (lost_light.h): the chance that a continuation would have met it.

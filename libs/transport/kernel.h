@@ -20,6 +20,7 @@
 #include "transport/shares.h"
 #include "transport/space_nothing.h"
 #include "transport/surfaces_any.h"
+#include "transport/waters.h"
 
 // Functions of the inner loop that are called from one place: compilers inline those of templates only when told to.
 #define SUITE_INLINE [[gnu::always_inline]] inline
@@ -130,7 +131,10 @@ class PathKernel final : public PathTracing {
   bool is_owned(const Question& q, size_t ray);
   SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
   SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
-  // The next contribution, of path p as it stands; it counts from contribute() on.
+  // What path p has come to of water when it goes on from a node of the stage towards `in`.
+  WaterSeen water_behind(const NodeAt& node, Dir in) const;
+  // The next contribution, of path p as it stands; it counts from contribute() on. Its `water` is right for light of
+  // the scene's things.
   SUITE_INLINE Contribution& contribution(uint32_t p, uint16_t light);
   void contribute() { ++pending_; }
   void hand_over();
@@ -161,6 +165,7 @@ class PathKernel final : public PathTracing {
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;
   std::unique_ptr<RefractedSight> refracted_;  // null where nothing refracts
+  const Waters waters_;
   std::vector<Asked> asked_;
   std::vector<Asked> outside_, glowing_;  // lights that rays meet by chance: leaving the scene, at surfaces
   Surfaces surfaces_;

@@ -23,6 +23,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       draws_(c.surface.tracer().has_holes() || may_lose(c)),
       lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
       refracted_(Surfaces::kDense > 0 && refracts(c) ? std::make_unique<RefractedSight>(c.surface, c.optics) : nullptr),
+      waters_(c),
       surfaces_(c.surface, c.optics, width, c.keep_first),
       space_(SpaceContext{c.surface, c.optics, c.environment, c.options, width,
                           std::span<const double>(probability_).first(knots_), lost_.get()}),
@@ -51,10 +52,10 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::list_lights() {
   for (size_t i = 0; i < environment_.lights.size(); ++i) {
     const Light& light = *environment_.lights[i];
-    Asked asked{&light, static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0, std::nullopt, false};
+    Asked asked{&light,       static_cast<uint16_t>(i), light.nature(), dimensions::kOfScatter, 0,
+                std::nullopt, light.beam().has_value()};
     if (!asked.nature.delta) (asked.nature.far ? outside_ : glowing_).push_back(asked);
     if (!options_.explicit_sources || !light.nature().drawn) continue;
-    asked.beam = light.beam().has_value();
     if (asked.nature.far && asked.nature.delta) asked.only = light.sample({}, {}, 0);
     asked_.push_back(asked);
   }
@@ -92,6 +93,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
   path.bends = Path::kUnasked;
+  path.water = WaterSeen::nothing;
   path.knot = 0;
   std::fill_n(path.relative, knots(), 1.0);
   std::fill_n(path.throughput, knots(), 1.0);
@@ -174,6 +176,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   if (!throughputs_.has_room(p, Space::kDense)) throughputs_.make_room(p);
   const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
   Contribution& c = contribution(p, Space::kEmitter);
+  c.water = path.water;
   if constexpr (Space::kGoesBack) passed_[p].before = path;
   const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
@@ -327,6 +330,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
     if (options_.explicit_sources && path.last_density > 0 && met->density > 0)
       c.scale *= static_cast<float>(Estimator::by_chance(light.nature, path.before * met->density / path.last_density));
     c.beam = light.beam;
+    c.water = path.water;
     c.radiance = met->spectrum;
     if (!c.radiance) c.radiance = memory.data();
     if (c.scale != 0) contribute();

@@ -134,6 +134,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const uint32_t p = node.path;
   Path& path = paths_[p];
   if (refracted_) path.bends = bends_behind(node, on);
+  if (waters_.any()) path.water = water_behind(node, on.in);
   if constexpr (Space::kScatters) {
     ++path.flights;
     if (node.event) {

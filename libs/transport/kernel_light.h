@@ -151,6 +151,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::lack(const Question& q
   }
   Contribution& c = contribution(node.path, q.light);
   c.asked = c.beam = true;
+  if (waters_.any()) c.water = water_behind(node, q.direction);
   c.scale = static_cast<float>(-q.scale / (q.density > 0 ? q.density : 1));
   c.factor = {1, memory.data()};
   c.radiance = radiance;
@@ -199,12 +200,25 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   c.events |= node.event ? by_medium : by_surface;
   c.asked = true;
   c.beam = q.beam;
+  if (waters_.any()) {
+    c.water = water_behind(node, q.direction);
+    if (c.water == WaterSeen::mirrored && distance < std::numeric_limits<double>::infinity())
+      c.water = WaterSeen::other;
+  }
   c.scale = static_cast<float>(passes * q.scale / denominator);
   c.factor = factor;
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
   if (distance < std::numeric_limits<double>::infinity()) c.arrival += space_.optical_way(p, i, distance);
   contribute();
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+WaterSeen PathKernel<Surfaces, Space, Throughputs, Estimator>::water_behind(const NodeAt& node, Dir in) const {
+  const Path& path = paths_[node.path];
+  if (node.event) return Waters::behind_scattering(path.water);
+  return waters_.behind_surface(path.water, surfaces_.material(node.path), hits_[node.slot].normal, -path.direction,
+                                in);
 }
 
 // Far lights shine evenly in time: their arrival is that of the last event.
@@ -217,6 +231,7 @@ Contribution& PathKernel<Surfaces, Space, Throughputs, Estimator>::contribution(
   c.light = light;
   c.events = path.events;
   c.asked = c.beam = false;
+  c.water = path.water == WaterSeen::mirrored ? WaterSeen::other : path.water;
   c.order = path.order();
   c.scale = 1;
   c.factor = {};

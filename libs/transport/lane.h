@@ -7,6 +7,7 @@
 #include "math/sampling.h"
 #include "optics/scatter_model.h"
 #include "surface/surface.h"
+#include "transport/contribution.h"
 
 namespace suite {
 
@@ -33,9 +34,10 @@ struct Lane {
   uint32_t flights = 0;      // through media so far
   uint8_t events = 0;        // EventKind so far
   uint8_t received = 0;      // 1: starts at a receiver
+  WaterSeen water = WaterSeen::nothing;
   uint8_t bends = kUnasked;  // smooth interfaces met since it last asked for light through them
-  static constexpr uint8_t kUnasked =
-      0xff;  // it never did, or the first of them reflected, or something else happened since
+  // It never did, or the first of them reflected, or something else happened since.
+  static constexpr uint8_t kUnasked = 0xff;
   uint32_t order() const { return surfaces + scatterings; }
 };
 

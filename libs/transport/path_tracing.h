@@ -36,6 +36,7 @@ struct KernelContext {
   const PipelineOptions& options;
   bool keep_first = false;  // truth wants to know the first surfaces
   bool receivers = false;   // rays may start at receivers
+  bool waters = false;      // contributions are to tell what they have to do with water
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

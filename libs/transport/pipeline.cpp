@@ -61,7 +61,7 @@ std::unique_ptr<const Environment> suns_of(const Capture& capture, const Spectra
 }  // namespace
 
 KernelContext Pipeline::context(const Environment& environment) const {
-  return {surface_, optics_, environment, options_, truth_.wanted()};
+  return {surface_, optics_, environment, options_, truth_.wanted(), false, channels_.of_water()};
 }
 
 bool Pipeline::may_miss(const Capture& capture) const {

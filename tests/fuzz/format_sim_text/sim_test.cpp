@@ -27,7 +27,7 @@ const std::string kSensors =
     "true, " +
     kBands +
     "}\n  - {kind: orthographic, name: c, columns: 3, rows: 3, gsd_m: 1, center_m: [0, 0], truth: [range], units: "
-    "toa_reflectance, geolocation: {pixel_m: 2}, " +
+    "remote_sensing_reflectance, irradiance_at_m: [0, 0, 1], channels: [water_leaving], geolocation: {pixel_m: 2}, " +
     kBands +
     "}\n  - {kind: point, name: d, collectors: [{quantity: radiance, position_m: [0, 0, 1], look: [0, 1, -1]}], " +
     kBands +

@@ -2,7 +2,7 @@
 // "Comparison of numerical models for computing underwater light fields", Appl. Opt. 32, 1993, at b / c of 0.2 and 0.9.
 // A solution by matrices (tests/support/ocean_reference.h) is compared with the published means, and the renderer with
 // that solution, of two layers as well: within 1 % of irradiances and 2 % of the nadir radiance and three standard
-// errors; the run under the label `long` (SUITE_LONG) resolves these bounds with 64 times the paths.
+// errors; in the run under the label `long` (SUITE_LONG) within these bounds, with a noise of a third of them.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -67,6 +67,17 @@ Medium water(bool petzold, double albedo) {
   m.index = Curve::constant(kIndex);
   return m;
 }
+// A plane that faces along its ray, as the collectors of `point` sensors.
+class FluxReceiver final : public RaySensor {
+ public:
+  using RaySensor::RaySensor;
+  SensorRay ray(const RayRequest& r) const override {
+    SensorRay out{rays_[r.problem], kPi};
+    out.receiver = SensorRay::Receiver::plane;
+    return out;
+  }
+};
+
 std::shared_ptr<Scene> ocean(bool petzold, double albedo, const std::optional<Medium>& deep = std::nullopt) {
   auto scene = std::make_shared<Scene>();
   scene->media = {water(petzold, albedo)};
@@ -84,35 +95,46 @@ std::shared_ptr<Scene> ocean(bool petzold, double albedo, const std::optional<Me
   return scene;
 }
 
-struct Seen {
-  Repeated down, up, nadir;
-};
-// 64 problems of each kind.
-Seen look(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, double depth, uint32_t paths) {
-  const Vec3 at{0, 0, -depth};
+bool long_run() { return std::getenv("SUITE_LONG") != nullptr; }
+constexpr uint32_t kPaths = 2048;
+constexpr int kMostRounds = 4096;
+
+// What 64 problems alike see, in rounds with numbers of their own: one, in the long run as many as make the noise a
+// third of the bound.
+template <class Kind>
+Repeated look(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, const Ray& ray, double enough) {
   PipelineOptions options;
-  options.seed = 3;
   options.max_scatterings = 100000;
-  const auto run = [&](auto sensor) {
-    const auto r = render(scene, sources, std::move(sensor), options);
+  double sum = 0, square = 0;
+  for (int round = 1;; ++round) {
+    options.seed = 2 + static_cast<uint64_t>(round);
+    const auto r = render(scene, sources, std::make_unique<Kind>(repeated(ray), one_band(), kPaths), options);
     EXPECT_EQ(r.report.statistics.failures, 0u);
-    return over_problems(r.result, 0);
-  };
-  Seen s;
-  s.down = run(std::make_unique<FluxSensor>(repeated({at, {0, 0, 1}, 0}), one_band(), paths));
-  s.up = run(std::make_unique<FluxSensor>(repeated({at, {0, 0, -1}, 0}), one_band(), paths));
-  s.nadir = run(std::make_unique<RaySensor>(repeated({at, {0, 0, -1}, 0}), one_band(), paths));
-  return s;
+    const Repeated one = over_problems(r.result, 0);
+    sum += one.mean, square += one.error * one.error;
+    const Repeated all{sum / round, std::sqrt(square) / round};
+    if (!long_run() || all.error < enough || round == kMostRounds) return all;
+  }
 }
 
-bool long_run() { return std::getenv("SUITE_LONG") != nullptr; }
-uint32_t paths(uint32_t quick) { return long_run() ? 64 * quick : quick; }
-
-void expect(const char* what, const Repeated& seen, double scale, double truth, double bound) {
+template <class Kind>
+void expect(const char* what, const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, const Ray& ray,
+            double scale, double truth, double bound) {
+  const Repeated seen = look<Kind>(scene, sources, ray, bound / 3 * truth / scale);
   const double error = scale * seen.mean / truth - 1, noise = scale * seen.error / truth;
   std::printf("  %s %.5g, %+.2f %% +- %.2f %%\n", what, truth, 100 * error, 100 * noise);
-  EXPECT_LT(std::fabs(error), bound + 3 * noise) << what;
-  EXPECT_LT(noise, long_run() ? bound : 0.12) << what << ": not resolved";
+  std::fflush(stdout);
+  // Three errors of 64 means: p = 0.004.
+  EXPECT_LT(std::fabs(error), long_run() ? bound : bound + 3 * noise) << what;
+  EXPECT_LT(noise, long_run() ? bound / 3 : 0.15) << what << ": not resolved";
+}
+
+void expect_all(const std::shared_ptr<const Scene>& scene, const SourceSpecs& sources, double depth,
+                const OceanLight& truth) {
+  const Vec3 at{0, 0, -depth};
+  expect<FluxReceiver>("Ed", scene, sources, {at, {0, 0, 1}, 0}, 1, truth.down, 0.01);
+  expect<FluxReceiver>("Eu", scene, sources, {at, {0, 0, -1}, 0}, 1, truth.up, 0.01);
+  expect<RaySensor>("Lu", scene, sources, {at, {0, 0, -1}, 0}, 1, truth.nadir, 0.02);
 }
 
 TEST(Ocean, RendersAsTheReferenceUnderASky) {
@@ -122,51 +144,53 @@ TEST(Ocean, RendersAsTheReferenceUnderASky) {
     for (const double albedo : {0.2, 0.9}) {
       const OceanReference reference(phase_of(petzold), albedo, kIndex, kMuSun, 16);
       std::printf("sky, problem %d, b/c %.1f\n", petzold ? 2 : 1, albedo);
-      const Seen seen = look(ocean(petzold, albedo), sources, 1, paths(2048));
-      const OceanLight truth = reference.under_sky(1);
-      expect("Ed", seen.down, kPi, truth.down, 0.01);
-      expect("Eu", seen.up, kPi, truth.up, 0.01);
-      expect("Lu", seen.nadir, 1, truth.nadir, 0.02);
+      expect_all(ocean(petzold, albedo), sources, 1, reference.under_sky(1));
     }
 }
 
-// One depth of molecules that scatter much upon particles that absorb much, at the border of both.
+// One depth of molecules that scatter much upon particles that absorb much, at the border of both: what problem 3 is
+// about (water in layers). Its own profile of chlorophyll was not found in a source that can be cited.
 TEST(Ocean, RendersLayersAsTheReference) {
   SourceSpecs sources;
   sources.add(uniform_sky(1, false));
   const OceanReference upper(phase_of(false), 0.9, kIndex, kMuSun, 16), deep(phase_of(true), 0.9, kIndex, kMuSun, 16);
   const OceanLight truth = upper.under_sky_upon(deep, 1);
   EXPECT_GT(upper.under_sky(1).up / truth.up, 2) << "the layer below matters";
-  const Seen seen = look(ocean(false, 0.9, water(true, 0.9)), sources, 1 - 1e-6, paths(2048));
   std::printf("sky, two layers\n");
-  expect("Ed", seen.down, kPi, truth.down, 0.01);
-  expect("Eu", seen.up, kPi, truth.up, 0.01);
-  expect("Lu", seen.nadir, 1, truth.nadir, 0.02);
+  expect_all(ocean(false, 0.9, water(true, 0.9)), sources, 1 - 1e-6, truth);
 }
 
-// The sun at 60 degrees, turned about the vertical: a ring. For what is compared that is the same.
-TEST(Ocean, RendersAsTheReferenceUnderARing) {
+// The sun at 60 degrees, which is asked for through the surface.
+TEST(Ocean, RendersAsTheReferenceUnderTheSun) {
+  SourceSpecs sources;
+  sources.add(SunSpec{dir_from_angles(std::acos(kMuSun), 0.3), 0, Curve::constant(1 / kMuSun)});
+  for (const double albedo : {0.2, 0.9}) {
+    const OceanReference reference(phase_of(false), albedo, kIndex, kMuSun, 16);
+    std::printf("sun, problem 1, b/c %.1f\n", albedo);
+    expect_all(ocean(false, albedo), sources, 1, reference.under_sun(1));
+  }
+}
+
+// Particles: a place that asks for a sun as small as this looks into the peak of what they scatter forwards, whose
+// square has no mean that can be sampled. So it is met by chance here, and turned about the vertical: a ring from 58 to
+// 62 degrees. For what is compared that is the same. b / c of 0.2 would take hours.
+TEST(Ocean, RendersParticlesAsTheReferenceUnderARing) {
+  if (!long_run()) GTEST_SKIP() << "minutes until it is resolved";
   const double inner = 58 * kDegree, outer = 62 * kDegree, high = std::cos(inner), low = std::cos(outer);
   RingSpec ring;
   ring.inner = inner, ring.outer = outer;
   ring.radiance = Curve::constant(1 / (kPi * (high * high - low * low)));
   SourceSpecs sources;
   sources.add({std::make_shared<const RingLight>(ring)});
-  for (const bool petzold : {false, true}) {
-    if (petzold && !long_run()) continue;  // found by chance alone; minutes until it is resolved
-    std::printf("ring, problem %d, b/c 0.9\n", petzold ? 2 : 1);
-    // Gauss's two points in the squared cosine, which is what the flux goes by.
-    OceanLight truth;
-    for (const double side : {-1.0, 1.0}) {
-      const double mu2 = 0.5 * (high * high + low * low) + side / std::sqrt(3.0) * 0.5 * (high * high - low * low);
-      const OceanLight l = OceanReference(phase_of(petzold), 0.9, kIndex, std::sqrt(mu2), 16).under_sun(1);
-      truth.down += 0.5 * l.down, truth.up += 0.5 * l.up, truth.nadir += 0.5 * l.nadir;
-    }
-    const Seen seen = look(ocean(petzold, 0.9), sources, 1, paths(2048));
-    expect("Ed", seen.down, kPi, truth.down, 0.01);
-    expect("Eu", seen.up, kPi, truth.up, 0.01);
-    expect("Lu", seen.nadir, 1, truth.nadir, 0.02);
+  // Gauss's two points in the squared cosine, which is what the flux goes by.
+  OceanLight truth;
+  for (const double side : {-1.0, 1.0}) {
+    const double mu2 = 0.5 * (high * high + low * low) + side / std::sqrt(3.0) * 0.5 * (high * high - low * low);
+    const OceanLight l = OceanReference(phase_of(true), 0.9, kIndex, std::sqrt(mu2), 16).under_sun(1);
+    truth.down += 0.5 * l.down, truth.up += 0.5 * l.up, truth.nadir += 0.5 * l.nadir;
   }
+  std::printf("ring, problem 2, b/c 0.9\n");
+  expect_all(ocean(true, 0.9), sources, 1, truth);
 }
 
 }  // namespace

@@ -10,9 +10,7 @@
 namespace suite::sqt {
 namespace {
 
-std::shared_ptr<const Bundle> fitted(double width) {
-  return make_bundle(test::small_fit(test::glossy(width)).data);
-}
+std::shared_ptr<const Bundle> fitted(double width) { return make_bundle(test::small_fit(test::glossy(width)).data); }
 
 TEST(Bundle, AnswersForThePairAsked) {
   auto narrow = fitted(0.1);
