@@ -229,6 +229,21 @@ CityModel Reader::finish() {
   return std::move(model_);
 }
 
+// Are all brackets that a line opens closed on it?
+bool closes(std::string_view line) {
+  int depth = 0;
+  bool opened = false, quoted = false;
+  for (size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    if (quoted && c == '\\') ++k;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '{' || c == '[') ++depth, opened = true;
+    if (c == '}' || c == ']') --depth;
+  }
+  return opened && depth == 0;
+}
+
 }  // namespace
 
 CityModel parse_json(std::string_view text, const std::string& file, const std::optional<std::string>& lod,
@@ -236,10 +251,7 @@ CityModel parse_json(std::string_view text, const std::string& file, const std::
   Reader reader(file, lod, report);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   // A sequence has its first document on its first line; anything else is one document.
-  const size_t end = text.find('\n');
-  const std::string_view first = text.substr(0, end);
-  const size_t last = first.find_last_not_of(" \t\r");
-  const bool whole_line = last != first.npos && first[last] == '}' && first.find('{') != first.npos;
+  const bool whole_line = closes(text.substr(0, text.find('\n')));
   if (!whole_line) {
     reader.document(Params::parse_json(text, file), 0);
     return reader.finish();

@@ -111,7 +111,9 @@ std::string city_format(const std::string& path, std::string_view head) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool json = name.ends_with(".json") || name.ends_with(".jsonl") || name.ends_with(".cityjson");
-  if (json && head.find("\"CityJSON") != head.npos) return "cityjson";
+  const bool named = name.ends_with(".city.json") || name.ends_with(".city.jsonl") || name.ends_with(".cityjson");
+  if (named || (json && (head.find("\"CityJSON") != head.npos || head.find("\"CityObjects\"") != head.npos)))
+    return "cityjson";
   if ((name.ends_with(".gml") || name.ends_with(".xml") || name.ends_with(".citygml")) &&
       head.find("CityModel") != head.npos)
     return "citygml";
