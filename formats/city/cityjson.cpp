@@ -52,7 +52,7 @@ class Reader {
   int line_ = 0;
   std::optional<Params> templates_;
   Vertices template_vertices_;
-  size_t lines_ = 0, none_ = 0, unshaped_ = 0, textured_ = 0;
+  size_t placed_ = 0, lines_ = 0, none_ = 0, unshaped_ = 0, textured_ = 0;
 };
 
 void Reader::head(const Params& root) {
@@ -165,8 +165,8 @@ void Reader::instance(const Params& g, const std::string& at, const Vertices& ve
   geometry(shape, strf("geometry-templates/templates[%zu]", number), template_vertices_, type, made);
   const Affine3 turn{{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
   for (CityModel::Surface& surface : made) {
-    for (auto& ring : surface.rings)
-      for (Vec3& p : ring) p = turn.point(p) + vertices[static_cast<size_t>(v)];
+    if (!place_copy(surface, turn, vertices[static_cast<size_t>(v)], placed_))
+      throw fault(at, "copies of templates have more than 2e7 corners", "place them as objects of a scene text");
     to.push_back(std::move(surface));
   }
 }

@@ -16,6 +16,15 @@ std::optional<double> level_of(std::string_view text) {
   return value && *value >= 0 && *value < 10 ? value : std::nullopt;
 }
 
+bool place_copy(CityModel::Surface& surface, const Affine3& turn, Vec3 at, size_t& corners) {
+  constexpr size_t kMostCorners = 20'000'000;
+  for (std::vector<Vec3>& ring : surface.rings) {
+    corners += ring.size();
+    for (Vec3& p : ring) p = turn.point(p) + at;
+  }
+  return corners <= kMostCorners;
+}
+
 std::optional<double> chosen(const std::vector<double>& levels, const std::optional<std::string>& wanted) {
   std::optional<double> best;
   const double low = wanted ? level_of(*wanted).value_or(-1) : -1;
