@@ -70,6 +70,7 @@ class Reader {
   void references(const XmlElement& e, const std::string& kind);
   void walk(const XmlElement& e, Around around, std::vector<Found>& to);
   void polygon(const XmlElement& e, const Around& around, std::vector<Found>& to);
+  void implicit(const XmlElement& e, const Around& around, std::vector<Found>& to);
   void ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const;
   std::vector<double> numbers(const XmlElement& e) const;
 
@@ -77,7 +78,8 @@ class Reader {
   Report& report_;
   CityModel model_;
   std::map<std::string, std::string> kinds_;  // of polygons that are elsewhere than what says their kind
-  size_t implicit_ = 0, lines_ = 0, none_ = 0, other_systems_ = 0;
+  std::map<std::string, XmlElement> prototypes_;
+  size_t implicit_ = 0, depth_ = 0, placed_ = 0, lines_ = 0, none_ = 0, other_systems_ = 0;
 };
 
 // The reference system, and members of the model.
@@ -103,6 +105,10 @@ void Reader::references(const XmlElement& e, const std::string& kind) {
   if (!within.empty())
     if (const auto to = attribute_of(e, "href"); to && to->size() > 1 && to->front() == '#')
       kinds_[to->substr(1)] = within;
+  if (name == "relativeGMLGeometry")
+    e.each_child([&](const XmlElement& child) {
+      if (const auto id = attribute_of(child, "id")) prototypes_.emplace(*id, child);
+    });
   e.each_child([&](const XmlElement& child) { references(child, within); });
 }
 
@@ -156,15 +162,48 @@ void Reader::polygon(const XmlElement& e, const Around& around, std::vector<Foun
   to.push_back({around.level, std::move(made)});
 }
 
+// A prototype that is placed: turned, scaled and moved by a matrix, then put at a point. Its geometry stands here or
+// where it is placed first; files (libraryObject) are left out.
+void Reader::implicit(const XmlElement& e, const Around& around, std::vector<Found>& to) {
+  std::vector<double> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, at{0, 0, 0};
+  std::vector<Found> made;
+  bool here = false;
+  const auto shape = [&](const XmlElement& geometry) {
+    here = true;
+    if (depth_ > 0) throw geometry.fault("a prototype of prototypes");
+    ++depth_;
+    walk(geometry, around, made);
+    --depth_;
+  };
+  e.each_child([&](const XmlElement& child) {
+    const std::string_view name = local(child.name());
+    if (name == "transformationMatrix") m = numbers(child);
+    if (name == "referencePoint")
+      child.each_child(
+          [&](const XmlElement& point) { point.each_child([&](const XmlElement& pos) { at = numbers(pos); }); });
+    if (name != "relativeGMLGeometry") return;
+    child.each_child(shape);
+    const auto href = attribute_of(child, "href");
+    if (!href || href->size() < 2) return;
+    if (const auto found = prototypes_.find(href->substr(1)); found != prototypes_.end()) shape(found->second);
+  });
+  if (m.size() != 16) throw e.fault(strf("a transformation of %zu numbers", m.size()), "16, row by row");
+  if (at.size() != 3) throw e.fault(strf("a reference point of %zu numbers", at.size()), "three");
+  implicit_ += !here;
+  const Affine3 turn{{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
+  for (Found& f : made) {
+    if (!place_copy(f.surface, turn, {at[0], at[1], at[2]}, placed_))
+      throw e.fault("copies of prototypes have more than 2e7 corners", "place them as objects of a scene text");
+    to.push_back(std::move(f));
+  }
+}
+
 void Reader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
   const std::string_view name = local(e.name());
   if (is_kind(name)) around.kind = std::string(name);
   if (const auto level = level_in(name)) around.level = *level;
   if (name == "OrientableSurface" && attribute_of(e, "orientation") == "-") around.turned = !around.turned;
-  if (name == "ImplicitGeometry") {
-    ++implicit_;
-    return;
-  }
+  if (name == "ImplicitGeometry") return implicit(e, around, to);
   if (name == "LineString" || name == "MultiCurve" || name == "Point" || name == "MultiPoint") {
     ++lines_;
     return;
@@ -197,7 +236,7 @@ CityModel Reader::finish() {
   };
   tell("SP205", lines_, "geometries of points or lines");
   tell("SP705", none_, "objects have no geometry of the level of detail that is asked for");
-  tell("SP705", implicit_, "implicit geometries (prototypes that are placed) are left out");
+  tell("SP705", implicit_, "implicit geometries are in files of their own, or nowhere, and left out");
   tell("SP705", other_systems_, "elements name another reference system than the first, which is taken for all");
   return std::move(model_);
 }

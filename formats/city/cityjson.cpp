@@ -52,7 +52,7 @@ class Reader {
   int line_ = 0;
   std::optional<Params> templates_;
   Vertices template_vertices_;
-  size_t lines_ = 0, none_ = 0, unshaped_ = 0, textured_ = 0;
+  size_t placed_ = 0, lines_ = 0, none_ = 0, unshaped_ = 0, textured_ = 0;
 };
 
 void Reader::head(const Params& root) {
@@ -165,8 +165,8 @@ void Reader::instance(const Params& g, const std::string& at, const Vertices& ve
   geometry(shape, strf("geometry-templates/templates[%zu]", number), template_vertices_, type, made);
   const Affine3 turn{{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
   for (CityModel::Surface& surface : made) {
-    for (auto& ring : surface.rings)
-      for (Vec3& p : ring) p = turn.point(p) + vertices[static_cast<size_t>(v)];
+    if (!place_copy(surface, turn, vertices[static_cast<size_t>(v)], placed_))
+      throw fault(at, "copies of templates have more than 2e7 corners", "place them as objects of a scene text");
     to.push_back(std::move(surface));
   }
 }
@@ -229,6 +229,21 @@ CityModel Reader::finish() {
   return std::move(model_);
 }
 
+// Are all brackets that a line opens closed on it?
+bool closes(std::string_view line) {
+  int depth = 0;
+  bool opened = false, quoted = false;
+  for (size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    if (quoted && c == '\\') ++k;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '{' || c == '[') ++depth, opened = true;
+    if (c == '}' || c == ']') --depth;
+  }
+  return opened && depth == 0;
+}
+
 }  // namespace
 
 CityModel parse_json(std::string_view text, const std::string& file, const std::optional<std::string>& lod,
@@ -236,10 +251,7 @@ CityModel parse_json(std::string_view text, const std::string& file, const std::
   Reader reader(file, lod, report);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   // A sequence has its first document on its first line; anything else is one document.
-  const size_t end = text.find('\n');
-  const std::string_view first = text.substr(0, end);
-  const size_t last = first.find_last_not_of(" \t\r");
-  const bool whole_line = last != first.npos && first[last] == '}' && first.find('{') != first.npos;
+  const bool whole_line = closes(text.substr(0, text.find('\n')));
   if (!whole_line) {
     reader.document(Params::parse_json(text, file), 0);
     return reader.finish();

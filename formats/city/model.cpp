@@ -16,6 +16,15 @@ std::optional<double> level_of(std::string_view text) {
   return value && *value >= 0 && *value < 10 ? value : std::nullopt;
 }
 
+bool place_copy(CityModel::Surface& surface, const Affine3& turn, Vec3 at, size_t& corners) {
+  constexpr size_t kMostCorners = 20'000'000;
+  for (std::vector<Vec3>& ring : surface.rings) {
+    corners += ring.size();
+    for (Vec3& p : ring) p = turn.point(p) + at;
+  }
+  return corners <= kMostCorners;
+}
+
 std::optional<double> chosen(const std::vector<double>& levels, const std::optional<std::string>& wanted) {
   std::optional<double> best;
   const double low = wanted ? level_of(*wanted).value_or(-1) : -1;
@@ -111,7 +120,9 @@ std::string city_format(const std::string& path, std::string_view head) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool json = name.ends_with(".json") || name.ends_with(".jsonl") || name.ends_with(".cityjson");
-  if (json && head.find("\"CityJSON") != head.npos) return "cityjson";
+  const bool named = name.ends_with(".city.json") || name.ends_with(".city.jsonl") || name.ends_with(".cityjson");
+  if (named || (json && (head.find("\"CityJSON") != head.npos || head.find("\"CityObjects\"") != head.npos)))
+    return "cityjson";
   if ((name.ends_with(".gml") || name.ends_with(".xml") || name.ends_with(".citygml")) &&
       head.find("CityModel") != head.npos)
     return "citygml";

@@ -26,6 +26,7 @@ class Reader {
 
  private:
   void header();
+  void leaf_angles(std::string_view type);
   void check_grid();
   void columns();
   void row();
@@ -62,7 +63,9 @@ void Reader::header() {
     throw lines_.error(0, "the first line is not 'VOXEL SPACE'", "a file of AMAPVox begins with it");
   while (lines_.next_raw()) {
     std::string_view line = lines_.line();
-    if (line.find_first_not_of(" \t\r") == line.npos) continue;
+    const size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == line.npos) continue;
+    line.remove_prefix(begin);
     if (line.front() != '#') return columns();
     for (size_t at = 0; at != line.npos;) {
       const size_t next = line.find('#', at + 1);
@@ -73,10 +76,22 @@ void Reader::header() {
       if (name == "min_corner") low_ = three(lines_, rest);
       if (name == "max_corner") high_ = three(lines_, rest);
       if (name == "split") split_ = three(lines_, rest);
+      if (name == "lad_type") leaf_angles(rest);
       at = next;
     }
   }
   throw lines_.error_at_end("ends before the names of its columns");
+}
+
+// Which way its leaves lie, by which a scanner's hits were made densities; here a medium decides how they meet light.
+void Reader::leaf_angles(std::string_view type) {
+  const size_t first = type.find_first_not_of(" \t"), last = type.find_last_not_of(" \t\r");
+  if (first == type.npos) return;
+  const std::string name = printable(type.substr(first, last - first + 1));
+  if (name == "Spherical" || name == "spherical") return;
+  report_.add("SP707", file_,
+              {lines_.where(), "the densities are of leaves that lie as '" + name +
+                                   "' says; a medium of leaves takes them to lie every way alike"});
 }
 
 void Reader::check_grid() {

@@ -30,9 +30,15 @@ std::optional<int> epsg_of_name(const std::string& name) {
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   const size_t at = upper.find("EPSG");
-  if (at == upper.npos) return std::nullopt;
-  // Behind EPSG: a version between colons or slashes, then the code, up to a comma.
-  const std::string tail = upper.substr(at + 4, upper.find(',', at) - at - 4);
+  if (at == upper.npos) {
+    // As German surveys name theirs: urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH.
+    const size_t utm = upper.find("ETRS89_UTM");
+    if (utm == upper.npos) return std::nullopt;
+    const int epsg = 25800 + std::atoi(upper.substr(utm + 10, 2).c_str());
+    return utm_zone_of_epsg(epsg) ? std::optional(epsg) : std::nullopt;
+  }
+  // Behind EPSG: a version between colons or slashes, then the code, up to that of the heights.
+  const std::string tail = upper.substr(at + 4, upper.find_first_of(",+&", at) - at - 4);
   const size_t last = tail.find_last_of("0123456789");
   if (last == tail.npos) return std::nullopt;
   size_t first = last;

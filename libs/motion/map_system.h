@@ -18,7 +18,7 @@ struct MapSystem {
 std::optional<MapSystem> map_system_of_epsg(int epsg);
 // The last number of a name such as EPSG:25832, urn:ogc:def:crs:EPSG::7415, or
 // https://www.opengis.net/def/crs/EPSG/0/7415; of compound names such as urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783
-// the horizontal one. Nothing where none is of EPSG.
+// (also with + or &) the horizontal one; and that of urn:adv:crs:ETRS89_UTM32*... . Nothing where it is none of these.
 std::optional<int> epsg_of_name(const std::string& name);
 
 // From (x or latitude, y or longitude, height) to scene ENU, m. separation_m: the geoid above the ellipsoid, added to

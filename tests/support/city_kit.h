@@ -25,7 +25,8 @@ inline std::string small_city(const std::string& version = "1.1") {
 [2000,0,1000],[2000,0,3000],[4000,0,3000],[4000,0,1000]]})";
 }
 
-// One building of CityGML 2.0 whose solid refers to its thematic surfaces, with a hole and a turned face.
+// One building of CityGML 2.0 whose solid refers to its thematic surfaces, with a hole and a turned face, and two
+// trees of one prototype.
 inline std::string small_gml() {
   return R"(<?xml version="1.0"?>
 <CityModel xmlns="http://www.opengis.net/citygml/2.0" xmlns:bldg="http://www.opengis.net/citygml/building/2.0" xmlns:gml="http://www.opengis.net/gml" xmlns:xlink="http://www.w3.org/1999/xlink">
@@ -42,6 +43,12 @@ inline std::string small_gml() {
   <gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 0 0 3 10 0 3 10 0 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>
  </gml:baseSurface></gml:OrientableSurface></gml:surfaceMember></gml:MultiSurface></bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy>
 </bldg:Building></cityObjectMember>
+<cityObjectMember><veg:SolitaryVegetationObject xmlns:veg="http://www.opengis.net/citygml/vegetation/2.0" gml:id="t1"><veg:lod2ImplicitRepresentation><ImplicitGeometry>
+ <transformationMatrix>2 0 0 0 0 2 0 0 0 0 2 1 0 0 0 1</transformationMatrix>
+ <relativeGMLGeometry><gml:MultiSurface gml:id="proto"><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 0 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface></relativeGMLGeometry>
+ <referencePoint><gml:Point><gml:pos>100 200 3</gml:pos></gml:Point></referencePoint></ImplicitGeometry></veg:lod2ImplicitRepresentation></veg:SolitaryVegetationObject></cityObjectMember>
+<cityObjectMember><veg:SolitaryVegetationObject xmlns:veg="http://www.opengis.net/citygml/vegetation/2.0" gml:id="t2"><veg:lod2ImplicitRepresentation><ImplicitGeometry>
+ <relativeGMLGeometry xlink:href="#proto"/><referencePoint><gml:Point><gml:pos>1 1 1</gml:pos></gml:Point></referencePoint></ImplicitGeometry></veg:lod2ImplicitRepresentation></veg:SolitaryVegetationObject></cityObjectMember>
 </CityModel>
 )";
 }

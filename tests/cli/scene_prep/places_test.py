@@ -185,8 +185,24 @@ class Cities(unittest.TestCase):
         code, said = scene(origin.replace("350", "350, geoid: egm96-5.pgm"), ", height: geoid")
         self.assertEqual(code, 1)
         self.assertIn("egm96-5.pgm (19 MB) and others are had from", said)
+        code, said = scene(origin, ", height: ellipsoid")
+        low = exported()[0][..., 2].min()
+        geoid(WORK + "/made.pgm", 45)
+        for begin, raised in ((origin.replace("350", "350, geoid: made.pgm"), 45),
+                              (origin.replace("350", "350, geoid: made.pgm, height: geoid"), 0)):
+            code, said = scene(begin, ", height: geoid")
+            self.assertEqual(code, 0, said)
+            self.assertAlmostEqual(exported()[0][..., 2].min() - low, raised, delta=5e-3)
         code, said = scene(origin, ", epsg: 28992")
         self.assertIn("EPSG:28992, which is not known here", said)
+
+
+def geoid(path, height):
+    """A grid of GeographicLib's, 30 degrees wide, of one height."""
+    head = ("P5\n# Description made for a test\n# DateTime 2024-01-01 00:00:00\n# Offset -108\n# Scale 0.003\n# MaxBilinearError 1\n"
+            "# RMSBilinearError 1\n# MaxCubicError 1\n# RMSCubicError 1\n12 7\n65535\n")
+    with open(path, "wb") as f:
+        f.write(head.encode() + struct.pack(">H", round((height + 108) / 0.003)) * 84)
 
 
 def las(path, points, kinds):
@@ -245,6 +261,28 @@ class Clouds(unittest.TestCase):
         code, said = prepare(WORK + "/crown.yaml", "--set", "media.foliage.leaves.reflectance=0.7")
         self.assertEqual(code, 1)
         self.assertIn("leaves that reflect and transmit 1.1 in all", said)
+
+
+class Helios(unittest.TestCase):
+    def test_turned_scaled_moved(self):
+        corners = np.array([(1.0, 2, 3), (4, 2, 0), (0, 5, 1)])
+        with open(WORK + "/leaf.obj", "w", encoding="utf-8") as f:
+            f.write("".join("v %g %g %g\n" % tuple(c) for c in corners) + "f 1 2 3\n")
+        with open(WORK + "/plot.xml", "w", encoding="utf-8") as f:
+            f.write('<document><scene id="plot" name="plot">\n<part id="a"><filter type="objloader"><param type="string" key="filepath" '
+                    'value="leaf.obj"/></filter>\n<filter type="translate"><param type="vec3" key="offset" value="10;-5;2"/></filter>\n'
+                    '<filter type="rotate"><param type="rotation" key="rotation"><rot axis="z" angle_deg="30"/><rot axis="pitch" '
+                    'angle_deg="10"/></param></filter>\n<filter type="scale"><param type="double" key="scale" value="2"/></filter></part>\n'
+                    '<part id="b"><filter type="objloader"><param type="string" key="filepath" value="leaf.obj"/></filter></part>\n'
+                    '</scene></document>\n')
+        code, said = prepare(WORK + "/plot.xml")
+        self.assertEqual(code, 0, said)
+        self.assertIn("plot.xml", said)
+        c, s = math.cos(math.radians(30)), math.sin(math.radians(30))
+        p, q = math.cos(math.radians(10)), math.sin(math.radians(10))
+        turn = np.array([[1, 0, 0], [0, p, -q], [0, q, p]]) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        wanted = np.concatenate([2 * corners @ turn.T + (10, -5, 2), corners])
+        self.assertLess(np.abs(exported()[0].reshape(-1, 3) - wanted).max(), 2e-6)
 
 
 class Leaves(unittest.TestCase):

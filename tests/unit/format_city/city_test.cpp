@@ -114,15 +114,39 @@ TEST(CityJson, FaultsHaveTheirPlace) {
   EXPECT_THAT(said("\"template\":0", "\"template\":1"), HasSubstr("c.city.json"));
 }
 
+// A small file may not ask for endless copies.
+TEST(CityJson, CopiesAreCounted) {
+  std::string ring = "0", instances;
+  for (int k = 1; k < 30000; ++k) ring += k % 2 ? ",1" : ",2";
+  for (int k = 0; k < 700; ++k)
+    instances +=
+        std::string(k ? "," : "") +
+        R"({"type":"GeometryInstance","template":0,"transformationMatrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"boundaries":[0]})";
+  Report report(scene_issues());
+  EXPECT_THAT(
+      message_of([&] {
+        parse(
+            R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},"CityObjects":{"a":{"type":"Plant","geometry":[)" +
+                instances +
+                R"(]}},"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"1","boundaries":[[[)" + ring +
+                R"(]]]}],"vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"vertices":[[0,0,0]]})",
+            report);
+      }),
+      HasSubstr("copies of templates have more than 2e7 corners"));
+}
+
 TEST(CityGml, SolidsReferToTheirSurfaces) {
   Report report(scene_issues());
   const CityModel city = parse_city(small_gml(), "c.gml", std::nullopt, report);
-  ASSERT_EQ(city.objects.size(), size_t{1});
+  ASSERT_EQ(city.objects.size(), size_t{3});
   EXPECT_EQ(city.objects[0].id, "b1");
   auto of = areas(city);
   EXPECT_NEAR(of["RoofSurface"], 100 - 2, 1e-12);
   EXPECT_NEAR(of["WallSurface"], 30, 1e-12);
-  EXPECT_EQ(of.size(), size_t{2});  // the solid of level 1 is left out
+  EXPECT_NEAR(of["SolitaryVegetationObject"], 2 + 0.5, 1e-12);
+  EXPECT_EQ(city.objects[1].surfaces.at(0).rings[0][1], (Vec3{102, 200, 4}));
+  EXPECT_EQ(city.objects[2].surfaces.at(0).rings[0][1], (Vec3{2, 1, 1}));
+  EXPECT_EQ(of.size(), size_t{3});  // the solid of level 1 is left out
   // The orientable surface turns its base round: the wall looks south.
   for (const auto& s : city.objects[0].surfaces)
     if (s.kind == "WallSurface") {

@@ -39,6 +39,19 @@ TEST(AmapVox, OlderHeaders) {
   EXPECT_EQ(parse(text, report).density[5], 2.25f);
 }
 
+// Blanks before and behind keys and columns, many keys on a line, Windows' line ends.
+TEST(AmapVox, LooseHeaders) {
+  Report report(scene_issues());
+  const VoxelData v = parse(
+      "VOXEL SPACE\r\n#min_corner:  0.0 0.0 0.0 \r\n #max_corner: 20.0 20.0 10.0 \r\n\t#split: 2 1 1\r\n"
+      "#res:10.0 #nsubvoxel:8 #lad_type:Erectophile #type:TLS\r\n i j k bsEntering PadBVTotal\r\n0 0 0 1 0.25\r\n1 0 0 "
+      "1 3\r\n",
+      report);
+  EXPECT_EQ(v.density, (std::vector<float>{0.25f, 3}));
+  EXPECT_EQ(v.to_local.point({2, 1, 1}), (Vec3{20, 20, 10}));
+  EXPECT_EQ(report.count("SP707"), size_t{1});  // leaves that stand upright
+}
+
 TEST(AmapVox, FaultsHaveTheirLine) {
   const auto said = [](const std::string& from, const std::string& to, const std::string& column = "") {
     std::string text = kFile;

@@ -17,7 +17,13 @@ TEST(MapSystem, CodesOfNames) {
   EXPECT_EQ(epsg_of_name("urn:ogc:def:crs:EPSG:6.12:25833"), 25833);
   EXPECT_EQ(epsg_of_name("https://www.opengis.net/def/crs/EPSG/0/7415"), 7415);
   EXPECT_EQ(epsg_of_name("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783"), 25832);
-  EXPECT_EQ(epsg_of_name("urn:adv:crs:ETRS89_UTM32"), std::nullopt);
+  EXPECT_EQ(epsg_of_name("EPSG:25832+7837"), 25832);
+  EXPECT_EQ(epsg_of_name("https://www.opengis.net/def/crs-compound?1=https://www.opengis.net/def/crs/EPSG/0/25832&2="
+                         "https://www.opengis.net/def/crs/EPSG/0/7837"),
+            25832);
+  EXPECT_EQ(epsg_of_name("urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH"), 25833);
+  EXPECT_EQ(epsg_of_name("urn:adv:crs:ETRS89_UTM99"), std::nullopt);
+  EXPECT_EQ(epsg_of_name("urn:adv:crs:DE_DHDN_3GK3"), std::nullopt);
   EXPECT_EQ(epsg_of_name(""), std::nullopt);
   EXPECT_EQ(epsg_of_name("EPSG:99999999999999"), std::nullopt);
 }
