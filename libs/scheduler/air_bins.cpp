@@ -71,9 +71,31 @@ std::vector<Bin> divided(const AirSpec& air, SpectralState even, std::span<const
   return done;
 }
 
+// Every bin must lie where gases are known; names the bands that ask for others.
+void check_known(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
+  if (!air.gases) return;
+  const double low = air.gases->low_um(), high = air.gases->high_um();
+  const auto beyond = [&](const Band& band) {
+    return std::any_of(state.bins.begin(), state.bins.end(), [&](const Bin& b) {
+      return (b.low_um < low || b.high_um > high) && b.high_um > band.low_um() && b.low_um < band.high_um();
+    });
+  };
+  std::string names;
+  for (const Band& band : bands)
+    if (beyond(band))
+      names +=
+          strf("%s'%s' (%.4g to %.4g um)", names.empty() ? "" : ", ", band.name.c_str(), band.low_um(), band.high_um());
+  if (!names.empty())
+    throw Error(
+        air.where,
+        strf("gases are known from %.4g to %.4g um, and these bands reach beyond: %s", low, high, names.c_str()),
+        "other bands, a table that has them, or `gases: none`, which leaves gases out");
+}
+
 }  // namespace
 
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands) {
+  check_known(air, state, bands);
   double narrowest = INFINITY;
   for (const Band& b : bands) narrowest = std::min(narrowest, b.high_um() - b.low_um());
   double limit = 0.5 * narrowest;

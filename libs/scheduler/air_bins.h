@@ -17,7 +17,7 @@ struct AirBins {
 // one g-point does for them (GasReduction) or where every band responds in all of them alike, so that their g-points
 // are those of the bands; others are divided evenly. What is seen in them does not choose
 // them. The first g-point of an interval is the one that gases absorb least, so reference and knots are transparent.
-// Error: bands beyond what the gases are known for.
+// Error, located: bands beyond what the gases are known for, by name.
 AirBins bins_in_air(const AirSpec& air, const SpectralState& state, std::span<const Band> bands);
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "air/gas_limits.h"
 #include "scene/primitives.h"
 #include "scheduler/air_left_out.h"
 #include "scheduler/doubts.h"
@@ -121,6 +122,22 @@ std::optional<std::string> left_out(const AirSpec& air, const Scene& scene, cons
       sensor.name().c_str(), out->um, out->depth, out->contrast, out->adjacency, out->shadows);
 }
 
+// Bands that lie where gases are less sure than in general, range by range.
+void tell_weak_gases(const GasProvider& gases, Sensors sensors, std::vector<std::string>& said) {
+  for (const WeakGases& weak : weak_gases(gases)) {
+    std::string names;
+    for (const auto& sensor : sensors)
+      for (size_t s = 0; s < sensor->states().size(); ++s)
+        for (const Band& band : sensor->bands(s))
+          if (band.high_um() > weak.low_um && band.low_um() < weak.high_um)
+            names += strf("%s'%s' of '%s'", names.empty() ? "" : ", ", band.name.c_str(), sensor->name().c_str());
+    if (!names.empty())
+      said.push_back(
+          strf("gases: from %.4g to %.4g um %s; there look bands ", weak.low_um, weak.high_um, weak.size.c_str()) +
+          names);
+  }
+}
+
 constexpr double kLowLimb = 85 * kDegree;
 
 bool sees_sunlight(const Sensor& sensor) {
@@ -148,6 +165,7 @@ std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene
                                   const JobOptions& job) {
   std::vector<std::string> said;
   if (!written.air) return said;
+  if (written.air->gases) tell_weak_gases(*written.air->gases, sensors, said);
   if (written.air->scattering == AirScattering::traced)
     if (const auto sentence = open_below(written, scene, job)) said.push_back(*sentence);
   if (written.air->scattering != AirScattering::diffuse) return said;

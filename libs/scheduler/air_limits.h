@@ -5,7 +5,8 @@
 
 namespace suite {
 
-// Sentences, none where nothing matters, or where the air is not solved for an even ground, but for the first:
+// Sentences, none where nothing matters, or where the air is not solved for an even ground, but for the first two:
+// - bands lie where the gases' tables are less sure than in general (air/gas_limits.h);
 // - air that is traced goes on below a scene that ends;
 // - beyond the scene the even ground goes on, unless there is an Earth, a surface without end or a scene that repeats
 //   itself, or little of the ground's light comes from there (kMostFromBeyond);

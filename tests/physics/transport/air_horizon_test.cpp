@@ -2,12 +2,11 @@
 // traced, and beside both what MODTRAN's two streams say.
 //
 // MODTRAN 5.2 (path1000 of ComputationalRadiometry, MPL-2.0; tropical air, rural particles, 23 km, black ground, Sun at
-// 24.2 degrees, 112 degrees from the view; no DISORT, thus the two streams of Isaacs) agrees in what is scattered once
-// and has about twice the rest: on this way its source is one mean over a hemisphere, without the phase function,
-// whose least values lie across the Sun's direction and so across most of the sky's light. MODTRAN's own documents call
-// that solver the less accurate one (ALG 2.0, Zenodo 3555575, "NSTR"), and its multiple scattering of then does not
-// vary with azimuth (Acharya et al., "MODTRAN4: multiple scattering and BRDF upgrades", Proc. SPIE 3756, 1999). Traced
-// air decides: the field is right, the two streams are not.
+// 24.2 degrees, scattered by 112 degrees; no DISORT, thus the two streams of Isaacs et al., Appl. Opt. 26, 1987) agrees
+// in what is scattered once and has about twice the rest. That solver is known as the less accurate one of MODTRAN's
+// (ALG 2.0, Zenodo 3555575, "NSTR"), and its multiple scattering did not vary with the azimuth of the view (Acharya et
+// al., "MODTRAN4: multiple scattering and BRDF upgrades", Proc. SPIE 3756, 1999); no published figure for this geometry
+// is known to us. Traced air decides.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -99,9 +99,11 @@ TEST(AirBins, EvenBinsOfOtherBandsStayWholeWhereGasesAreAlike) {
 }
 
 TEST(AirBins, BandsThatGasesAreNotKnownForAreNamed) {
-  const std::vector<Band> bands{Band::rectangular("deep", 0.15, 0.01)};
-  EXPECT_NE(message_of([&] { bins_in_air(air(), make_state(bands, 0.01), bands); }).find("gases are known from"),
-            std::string::npos);
+  const std::vector<Band> bands{Band::rectangular("deep", 0.15, 0.01), Band::rectangular("near", 0.5, 0.01)};
+  const std::string message = message_of([&] { bins_in_air(air(), make_state(bands, 0.01), bands); });
+  EXPECT_NE(message.find("gases are known from 0.2 to 1000 um"), std::string::npos) << message;
+  EXPECT_NE(message.find("reach beyond: 'deep' (0.145 to 0.155 um)"), std::string::npos) << message;
+  EXPECT_EQ(message.find("'near'"), std::string::npos) << message;
 }
 
 }  // namespace

@@ -92,6 +92,20 @@ TEST(AirLimits, WhatMediaLeaveOutIsTold) {
   EXPECT_THAT((Told{.half_width = 3e5, .air = even, .smoke = true}).said(), IsEmpty());
 }
 
+TEST(AirLimits, BandsWhereGasesAreLessSure) {
+  AirSpec air;
+  air.gases = shared_builtin_gases();
+  const auto at = [&](double um) { return Told{.half_width = 3e5, .um = um, .air = air}.said(); };
+  EXPECT_THAT(at(0.69), Contains(HasSubstr("gases: from 0.6849 to 0.6954 um transmittance off by up to 0.12 in 20 cm-1 "
+                                           "(oxygen); there look bands 'b' of 'rays'")));
+  EXPECT_THAT(at(12.6), Contains(HasSubstr("up to 2.3 K too cold")));
+  EXPECT_THAT(at(4.7), Contains(HasSubstr("water_continuum")));
+  EXPECT_THAT(at(0.55), IsEmpty());
+  EXPECT_THAT(at(11), IsEmpty());
+  air.scattering = AirScattering::single;  // whatever way light is followed
+  EXPECT_THAT(at(9.6), Contains(HasSubstr("ozone")));
+}
+
 TEST(AirLimits, LowSuns) {
   const auto low = [](double zenith_deg) { return Told{.half_width = 3e5, .sun_zenith_deg = zenith_deg}.said(); };
   EXPECT_THAT(low(80), IsEmpty());
