@@ -103,7 +103,7 @@ std::vector<std::string> files_of(const SqtFitOptions& o) {
   for (const auto& entry : fs::recursive_directory_iterator(o.input, fs::directory_options::skip_permission_denied)) {
     if (!entry.is_regular_file(ignored) || fs::equivalent(entry.path(), o.output, ignored)) continue;
     if (looks_measured(entry.path().string()))
-      names.push_back(fs::relative(entry.path(), o.input).string());
+      names.push_back(entry.path().lexically_relative(o.input).string());  // links stay names in the folder
     else
       ++others;
   }

@@ -24,6 +24,7 @@ class NearestTree {
     double distance2;
     uint32_t index;
   };
+  const Point& point(uint32_t index) const { return points_[index]; }
   // The nearest min(kNeighbours, size) points, unordered; returns how many.
   size_t nearest(const Point& at, std::array<Found, kNeighbours>& found) const {
     size_t count = 0;
@@ -86,6 +87,40 @@ class NearestTree {
   std::vector<uint8_t> axis_;
 };
 
+// Weights of points that lie `away` (1: the farthest), so that what is linear in the coordinates comes out as it is:
+// the value at 0 of the plane that fits best under the weights given, with slopes that little speaks for held down. Sum
+// 1 afterwards.
+void make_linear(std::span<double> weight, const std::array<Point, kNeighbours>& away, size_t dimensions) {
+  const size_t n = dimensions + 1;
+  constexpr double kHeld = 1e-3;
+  std::array<std::array<double, kDimensions + 2>, kDimensions + 1> m{};  // normal equations, right side last
+  double sum = 0;
+  for (const double w : weight) sum += w;
+  const auto term = [&](size_t i, size_t k) { return k == 0 ? 1.0 : away[i][k - 1]; };
+  for (size_t i = 0; i < weight.size(); ++i)
+    for (size_t a = 0; a < n; ++a)
+      for (size_t b = 0; b < n; ++b) m[a][b] += weight[i] / sum * term(i, a) * term(i, b);
+  for (size_t a = 1; a < n; ++a) m[a][a] += kHeld;
+  m[0][n] = 1;
+  // Elimination without pivots: the matrix is symmetric and positive.
+  for (size_t a = 0; a < n; ++a)
+    for (size_t b = a + 1; b < n; ++b) {
+      const double by = m[b][a] / m[a][a];
+      for (size_t c = a; c <= n; ++c) m[b][c] -= by * m[a][c];
+    }
+  std::array<double, kDimensions + 1> x{};
+  for (size_t a = n; a-- > 0;) {
+    x[a] = m[a][n];
+    for (size_t b = a + 1; b < n; ++b) x[a] -= m[a][b] * x[b];
+    x[a] /= m[a][a];
+  }
+  for (size_t i = 0; i < weight.size(); ++i) {
+    double factor = 0;
+    for (size_t k = 0; k < n; ++k) factor += x[k] * term(i, k);
+    weight[i] *= factor / sum;
+  }
+}
+
 class Scattered final : public Function {
  public:
   explicit Scattered(const Samples& s) : info_(s.info) {
@@ -115,26 +150,40 @@ class Scattered final : public Function {
       return;
     }
     std::array<NearestTree::Found, kNeighbours> found;
-    const size_t count = trees_[side]->nearest(coordinates(out, in), found);
+    const Point at = coordinates(out, in);
+    const size_t count = trees_[side]->nearest(at, found);
     // Weights fall to zero at the farthest of the neighbours, so that the function is continuous as neighbours change.
     double farthest = 0;
     for (size_t i = 0; i < count; ++i) farthest = std::max(farthest, found[i].distance2);
     farthest = std::sqrt(farthest) * 1.0001 + 1e-12;
-    std::fill(f.begin(), f.end(), 0.0);
-    double sum = 0;
+    std::array<double, kNeighbours> weight;
+    std::array<Point, kNeighbours> away;
     for (size_t i = 0; i < count; ++i) {
-      const double d = std::sqrt(found[i].distance2) + 1e-9, w = std::pow((farthest - d) / (farthest * d), 2) + 1e-12;
-      sum += w;
-      for (size_t c = 0; c < f.size(); ++c) f[c] += w * values_[side][found[i].index * f.size() + c];
+      const double d = std::sqrt(found[i].distance2) + 1e-9;
+      weight[i] = std::pow((farthest - d) / (farthest * d), 2) + 1e-12;
+      const Point& p = trees_[side]->point(found[i].index);
+      for (size_t k = 0; k < dimensions(); ++k) away[i][k] = (p[k] - at[k]) / farthest;
     }
-    for (double& v : f) v /= sum;
+    make_linear(std::span(weight).first(count), away, dimensions());
+    for (size_t c = 0; c < f.size(); ++c) {
+      double sum = 0, low = INFINITY, high = -INFINITY;
+      for (size_t i = 0; i < count; ++i) {
+        const double v = values_[side][found[i].index * f.size() + c];
+        sum += weight[i] * v, low = std::min(low, v), high = std::max(high, v);
+      }
+      f[c] = std::clamp(sum, low, high);
+    }
   }
 
  private:
   bool surface() const { return info_.quantity == Quantity::bsdf; }
+  // Of the coordinates, those that are not 0 in any case.
+  size_t dimensions() const {
+    return info_.quantity == Quantity::phase ? 1 : info_.quantity == Quantity::bsdf && !info_.isotropic ? 4 : 3;
+  }
   size_t side_of(Dir in) const { return surface() && in.z < 0 ? 1 : 0; }
   Point coordinates(Dir out, Dir in) const {
-    if (info_.quantity == Quantity::phase) return {0, 0, 0, 3 * angle_between(out, in)};
+    if (info_.quantity == Quantity::phase) return {3 * angle_between(out, in), 0, 0, 0};
     if (info_.quantity == Quantity::intensity) return {in.x, in.y, in.z, 0};
     if (in.z < 0) in.z = -in.z;
     const Vec3 sum = out + in;

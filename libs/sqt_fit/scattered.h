@@ -1,13 +1,14 @@
-// Scattered measurements as a function that can be asked anywhere: inverse-distance interpolation among the nearest
-// samples, in coordinates in which lobes stand still.
+// Scattered measurements as a function that can be asked anywhere: planes through the nearest samples, the near ones
+// counting most, in coordinates in which lobes stand still.
 //
 // Coordinates of a pair: half vector (x, y) in the plane of the view (y folded when bilateral), view polar angle (and
 // azimuth as a vector when anisotropic); for phase functions and intensities the direction itself. Sides are kept
-// apart. Between samples the values are averages of measured ones: never negative where the samples are not, never
+// apart. Between samples the values lie between those of the samples around: never negative where these are not, never
 // larger. Far from all samples the nearest ones hold.
 //
 // Based on: Shepard, "A two-dimensional interpolation function for irregularly-spaced data", ACM 1968, in the local
-// form of Franke & Nielson (1980); k-d tree: Bentley, CACM 18, 1975.
+// form of Franke & Nielson (1980), with nodal planes (as theirs, fitted around the place that is asked); k-d tree:
+// Bentley, CACM 18, 1975.
 #pragma once
 #include <array>
 #include <memory>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """compare.py FOLDER [--within PERCENT]
 
-Holds the canopy's reflectance factors by the surface that was measured (out/surface_SUN_brf.csv) against those of the trees
-(out/forest_SUN_brf.csv): views to 60 degrees, further than 15 degrees from the hot spot. A line for each sun, band and plane; with --within,
+Holds the canopy's reflectance factors by the surface that was measured (out/surface_SUN_90_brf.csv) against those of the trees, the mean of
+four sides from which the sun comes (out/forest_SUN_AZIMUTH_brf.csv): views to 60 degrees, further than 15 degrees from the hot spot. A line for each sun, band and plane; with --within,
 exit code 1 where a mean or the root mean square of the differences, less the trees' own noise, is larger.
 """
 import argparse
@@ -16,15 +16,23 @@ parser.add_argument("--within", type=float)
 args = parser.parse_args()
 
 
-def table(scene, sun):
-    with open(os.path.join(args.folder, "out", f"{scene}_{sun}_brf.csv")) as f:
-        return {(r["band"], r["plane"], float(r["view_zenith_deg"])): (float(r["brf"]), float(r["standard_error"])) for r in csv.DictReader(f)}
+def table(scene, sun, azimuths):
+    """{(band, plane, view): (reflectance factor, its standard error)}, means over azimuths"""
+    sums = {}
+    for azimuth in azimuths:
+        with open(os.path.join(args.folder, "out", f"{scene}_{sun}_{azimuth}_brf.csv")) as f:
+            for r in csv.DictReader(f):
+                key = r["band"], r["plane"], float(r["view_zenith_deg"])
+                value, squares = sums.get(key, (0, 0))
+                sums[key] = value + float(r["brf"]), squares + float(r["standard_error"]) ** 2
+    n = len(azimuths)
+    return {key: (value / n, squares**0.5 / n) for key, (value, squares) in sums.items()}
 
 
 far = 0
 print("sun  band  plane       mean %   rms %   noise %   largest % (at view)")
 for sun in (30, 55):
-    trees, surface = table("forest", sun), table("surface", sun)
+    trees, surface = table("forest", sun, (0, 90, 180, 270)), table("surface", sun, (90,))
     for band, plane in sorted({key[:2] for key in trees}, reverse=True):
         d, noise, largest = [], 0, (0, 0)
         for (b, p, view), (brf, error) in trees.items():

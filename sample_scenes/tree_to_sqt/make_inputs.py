@@ -17,7 +17,7 @@ parser.add_argument("folder", nargs="?", default=".")
 parser.add_argument("--trees", type=int, default=160, help="on a tile")
 parser.add_argument("--leaves", type=int, default=220, help="of a tree")
 parser.add_argument("--paths", type=int, default=2400000, help="of the goniometer, for each view")
-parser.add_argument("--views", type=int, default=8192, help="paths of each view of the comparison")
+parser.add_argument("--views", type=int, default=2048, help="paths of each view of the comparison, for each side of the sun")
 args = parser.parse_args()
 random.seed(5)
 TILE, CROWN, MIDDLE, LEAF = 40.0, (1.4, 1.4, 2.2), 3.6, 0.12
@@ -96,20 +96,21 @@ sensors:
     azimuths: 24
     paths: {args.paths}
 """)
-for scene in ("forest", "surface"):
+for scene, azimuths in (("forest", (0, 90, 180, 270)), ("surface", (90,))):
     for sun in (30, 55):
-        write(f"view_{scene}_{sun}.yaml", f"""scene: {scene}.h5
+        for azimuth in azimuths:  # the trees of one tile are no even forest: the sun comes from four sides
+            write(f"view_{scene}_{sun}_{azimuth}.yaml", f"""scene: {scene}.h5
 max_nodes: 64
-sun: {{direction: {{zenith_deg: {sun}, azimuth_deg: 90}}, irradiance: 1, collimated: true}}
+sun: {{direction: {{zenith_deg: {sun}, azimuth_deg: {azimuth}}}, irradiance: 1, collimated: true}}
 periodic: {patch}
 sensors:
   - kind: rami
-    name: {scene}_{sun}
+    name: {scene}_{sun}_{azimuth}
     bands: {bands}
     patch: {patch}
     top_m: {TOP if scene == "forest" else 0.01}
     sun_zenith_deg: {sun}
-    sun_azimuth_deg: 90
+    sun_azimuth_deg: {azimuth}
     irradiance: 1
     truth: []
     paths: {args.views}

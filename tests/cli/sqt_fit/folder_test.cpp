@@ -39,6 +39,18 @@ class Folder : public testing::Test {
   TempFolder folder_;
 };
 
+// Fits of links went to where these point, outside of the folder for fits.
+TEST_F(Folder, LinksStayInTheFolder) {
+  std::filesystem::create_directories(folder_ / "elsewhere/data");
+  std::filesystem::rename(folder_ / "in/chalk.csv", folder_ / "elsewhere/data/chalk.csv");
+  std::filesystem::create_symlink(folder_ / "elsewhere/data/chalk.csv", folder_ / "in/chalk.csv");
+  const CommandResult r = fit();
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_TRUE(file_exists(folder_ / "fits/chalk.csv.sqt"));
+  EXPECT_FALSE(file_exists(folder_ / "elsewhere/data/chalk.csv.sqt"));
+  EXPECT_THAT(table(), HasSubstr("\nchalk.csv,1,"));
+}
+
 TEST_F(Folder, IsATableAndAPageAndFits) {
   const CommandResult r = fit();
   ASSERT_EQ(r.code, 0) << r.err;
