@@ -11,6 +11,10 @@ void Light::sample_all(const LightReceiver& at, std::span<const std::array<doubl
 
 std::optional<LightMet> Light::met_outside(Dir, double) const { return std::nullopt; }
 
+std::optional<LightPlace> Light::draw_place(const LightReceiver&, const std::array<double, 4>&, double) const {
+  return std::nullopt;
+}
+
 std::optional<LightMet> Light::met_surface(const LightReceiver&, const Hit&, uint32_t, Dir, double, double,
                                            double) const {
   return std::nullopt;

@@ -26,11 +26,12 @@ struct LightNature {
   bool delta = false;  // nothing meets it by chance: collimated, points
   // Small and even: its samples hardly vary by themselves, so that what continuations find counts little beside them.
   bool disk = false;
-  bool wide = false;   // fills much of the sphere (skies): continuations find it by themselves
-  bool drawn = true;   // sample() is worth asking; false = met by chance only (uniform skies)
-  bool moves = false;  // what it sends depends on the time of the ray
-  int numbers = 2;     // random numbers that sample() uses, 2 or 4
-  int draws = 1;       // samples of it that the first node of a path may take (lamps: min(kMostDraws, lamps))
+  bool wide = false;    // fills much of the sphere (skies): continuations find it by themselves
+  bool drawn = true;    // sample() is worth asking; false = met by chance only (uniform skies)
+  bool moves = false;   // what it sends depends on the time of the ray
+  bool placed = false;  // stands in the scene, and draw_place() finds it
+  int numbers = 2;      // random numbers that sample() uses, 2 or 4
+  int draws = 1;        // samples of it that the first node of a path may take (lamps: min(kMostDraws, lamps))
   static constexpr int kMostDraws = 4;
 };
 
@@ -43,6 +44,14 @@ struct LightSample {
   double scale = 0;
   // Per bin; null = the shape differs with direction: scale times what Light::add adds.
   const float* spectrum = nullptr;
+};
+
+// A place on a light that stands in the scene, for light that is bent on its way from it.
+struct LightPlace {
+  Vec3 place;          // m, ENU
+  bool point = false;  // else on a surface that shines
+  double density = 0;  // 1/m2 of places on surfaces, or the probability of a point
+  size_t member = 0;   // whose it is, for sample_member
 };
 
 // What far lights draw.
@@ -86,6 +95,13 @@ class Light {
   // The density is that of one sample, however many are drawn.
   virtual std::optional<LightMet> met_surface(const LightReceiver& from, const Hit& hit, uint32_t material,
                                               Dir direction, double distance, double cosine, double time) const;
+  // A place on a light that stands in the scene (nature().placed), asked for from elsewhere; every place of it has a
+  // chance, whether or not a straight line leads to it. u, time: as sample(), four numbers. Nothing where what was
+  // drawn is dark.
+  virtual std::optional<LightPlace> draw_place(const LightReceiver& at, const std::array<double, 4>& u,
+                                               double time) const;
+  // Whether sample() and draw_place() may draw the surface that a ray met.
+  virtual bool draws(const Hit&) const { return false; }
   // Adds scale times the radiance from a direction at the time of a ray (s): far lights that give no spectrum above.
   // Bug for others.
   virtual void add(Dir direction, double time, float scale, std::span<float> radiance) const;

@@ -39,7 +39,7 @@ std::vector<Feature> all_features() {
                           "Paths that go back to places in real air, for shadows in it and light of single places. "
                           "Without, or without air, kernels are made that know nothing of it."},
                          {"refracted light",
-                          "Sun and moon asked for through smooth interfaces (water, panes, lenses) from every "
+                          "Sun, moon and lamps asked for through smooth interfaces (water, panes, lenses) from every "
                           "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
                           "asked at a node."},
                          {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
@@ -81,10 +81,10 @@ FeatureUse refraction(const Scene& scene, const SourceSpecs& sources, const Pipe
   const auto smooth = std::count_if(scene.materials.begin(), scene.materials.end(),
                                     [](const Material& m) { return m.surface.model == "dielectric"; });
   const bool small = std::any_of(sources.lights.begin(), sources.lights.end(), [](const LightSpecPtr& light) {
-    return !light->in_scene() && !light->hardly_met(1).empty();
+    return light->in_scene() || !light->hardly_met(1).empty();
   });
   const char* missing = smooth == 0                       ? "no material passes light smoothly"
-                        : !small                          ? "no sun or moon in the simulation"
+                        : !small                          ? "no sun, moon or lamp in the simulation"
                         : options.method == Method::paper ? "the paper's estimator"
                         : !options.explicit_sources       ? "lights are not asked"
                         : !options.refracted_sources      ? "`light_through_refraction: false`"

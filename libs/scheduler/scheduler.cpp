@@ -194,8 +194,8 @@ class Job {
 
   void warn_of_lost_light(const Item& item, const Kit& kit) {
     if (!options_.warn) return;
-    const uint32_t paths = goals_of(item).all.max_paths;
-    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline, paths))
+    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline,
+                                           goals_of(item).all.max_paths, options_.periodic.has_value()))
       if (told_.insert(s).second) options_.warn(s);
   }
 

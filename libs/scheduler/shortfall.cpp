@@ -60,15 +60,15 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
 }
 
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
-                                    const PipelineOptions& options, uint32_t paths) {
+                                    const PipelineOptions& options, uint32_t paths, bool repeats) {
   if (!options.explicit_sources) return {};
-  // Far lights are asked for through smooth interfaces; their mirrored light is not.
+  // Lights are asked for through smooth interfaces; their mirrored light is not.
   const bool asked = options.refracted_sources && options.method == Method::standard;
   std::vector<std::string> lights, bent, refracting, mirrors;
   for (const LightSpecPtr& light : sources.lights)
     for (const std::string& part : light->hardly_met(Accumulators::kEnoughMeetings / paths)) {
       lights.push_back(part);
-      if (!asked || light->in_scene()) bent.push_back(part);
+      if (!asked || (repeats && light->in_scene())) bent.push_back(part);
     }
   if (lights.empty()) return {};
   for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");

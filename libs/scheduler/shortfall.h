@@ -42,8 +42,8 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
 
 // Sentences about sources whose light paths of a state will not find: behind smooth refracting surfaces, which is
 // estimated, and by way of mirrors, which is not. paths: that a problem takes at most; disks that these meet often
-// enough are left out.
+// enough are left out. repeats: the scene does.
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
-                                    const PipelineOptions& options, uint32_t paths);
+                                    const PipelineOptions& options, uint32_t paths, bool repeats);
 
 }  // namespace suite

@@ -96,6 +96,19 @@ class PathKernel final : public PathTracing {
     float scale;
     const float* spectrum;
   };
+  struct RefractedQuestion {
+    uint32_t node;
+    uint16_t light;
+    bool beam;
+    WayEnd end;
+    double scale;           // far: times spectrum, over the density; else 1 / the density or probability of the place
+    const float* spectrum;  // far
+    size_t member;          // a point
+  };
+  struct Sent {  // towards the last interface
+    double scale;
+    const float* spectrum;
+  };
 
   // kernel_fly.h: from one node to the next.
   void list_lights();
@@ -123,12 +136,19 @@ class PathKernel final : public PathTracing {
   void lack(const Question& q, size_t ray, bool blocked);
   // kernel_refract.h: lights behind smooth interfaces.
   void want_refracted(const NodeAt& node, const Asked& light, const LightSample& sample);
+  void want_places();
+  bool asks_through(const NodeAt& node) const;
   void shine_refracted();
-  void shine_refracted(const Question& q, size_t knot);
-  void shine_along(const RefractedWay& way, const Question& q, size_t knot);
+  void shine_refracted(const RefractedQuestion& q, size_t knot);
+  void shine_along(const RefractedWay& way, const RefractedQuestion& q, size_t knot);
+  std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
   bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
   bool is_owned(const Question& q, size_t ray);
+  // Whether its last node has asked for all light that comes along the way which it has taken since.
+  bool is_asked_through(const Path& path) const {
+    return refracted_ && path.bends > 0 && path.bends <= RefractedWay::kMostEvents;
+  }
   SUITE_INLINE double chance(const NodeAt& node, Dir in, std::span<const double> reach) const;
   SUITE_INLINE Factor evaluate(const NodeAt& node, Dir in, std::span<float> dense);
   // What path p has come to of water when it goes on from a node of the stage towards `in`.
@@ -201,7 +221,7 @@ class PathKernel final : public PathTracing {
   std::vector<uint32_t> onward_;
   SightRays sight_rays_;
   std::vector<Question> questions_;
-  std::vector<Question> refracted_questions_;
+  std::vector<RefractedQuestion> refracted_questions_;
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;

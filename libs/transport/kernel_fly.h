@@ -314,7 +314,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::escape(uint32_t p) {
   const Path& path = paths_[p];
   records_[p].end = PathEnd::escaped;
   records_[p].escape = path.direction;
-  const bool asked_through = refracted_ && path.bends > 0 && path.bends <= RefractedWay::kMostEvents;
+  const bool asked_through = is_asked_through(path);
   for (const Asked& light : outside_) {
     if (asked_through && is_refracted(light.nature)) continue;
     const auto met = light.light->met_outside(path.direction, path.time);
@@ -347,7 +347,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::meet_glow(uint32_t p, 
   if (Space::kScatters && shared)  // boundaries of media may have been passed on the way
     distance = surface_.tracer().periodic() ? path.length - last.length : length(hit.position - last.at.position);
   const double cosine = -dot(path.direction, hit.normal);
+  const bool asked_through = is_asked_through(path);
   for (const Asked& light : glowing_) {
+    if (asked_through && light.nature.placed && light.light->draws(hit)) continue;
     const auto met =
         light.light->met_surface(last.at, hit, surfaces_.material(p), path.direction, distance, cosine, path.time);
     if (!met) continue;

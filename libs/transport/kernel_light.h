@@ -40,6 +40,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
   }
   SampleStream::draw(points_);
   Estimator::ask(*this, options_);
+  if (refracted_) want_places();
   space_.sight().begin(sight_rays_);
 }
 
@@ -50,7 +51,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
   const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
   if (!(sample.scale > 0)) return;
-  if (refracted_ && is_refracted(light.nature)) want_refracted(node, light, sample);
+  if (refracted_ && light.nature.far && is_refracted(light.nature)) want_refracted(node, light, sample);
   if (Space::kGoesBack && node.event && light.index == kFromAir) return;  // the same as over the even ground
   if (!node.event && !surfaces_.takes(p, hit, -path.direction, sample.direction)) return;
   if (!light.nature.far && !glowing_.empty()) last_[p].draws = draws;

@@ -1,13 +1,16 @@
 // Definitions of kernel.h: lights behind smooth interfaces (refracted_sight.h).
 //
-// Every node asks far lights that are small for all ways through such interfaces, whatever the straight line towards
-// the light meets; so what continuations of the node find of the light after a smooth transmission and some more or
-// smooth reflections, and nothing else, is left out (Lane::bends). The light comes along a way with
+// Every node asks far lights that are small, and a place on one of the lamps, for all ways through such interfaces,
+// whatever the straight line towards the light meets; so what continuations of the node find of the light after a
+// smooth transmission and some more or smooth reflections, and nothing else, is left out (Lane::bends). The light comes
+// along a way with
 //   w(out, direction) x transmittances and reflectances of interfaces, squared indices, and of what fills space
-//     x |d(direction) / d(direction at the light)|  x  radiance over its density, or irradiance.
+//     x |d(direction) / d(direction at a far light)|  x  radiance over its density, or irradiance;
+//     x |d(direction) / d(m2 across the way at a lamp)|  x  radiance x cosine over the density of places, or intensity.
+// That a point's light spreads so follows from its radiance being that of a small surface.
 #pragma once
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "transport/kernel.h"
 
@@ -16,12 +19,40 @@ namespace suite {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::want_refracted(const NodeAt& node, const Asked& light,
                                                                          const LightSample& sample) {
-  if (node.event && Space::kGoesBack) return;  // the even field that it stands for knows no interfaces
-  if (!node.event && refracted_->interfaces().has(surfaces_.material(node.path))) return;  // Dirac lobes only
-  const bool delta = !(sample.density > 0);
-  refracted_questions_.push_back({static_cast<uint32_t>(&node - nodes_.data()), light.index, light.nature.disk, false,
-                                  light.beam, sample.direction, delta ? 0 : sample.density,
-                                  static_cast<float>(sample.scale), sample.spectrum});
+  if (!asks_through(node)) return;
+  refracted_questions_.push_back({static_cast<uint32_t>(&node - nodes_.data()),
+                                  light.index,
+                                  light.beam,
+                                  {sample.direction, {}},
+                                  sample.scale / (sample.density > 0 ? sample.density : 1),
+                                  sample.spectrum,
+                                  0});
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::asks_through(const NodeAt& node) const {
+  if (node.event) return !Space::kGoesBack;  // the even field that it stands for knows no interfaces
+  return !refracted_->interfaces().has(surfaces_.material(node.path));  // Dirac lobes only
+}
+
+// A place on a lamp for every node.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::want_places() {
+  for (const Asked& light : asked_) {
+    if (!light.nature.placed) continue;
+    for (const NodeAt& node : nodes_) {
+      if (!asks_through(node)) continue;
+      const auto drawn = light.light->draw_place(receiver(node), numbers(node, light.use), time(node));
+      if (!drawn) continue;
+      refracted_questions_.push_back({static_cast<uint32_t>(&node - nodes_.data()),
+                                      light.index,
+                                      light.beam,
+                                      {{}, drawn->place, false, !drawn->point},
+                                      1 / drawn->density,
+                                      nullptr,
+                                      drawn->member});
+    }
+  }
 }
 
 // What continuations have passed since their last question, behind this node.
@@ -43,13 +74,13 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_owned(const Question& q, size_t ray) {
   if (!refracted_ || q.light == kFromAir || !is_refracted(environment_.lights[q.light]->nature())) return false;
   if (Space::kGoesBack && nodes_[q.node].event) return false;
-  return refracted_->crossings(sight_rays_.rays()[ray]) <= RefractedWay::kMostEvents;
+  return refracted_->crossings(sight_rays_.rays()[ray], sight_rays_.distance()[ray]) <= RefractedWay::kMostEvents;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
   if constexpr (Surfaces::kDense > 0) {
-    for (const Question& q : refracted_questions_) {
+    for (const RefractedQuestion& q : refracted_questions_) {
       const Path& path = paths_[nodes_[q.node].path];
       const std::vector<size_t>& set = refracted_->interfaces().set_of();
       for (size_t k = 0; k < knots(); ++k) {
@@ -84,14 +115,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& n
     ray.origin = surface_.tracer().leave(at.hit, at.in);
     ray.direction = at.in;
   }
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, kFar)) return false;
-  space_.follow_way(ray, kFar, through, transmission_);
+  if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, way.length)) return false;
+  const double index = space_.follow_way(ray, way.length, through, transmission_);
+  if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const Question& q, size_t knot) {
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const RefractedQuestion& q, size_t knot) {
   const NodeAt& node = nodes_[q.node];
   const uint32_t p = node.path;
   const Path& path = paths_[p];
@@ -108,12 +139,12 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
   }
   constexpr uint64_t kPurpose = 0x62656e74;
   const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-  for (const RefractedWay& way : refracted_->find(from, q.direction, knot, seed)) shine_along(way, q, knot);
+  for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed)) shine_along(way, q, knot);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const RefractedWay& way, const Question& q,
-                                                                      size_t knot) {
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const RefractedWay& way,
+                                                                      const RefractedQuestion& q, size_t knot) {
   const NodeAt& node = nodes_[q.node];
   const uint32_t p = node.path;
   const Path& path = paths_[p];
@@ -125,14 +156,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
   for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
   double arrival = 0;
   if (!weaken(node, way, knot, through, arrival)) return;
-  const float* radiance = q.spectrum;
-  if (!radiance) {  // its shape changes with direction
-    const std::span<float> own = throughputs_.take(p);
-    std::fill(own.begin(), own.end(), 0.0f);
-    environment_.lights[q.light]->add(q.direction, path.time, 1, own);
-    radiance = own.data();
-  }
-  const double scale = q.scale / (q.density > 0 ? q.density : 1) * way.spreading * way.trials;
+  const auto from_light = sent(q, way);
+  if (!from_light) return;
+  const double scale = from_light->scale * way.spreading * way.trials;
   for (const bool doubtful : {false, true}) {
     if (doubtful && !way.doubtful) break;
     Contribution& c = contribution(p, q.light);
@@ -143,11 +169,39 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
     c.order += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(scale);
     c.factor = {1, through.data()};
-    c.radiance = radiance;
+    c.radiance = from_light->spectrum;
     c.arrival += arrival;
     if (doubtful) c.missed = 0;  // there may be as much again
     contribute();
   }
+}
+
+// What a light sends along a way, per solid angle there; of a lamp per m2 across the way, over the density of the
+// place.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+auto PathKernel<Surfaces, Space, Throughputs, Estimator>::sent(const RefractedQuestion& q, const RefractedWay& way)
+    -> std::optional<Sent> {
+  const Light& light = *environment_.lights[q.light];
+  const NodeAt& node = nodes_[q.node];
+  const double when = time(node);
+  if (q.end.far) {
+    if (q.spectrum) return Sent{q.scale, q.spectrum};
+    const std::span<float> own = throughputs_.take(node.path);  // its shape changes with direction
+    std::fill(own.begin(), own.end(), 0.0f);
+    light.add(q.end.direction, when, 1, own);
+    return Sent{q.scale, own.data()};
+  }
+  if (q.end.surface) {
+    if (!light.draws(way.lamp)) return std::nullopt;
+    const double cosine = -dot(way.to, way.lamp.normal);
+    const auto met =
+        light.met_surface(receiver(node), way.lamp, surface_.material(way.lamp), way.to, way.length, cosine, when);
+    if (!met) return std::nullopt;
+    return Sent{q.scale * met->scale * std::fabs(cosine), met->spectrum};
+  }
+  const auto sample = light.sample_member(q.member, 1, {way.last, {}, true}, {}, when);
+  if (!sample) return std::nullopt;
+  return Sent{q.scale * sample->scale * sample->distance * sample->distance, sample->spectrum};
 }
 
 }  // namespace suite

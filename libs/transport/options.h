@@ -29,7 +29,7 @@ struct PipelineOptions {
   uint32_t max_scatterings = 0;   // the same inside media, beside the nodes
   int roulette_after = 3;         // events before paths may end by chance
   bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
-  bool refracted_sources = true;  // ask far lights through smooth interfaces, too (refracted_sight.h)
+  bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted_sight.h)
   Method method = Method::standard;
   int lamp_draws = LightNature::kMostDraws;  // 1..kMostDraws: samples of a light at the first node of a path
   StopRule stop = StopRule::plan;

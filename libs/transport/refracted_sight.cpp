@@ -1,6 +1,7 @@
 #include "transport/refracted_sight.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "scene/primitives.h"
@@ -11,9 +12,13 @@ namespace {
 
 constexpr int kMostBoundaries = 4096;  // index-matched ones on one leg
 constexpr int kMostSteps = 32, kMostHalvings = 8;
-constexpr int kMostStarts = 8;         // until one meets an interface that it passes
-constexpr double kArrived = 1e-9;      // rad
-constexpr double kNearEnough = 2e-5;   // rad: where float places of meshes leave no better
+constexpr int kMostStarts = 8;        // of a trial
+constexpr int kMostWalks = 3;         // of these: that pass an interface and run towards the light
+constexpr double kArrived = 1e-9;     // rad
+constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+// rad, that Newton's next step would turn the start. Beside a fold of ways, where there is none, its steps end at small
+// distances from the light but with an endless spreading; they would still be long.
+constexpr double kSettled = 1e-4;
 constexpr double kSame = 1e-4;         // rad at the light: ways as near as this are one
 constexpr size_t kMostObjects = 4096;  // beyond, starts take them all together
 constexpr double kLongestTurn = 0.5;   // rad, of one of Newton's steps
@@ -84,18 +89,19 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   return true;
 }
 
-int RefractedSight::crossings(Ray ray) {
+int RefractedSight::crossings(Ray ray, double distance) {
   for (int n = 0;; ++n) {
     Hit hit;
-    if (!hit_next(ray, hit) || n > RefractedWay::kMostEvents) return n;
+    if (!hit_next(ray, hit) || hit.distance >= distance || n > RefractedWay::kMostEvents) return n;
     if (!interfaces_.has(surface_.material(hit))) return RefractedWay::kMostEvents + 1;
     ray.origin = surface_.tracer().leave(hit, ray.direction);
+    distance -= hit.distance;
   }
 }
 
-// One ray from the node through the interfaces that it meets, of which `mirrors` (a bit each) reflect it. False when it
-// meets none, or one does not let it on.
-bool RefractedSight::trace(const Search& s, Dir direction, uint32_t mirrors, Traced& traced) {
+// One ray from the node through a chain of interfaces. False when it meets none, or other ones, or one does not let it
+// on.
+bool RefractedSight::trace(const Search& s, Dir direction, const Chain& chain, Traced& traced) {
   const Tracer& tracer = surface_.tracer();
   const Node& node = s.node;
   if (node.hit && dot(direction, node.side) < 0) return false;
@@ -104,24 +110,43 @@ bool RefractedSight::trace(const Search& s, Dir direction, uint32_t mirrors, Tra
   way.origin = node.hit ? tracer.leave(*node.hit, direction) : node.place;
   way.direction = direction;
   way.events = 0;
-  traced.open = false;
+  traced.open = false, traced.may_end = 0;
   traced.end = BentRay::from(way.origin, start);
+  const int most = chain.events > 0 ? chain.events : RefractedWay::kMostEvents;
   Ray ray{way.origin, direction, node.time, node.draw};
   while (true) {
     Hit hit;
-    if (!hit_next(ray, hit)) {
-      traced.open = way.events > 0;
-      break;
-    }
-    const uint32_t material = surface_.material(hit);
-    if (!interfaces_.has(material) || way.events == RefractedWay::kMostEvents) break;
-    if (!pass(s, hit, material, mirrors >> way.events & 1, traced)) return false;
+    const bool met = hit_next(ray, hit);
+    const uint32_t material = met ? surface_.material(hit) : kNone;
+    const bool last = way.events == most || !interfaces_.has(material);
+    if (way.events > 0) arrive(s, hit, last, traced);
+    if (last) break;
+    if (!pass(s, hit, material, chain.mirrors >> way.events & 1, traced)) return false;
     ray.origin = tracer.leave(hit, traced.end.direction);
     ray.direction = traced.end.direction;
   }
-  if (way.events == 0) return false;
-  aim(s.light, traced, start);
+  if (way.events == 0 || (chain.events > 0 && way.events != chain.events)) return false;
+  aim(s, traced, start);
   return true;
+}
+
+// The ray has left an interface, and `hit` is what it meets next. last: it goes on no further.
+void RefractedSight::arrive(const Search& s, const Hit& hit, bool last, Traced& traced) {
+  constexpr double kNear = 1e-4;  // of the way: a lamp's surface may lie as far from where it was to be
+  RefractedWay& way = traced.way;
+  way.last = traced.end.origin;
+  way.to = traced.end.direction;
+  if (s.end.far) {
+    traced.open = !hit.hit();
+    return;
+  }
+  way.length = dot(s.end.place - way.last, way.to);
+  if (!(way.length > 0)) return;
+  const double behind = hit.hit() ? hit.distance - way.length : std::numeric_limits<double>::infinity();
+  const double slack = kNear * way.length + 16 * double{hit.step};
+  traced.open = s.end.surface ? std::fabs(behind) <= slack : behind >= -1e-9 * way.length;
+  way.lamp = hit;
+  if (last || behind > 0) traced.may_end |= 1u << way.events;
 }
 
 // Takes the ray on behind the interface at a hit; false where that is not possible.
@@ -146,62 +171,69 @@ bool RefractedSight::pass(const Search& s, const Hit& hit, uint32_t material, bo
   return true;
 }
 
-// How far the end is off, and where Newton's method would start next: it turns the end towards the light on the
-// shortest way.
-void RefractedSight::aim(Dir light, Traced& traced, const Frame& start) {
+// How far the end is off, and where Newton's method would start next: it turns the end towards a far light on the
+// shortest way, or moves it to the place on a lamp.
+void RefractedSight::aim(const Search& s, Traced& traced, const Frame& start) {
   const BentRay& end = traced.end;
   const Frame at = Frame::around(end.direction);
-  const double xx = dot(end.d_direction[0], at.x), xy = dot(end.d_direction[1], at.x),
-               yx = dot(end.d_direction[0], at.y), yy = dot(end.d_direction[1], at.y), det = xx * yy - xy * yx;
-  const double fx = dot(light, at.x), fy = dot(light, at.y), sine = std::hypot(fx, fy);
-  const bool away = dot(end.direction, light) <= 0;
-  traced.off = away ? 2 - sine : sine;
+  Vec3 change[2], miss = s.end.direction;
+  for (int i : {0, 1})
+    change[i] =
+        s.end.far ? end.d_direction[i] : (end.d_origin[i] + end.d_direction[i] * traced.way.length) / s.distance;
+  if (!s.end.far) miss = (s.end.place - end.origin) / s.distance;
+  const double xx = dot(change[0], at.x), xy = dot(change[1], at.x), yx = dot(change[0], at.y),
+               yy = dot(change[1], at.y), det = xx * yy - xy * yx;
+  const double fx = dot(miss, at.x), fy = dot(miss, at.y), off = std::hypot(fx, fy);
+  const bool away = dot(miss, end.direction) <= 0;
+  traced.off = !away ? off : s.end.far ? 2 - off : 2;
   traced.det = det;
   traced.next = start.z;
   traced.inverse = INFINITY;
   if (det == 0) return;
   traced.inverse = std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy) / std::fabs(det);
-  if (sine == 0) return;
-  const double angle = away ? kPi - std::asin(std::min(1.0, sine)) : std::asin(std::min(1.0, sine));
-  const double a = (yy * fx - xy * fy) / det * (angle / sine), b = (xx * fy - yx * fx) / det * (angle / sine);
+  if (off == 0) return;
+  const double arc = std::asin(std::min(1.0, off)), further = s.end.far ? (away ? kPi - arc : arc) / off : 1;
+  const double a = (yy * fx - xy * fy) / det * further, b = (xx * fy - yx * fx) / det * further;
   const double wanted = std::hypot(a, b), turn = std::min(wanted, kLongestTurn);
   traced.next = normalized(start.z * std::cos(turn) + (start.x * a + start.y * b) * (std::sin(turn) / wanted));
 }
 
 // Newton's method with halved steps. False where it does not end at a way that is open.
-bool RefractedSight::walk(const Search& s, const Traced& start, uint32_t mirrors, Traced& found) {
+bool RefractedSight::walk(const Search& s, const Traced& start, const Chain& chain, Traced& found) {
   found = start;
-  for (int step = 0; step < kMostSteps && found.off > kArrived; ++step) {
+  const auto settled = [&] { return found.off * found.inverse < kSettled; };
+  for (int step = 0; step < kMostSteps && (found.off > kArrived || !settled()); ++step) {
     const Dir from = found.way.direction;
     bool nearer = false;
     double share = 1;
     for (int n = 0; n < kMostHalvings && !nearer; ++n, share *= 0.5) {
       Traced next;
-      if (!trace(s, normalized(from + (found.next - from) * share), mirrors, next)) continue;
+      if (!trace(s, normalized(from + (found.next - from) * share), chain, next)) continue;
       nearer = next.off < found.off;
       if (nearer) found = next;
     }
     if (!nearer) break;
   }
-  return found.off < kNearEnough && found.open && std::isfinite(found.inverse);
+  return found.off < kNearEnough && found.open && std::isfinite(found.inverse) && settled();
 }
 
 // A start from the straight line towards the light: itself where it leaves a second interface, else what a flat
 // interface where it meets the first one would make of it. False when it meets none.
 bool RefractedSight::guess(const Search& s, Dir& direction) {
   const Tracer& tracer = surface_.tracer();
-  Ray ray{s.node.hit ? tracer.leave(*s.node.hit, s.light) : s.node.place, s.light, s.node.time, s.node.draw};
+  const Dir to = s.straight;
+  Ray ray{s.node.hit ? tracer.leave(*s.node.hit, to) : s.node.place, to, s.node.time, s.node.draw};
   Hit hit;
-  if (!hit_next(ray, hit)) return false;
+  if (!hit_next(ray, hit) || hit.distance >= s.distance) return false;
   const uint32_t material = surface_.material(hit);
   if (!interfaces_.has(material)) return false;
-  direction = s.light;
+  direction = to;
   Traced straight;
-  if (trace(s, s.light, 0, straight) && straight.way.events > 1) return true;
-  surface_.interact(hit, -s.light, at_, s.node.time);
+  if (trace(s, to, {}, straight) && straight.way.events > 1) return true;
+  surface_.interact(hit, -to, at_, s.node.time);
   const double index = interfaces_.index(material, s.knot);
   // Met from behind: the light comes from the front, and the node lies in what is behind.
-  const auto inside = unbent(s.light, at_.frame.z, dot(s.light, hit.normal) > 0 ? 1 / index : index);
+  const auto inside = unbent(to, at_.frame.z, dot(to, hit.normal) > 0 ? 1 / index : index);
   if (inside) direction = *inside;
   return true;
 }
@@ -228,7 +260,7 @@ Dir RefractedSight::draw_at_object(const Node& node) {
 }
 
 Dir RefractedSight::draw_start(const Node& node) {
-  constexpr double kAsGuessed = 0.3, kAboutIt = 0.65, kDecades = 3;
+  constexpr double kAsGuessed = 0.2, kAboutIt = 0.75, kDecades = 2;
   const double how = random();
   if (!guessed_ || how > kAboutIt) return draw_at_object(node);
   if (how < kAsGuessed) return *guessed_;
@@ -238,17 +270,30 @@ Dir RefractedSight::draw_start(const Node& node) {
   return normalized(about.z + about.x * (r * std::cos(phi)) + about.y * (r * std::sin(phi)));
 }
 
-// A random start, and the way that it leads to.
+// Chooses behind which interface the lamp comes; false where it can come behind none.
+bool RefractedSight::choose_end(const Search& s, Dir direction, Chain& chain, Traced& probe) {
+  int left = static_cast<int>(random() * std::popcount(probe.may_end));
+  for (int i = 1; i <= RefractedWay::kMostEvents && chain.events == 0; ++i)
+    if (probe.may_end >> i & 1 && left-- == 0) chain.events = i;
+  return chain.events > 0 && (chain.events == probe.way.events || trace(s, direction, chain, probe));
+}
+
+// The way that one of a few random starts leads to.
 bool RefractedSight::try_once(const Search& s, bool mirrored, Traced& found) {
   constexpr double kReflects = 0.4;
-  for (int n = 0; n < kMostStarts; ++n) {
-    const Dir start = draw_start(s.node);
-    uint32_t mirrors = 0;
-    for (int i = 1; mirrored && i < RefractedWay::kMostEvents; ++i) mirrors |= uint32_t{random() < kReflects} << i;
+  int walks = 0;
+  for (int n = 0; n < kMostStarts && walks < kMostWalks; ++n) {
+    const Dir direction = draw_start(s.node);
+    Chain chain;
+    for (int i = 1; mirrored && i < RefractedWay::kMostEvents; ++i)
+      chain.mirrors |= uint32_t{random() < kReflects} << i;
     Traced probe;
-    if (!trace(s, start, mirrors, probe)) continue;
-    if (mirrored && (probe.way.mirrors() == 0 || probe.off > 1)) return false;
-    return walk(s, probe, mirrors, found) && (found.way.mirrors() != 0) == mirrored;
+    if (!trace(s, direction, chain, probe)) continue;
+    if (!s.end.far && !choose_end(s, direction, chain, probe)) continue;
+    if (mirrored && probe.way.mirrors() == 0) return false;
+    if (s.end.far && probe.off > 1) continue;  // runs away
+    ++walks;
+    if (walk(s, probe, chain, found) && (found.way.mirrors() != 0) == mirrored) return true;
   }
   return false;
 }
@@ -273,7 +318,7 @@ bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   const double kept = mirrored ? std::min(1.0, share(first.way, s.knot) / kWorthIt) : 1;
   if (kept < 1 && !(random() < kept)) return false;
   way = first.way;
-  way.spreading = 1 / std::fabs(first.det);
+  way.spreading = 1 / (std::fabs(first.det) * (s.end.far ? 1 : s.distance * s.distance));
   way.trials = 1;
   way.doubtful = false;
   const auto same = [&] {
@@ -290,8 +335,11 @@ bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   return true;
 }
 
-std::span<const RefractedWay> RefractedSight::find(const Node& node, Dir light, size_t knot, uint64_t seed) {
-  const Search search{node, light, knot};
+std::span<const RefractedWay> RefractedSight::find(const Node& node, const WayEnd& end, size_t knot, uint64_t seed) {
+  const Vec3 way = end.place - node.place;
+  const double distance = end.far ? std::numeric_limits<double>::infinity() : length(way);
+  if (!(distance > 0)) return {};
+  const Search search{node, end, end.far ? end.direction : way / distance, distance, knot};
   seed_ = seed, counter_ = 0;
   Dir direction;
   guessed_.reset();

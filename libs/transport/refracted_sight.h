@@ -36,13 +36,25 @@ struct RefractedEvent {
   bool reflected = false;
 };
 
+// What ways lead to: a light at infinity, or a place on a lamp.
+struct WayEnd {
+  Dir direction;  // far; unit
+  Vec3 place;     // else; m, ENU
+  bool far = true;
+  bool surface = false;  // the place is one of a surface
+};
+
 struct RefractedWay {
   static constexpr int kMostEvents = 10;
   Vec3 origin;    // of the ray that leaves the node
   Dir direction;  // from the node
   int events = 0;
   RefractedEvent at[kMostEvents];
-  double spreading = 0;  // solid angle at the node over that at the light
+  Vec3 last;                                                // place of the last of them
+  Dir to;                                                   // towards the light from there
+  double length = std::numeric_limits<double>::infinity();  // m, to a lamp from there
+  Hit lamp;                                                 // of a lamp's surface
+  double spreading = 0;  // solid angle at the node over that at the light; over 1 m2 across the way at a lamp, 1/m2
   double trials = 1;     // the estimated reciprocal of the probability with which it was found
   bool doubtful = false;
   // A bit for each event that reflects.
@@ -65,39 +77,50 @@ class RefractedSight {
     double time = 0;           // s
     uint32_t draw = 0;         // Ray::draw
   };
-  // Ways from the node towards a light at infinity, for the wavelengths of a knot: none, one or two. seed: of the
+  // Ways from the node to a light, for the wavelengths of a knot: none, one or two. seed: of the
   // random numbers. In the mean over seeds all ways count. What is returned lives until the next call.
-  std::span<const RefractedWay> find(const Node& node, Dir light, size_t knot, uint64_t seed);
-  // How many smooth interfaces a straight ray crosses before it is free; more than kMostEvents = at least one more.
-  int crossings(Ray ray);
+  std::span<const RefractedWay> find(const Node& node, const WayEnd& end, size_t knot, uint64_t seed);
+  // How many smooth interfaces a straight ray crosses within a distance; more than kMostEvents = at least one more, or
+  // something else is in its way.
+  int crossings(Ray ray, double distance);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
   struct Search {  // what is looked for
     const Node& node;
-    Dir light;
+    const WayEnd& end;
+    Dir straight;     // towards the light from the node
+    double distance;  // m, of a lamp
     size_t knot;
+  };
+  struct Chain {
+    uint32_t mirrors = 0;  // a bit for each interface that reflects
+    int events = 0;        // how many of them; 0 = as many as the ray meets
   };
   struct Traced {
     RefractedWay way;
     BentRay end;
-    bool open = false;   // nothing behind the last interface
-    double det = 0;      // of the change of the end's direction with that of the start
-    double off = 0;      // sine of the end's direction from the light's; 2 - sine where it runs away from it
-    Dir next;            // Newton's next direction
-    double inverse = 0;  // norm of the inverse of the change
+    bool open = false;     // nothing between the last interface and the light
+    uint32_t may_end = 0;  // a bit for each number of interfaces behind which a lamp may come
+    double det = 0;        // of the change of the end with the direction of the start
+    double off = 0;        // how far the end is off: sine of its direction from the light's, 2 - sine where it runs
+                           // away from it; of a lamp m over the distance of that, 2 where it lies behind
+    Dir next;              // Newton's next direction
+    double inverse = 0;    // norm of the inverse of the change
   };
   bool hit_next(Ray& ray, Hit& hit);
-  bool trace(const Search& s, Dir direction, uint32_t mirrors, Traced& traced);
+  bool trace(const Search& s, Dir direction, const Chain& chain, Traced& traced);
+  static void arrive(const Search& s, const Hit& hit, bool last, Traced& traced);
   bool pass(const Search& s, const Hit& hit, uint32_t material, bool reflected, Traced& traced);
-  bool walk(const Search& s, const Traced& start, uint32_t mirrors, Traced& found);
+  bool walk(const Search& s, const Traced& start, const Chain& chain, Traced& found);
   bool guess(const Search& s, Dir& direction);
   bool try_once(const Search& s, bool mirrored, Traced& found);
   bool find(const Search& s, bool mirrored, RefractedWay& way);
   double share(const RefractedWay& way, size_t knot);
   Dir draw_start(const Node& node);
   Dir draw_at_object(const Node& node);
-  static void aim(Dir light, Traced& traced, const Frame& start);
+  bool choose_end(const Search& s, Dir direction, Chain& chain, Traced& probe);
+  static void aim(const Search& s, Traced& traced, const Frame& start);
   double random() { return unit_double(mix64(seed_ + counter_++)); }
 
   const Surface& surface_;

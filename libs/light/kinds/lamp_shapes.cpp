@@ -85,6 +85,16 @@ LightBounds bounds_of(const LampShape& s) {
   return b;
 }
 
+Vec3 place_on(const LampShape& s, Vec2 u) {
+  if (s.kind == LampShape::Kind::sphere) return s.origin + uniform_sphere(u) * s.a.x;
+  if (s.kind == LampShape::Kind::disk) u = disk_from_square(u);
+  if (s.kind == LampShape::Kind::triangle) {
+    const double root = std::sqrt(u.x);
+    u = {root * (1 - u.y), root * u.y};
+  }
+  return s.origin + s.a * u.x + s.b * u.y;
+}
+
 std::optional<ShapePoint> draw(const LampShape& s, Vec3 from, Vec2 u) {
   ShapePoint p{s.origin, s.normal, 0, 0, {}, 0};
   if (s.kind == LampShape::Kind::sphere) {
@@ -99,15 +109,8 @@ std::optional<ShapePoint> draw(const LampShape& s, Vec3 from, Vec2 u) {
       p.normal = uniform_sphere(u);
     }
     p.position = s.origin + p.normal * radius;
-  } else if (s.kind == LampShape::Kind::disk) {
-    const Vec2 d = disk_from_square(u);
-    p.position = s.origin + s.a * d.x + s.b * d.y;
   } else {
-    if (s.kind == LampShape::Kind::triangle) {
-      const double root = std::sqrt(u.x);
-      u = {root * (1 - u.y), root * u.y};
-    }
-    p.position = s.origin + s.a * u.x + s.b * u.y;
+    p.position = place_on(s, u);
   }
   const Vec3 to = p.position - from;
   p.distance = length(to);

@@ -26,6 +26,8 @@ std::optional<LampShape> shape_of(const Mesh& mesh, uint32_t triangle, const Aff
 // Bounds for a radiance of 1.
 LightBounds bounds_of(const LampShape& surface);
 
+// A point of a surface, all places alike.
+Vec3 place_on(const LampShape& surface, Vec2 u);
 // A point of the shape drawn from a place; density in 1/sr as seen from there, nothing when it cannot be seen.
 struct ShapePoint {
   Vec3 position;

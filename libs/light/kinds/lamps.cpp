@@ -260,6 +260,7 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   core.bounds = {};
   nature_.delta = !surfaces;
   nature_.drawn = core.tree != nullptr;
+  nature_.placed = core.tree && !core.images;
   nature_.numbers = 4;
   nature_.draws = static_cast<int>(std::clamp<size_t>(size(), 1, LightNature::kMostDraws));
 }
@@ -344,6 +345,29 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   r.scale = dimmed;
   r.end = point->position + point->normal * double{point->cosine > 0 ? s.step : -s.step};
   return r;
+}
+
+// By the tree as if the place looked everywhere, or any: bent light may come from where the tree expects none.
+std::optional<LightPlace> Lamps::draw_place(const LightReceiver& at, const std::array<double, 4>& u,
+                                            double time) const {
+  if (!core_->tree || core_->images) return std::nullopt;
+  const LightReceiver all_round{at.position, {}, true};
+  const double evenly = 0.5 / static_cast<double>(size());
+  uint32_t lamp = 0;
+  if (u[0] < 0.5) {
+    const auto chosen = core_->tree->sample(all_round, 2 * u[0]);
+    if (!chosen) return std::nullopt;
+    lamp = chosen->light;
+  } else {
+    lamp = static_cast<uint32_t>(std::min(size() - 1, static_cast<size_t>((u[0] - 0.5) / evenly)));
+  }
+  const LampShape& s = core_->shapes[lamp];
+  if (!(dimming(core_->specs[s.spec], time) > 0)) return std::nullopt;
+  const double chance = 0.5 * core_->tree->probability(all_round, lamp) + evenly;
+  if (s.kind != Kind::point) return LightPlace{place_on(s, {u[1], u[2]}), false, chance / s.area, lamp};
+  if (s.carrier == kNone) return LightPlace{s.origin, true, chance, lamp};
+  const auto carrier = core_->carriers.at(s.carrier, time);
+  return carrier ? std::optional(LightPlace{carrier->point(s.origin), true, chance, lamp}) : std::nullopt;
 }
 
 bool Lamps::draws(const Hit& hit) const { return core_->shape_at(hit) != kNone; }

@@ -66,8 +66,9 @@ class Lamps final : public Light {
   std::optional<LightSample> sample_member(size_t member, double probability, const LightReceiver& at,
                                            const std::array<double, 4>& u, double time) const override;
 
-  // Whether sample() may draw the surface that a ray met.
-  bool draws(const Hit& hit) const;
+  std::optional<LightPlace> draw_place(const LightReceiver& at, const std::array<double, 4>& u,
+                                       double time) const override;
+  bool draws(const Hit& hit) const override;
   // Radiance that a surface with this material sends to the side of its normal (front) or to its back; null = none.
   const float* glow(uint32_t material, bool front) const;
   // Density, 1/sr, with which sample() draws the direction from `at` towards the point `hit` of a glowing surface,

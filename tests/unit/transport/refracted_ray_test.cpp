@@ -181,7 +181,7 @@ double mean_spreading(World& w, Vec3 from, Dir light, int seeds, int crossings) 
   node.place = from;
   double sum = 0;
   for (int seed = 0; seed < seeds; ++seed) {
-    for (const RefractedWay& way : sight.find(node, light, 0, mix64(static_cast<uint64_t>(seed)))) {
+    for (const RefractedWay& way : sight.find(node, {light, {}}, 0, mix64(static_cast<uint64_t>(seed)))) {
       if (way.mirrors() != 0) continue;
       EXPECT_EQ(way.events, crossings);
       EXPECT_FALSE(way.doubtful);
@@ -198,7 +198,7 @@ TEST(RefractedSight, FlatWaterHasOneWay) {
   for (const double zenith : {0.0, 0.5, 1.0, 1.3, 1.55}) {
     const Dir light = dir_from_angles(zenith, 0.3);
     const double n = sight.interfaces().index(0, 0), inside = std::asin(std::sin(zenith) / n);
-    const auto ways = sight.find(node, light, 0, 7);
+    const auto ways = sight.find(node, {light, {}}, 0, 7);
     ASSERT_EQ(ways.size(), 1u) << zenith;
     const double spreading = ways[0].spreading;
     EXPECT_LT(length(ways[0].direction - dir_from_angles(inside, 0.3)), 1e-8);
@@ -206,7 +206,7 @@ TEST(RefractedSight, FlatWaterHasOneWay) {
     // Every start finds it.
     EXPECT_NEAR(mean_spreading(water, {}, light, 200, 1) / spreading, 1, 0.12) << zenith;
   }
-  EXPECT_TRUE(sight.find(node, dir_from_angles(100 * kDegree, 0), 0, 7).empty());
+  EXPECT_TRUE(sight.find(node, {dir_from_angles(100 * kDegree, 0), {}}, 0, 7).empty());
 }
 
 // Each sequence of faces that reflect is one way, found with a probability of its own; each counts once in the mean.
@@ -217,7 +217,7 @@ TEST(RefractedSight, ReflectionsInAPane) {
   constexpr int kSeeds = 20000;
   double counted[3] = {};  // without, with two, with four reflections
   for (uint64_t seed = 0; seed < kSeeds; ++seed)
-    for (const RefractedWay& way : sight.find(node, dir_from_angles(75 * kDegree, 1), 0, mix64(seed))) {
+    for (const RefractedWay& way : sight.find(node, {dir_from_angles(75 * kDegree, 1), {}}, 0, mix64(seed))) {
       const int mirrors = std::popcount(way.mirrors());
       EXPECT_EQ(way.events, 2 + mirrors);
       EXPECT_NEAR(way.spreading, 1, 1e-6);
