@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <optional>
 
 #include "base/files.h"
@@ -247,11 +248,9 @@ void tell_of_points(const Heating& heating) {
 
 namespace {
 
-// s of one thread that finding temperatures takes: a few faces, spread over all, are traced.
+// s of one thread at work that tracing takes: a few faces, spread over all, are traced.
 double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& scene) {
   constexpr size_t kLooks = 4;
-  constexpr double kMore =
-      1.3;  // of that: the balance and its errors beside tracing, as of a street of 24 000 elements
   const WeatherLoads weather = weather_loads(weather_of(sim, scene), p.spec);
   const PathOptions paths = path_options(p.spec);
   const size_t n = p.faces->size();
@@ -259,22 +258,22 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
   const auto seconds = [&](size_t together, const std::function<void(FaceRange)>& trace) {
     const size_t waves = (n + together - 1) / together, looks = std::min(kLooks, waves);
     size_t faces = 0;
-    const Stopwatch::time_point begun = Stopwatch::now();
+    const std::clock_t begun = std::clock();
     for (size_t k = 0; k < looks; ++k) {
       const size_t begin = waves * k / looks * together, end = std::min(n, begin + together);
       trace({begin, end}), faces += end - begin;
     }
-    return seconds_since(begun) * static_cast<double>(n) / static_cast<double>(faces);
+    return static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC * static_cast<double>(n) /
+           static_cast<double>(faces);
   };
   ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
   Sunlight sun = untraced_sunlight(*p.faces, weather.course, paths);
-  return kMore *
-         (seconds(
-              ExchangePaths::kTogether,
-              [&](FaceRange r) { trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange); }) +
-          seconds(Sunlight::kTogether, [&](FaceRange r) {
-            trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
-          }));
+  const double infrared = seconds(ExchangePaths::kTogether, [&](FaceRange r) {
+    trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange);
+  });
+  return infrared + seconds(Sunlight::kTogether, [&](FaceRange r) {
+           trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
+         });
 }
 
 }  // namespace
@@ -290,11 +289,12 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   check_size(p, sim);
   const double seconds = seconds_of(p, sim, *scene);
   return strf(
-             "heat: %zu elements (%zu faces, %.3g m2 at most), %u paths of each, %.0f moments, some %s rays, some %.0f "
-             "s "
-             "with %d threads, some %s\n",
+             "heat: %zu elements (%zu faces, %.3g m2 at most), %u paths of each, %.0f moments, some %s rays, some %s\n",
              p.elements->size(), p.faces->size(), p.elements->largest(), p.spec.paths, moments_of(p),
-             human_count(rays).c_str(), seconds / threads(), threads(), human_bytes(bytes_of(p)).c_str()) +
+             human_count(rays).c_str(), human_bytes(bytes_of(p)).c_str()) +
+         strf(
+             "heat: some %.1f s for the rays with %d threads at work, as long to twice as long again for the balance\n",
+             seconds / threads(), threads()) +
          (p.spec.target > 0
               ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});

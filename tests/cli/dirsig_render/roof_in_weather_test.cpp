@@ -64,7 +64,7 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
 // A job in parts that are given the temperatures has the bytes of one run that finds them, points included.
 TEST_F(RoofInWeather, PartsTakeTheTemperaturesOfAFile) {
   std::string few = "--paths 2";
-  for (int s = 0; s < 3; ++s) few += strf(" --set sensors.%d.columns=24 --set sensors.%d.rows=18", s, s);
+  for (int s = 0; s < 3; ++s) few += strf(" --set sensors.%d.columns=12 --set sensors.%d.rows=9", s, s);
   render("out", few);
   for (const char* part : {"1", "2"})
     render(std::string("p") + part, strf("--part %s/2 --state --heat out/heat.h5 ", part) + few);
