@@ -1,10 +1,9 @@
 #include "heat.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <optional>
 
 #include "base/files.h"
@@ -15,17 +14,14 @@
 #include "base/stopwatch.h"
 #include "formats/heat_hdf/heat_hdf.h"
 #include "formats/heat_hdf/operator_hdf.h"
-#include "heat/day_sun.h"
 #include "heat/heat_field.h"
 #include "heat/target_paths.h"
 #include "heat_left_out.h"
 #include "heat_paths.h"
-#include "heat_span.h"
+#include "heat_prepared.h"
 #include "heat_told.h"
-#include "motion/scene_frame.h"
 #include "scheduler/prepass.h"
 #include "spectral/planck.h"
-#include "surface/cut_out.h"
 
 namespace suite {
 
@@ -36,65 +32,6 @@ constexpr double kGlowing = 1e-3;  // W/(m2 sr um): light below that is nothing 
 
 bool waits_for_heat(const Scene& scene) {
   return std::ranges::any_of(scene.temperatures, [](const TemperatureBinding& t) { return t.spec.model == "heat"; });
-}
-
-HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
-  const Weather& weather = *sim.heat->weather;
-  const Clock clock(*sim.epoch);
-  const GeodeticOrigin& o = scene.origin;
-  const auto frame = std::make_shared<const SceneFrame>(
-      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
-  return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
-          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
-}
-
-// cut: as a file has it; none = as the simulation asks.
-PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
-                     const std::optional<HeatCut>& cut = {}) {
-  PreparedHeat p;
-  p.spec = sim.heat->spec;
-  const Geodetic site = sim.heat->weather->site();
-  p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
-  p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
-  p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
-  const HeatWeather weather = weather_of(sim, *scene);
-  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}});
-  if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
-  const DaySun sun = day_sun(*p.tracer, p.cut.sun);
-  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
-                                          p.cut.by_sun ? &sun : nullptr);
-  p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
-  if (const std::vector<uint32_t> kept = p.cut.kept; !kept.empty()) {
-    check_kept(*p.elements, sim, kept);
-    keep_elements(p, kept);
-  }
-  return p;
-}
-
-double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1; }
-
-// What finding temperatures takes at once: by face what paths found and the errors' blocks of it, beside that the most
-// of what is done one after the other: the matrix from both ends as it is made, or that with two histories, loads and
-// the nodes of the slabs.
-double bytes_of(const PreparedHeat& p) {
-  constexpr double kNodes = 4 * 30 * 8;
-  const double moments = moments_of(p), paths = p.spec.paths;
-  const double found = paths * 8 + 4.0 * HeatSpec::kBlocks * (kHeatParts + 2) + 4.0 * Sunlight::kContrasts * kHeatParts;
-  const double tracing = 4 * (moments + kSkyPatches), making = 4 * moments + paths * 8 * 4;
-  const double balance = paths * 8 * 2 + 4 * moments * 3 + kNodes;
-  const double errors = 4 * moments * 3 + 4.0 * HeatSpec::kBlocks * kHeatParts + 8.0 * 2 * kHeatParts;
-  return static_cast<double>(p.faces->size()) * (found + std::max({tracing, making, balance, errors}));
-}
-
-// Refuses more than there is room for, before anything is traced.
-void check_size(const PreparedHeat& p, const Simulation& sim) {
-  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  const double paths = static_cast<double>(p.faces->size()) * p.spec.paths;
-  if (bytes_of(p) > there || paths >= 4294967295.0)
-    throw Error(sim.heat->where,
-                strf("%zu faces of elements with %u paths each take %s, and this machine has %s", p.faces->size(),
-                     p.spec.paths, human_bytes(bytes_of(p)).c_str(), human_bytes(there).c_str()),
-                "fewer elements or paths (2^32 paths at most), or a larger step_s");
 }
 
 // Sunlight of the elements that are left, with the exchange that is there.
@@ -283,6 +220,10 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   }
   if (!options.heat.empty() && !options.heat_operator.empty())
     throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
+  if (!options.part.empty() && options.heat.empty())
+    note(
+        "heat: every part finds the same temperatures; `--heat-only` finds them once, and `--heat FILE` gives them to "
+        "all");
   std::optional<HeatCut> cut;
   if (!options.heat.empty())
     cut = heat_cut(options.heat);
@@ -316,11 +257,9 @@ void tell_of_points(const Heating& heating) {
 
 namespace {
 
-// s of one thread that finding temperatures takes: a few faces, spread over all, are traced.
+// s of one thread at work that tracing takes: a few faces, spread over all, are traced.
 double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& scene) {
   constexpr size_t kLooks = 4;
-  constexpr double kMore =
-      1.3;  // of that: the balance and its errors beside tracing, as of a street of 24 000 elements
   const WeatherLoads weather = weather_loads(weather_of(sim, scene), p.spec);
   const PathOptions paths = path_options(p.spec);
   const size_t n = p.faces->size();
@@ -328,22 +267,22 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
   const auto seconds = [&](size_t together, const std::function<void(FaceRange)>& trace) {
     const size_t waves = (n + together - 1) / together, looks = std::min(kLooks, waves);
     size_t faces = 0;
-    const Stopwatch::time_point begun = Stopwatch::now();
+    const std::clock_t begun = std::clock();
     for (size_t k = 0; k < looks; ++k) {
       const size_t begin = waves * k / looks * together, end = std::min(n, begin + together);
       trace({begin, end}), faces += end - begin;
     }
-    return seconds_since(begun) * static_cast<double>(n) / static_cast<double>(faces);
+    return static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC * static_cast<double>(n) /
+           static_cast<double>(faces);
   };
   ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
   Sunlight sun = untraced_sunlight(*p.faces, weather.course, paths);
-  return kMore *
-         (seconds(
-              ExchangePaths::kTogether,
-              [&](FaceRange r) { trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange); }) +
-          seconds(Sunlight::kTogether, [&](FaceRange r) {
-            trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
-          }));
+  const double infrared = seconds(ExchangePaths::kTogether, [&](FaceRange r) {
+    trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange);
+  });
+  return infrared + seconds(Sunlight::kTogether, [&](FaceRange r) {
+           trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
+         });
 }
 
 }  // namespace
@@ -359,11 +298,12 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   check_size(p, sim);
   const double seconds = seconds_of(p, sim, *scene);
   return strf(
-             "heat: %zu elements (%zu faces, %.3g m2 at most), %u paths of each, %.0f moments, some %s rays, some %.0f "
-             "s "
-             "with %d threads, some %s\n",
+             "heat: %zu elements (%zu faces, %.3g m2 at most), %u paths of each, %.0f moments, some %s rays, some %s\n",
              p.elements->size(), p.faces->size(), p.elements->largest(), p.spec.paths, moments_of(p),
-             human_count(rays).c_str(), seconds / threads(), threads(), human_bytes(bytes_of(p)).c_str()) +
+             human_count(rays).c_str(), human_bytes(bytes_of(p)).c_str()) +
+         strf(
+             "heat: some %.1f s for the rays with %d threads at work, as long to twice as long again for the balance\n",
+             seconds / threads(), threads()) +
          (p.spec.target > 0
               ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});

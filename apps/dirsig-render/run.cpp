@@ -2,9 +2,7 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 
 #include "air_told.h"
 #include "base/files.h"

@@ -61,6 +61,20 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
   EXPECT_LT(value("out/afternoon_truth.img", 72, 36, 1), value("elements/afternoon_truth.img", 72, 36, 1));
 }
 
+// A job in parts that are given the temperatures has the bytes of one run that finds them, points included.
+TEST_F(RoofInWeather, PartsTakeTheTemperaturesOfAFile) {
+  std::string few = "--paths 2";
+  for (int s = 0; s < 3; ++s) few += strf(" --set sensors.%d.columns=12 --set sensors.%d.rows=9", s, s);
+  render("out", few);
+  for (const char* part : {"1", "2"})
+    render(std::string("p") + part, strf("--part %s/2 --state --heat out/heat.h5 ", part) + few);
+  render("joined", "--merge p1 p2 --heat out/heat.h5 " + few);
+  for (const char* image : {"night", "afternoon", "midwave", "afternoon_truth"}) {
+    const std::string name = std::string("/") + image + ".img";
+    EXPECT_EQ(read_bytes(folder_ / ("out" + name)), read_bytes(folder_ / ("joined" + name))) << image;
+  }
+}
+
 TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
   render("out", "--heat-only --set heat.final_gather=false");
   const CommandResult r = run("dirsig-render sim.yaml -o again --heat out/heat.h5");

@@ -46,6 +46,18 @@ TEST(HeatHdf, ThereAndBack) {
   EXPECT_EQ(a.kelvin_at(1, 12345), b.kelvin_at(1, 12345));
 }
 
+TEST(HeatHdf, WhatIsLeftAndWhatPointsNeed) {
+  const TempFolder folder;
+  HeatedFile file;
+  EXPECT_TRUE(heat_cut((file.write(folder / "all.h5"), folder / "all.h5")).kept.empty());
+  EXPECT_TRUE(read_heat(folder / "all.h5", *file.kit.elements, *file.kit.faces).straight.empty());
+  file.result.straight = file.result.absorbed;
+  write_heat(folder / "some.h5", file.result, *file.kit.elements, *file.kit.faces, {"m0", "m1"}, false, "a test",
+             {1, 4});
+  EXPECT_EQ(heat_cut(folder / "some.h5").kept, (std::vector<uint32_t>{1, 4}));
+  EXPECT_EQ(read_heat(folder / "some.h5", *file.kit.elements, *file.kit.faces).straight, file.result.straight);
+}
+
 TEST(HeatHdf, SameResultSameBytes) {
   const TempFolder folder;
   const HeatedFile file, again;

@@ -1,0 +1,113 @@
+#include "heat_prepared.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/progress.h"
+#include "base/run_app.h"
+#include "heat/day_sun.h"
+#include "heat_left_out.h"
+#include "motion/scene_frame.h"
+#include "surface/cut_out.h"
+
+namespace suite {
+
+namespace {
+
+// From the first capture's begin to the last one's end.
+TimeSpan captured(const Simulation& sim) {
+  TimeSpan span{INFINITY, -INFINITY};
+  for (const auto& sensor : sim.sensors)
+    for (const Task& task : sensor->tasks())
+      for (const Capture& c : task.captures)
+        span = {std::min(span.begin, c.window.begin), std::max(span.end, c.window.end)};
+  return span;
+}
+
+// Seconds of the simulation at the midnight of the sun before a time: where the hour angle is half a turn.
+double midnight_before(double t, double longitude_deg, const Clock& clock) {
+  const Utc utc = clock.utc(t);
+  const double local = utc.hour * 3600.0 + utc.minute * 60.0 + utc.second + longitude_deg * 240;
+  return t - (local - std::floor(local / 86400) * 86400);
+}
+
+// Whole minutes, so that the same day is the same span.
+TimeSpan span_of(const Simulation& sim, double longitude_deg) {
+  const HeatRequest& heat = *sim.heat;
+  const TimeSpan seen = captured(sim);
+  if (heat.span) {
+    if (!heat.spec.periodic && (seen.begin < heat.span->begin || seen.end > heat.span->end))
+      throw Error(heat.where,
+                  strf("temperatures are found from %g to %g s, captures are taken from %g to %g s", heat.span->begin,
+                       heat.span->end, seen.begin, seen.end),
+                  "let 'from' and 'to' cover them");
+    return *heat.span;
+  }
+  const double begin = std::round(midnight_before(seen.begin, longitude_deg, Clock(*sim.epoch)) / 60) * 60;
+  if (seen.end > begin + 86400)
+    throw Error(
+        heat.where,
+        strf("the captures take %g hours, which are more than one day of temperatures", (seen.end - seen.begin) / 3600),
+        "give heat 'from' and 'to'");
+  return {begin, begin + 86400};
+}
+
+}  // namespace
+
+HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
+  const Weather& weather = *sim.heat->weather;
+  const Clock clock(*sim.epoch);
+  const GeodeticOrigin& o = scene.origin;
+  const auto frame = std::make_shared<const SceneFrame>(
+      o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
+  return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
+          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
+}
+
+PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
+                     const std::optional<HeatCut>& cut) {
+  PreparedHeat p;
+  p.spec = sim.heat->spec;
+  const Geodetic site = sim.heat->weather->site();
+  p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
+  p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
+  p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
+  const HeatWeather weather = weather_of(sim, *scene);
+  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}});
+  if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
+  const DaySun sun = day_sun(*p.tracer, p.cut.sun);
+  p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
+                                          p.cut.by_sun ? &sun : nullptr);
+  p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
+  if (const std::vector<uint32_t> kept = p.cut.kept; !kept.empty()) {
+    check_kept(*p.elements, sim, kept);
+    keep_elements(p, kept);
+  }
+  return p;
+}
+
+double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1; }
+
+double bytes_of(const PreparedHeat& p) {
+  constexpr double kNodes = 4 * 30 * 8;
+  const double moments = moments_of(p), paths = p.spec.paths;
+  const double found = paths * 8 + 4.0 * HeatSpec::kBlocks * (kHeatParts + 2) + 4.0 * Sunlight::kContrasts * kHeatParts;
+  const double tracing = 4 * (moments + kSkyPatches), making = 4 * moments + paths * 8 * 4;
+  const double balance = paths * 8 * 2 + 4 * moments * 3 + kNodes;
+  const double errors = 4 * moments * 3 + 4.0 * HeatSpec::kBlocks * kHeatParts + 8.0 * 2 * kHeatParts;
+  return static_cast<double>(p.faces->size()) * (found + std::max({tracing, making, balance, errors}));
+}
+
+void check_size(const PreparedHeat& p, const Simulation& sim) {
+  const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double paths = static_cast<double>(p.faces->size()) * p.spec.paths;
+  if (bytes_of(p) > there || paths >= 4294967295.0)
+    throw Error(sim.heat->where,
+                strf("%zu faces of elements with %u paths each take %s, and this machine has %s", p.faces->size(),
+                     p.spec.paths, human_bytes(bytes_of(p)).c_str(), human_bytes(there).c_str()),
+                "fewer elements or paths (2^32 paths at most), or a larger step_s");
+}
+
+}  // namespace suite

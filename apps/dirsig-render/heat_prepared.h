@@ -1,0 +1,23 @@
+// What a search for temperatures needs, made of a scene and a simulation.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "formats/heat_hdf/heat_hdf.h"
+#include "heat_told.h"
+
+namespace suite {
+
+HeatWeather weather_of(const Simulation& simulation, const Scene& scene);
+// cut: as a file says; none = as the simulation asks. Error: captures outside of the span; as its parts.
+PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& simulation, const JobOptions& job,
+                     const std::optional<HeatCut>& cut = {});
+double moments_of(const PreparedHeat& prepared);
+// What finding temperatures takes at once: by face what paths found and the errors' blocks of it, beside that the most
+// of what is done one after the other: the matrix from both ends as it is made, or that with two histories, loads and
+// the nodes of the slabs.
+double bytes_of(const PreparedHeat& prepared);
+// Refuses more than there is room for, before anything is traced.
+void check_size(const PreparedHeat& prepared, const Simulation& simulation);
+
+}  // namespace suite
