@@ -72,18 +72,40 @@ void expect_same(const Seen& r, const FluxMap& map, double tolerance) {
 const std::vector<Wave> kWaves{{0.02, 2 * kPi / 0.5, 0, 0.3}, {0.01, 2.1, 2 * kPi / 0.37, 1.1}};
 const Dir kSun = dir_from_angles(20 * kDegree, 0.5);
 
-TEST(RefractedCaustic, UnderExactWaves) {
-  constexpr double kWidth = 0.5, kDeep = 1;
+struct UnderWaves {
+  FluxMap map;
+  Seen seen;
+};
+UnderWaves under_waves(double deep) {
+  constexpr double kWidth = 0.5;
   auto scene = std::make_shared<Scene>();
   scene->materials = {material("floor", lambert(kReflectance)), material("water", smooth(1.33))};
-  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kDeep}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -deep}));
   std::vector<double> parameters{20, 20};
   for (const Wave& w : kWaves) parameters.insert(parameters.end(), {w.a, w.kx, w.ky, w.phase});
   place(*scene, PrimitiveKind::sinusoid, parameters, 1);
   check_scene(*scene, "waves");
-  FluxMap map{kCells, kWidth, -kDeep};
-  light_waves(map, kWaves, kSun, 1.33, 2, 2400);
-  expect_same(see(scene, sun(kSun), FloorSensor(kWidth, -kDeep, 512)), map, 0.005);
+  UnderWaves u{{kCells, kWidth, -deep}, {}};
+  light_waves(u.map, kWaves, kSun, 1.33, 2, 2400);
+  u.seen = see(scene, sun(kSun), FloorSensor(kWidth, -deep, 512));
+  return u;
+}
+
+// Before the waves' focus: one way everywhere, and errors of cells (0.1 %) below those of the map (some 0.5 %), so that
+// only the total is compared.
+TEST(RefractedCaustic, UnderExactWaves) {
+  const UnderWaves u = under_waves(0.5);
+  const Compared c = compare(u.seen, u.map);
+  EXPECT_NEAR(c.total, c.expected, 0.005 * c.expected);
+}
+
+// At their focus an eighth of the light falls on 1 % of the floor, most of that on square millimetres between folds of
+// ways. There radiance has no variance (its square goes as the reciprocal of the distance from a fold), and most runs
+// of 512 paths miss what few see: of 12 seeds the mean was 1.4 % low with errors of 0.7 %, told and real. So the total
+// is held to its error only, here.
+TEST(RefractedCaustic, AtTheFocusOfWaves) {
+  const UnderWaves u = under_waves(1);
+  expect_same(u.seen, u.map, 0.005);
 }
 
 TEST(RefractedCaustic, BehindABallOfGlass) {
