@@ -86,7 +86,8 @@ def article(folder, simulation):
         drawn, share = error_figure(cube, errors)
         good.append(share)
         out += [drawn, overlay(where, name, cube)]
-    row = (simulation, user + system, real, log["peak_bytes"] / 2 ** 20, 100 * log["median_relative_error"], 100 * sum(good) / len(good), 100 * log["share_flagged"])
+    flagged = sum(q["flagged"] for q in log["quality"]) / sum(q["pixels"] for q in log["quality"])
+    row = (simulation, user + system, real, log["peak_bytes"] / 2 ** 20, 100 * log["median_relative_error"], 100 * sum(good) / len(good), 100 * flagged)
     return row, "\n".join(out)
 
 

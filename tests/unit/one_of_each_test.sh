@@ -4,7 +4,8 @@
 # which numbers are drawn, and where the tracer is called. Kinds of lights are named by their own files, by the table that
 # collects their rows, and by the suns that a capture brings itself, by the sky of the air (sky_table), which
 # is drawn as a table is; the solar spectrum, which decks are lit by, is no light but stands among them, as does the
-# spectrum of clear skies; the balance of heat weighs with both. Prints the list.
+# spectrum of clear skies; the balance of heat weighs with both. What is outside is asked for its light, and once before whether
+# there is any; surfaces that shine, where paths meet them and where ways through smooth interfaces end. Prints the list.
 set -u
 cd "$1" || exit 2
 failed=0
@@ -23,8 +24,8 @@ places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
 places "questions to lights" 1 '(light|light->)(\.light)?->sample\(' libs/transport
-places "lights met outside"  1 '(\.|->)met_outside\(' libs/transport
-places "surfaces that shine" 1 '(\.|->)met_surface\(' libs/transport
+places "lights met outside"  2 '(\.|->)met_outside\(' libs/transport
+places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
 places "explicit light"      1 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
