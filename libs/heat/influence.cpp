@@ -19,7 +19,7 @@ double fourth(double kelvin) { return kelvin * kelvin * kelvin * kelvin; }
 }  // namespace
 
 Influence::Influence(const ExchangePaths& exchange, const HeatFaces& faces)
-    : exchange_(exchange), outsides_(faces.outsides()), matrix_(exchange.matrix(faces.outsides())) {
+    : exchange_(exchange), faces_(faces), outsides_(faces.outsides()), matrix_(exchange.matrix(faces.outsides())) {
   SUITE_CHECK_EQ(exchange.faces(), faces.size());
   for (size_t f = 0; f < faces.size(); ++f) {
     element_.push_back(faces.element(f));
@@ -39,14 +39,14 @@ std::vector<double> Influence::importance(const std::vector<bool>& seen) const {
       for (size_t k = f * each; k < (f + 1) * each; ++k) sum += double{exchange_.weights[k]};
       const double own = exchange_.area[f] * exchange_.emissivity[f];
       for (size_t k = f * each; k < (f + 1) * each && sum > 0; ++k) {
-        const uint32_t end = exchange_.ends[k];
-        if (end >= n) continue;
-        // A path tells of both ends: what one gives the other, that takes.
+        const uint32_t end = exchange_.ends[k], face = faces_.face_of(end);
+        if (face == kNone) continue;
+        // A path tells of both ends: what one gives the other, that takes. Closed backs take nothing.
         const double share = double{exchange_.weights[k]} / sum,
-                     other = exchange_.area[end] * exchange_.emissivity[end];
-        double &mine = next[element_[f]], &theirs = next[element_[end]];
+                     other = end == face ? exchange_.area[face] * exchange_.emissivity[face] : 0;
+        double &mine = next[element_[f]], &theirs = next[element_[face]];
         theirs = std::max(theirs, v[element_[f]] * share);
-        if (other > 0) mine = std::max(mine, v[element_[end]] * std::min(1.0, share * own / other));
+        if (other > 0) mine = std::max(mine, v[element_[face]] * std::min(1.0, share * own / other));
       }
     }
     v = std::move(next);
@@ -117,17 +117,20 @@ ExchangePaths left_of(const ExchangePaths& exchange, const HeatFaces& all, const
     if (kept[all.element(f)]) number[f] = count++;
   SUITE_CHECK_EQ(size_t{count}, left.size());
   const auto faces = static_cast<uint32_t>(exchange.faces());
+  const auto end_of = [&](uint32_t end) {
+    const uint32_t face = all.face_of(end);
+    if (face == kNone) return end - faces + count;
+    if (number[face] == kNone) return left.outside_moving();
+    return end == face ? number[face] : left.closed_back(left.element(number[face]));
+  };
   ExchangePaths out;
   out.blocks = exchange.blocks, out.paths = exchange.paths, out.count = exchange.count;
   for (size_t f = 0; f < exchange.faces(); ++f) {
     if (number[f] == kNone) continue;
     out.emissivity.push_back(exchange.emissivity[f]), out.area.push_back(exchange.area[f]);
     for (size_t k = f * each; k < (f + 1) * each; ++k) {
-      const uint32_t end = exchange.ends[k];
       out.weights.push_back(exchange.weights[k]);
-      out.ends.push_back(end >= faces           ? end - faces + count
-                         : number[end] != kNone ? number[end]
-                                                : left.outside_moving());
+      out.ends.push_back(end_of(exchange.ends[k]));
     }
   }
   return out;

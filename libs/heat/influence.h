@@ -19,7 +19,7 @@ namespace suite {
 class Influence {
  public:
   static constexpr double kHottest = 450;  // K
-  // exchange: of all faces.
+  // exchange: of all faces. Keeps references.
   Influence(const ExchangePaths& exchange, const HeatFaces& faces);
 
   // K, coldest and warmest of a span, by face of all.
@@ -37,6 +37,7 @@ class Influence {
  private:
   std::vector<double> importance(const std::vector<bool>& seen) const;
   const ExchangePaths& exchange_;
+  const HeatFaces& faces_;
   std::vector<uint32_t> element_;  // by face
   size_t elements_ = 0, outsides_;
   ExchangeMatrix matrix_;

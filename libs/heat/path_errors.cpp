@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "math/sampling.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -52,7 +53,7 @@ class Errors {
     const auto n = static_cast<double>(blocks_);
     begin(blocks_, 1 / (n * (n - 1)));
     loads_by_block();
-    every_face([this](size_t f) { take_mean(f); });
+    every_face([this](size_t f) { add_uneven_sky(f), take_mean(f); });
     return follow();
   }
   std::vector<float> of_size() {
@@ -93,6 +94,33 @@ class Errors {
     direct_ = parts_.means([&](size_t k) { return w.direct[k]; });
     diffuse_ = parts_.means([&](size_t k) { return w.diffuse[k] / kPi; });
     below_ = parts_.means([&](size_t k) { return s_.ground_albedo * w.global[k] / kPi; });
+    uneven_.resize(kSkyPatches * kHeatParts);
+    for (size_t patch = 0; patch < kSkyPatches; ++patch) {
+      const std::vector<double> L = parts_.means([&](size_t k) { return double{w.sky[k][patch]}; });
+      for (size_t p = 0; p < kHeatParts; ++p) uneven_[patch * kHeatParts + p] = L[p] - diffuse_[p];
+    }
+  }
+
+  // Blocks are kept for an even sky; where it is brighter or darker than that, paths count by where they met it. Each
+  // of n paths brings y = pi a (L - even) with the probability w / (pi a) of the patch, w its weight: the variance of
+  // their mean is (sum w y - (sum w (L - even))^2) / n, as if paths were independent, which they are less than that.
+  // Every block gets a deviation of that size with a random sign, the same through the day.
+  void add_uneven_sky(size_t f) {
+    constexpr uint64_t kPurpose = 0x736b79;
+    const auto& sun = s_.sun;
+    const double most = kPi * double{sun.absorptance[f]}, paths = s_.exchange.paths;
+    const float* w = &sun.sky[f * kSkyPatches];
+    for (size_t p = 0; p < kHeatParts; ++p) {
+      double square = 0, mean = 0;
+      for (size_t k = 0; k < kSkyPatches; ++k) {
+        const double y = uneven_[k * kHeatParts + p];
+        square += most * double{w[k]} * y * y, mean += double{w[k]} * y;
+      }
+      const double deviation = std::sqrt(std::max(0.0, square - mean * mean) / paths);
+      for (size_t b = 0; b < blocks_; ++b)
+        deviation_[(f * blocks_ + b) * kHeatParts + p] +=
+            static_cast<float>(hash_of(kPurpose, f, b) & 1 ? deviation : -deviation);
+    }
   }
 
   // Loads of every face by each block's paths alone, of what all emit: means over the parts. One block's exchange after
@@ -252,6 +280,7 @@ class Errors {
   double weight_ = 0;
   std::vector<float> deviation_, slope_;
   std::vector<double> direct_, diffuse_, below_;
+  std::vector<double> uneven_;  // [patch][part]: radiance of the sky less that of an even one, W/(m2 sr)
 };
 
 }  // namespace

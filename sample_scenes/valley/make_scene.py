@@ -101,15 +101,17 @@ def drive():
 
 
 def lamps():
-    """Places of the street lamps."""
-    out = []
+    """Places of the street lamps, and of their poles, which stand on the far side of the pavement."""
+    lights, poles = [], []
     for y in ground.STREETS_Y:
         for x in range(-505, 280, 30):
-            out.append((x, y - 4.6, ground.TOWN_M + 7))
+            lights.append((x, y - 4.6, ground.TOWN_M + 7))
+            poles.append((x, y - 5.4))
     for x in ground.STREETS_X:
         for y in (-235, -145):
-            out.append((x + 4.6, y, ground.TOWN_M + 7))
-    return out
+            lights.append((x + 4.6, y, ground.TOWN_M + 7))
+            poles.append((x + 5.4, y))
+    return lights, poles
 
 
 def weather(path):
@@ -178,7 +180,7 @@ def write_scene(path, land, planted):
             out.write("  - {place: wires, matrix: [1, 0, 0, %g, 0, 1, 0, %g, 0, %.6f, 1, %.2f], tag: power line}\n" % (x, y, rise / 150, z))
     for line in build() + drive():
         out.write("  - %s\n" % line)
-    for x, y, z in lamps():
+    for x, y in lamps()[1]:
         out.write("  - {place: pole, translate: [%.1f, %.1f, %g]}\n" % (x, y, ground.TOWN_M))
     for kind, rows in planted.items():
         for v in (1, 2):
@@ -201,7 +203,7 @@ def main():
     write_scene(os.path.join(folder, "scene.yaml"), land, plant(land, cover, int(sys.argv[2]) if len(sys.argv) > 2 else 30000))
     weather(os.path.join(folder, "weather.csv"))
     bands = "".join("              - {name: b%03d, center_um: %.4f, fwhm_um: 0.02, shape: rectangular}\n" % (k + 1, 0.4 + 0.02 * k) for k in range(100))
-    posts = "".join("      - [%.1f, %.1f, %g]\n" % p for p in lamps())
+    posts = "".join("      - [%.1f, %.1f, %g]\n" % p for p in lamps()[0])
     for name in TEXTS:
         with open(os.path.join(HERE, name + ".yaml")) as text, open(os.path.join(folder, name + ".yaml"), "w") as out:
             out.write(text.read().replace("BANDS\n", bands).replace("LAMPS\n", posts))
