@@ -103,4 +103,25 @@ std::string air_text(const Simulation& sim, const std::shared_ptr<const Scene>& 
   return text;
 }
 
+void check_air_asked(const Simulation& sim, const Scene& scene, const Sensor& sensor) {
+  const AirSpec* air = sim.sources.air.get();
+  const bool traced = air && air->scattering == AirScattering::traced;
+  const auto refuse = [&](const std::string& what, const char* hint) {
+    throw Error(air ? air->where : Where{}, "sensor '" + sensor.name() + "' asks for " + what, hint);
+  };
+  constexpr const char* kByPaths =
+      "traced air brings its light by paths, as any medium: ask for unscattered, adjacency, ...";
+  for (const std::string& channel : sensor.channels()) {
+    if (channel != "path_radiance") continue;
+    if (traced) refuse(channel + ", which traced air has not got", kByPaths);
+    if (air && uses_media(scene))
+      refuse(channel + ", which is not known apart where media fill the scene: paths meet both on one way",
+             "ask for unscattered, single_scattering, ..., which count the air's light with that of the media");
+  }
+  for (const std::string& truth : sensor.truth())
+    if (truth.starts_with("air_") && (!air || traced))
+      refuse("the truth " + truth + ", which needs real air",
+             traced ? kByPaths : "give `atmosphere: {profile: us_standard}`");
+}
+
 }  // namespace suite

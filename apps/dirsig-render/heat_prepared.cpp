@@ -81,6 +81,7 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
   p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
                                           p.cut.by_sun ? &sun : nullptr);
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
+  check_surroundings({*p.tracer, *p.elements, *p.faces, p.optics}, p.spec);
   if (const std::vector<uint32_t> kept = p.cut.kept; !kept.empty()) {
     check_kept(*p.elements, sim, kept);
     keep_elements(p, kept);

@@ -149,7 +149,7 @@ std::string heat_probes(const HeatResult& h, const PreparedHeat& p, const Weathe
       "source_w_m2,emitted_w_m2,to_air_w_m2,into_surface_w_m2\n",
       kErrorColumns);
   for (const auto& [name, place] : sim.heat->probes) {
-    const uint32_t element = nearest_element(*p.elements, place);
+    const uint32_t element = element_of(*p.tracer, *p.elements, place, p.spec.span.begin);
     const std::vector<HeatFluxes> fluxes = fluxes_of(h, *p.elements, p.optics, weather, element);
     for (size_t k = 0; k < fluxes.size(); ++k) {
       const HeatFluxes& f = fluxes[k];
@@ -200,7 +200,8 @@ std::string heat_page(const HeatResult& h, const PreparedHeat& p, const WeatherL
     const size_t probes = plot("Probes; bands of twice the error of all causes", "K");
     for (const auto& [name, place] : sim.heat->probes) {
       PlotSeries T{name, hours, {}, {}, {}};
-      for (const HeatFluxes& f : fluxes_of(h, *p.elements, p.optics, weather, nearest_element(*p.elements, place)))
+      for (const HeatFluxes& f :
+           fluxes_of(h, *p.elements, p.optics, weather, element_of(*p.tracer, *p.elements, place, p.spec.span.begin)))
         T.y.push_back(f.kelvin), T.low.push_back(f.kelvin - 2 * f.errors.total()),
             T.high.push_back(f.kelvin + 2 * f.errors.total());
       page.plots[probes].series.push_back(T);

@@ -236,21 +236,6 @@ void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
     throw UsageError("--study sets the budgets itself: leave out --paths, --time, --target-error and states");
 }
 
-// Refuses what is asked of air that is not there, or not known apart.
-void check_air_asked(const Simulation& sim, const Sensor& sensor) {
-  const AirSpec* air = sim.sources.air.get();
-  const bool traced = air && air->scattering == AirScattering::traced;
-  const auto refuse = [&](const std::string& what) {
-    throw Error(air ? air->where : Where{}, "sensor '" + sensor.name() + "' asks for " + what,
-                traced ? "traced air brings its light by paths, as any medium: ask for unscattered, adjacency, ..."
-                       : "give `atmosphere: {profile: us_standard}`");
-  };
-  for (const std::string& channel : sensor.channels())
-    if (channel == "path_radiance" && traced) refuse(channel + ", which traced air has not got");
-  for (const std::string& truth : sensor.truth())
-    if (truth.starts_with("air_") && (!air || traced)) refuse("the truth " + truth + ", which needs real air");
-}
-
 // Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
 void check_sensors(Simulation& sim, const Scene& scene, const JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
@@ -265,7 +250,7 @@ void check_sensors(Simulation& sim, const Scene& scene, const JobOptions& option
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
     for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
     for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
-    check_air_asked(sim, *sensor);
+    check_air_asked(sim, scene, *sensor);
     choose_bins_of(*sensor, scene, standing);
   }
 }

@@ -61,13 +61,8 @@ std::vector<double> outsides(const Tracer& tracer, const HeatFaces& faces, const
     out[(faces.outside_below() - first) * moments + k] = air;
     out[(faces.outside_moving() - first) * moments + k] = air;
   }
-  const std::vector<bool> used = used_materials(tracer);
   for (const uint32_t m : faces.materials()) {
-    const Scene& scene = tracer.scene();
-    const auto kelvin = own_temperature(scene, m, spec.span);
-    if (!kelvin && used[m] && !scene.materials[m].surface.model.empty())
-      throw Error("material '" + scene.materials[m].id + "' has no temperature, and its surroundings' are to be found",
-                  "give it 'temperature: {model: heat, ...}', or one of its own (temperature_k, a table)");
+    const auto kelvin = own_temperature(tracer.scene(), m, spec.span);
     for (size_t k = 0; k < moments; ++k)
       out[(faces.outside_material(m) - first) * moments + k] = kelvin ? body(kelvin(loads.moments[k])) : 0;
   }
@@ -307,11 +302,21 @@ void tell_done(const HeatProgress& progress, double more) {
 
 }  // namespace
 
+void check_surroundings(const HeatScene& scene, const HeatSpec& spec) {
+  const std::vector<bool> used = used_materials(scene.tracer);
+  const std::vector<Material>& materials = scene.tracer.scene().materials;
+  for (const uint32_t m : scene.faces.materials())
+    if (used[m] && !materials[m].surface.model.empty() && !own_temperature(scene.tracer.scene(), m, spec.span))
+      throw Error("material '" + materials[m].id + "' has no temperature, and its surroundings' are to be found",
+                  "give it 'temperature: {model: heat, ...}', or one of its own (temperature_k, a table)");
+}
+
 HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const WeatherLoads& weather, const HeatSpec& spec,
                       const HeatProgress& progress) {
   const ExchangePaths& exchange = found.exchange;
   SUITE_CHECK(exchange.faces() == scene.faces.size() && found.sun.faces() == scene.faces.size());
   SUITE_CHECK_EQ(found.sun.moments, weather.moments.size());
+  check_surroundings(scene, spec);
   begin(progress, "balance", 1);
   const std::vector<SurfaceGroup> groups =
       surface_groups(scene.elements, scene.faces, scene.optics, exchange.emissivity);

@@ -127,6 +127,9 @@ struct HeatProgress {
   std::function<void(const std::string& stage, double whole)> begin;
   std::function<void(double more)> done;
 };
+// Error: a material that is seen has no temperature, neither by heat nor of its own. To be asked before rays are
+// traced.
+void check_surroundings(const HeatScene& scene, const HeatSpec& spec);
 // found: of all faces, for the sun of the loads. It is used up, as what is no longer needed makes room.
 HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const WeatherLoads& loads, const HeatSpec& spec,
                       const HeatProgress& progress = {});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "spectral/planck.h"
+#include "surface/quick_look.h"
 
 namespace suite {
 
@@ -45,9 +46,26 @@ std::vector<HeatFluxes> fluxes_of(const HeatResult& result, const Elements& elem
   return out;
 }
 
-uint32_t nearest_element(const Elements& elements, Vec3 place) {
+uint32_t element_of(const Tracer& tracer, const Elements& elements, Vec3 place, double time) {
+  constexpr double kNear = 0.05;
+  std::vector<Ray> rays;
+  for (const Dir d : {Dir{1, 0, 0}, Dir{0, 1, 0}, Dir{0, 0, 1}})
+    for (const Dir along : {-d, d}) rays.push_back({place - along * kNear, along, time});
+  std::vector<Hit> hits(rays.size());
+  TraceStatistics statistics;
+  tracer.nearest(rays, hits, false, statistics);
+  std::optional<uint32_t> found;
+  double least = kNear;
+  for (const Hit& hit : hits) {
+    if (!hit.hit()) continue;
+    const double off = std::fabs(hit.distance - kNear);
+    const uint32_t material = material_of(tracer, hit);
+    if (off >= least || material == kNone) continue;
+    if (const auto element = elements.at(hit, material)) found = element, least = off;
+  }
+  if (found) return *found;
   uint32_t best = 0;
-  double least = INFINITY;
+  least = INFINITY;
   for (uint32_t e = 0; e < elements.size(); ++e)
     if (const double off = length(elements[e].centre - place); off < least) least = off, best = e;
   return best;

@@ -16,7 +16,8 @@ struct HeatFluxes {
 std::vector<HeatFluxes> fluxes_of(const HeatResult& result, const Elements& elements, const HeatOptics& optics,
                                   const WeatherLoads& weather, uint32_t element);
 
-// The element whose middle is nearest to a place (m, ENU).
-uint32_t nearest_element(const Elements& elements, Vec3 place);
+// The element of the surface at a place (m, ENU): within 5 cm along an axis of ENU, the nearest such; where there is
+// none, the element whose middle is nearest. time: s, at which things stand where they do.
+uint32_t element_of(const Tracer& tracer, const Elements& elements, Vec3 place, double time);
 
 }  // namespace suite

@@ -59,5 +59,15 @@ TEST_F(HazyValley, TheFieldSaysWhatItLeavesOut) {
   EXPECT_THAT(r.err, testing::HasSubstr("adjacency            left out  media fill the scene"));
 }
 
+// Where paths meet media and air on one way, what the air adds alone is not known: it was an image of zeros.
+TEST_F(HazyValley, PathRadianceIsRefusedAmongMedia) {
+  const CommandResult r =
+      run_command("cd '" + folder_.path() +
+                  "' && " SUITE_BIN_DIR "/dirsig-render sim.yaml -o parts --set 'sensors.0.channels=[path_radiance]'" +
+                  std::string(kField));
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, testing::HasSubstr("path_radiance, which is not known apart where media fill the scene"));
+}
+
 }  // namespace
 }  // namespace suite
