@@ -106,12 +106,8 @@ class TerrainCamera final : public Sensor {
     const Vec3 d = forward_ + right_ * x + down_ * y;
     return {{position_, d * (1 / length(d)), 0}, 1};
   }
-  void accept(CaptureResult&& r) override {
-    result = std::move(r);
-    cpu_seconds.push_back(static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
-  }
-  CaptureResult result;             // of the last capture
-  std::vector<double> cpu_seconds;  // of the process when each capture was done
+  void accept(CaptureResult&& r) override { result = std::move(r); }
+  CaptureResult result;  // of the last capture
 
  private:
   std::vector<Band> bands_;
