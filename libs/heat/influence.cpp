@@ -78,7 +78,7 @@ double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<b
     if (change < kSettled) {
       double worst = 0;
       for (size_t e = 0; e < elements_; ++e)
-        if (seen[e]) worst = std::max(worst, off[e]);
+        if (seen[e]) worst = std::max(worst, kept[e] ? off[e] : kHottest);
       return worst;
     }
   }
