@@ -253,6 +253,9 @@ void tell_of_points(const Heating& heating) {
   note(strf("heat: the temperatures of %s points took %.1f s of all threads together, %.0f us each",
             human_count(static_cast<double>(points.asked())).c_str(), points.seconds(),
             1e6 * points.seconds() / static_cast<double>(points.asked())));
+  if (points.unsettled() > 0)
+    warn(strf("heat: the temperatures of %s of them did not settle: they have their elements'",
+              human_count(static_cast<double>(points.unsettled())).c_str()));
 }
 
 namespace {
