@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/run_app.h"
+#include "heat/heat_fluxes.h"
 #include "sensor/view_cones.h"
 
 namespace suite {
@@ -89,6 +90,8 @@ void keep_elements(PreparedHeat& p, const std::vector<uint32_t>& numbers) {
 
 LeftOut::LeftOut(PreparedHeat& p, const Simulation& sim, std::array<double, 2> air, const HeatProgress& progress)
     : faces_(std::move(p.faces)), seen_(elements_in_view(*p.elements, sim)), air_(air) {
+  for (const auto& [name, place] : sim.heat->probes)
+    seen_[element_of(*p.tracer, *p.elements, place, p.spec.span.begin)] = true;
   progress.begin("exchange of infrared", static_cast<double>(faces_->size()));
   exchange_ = find_exchange({*p.tracer, *p.elements, *faces_, p.optics}, path_options(p.spec), nullptr,
                             [&](size_t more) { progress.done(static_cast<double>(more)); });
