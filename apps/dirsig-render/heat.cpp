@@ -220,6 +220,9 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
   }
   if (!options.heat.empty() && !options.heat_operator.empty())
     throw UsageError("--heat has the temperatures, --heat-operator what they are found with: give one of both");
+  if (!options.heat_operator.empty() && sim.heat->leave_out > 0)
+    throw Error(sim.heat->where, "--heat-operator has the paths of all elements, and some are to be left out",
+                "drop 'leave_out_k' or --heat-operator");
   if (!options.part.empty() && options.heat.empty())
     note(
         "heat: every part finds the same temperatures; `--heat-only` finds them once, and `--heat FILE` gives them to "
@@ -253,6 +256,9 @@ void tell_of_points(const Heating& heating) {
   note(strf("heat: the temperatures of %s points took %.1f s of all threads together, %.0f us each",
             human_count(static_cast<double>(points.asked())).c_str(), points.seconds(),
             1e6 * points.seconds() / static_cast<double>(points.asked())));
+  if (points.unsettled() > 0)
+    warn(strf("heat: the temperatures of %s of them did not settle: they have their elements'",
+              human_count(static_cast<double>(points.unsettled())).c_str()));
 }
 
 namespace {

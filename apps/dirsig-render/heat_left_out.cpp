@@ -5,21 +5,34 @@
 
 #include "base/parallel.h"
 #include "base/run_app.h"
+#include "heat/heat_fluxes.h"
 #include "sensor/view_cones.h"
 
 namespace suite {
 
 namespace {
 
-// A ball around an element.
-double radius_of(const Elements& elements, size_t e) {
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+// Balls around an element, one around its part on each instance that it is of: these may stand far from each other.
+std::vector<Ball> balls_of(const Elements& elements, size_t e) {
   constexpr uint32_t kPoints = 32;
   constexpr double kMore = 1.5;  // points do not lie on the rim
-  const SampleStream stream(0x72696d, 0, e);
-  double far = 0;
-  for (uint32_t k = 0; k < kPoints; ++k)
-    far = std::max(far, length(elements.point(e, {stream, k, 0}).position - elements[e].centre));
-  return std::max(kMore * far, std::sqrt(elements[e].area));
+  const std::vector<Vec3> places = elements.places_by_instance(e, SampleStream(0x72696d, 0, e), kPoints);
+  const double least = std::sqrt(elements[e].area * kPoints / static_cast<double>(places.size()));
+  std::vector<Ball> balls;
+  for (size_t from = 0; from < places.size(); from += kPoints) {
+    Vec3 sum{};
+    for (size_t k = from; k < from + kPoints; ++k) sum += places[k];
+    Ball ball{sum / static_cast<double>(kPoints), least};
+    for (size_t k = from; k < from + kPoints; ++k)
+      ball.radius = std::max(ball.radius, kMore * length(places[k] - ball.centre));
+    balls.push_back(ball);
+  }
+  return balls;
 }
 
 // A material of the elements whose infrared is not scattered evenly; empty = none.
@@ -44,8 +57,9 @@ std::vector<bool> elements_in_view(const Elements& elements, const Simulation& s
   std::vector<uint8_t> seen(elements.size(), 0);
   parallel_for(0, elements.size(), 64, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
-      const double radius = radius_of(elements, e);
-      seen[e] = std::ranges::any_of(cones, [&](const ViewCone& c) { return c.touches(elements[e].centre, radius); });
+      seen[e] = std::ranges::any_of(balls_of(elements, e), [&](const Ball& ball) {
+        return std::ranges::any_of(cones, [&](const ViewCone& c) { return c.touches(ball.centre, ball.radius); });
+      });
     }
   });
   return {seen.begin(), seen.end()};
@@ -76,6 +90,8 @@ void keep_elements(PreparedHeat& p, const std::vector<uint32_t>& numbers) {
 
 LeftOut::LeftOut(PreparedHeat& p, const Simulation& sim, std::array<double, 2> air, const HeatProgress& progress)
     : faces_(std::move(p.faces)), seen_(elements_in_view(*p.elements, sim)), air_(air) {
+  for (const auto& [name, place] : sim.heat->probes)
+    seen_[element_of(*p.tracer, *p.elements, place, p.spec.span.begin)] = true;
   progress.begin("exchange of infrared", static_cast<double>(faces_->size()));
   exchange_ = find_exchange({*p.tracer, *p.elements, *faces_, p.optics}, path_options(p.spec), nullptr,
                             [&](size_t more) { progress.done(static_cast<double>(more)); });

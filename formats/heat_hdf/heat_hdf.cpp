@@ -113,6 +113,10 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   h.received = r.get<float>("/faces/received_infrared", "W/m2", h.moments, n);
   if (r.has("/faces/straight_sunlight")) h.straight = r.get<float>("/faces/straight_sunlight", "W/m2", h.moments, n);
   check_finite(r, h.straight, "/faces/straight_sunlight", -1e5f, 1e5f);
+  check_finite(r, h.emissivity, "/faces/emissivity", 0, 1);
+  check_finite(r, h.sun_hours, "/faces/sun_hours", -1e9f, 1e9f);
+  check_finite(r, h.absorbed, "/faces/absorbed_sunlight", -1e9f, 1e9f);
+  check_finite(r, h.received, "/faces/received_infrared", -1e9f, 1e9f);
   check_finite(r, h.kelvin, "/faces/temperature", 1, 1e4f);
   check_finite(r, h.air_kelvin, "/air/temperature", 1, 1e4f);
   check_finite(r, h.path_error, "/faces/path_error", 0, 1e4f);

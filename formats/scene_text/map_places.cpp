@@ -73,7 +73,15 @@ std::function<Vec3(Vec3)> Reader::map_place(const Params& p, const std::string& 
   if (known->heights == MapSystem::Heights::unknown && !p.has("height"))
     tell(
         strf("EPSG:%d says nothing of heights; they are taken as above the ellipsoid ('height: geoid' if not)", *epsg));
-  const auto place = on_earth(*known, rule);
+  const auto place = [on = on_earth(*known, rule), file](Vec3 v) {
+    try {
+      return on(v);
+    } catch (const Error& e) {
+      throw file.error(
+          strf("'%s' has a place at (%.9g, %.9g, %.9g): ", file.as_text().c_str(), v.x, v.y, v.z) + e.message(),
+          e.hint(), "SP504");
+    }
+  };
   if (known->zone || !longitude_first) return place;
   return [place](Vec3 v) { return place({v.y, v.x, v.z}); };
 }

@@ -55,6 +55,8 @@ class Elements {
   const HeatElement& operator[](size_t i) const { return elements_[i]; }
   // Uniform over the element, as a ray would have hit it.
   Hit point(size_t element, const PointDraw& draw) const;
+  // Places (m) all over the element's cell, so many on each instance that it is of, one instance after the other.
+  std::vector<Vec3> places_by_instance(size_t element, const SampleStream& stream, uint32_t each) const;
   // The element of a material at a place; nothing where none is (what moves). Where the cell has none
   // of this material, as at the edges of maps, the largest one of the cell.
   std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;

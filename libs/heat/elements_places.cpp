@@ -17,6 +17,20 @@ void Elements::keep(const std::vector<bool>& kept) {
   elements_ = std::move(left), first_element_ = std::move(first);
 }
 
+std::vector<Vec3> Elements::places_by_instance(size_t element, const SampleStream& stream, uint32_t each) const {
+  const uint32_t cell = elements_[element].cell;
+  const Group& group = groups_[group_of_cell_[cell]];
+  std::vector<Vec3> places;
+  for (uint32_t s = group.first_slot; s < group.first_slot + group.slots; ++s)
+    for (uint32_t k = 0; k < each; ++k) {
+      const Local p = local_point(group, cell, stream.draw(k, 0));
+      const Hit hit = group.mesh ? tracer_.on_triangle(slots_[s].object, p.triangle, p.u, p.v, time_)
+                                 : tracer_.on_exact(slots_[s].object, p.position, p.normal, p.uv, time_);
+      places.push_back(hit.position);
+    }
+  return places;
+}
+
 std::optional<Hit> Elements::hit_at(const HeatedPlace& place) const {
   const auto found = slot_of_.find(place.instance);
   if (found == slot_of_.end() || slots_.empty()) return std::nullopt;

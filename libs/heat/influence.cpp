@@ -78,7 +78,7 @@ double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<b
     if (change < kSettled) {
       double worst = 0;
       for (size_t e = 0; e < elements_; ++e)
-        if (seen[e]) worst = std::max(worst, off[e]);
+        if (seen[e]) worst = std::max(worst, kept[e] ? off[e] : kHottest);
       return worst;
     }
   }
@@ -86,7 +86,10 @@ double Influence::off_at_most(const std::vector<bool>& seen, const std::vector<b
 }
 
 std::vector<bool> Influence::kept_for(const std::vector<bool>& seen, double limit, double kelvin) const {
-  const std::vector<double> matters = importance(seen);
+  constexpr double kFirst = 2;  // more than any product of shares: also what is not seen may reach 1
+  std::vector<double> matters = importance(seen);
+  for (size_t e = 0; e < elements_; ++e)
+    if (seen[e]) matters[e] = kFirst;
   std::vector<uint32_t> order(elements_);
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return matters[a] > matters[b]; });

@@ -104,6 +104,7 @@ double PointHeat::above(uint32_t element, const HeatedPlace& place, double time)
   const bool settled =
       responses_.at(scene_.elements[element].material)->above(around_of(scene_, result_, air_, element), more, kelvin);
   asked_ += 1;
+  if (!settled) unsettled_ += 1;
   nanoseconds_ += static_cast<uint64_t>(
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begun).count());
   return settled ? result_.between_moments(kelvin, time) : 0;

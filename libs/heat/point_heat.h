@@ -32,6 +32,8 @@ class PointHeat {
   // Places asked so far, and the seconds of all threads that took.
   uint64_t asked() const { return asked_; }
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
+  // Places among them whose temperature did not settle: they have their element's.
+  uint64_t unsettled() const { return unsettled_; }
 
  private:
   std::unique_ptr<SunlightWave> take_wave() const;
@@ -44,7 +46,7 @@ class PointHeat {
   mutable Sunlight unused_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<SunlightWave>> waves_;  // that no thread works with
-  mutable std::atomic<uint64_t> asked_ = 0, nanoseconds_ = 0;
+  mutable std::atomic<uint64_t> asked_ = 0, nanoseconds_ = 0, unsettled_ = 0;
 };
 
 // W/m2 that fronts absorb straight from the sun, [face][moment], of those that points can be told apart on; from the

@@ -85,9 +85,13 @@ bool PointResponse::above(const Around& around, std::span<const float> q, std::s
       for (size_t k = 0; k < n; ++k) next[k] += flux * answer[k];
     }
     float change = 0;
-    for (size_t m = 0; m < n; ++m) change = std::max(change, std::fabs(next[m] - d[m]));
+    bool sound = true;
+    for (size_t m = 0; m < n; ++m) {
+      sound = sound && std::isfinite(next[m]);
+      change = std::max(change, std::fabs(next[m] - d[m]));
+    }
     d.swap(next);
-    if (!std::isfinite(change)) return false;
+    if (!sound) return false;
     if (change >= static_cast<float>(kSettled)) continue;
     std::ranges::copy(d, kelvin.begin());
     kelvin[n] = d[0];

@@ -89,6 +89,7 @@ std::optional<Triangles> cut(const SourceMesh& mesh, const SourceMesh::Holed& p)
     at[k] = plane.insert(flat[k], k ? at[k - 1]->face() : Plane::Face_handle());
     at[k]->info() = p.corners[k];
   }
+  if (plane.dimension() < 2) return std::nullopt;  // all on a line but for rounding
   try {
     for (size_t r = 0, begin = 0; r < p.ring_ends.size(); begin = p.ring_ends[r++]) {
       const size_t end = p.ring_ends[r];

@@ -86,6 +86,9 @@ uint16_t Detector::counts(double electrons, double exposure, const Character& of
 }
 
 NoiseAtBackground noise_at_background(const DetectorSpec& d, double signal, double slope, double exposure) {
+  if (!(slope > 0) || !(signal > 0))
+    throw Error(strf("a background of %g K, of which a band sees nothing", d.background),
+                "a warmer background_k, or a detector of thermal bands alone");
   NoiseAtBackground n;
   n.slope = slope;
   const double shot = d.shot_noise ? signal + d.dark_current * exposure : 0;

@@ -159,6 +159,13 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
   const auto from_light = sent(q, way);
   if (!from_light) return;
   const double scale = from_light->scale * way.spreading * way.trials;
+  WaterSeen water = WaterSeen::nothing;
+  if (waters_.any()) {
+    water = water_behind(node, way.direction);
+    for (int i = 0; i < way.events; ++i)
+      water = waters_.behind_surface(water, way.at[i].material, way.at[i].hit.normal, way.at[i].out, way.at[i].in);
+    if (water == WaterSeen::mirrored && !q.end.far) water = WaterSeen::other;
+  }
   for (const bool doubtful : {false, true}) {
     if (doubtful && !way.doubtful) break;
     Contribution& c = contribution(p, q.light);
@@ -166,6 +173,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
     if (node.event) c.events |= by_medium;
     c.asked = true;
     c.beam = q.beam;
+    c.water = water;
     c.order += static_cast<uint32_t>(way.events);
     c.scale = static_cast<float>(scale);
     c.factor = {1, through.data()};

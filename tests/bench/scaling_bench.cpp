@@ -56,7 +56,8 @@ void print(const char* bench, double x, const char* unit, double value, const Ru
   std::fflush(stdout);
 }
 enum class Kernel { matte, general };
-// CPU microseconds a path in that kernel: what four captures more take, for which everything is built and warm
+constexpr size_t kMore = 4;
+// CPU microseconds a path in that kernel: what some captures more take, for which everything is built and warm
 // (captures run beside each other, and have no time of their own).
 void per_path(const char* bench, double x, Kernel kernel, const std::shared_ptr<Scene>& scene, uint32_t edge,
               uint32_t paths, size_t bands, const SourceSpecs& sources = terrain_sources(), bool specialise = true,
