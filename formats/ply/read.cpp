@@ -200,7 +200,10 @@ bool Reader::known(std::span<const double> corner) {
 void Reader::face(std::span<const double> corner) {
   if (corner.size() > kLongestPolygon) throw values_.fault(strf("a polygon of %zu corners", corner.size()));
   if (corner.size() >= 3 && !known(corner)) return;
-  corners_.assign(corner.begin(), corner.end());
+  if (corner.size() >= 3)
+    corners_.assign(corner.begin(), corner.end());
+  else
+    corners_.assign(corner.size(), 0);  // no face; what its corners say has not been looked at
   builder_.polygon(corners_, values_.here());
 }
 

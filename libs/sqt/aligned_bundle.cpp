@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "base/error.h"
 #include "sqt/aligned.h"
@@ -220,7 +221,9 @@ class AlignedBundle final : public Bundle {
       Query answer;
     };
     thread_local Asked last;
-    const auto same = [](Dir a, Dir b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+    // Bit by bit: -0 and 0 are other azimuths.
+    const auto same = [](const Dir& a, const Dir& b) { return std::memcmp(&a, &b, sizeof(Dir)) == 0; };
+    static_assert(sizeof(Dir) == 3 * sizeof(double));
     if (last.bundle == number_ && same(last.in, in) && same(last.out, out)) return last.answer;
     last.bundle = number_, last.out = out, last.in = in;
     if (!query(out, in, last.answer)) last.answer.leaf = nullptr;

@@ -76,7 +76,7 @@ void bands() {
 }
 void triangles() {
   // Building ten millions takes seconds that differ from run to run, so that many captures have to stand against them.
-  for (const auto [edge, more] : {std::pair{72u, kMore}, {225u, kMore}, {708u, 4 * kMore}, {2237u, 16 * kMore}})
+  for (const auto& [edge, more] : {std::pair{72u, kMore}, {225u, kMore}, {708u, 4 * kMore}, {2237u, 16 * kMore}})
     per_path("triangles", 2.0 * (edge - 1) * (edge - 1), Kernel::matte, terrain_scene(edge), 128, 16, 1,
              terrain_sources(), true, more);
 }
