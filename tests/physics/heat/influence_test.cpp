@@ -99,5 +99,33 @@ TEST(Influence, WhatIsSeenStaysWithinTheBound) {
   EXPECT_GE(alone_bound, alone);
 }
 
+// What is seen is kept, whatever matters as much and has a lower number; and no bound holds where it is not. A small
+// plate under a wide ceiling: by their areas the ceiling takes all that the plate gives.
+TEST(Influence, WhatIsSeenIsKept) {
+  HeatedScene s;
+  const uint32_t ceiling = s.heated(0.9, heat()), plate = s.heated(0.9, heat());
+  s.plane(10, 10, ceiling, with_axes({1, 0, 0}, {0, -1, 0}, {0, 0, 2}));
+  s.plane(0.1, 0.1, plate);
+  const HeatKit kit(std::move(s), 8);
+  HeatSpec spec;
+  spec.paths = 1024;
+  const ExchangePaths exchange = kit.exchange(path_options(spec));
+  const Influence influence(exchange, *kit.faces);
+  std::vector<bool> seen, others;
+  for (size_t e = 0; e < kit.elements->size(); ++e) {
+    seen.push_back((*kit.elements)[e].material == plate);
+    others.push_back(!seen.back());
+  }
+  const auto count = std::count(seen.begin(), seen.end(), true);
+  ASSERT_GT(count, 0);
+  ASSERT_LT(std::find(seen.begin(), seen.end(), false), std::find(seen.begin(), seen.end(), true));
+  for (const double limit : {0.01, 100.0, 1000.0}) {
+    const std::vector<bool> kept = influence.kept_for(seen, limit, 290);
+    for (size_t e = 0; e < seen.size(); ++e) EXPECT_TRUE(kept[e] || !seen[e]) << e << " for " << limit << " K";
+  }
+  const Influence::Range near{std::vector<double>(exchange.faces(), 290), std::vector<double>(exchange.faces(), 290)};
+  EXPECT_EQ(influence.off_at_most(seen, others, near, {290, 290}), Influence::kHottest);
+}
+
 }  // namespace
 }  // namespace suite
