@@ -4,7 +4,7 @@ namespace suite {
 
 AppInfo scene_prep_info() {
   return {"scene-prep",
-          "Reads a scene written as text with the OBJ files, rasters and curves it names, checks everything, and "
+          "Reads a scene written as text with the models, rasters and curves it names, checks everything, and "
           "writes one HDF5 file "
           "that the renderer loads as it is.",
           "Examples:\n"
@@ -48,11 +48,11 @@ void declare_view(Cli& cli, ScenePrepOptions& o) {
 }  // namespace
 
 void declare(Cli& cli, ScenePrepOptions& o) {
-  cli.positional(
-      "input", o.input,
-      "scene text (YAML or JSON), a scene of DIRSIG (.scene, .cfg), a model (.glb, .gltf, .ply, .stl), or a prepared "
-      "scene with --summary",
-      false);
+  cli.positional("input", o.input,
+                 "scene text (YAML or JSON), a scene of DIRSIG (.scene, .cfg) or HELIOS++ (.xml), a model (.glb, "
+                 ".gltf, .ply, .stl, "
+                 ".fbx, .dae, .3ds), a city (CityJSON, CityGML), or a prepared scene with --summary",
+                 false);
   cli.option("-o,--output", o.output, "prepared scene to write; without it the scene is only checked", "FILE.h5");
   cli.option("--path", o.search, "folder in which named files are also looked for (repeatable)", "DIR");
   cli.option(
@@ -67,7 +67,8 @@ void declare(Cli& cli, ScenePrepOptions& o) {
              "of a scene of DIRSIG: write what became of every element and key of its files, with its line, as JSON",
              "FILE.json");
   cli.option("--convert", o.convert,
-             "of a scene of DIRSIG or a model: write NAME.yaml, a scene text of ours, into this folder (of DIRSIG with "
+             "of a scene of DIRSIG or HELIOS++, a model or a city: write NAME.yaml, a scene text of ours, into this "
+             "folder (of DIRSIG with "
              "the account), and stop",
              "FOLDER");
   cli.option("--mute", o.mute, "leave out findings of this code; muted errors do not refuse the scene (repeatable)",

@@ -71,7 +71,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   if (!heat && !weather) return std::nullopt;
   if (!heat) throw weather->error("weather is there for the balance of heat, which is not asked for", "add 'heat: {}'");
   if (!weather)
-    throw heat->error("the balance of heat needs weather", "add 'weather: FILE' (EPW, TMY3, SURFRAD, BSRN, CSV)");
+    throw heat->error("the balance of heat needs weather", "add 'weather: FILE' (EPW, TMY3, SURFRAD, BSRN, .wth, CSV)");
   if (!sim.epoch)
     throw heat->error("weather is dated, and second 0 of the simulation is not",
                       "give 'epoch: DATE', or the sun a date");

@@ -115,6 +115,7 @@ bool BeamLight::scatter_thin(size_t b, const Shells::Piece& piece, const Growth&
 // A piece that begins the way, near the scene's middle, however thin.
 bool BeamLight::scatter_here(size_t b, const Shells::Piece& piece, const Growth& growth, AirScratch& s,
                              std::span<float> S) const {
+  if (!local_.keeps_scattering()) return false;
   const auto depth = local_.depth(piece.near_height, growth.near);
   if (!depth) return false;
   const LocalAir::Scattered scattered = local_.scattered(b, piece.layer, s.cosines[b]);

@@ -14,7 +14,9 @@ constexpr double kLowest = 0.4, kNear = 0.01;  // cosines: of beams that are ser
 LocalAir::LocalAir(const AirColumn& column, std::span<const Beam> beams)
     : column_(column),
       beams_(beams.begin(), beams.end()),
-      tables_(std::make_unique<Table[]>(beams.size() * column.layers())) {
+      tables_(std::make_unique<Table[]>(beams.size() * column.layers())),
+      keeps_scattering_(beams.size() * column.layers() * phase_cosines().size() * column.bins * sizeof(float) <=
+                        kMostBytes) {
   const std::span<const double> heights = column.shells.heights();
   const size_t n = column.bins;
   std::vector<double> bottom(n), top(n), beside(n);

@@ -33,6 +33,9 @@ class LocalAir {
 
   // What a metre of the beam's way in a layer sends back if nothing dims it, W/(m3 sr um), per bin, between two angles
   // of scattering: low + share * (high - low). cosine: of the view with the beam's direction.
+  // Only where keeps_scattering(): tables of all beams and layers, made when first asked, take kMostBytes at most.
+  static constexpr size_t kMostBytes = size_t{256} << 20;
+  bool keeps_scattering() const { return keeps_scattering_; }
   struct Scattered {
     const float *low, *high;
     float share;
@@ -51,6 +54,7 @@ class LocalAir {
   std::vector<double> cosines_;             // of the beams over the middle; 0 = not served
   std::vector<std::vector<float>> depths_;  // per beam: [layer][low, rise, curve][bin]
   std::unique_ptr<Table[]> tables_;         // [beam][layer]
+  bool keeps_scattering_;
 };
 
 }  // namespace suite
