@@ -101,16 +101,16 @@ def drive():
 
 
 def lamps():
-    """Places of the street lamps, and of their poles, which stand on the far side of the pavement."""
+    """Places of the street lamps, and of their poles, which stand behind the pavement, so that they throw no shadow on it and are not lit from near."""
     lights, poles = [], []
     for y in ground.STREETS_Y:
         for x in range(-505, 280, 30):
             lights.append((x, y - 4.6, ground.TOWN_M + 7))
-            poles.append((x, y - 5.4))
+            poles.append((x, y - 7.0))
     for x in ground.STREETS_X:
         for y in (-235, -145):
             lights.append((x + 4.6, y, ground.TOWN_M + 7))
-            poles.append((x + 5.4, y))
+            poles.append((x + 7.0, y))
     return lights, poles
 
 
