@@ -38,6 +38,10 @@ class Ranks : public ProgramsTest<Ranks> {
                                camera("t", 80, 60, 7, "{min: 32, max: 900, relative_error: 0.005}");
     write_file(*folder_ / "sim.yaml", std::string_view(three));
     write_file(*folder_ / "longer.yaml", std::string_view(longer));
+    // Many captures, so that there are always some left to write when one has failed.
+    std::string many = kDay;
+    for (int i = 0; i < 24; ++i) many += camera(strf("c%d", i), 150, 100, 2, "60");
+    write_file(*folder_ / "many.yaml", std::string_view(many));
     write_file(*folder_ / "fixed.yaml",
                std::string_view(kDay + camera("a", 40, 27, 2, "32") + camera("b", 60, 30, 5, "16")));
     write_file(*folder_ / "rank", std::string_view("#!/bin/sh\necho $$ >pid.${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\n"
@@ -67,6 +71,15 @@ class Ranks : public ProgramsTest<Ranks> {
   }
   static void expect_same_folders(const std::string& one, const std::string& other, size_t images) {
     suite::expect_same_folders(*folder_ / one, *folder_ / other, images);
+  }
+  // What stands in `killed` is whole, though a rank died while it wrote.
+  static void expect_no_torn_images() {
+    if (!std::filesystem::exists(*folder_ / "killed")) return;
+    for (const auto& entry : std::filesystem::directory_iterator(*folder_ / "killed")) {
+      const std::string name = entry.path().filename().string();
+      if (!name.ends_with(".img")) continue;
+      EXPECT_EQ(read_bytes(entry.path()), read_bytes(*folder_ / ("whole_longer/" + name))) << "torn: " << name;
+    }
   }
   static size_t times(const std::string& text, const std::string& word) {
     size_t n = 0;
@@ -126,11 +139,11 @@ TEST_F(Ranks, share_the_worth_of_time) {
 // What rank 0 cannot write ends the others, too, while they work.
 TEST_F(Ranks, end_together_when_one_fails_at_work) {
   const CommandResult r =
-      shell("true; " + ranks(3, SUITE_BIN_DIR "/dirsig-render longer.yaml -o cut -q -j 1") +
+      shell("true; " + ranks(3, SUITE_BIN_DIR "/dirsig-render many.yaml -o cut -q -j 1") +
             " & m=$!; for i in $(seq 3000); do [ -d cut ] && break; sleep 0.01; done; sleep 0.3; rm -rf cut; wait $m");
   EXPECT_EQ(r.code, 1) << r.err;
   EXPECT_EQ(times(r.err, "error: "), 1u) << r.err;
-  // Whether none or one of the captures was written by then is left to the machine.
+  // How many of the captures were written by then is left to the machine.
   EXPECT_THAT(r.err, AllOf(HasSubstr("captures are complete"), HasSubstr("without --state the rest is lost")));
 }
 
@@ -163,34 +176,39 @@ TEST_F(Ranks, that_differ_or_cannot_run_are_refused) {
 }
 
 // A rank is killed at moments drawn by lot, and others go on, in other numbers; and again, until the run is whole.
+// How long a run takes is found on the way: machines are shared, and a moment that came after the end is drawn anew.
 TEST_F(Ranks, are_killed_and_the_run_goes_on) {
   alone("longer.yaml -o whole_longer --state -q");
   const auto begun = std::chrono::steady_clock::now();
   render(3, "longer.yaml -o uninterrupted -q -j 1");
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   std::mt19937 lot(20260);
   std::uniform_real_distribution<double> share(0.2, 1);
-  size_t resumed = 0, killed = 0;
-  const int kills = at_length() ? 20 : 2;
-  for (int k = 0; k < kills; ++k) {
-    const int n = 2 + static_cast<int>(lot() % 3), victim = static_cast<int>(lot()) % n, others = 1 + (n + k) % 4;
+  const int asked = at_length() ? 20 : 2;
+  int killed = 0, resumed = 0;
+  for (int tries = 0; resumed < asked && tries < 20 * asked; ++tries) {
+    const int n = 2 + static_cast<int>(lot() % 3), victim = static_cast<int>(lot() % n), others = 1 + (n + resumed) % 4;
     const bool state = file_exists(*folder_ / "killed/result.state.h5");
     const CommandResult r =
         shell("rm -f pid.*; " +
               ranks(n, std::string("./rank longer.yaml -o killed -q -j 1 ") + (state ? "--resume" : "--state")) +
-              strf(" & m=$!; sleep %.2f; kill -9 $(cat pid.%d); wait $m", share(lot) * seconds, std::abs(victim)));
+              strf(" & m=$!; for i in $(seq 3000); do [ -s pid.%d ] && break; sleep 0.01; done; sleep %.2f; "
+                   "kill -9 $(cat pid.%d); wait $m",
+                   victim, share(lot) * seconds, victim));
+    ASSERT_TRUE(r.code == 137 || r.code == 0) << r.code << r.err;  // 0: it was over before
     killed += r.code == 137;
-    EXPECT_TRUE(r.code == 137 || r.code == 0) << r.code << r.err;  // 0: it was over before
-    if (!std::filesystem::exists(*folder_ / "killed")) continue;
-    for (const auto& entry : std::filesystem::directory_iterator(*folder_ / "killed")) {
-      const std::string name = entry.path().filename().string();
-      if (!name.ends_with(".img")) continue;
-      EXPECT_EQ(read_bytes(entry.path()), read_bytes(*folder_ / ("whole_longer/" + name))) << "torn: " << name;
+    expect_no_torn_images();
+    if (r.code == 0) {
+      seconds *= 0.7;
+      std::filesystem::remove_all(*folder_ / "killed");
+      continue;
     }
-    if (!file_exists(*folder_ / "killed/result.state.h5")) continue;
-    ++resumed;
+    if (!file_exists(*folder_ / "killed/result.state.h5")) {
+      seconds *= 1.2;
+      continue;
+    }
     // Every other run is finished by others, the rest is killed again.
-    if (k % 2 == 0 && k + 1 < kills) continue;
+    if (++resumed % 2 == 1 && resumed < asked) continue;
     render(others, "longer.yaml -o killed --resume -q -j 1");
     for (const auto& entry : std::filesystem::directory_iterator(*folder_ / "killed"))
       if (!file_exists(*folder_ / ("whole_longer/" + entry.path().filename().string())))
@@ -198,8 +216,7 @@ TEST_F(Ranks, are_killed_and_the_run_goes_on) {
     expect_same_folders("whole_longer", "killed", 10);
     std::filesystem::remove_all(*folder_ / "killed");
   }
-  EXPECT_GE(resumed, static_cast<size_t>(kills) / 2);
-  EXPECT_GE(killed, static_cast<size_t>(kills) / 2);
+  EXPECT_EQ(resumed, asked) << killed << " killed, the last within " << seconds << " s";
 }
 
 }  // namespace
