@@ -308,7 +308,7 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
 
 void OutputWriter::take(const Delivery& delivery) {
   for (const TextFile& text : delivery.texts) write_text(text);
-  if (!delivery.result.columns) return;
+  if (!delivery.picture) return;
   const std::string stem = stem_of(delivery.rows, files_of(delivery.rows));
   Image& m = image_of(delivery, stem);
   const OutputSpec::Files files = files_of(delivery.rows);

@@ -332,7 +332,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   size_t delivered = 0;         // captures whose results were handed over
   StudyImage* study = nullptr;  // where captures go while a study runs
   callbacks.deliver = [&](const Delivery& delivery) {
-    if (study) return append(*study, delivery.sensor.name(), delivery.bands, delivery.result);
+    if (study) return append(*study, delivery);
     if (!writer) return;  // only the speed is measured
     writer->take(delivery);
     ++delivered;

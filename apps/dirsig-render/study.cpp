@@ -71,10 +71,11 @@ Size size_of(const Simulation& sim) {
   for (const auto& sensor : sim.sensors)
     for (const Task& t : sensor->tasks())
       for (const Capture& c : t.captures) {
-        const size_t bands = sensor->bands(c.state).size() * c.bins;
+        const bool cells = c.bin_by == Capture::BinBy::escape;
+        const size_t bands = sensor->bands(c.state).size() * (cells ? 1 : c.bins);
         if (size.bands && bands != size.bands)
           throw Error("a study wants captures of the same number of bands", "study the sensors one by one");
-        size = {size.pixels + c.problems(), bands};
+        size = {size.pixels + c.problems() * (cells ? c.bins : 1), bands};
       }
   if (sim.sensors.size() > 1) throw Error("a study wants one sensor", "study the sensors one by one");
   if (!size.pixels) throw Error("the simulation has no pixels to study");

@@ -55,6 +55,7 @@ struct Delivery {
   std::optional<double> outside = {};     // radiance of pixels that see nothing by design, when there are such
   // Of strips: when the lines of the task were taken and how the picture lies, and the same of all tasks in turn.
   std::string lines_of_task = {}, lines_of_all = {};
+  bool picture = true;  // false: products and texts are the result, its values make no image
 };
 
 // Places of all captures of a sensor, [task][capture]. image_of: the name of the image that a capture belongs to;

@@ -10,12 +10,14 @@
 
 namespace suite {
 
-void append(StudyImage& image, const std::string& sensor, std::span<const Band> bands, const CaptureResult& result) {
+void append(StudyImage& image, const Delivery& delivery) {
+  const CaptureResult& result = delivery.result;
+  const bool cells = delivery.sensor.tasks()[0].captures[0].bin_by == Capture::BinBy::escape;
   const size_t values = result.values_per_problem();
   for (size_t t = 0; t < result.bins; ++t)
     for (size_t b = 0; b < result.bands; ++b) {
-      std::string name = sensor + ": " + bands[b].name;
-      if (result.bins > 1) name += strf(" [%zu]", t);
+      std::string name = delivery.sensor.name() + ": " + delivery.bands[b].name;
+      if (result.bins > 1 && !cells) name += strf(" [%zu]", t);
       auto found =
           std::find_if(image.series.begin(), image.series.end(), [&](const auto& s) { return s.name == name; });
       if (found == image.series.end()) found = image.series.insert(image.series.end(), {name, {}, {}});
@@ -24,10 +26,12 @@ void append(StudyImage& image, const std::string& sensor, std::span<const Band> 
         found->standard_error.push_back(result.standard_error[i * values + t * result.bands + b]);
       }
     }
-  for (size_t i = 0; i < result.problems(); ++i)
-    image.flagged.push_back(result.quality[i] & quality_heavy_tail ? 1 : 0);
+  for (size_t copy = 0; copy < (cells ? result.bins : 1); ++copy) {
+    for (size_t i = 0; i < result.problems(); ++i)
+      image.flagged.push_back(result.quality[i] & quality_heavy_tail ? 1 : 0);
+    image.paths.insert(image.paths.end(), result.paths.begin(), result.paths.end());
+  }
   image.degrees = result.error_degrees;
-  image.paths.insert(image.paths.end(), result.paths.begin(), result.paths.end());
 }
 
 namespace {

@@ -4,11 +4,10 @@
 // F. Satterthwaite, "An approximate distribution of estimates of variance components", Biometrics Bulletin 2(6), 1946.
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "sensor/sensor.h"
+#include "sensor/delivery.h"
 
 namespace suite {
 
@@ -25,9 +24,10 @@ struct StudyImage {
   double degrees = 3;            // of freedom of the standard errors
 };
 
-// Appends a finished capture as series "sensor: band" (radiance channel, all time bins). Captures of one sensor that
-// have the same bands go on in the same series.
-void append(StudyImage& image, const std::string& sensor, std::span<const Band> bands, const CaptureResult& result);
+// Appends a finished capture as series "sensor: band" (radiance channel). Captures of one sensor that have the same
+// bands go on in the same series. Bins of time are series of their own; cells of directions are values of one series,
+// as pixels are.
+void append(StudyImage& image, const Delivery& delivery);
 
 struct Comparison {
   std::string series;

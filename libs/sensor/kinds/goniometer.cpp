@@ -69,7 +69,7 @@ class Goniometer final : public SimpleSensor {
     d.description =
         "integral of BRDF times cosine over cells of the hemisphere; right under a sky of radiance 1 everywhere and no "
         "sun";
-    d.result.columns = 0;  // the table is the result; a picture of cells is none
+    d.picture = false;
   }
   Patch patch_;
   double height_ = 0, back_ = 0;

@@ -55,6 +55,24 @@ TEST(Study, WritesItsResultsAndGoesOn) {
   EXPECT_EQ(run_command(command + "4,8 --stop change").code, 1);
 }
 
+// The cells of a goniometer are one series a band, though its values make no picture.
+TEST(Study, OfAGoniometer) {
+  const TempFolder folder;
+  prepared(folder, "smooth");
+  write_file(
+      folder / "sim.yaml",
+      "scene: scene.h5\nsky: {radiance: 1, full_sphere: true}\nsensors:\n  - {kind: goniometer, name: brdf, patch: "
+      "{origin_m: [-1, -1], size_m: [2, 2]}, height_m: 1, view_zenith_deg: [0, 40], rings: 3, azimuths: 6, paths: 64, "
+      "bands: "
+      "[{name: a, center_um: 0.55, fwhm_um: 0.02}, {name: b, center_um: 0.6, fwhm_um: 0.02}]}\n");
+  const CommandResult r = run_command(kBin + "dirsig-render " + (folder / "sim.yaml") + " --study " +
+                                      (folder / "study") + " --study-seeds 2 --study-budgets 256,1024");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.out.find("brdf: a: "), std::string::npos) << r.out;
+  EXPECT_EQ(lines_of(read_text(folder / "study/study.csv")), 2 + 2 * 2 * 2);
+  EXPECT_NE(read_text(folder / "study/reference.img.hdr").find("samples = 36"), std::string::npos);
+}
+
 TEST(Method, ThePapersBringsItsRuleOfStopping) {
   const TempFolder folder;
   const std::string command = kBin + "dirsig-render " + prepared(folder, "smooth") + " -o " + (folder / "out");

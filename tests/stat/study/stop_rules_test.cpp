@@ -95,7 +95,8 @@ StudyImage image_of(const std::shared_ptr<Scene>& scene, double half_angle, uint
   run_job(scene, sources, sensors, job);
   const Sensor& s = *sensors[0];
   StudyImage made;
-  append(made, s.name(), s.bands(0), static_cast<const AreaSensor&>(s).result);
+  const std::span<const Band> bands = s.bands(0);
+  append(made, Delivery{s, {}, static_cast<const AreaSensor&>(s).result, {bands.begin(), bands.end()}, {}, {}, {}, {}});
   for (double& e : made.series[0].standard_error) e *= inflate;
   return made;
 }
