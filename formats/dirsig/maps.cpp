@@ -64,7 +64,6 @@ void SceneWriter::read_maps(const Item& list, const Folders& folders) {
       map.mark_all(Fate::ignored, "disabled");
       continue;
     }
-    map.mark(Fate::exact);
     read_map(map, folders);
   }
 }
@@ -194,6 +193,7 @@ void SceneWriter::read_map(const Item& map, const Folders& folders) {
   const auto kind = kinds.find(map.name);
   if (kind == kinds.end())
     return map.mark_all(Fate::unsupported, "a map that is not known here: what it changes stays even");
+  map.mark(Fate::exact);
   std::vector<std::string> ids;
   for (const Item* list : map.all("matidlist"))
     for (const Item* id : list->all("matid")) ids.push_back(material(id->text(), scope_));
