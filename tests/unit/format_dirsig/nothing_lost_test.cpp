@@ -144,6 +144,7 @@ TEST_F(DirsigOddFiles, ShowWhatNobodyKnows) {
   const std::pair<const char*, std::vector<const char*>> plan[] = {
       {"range.scene", {"range.scene", "geometry/range.glist", "geometry/range.odb", "materials/range.mat"}},
       {"models.scene", {"materials/models.mat", "geometry/models.odb"}},
+      {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
       {"plane.sim", {"plane.sim", "plane.scene", "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}}};
   size_t shown = 0;
   for (const auto& [top, names] : plan)
@@ -179,6 +180,7 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
   const std::pair<const char*, std::vector<const char*>> plan[] = {
       {"range.scene", {"range.scene", "geometry/range.glist", "geometry/range.odb", "materials/range.mat"}},
       {"models.scene", {"materials/models.mat", "materials/paint.fit", "geometry/models.odb"}},
+      {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
       {"plane.sim", {"uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}},
       {"warm.sim", {"thermal.platform", "warm.atm"}}};
   const std::regex number(">\\s*([-+0-9.eE]+)\\s*</|=[ \t]*([-+0-9.eE]+)[ \t]*\r?\n");
