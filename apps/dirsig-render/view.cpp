@@ -80,12 +80,13 @@ Viewed open_viewed(const std::string& folder, const std::string& name) {
   return v;
 }
 
-// Characters of the file that an image takes when every n-th column and row is kept.
+// Characters of the file that an image takes at most when every n-th column and row is kept: steps of 16 and 9 bits for
+// values and errors, and the heads of their blocks (page/steps.h).
 double size_of(const Viewed& v, size_t step) {
   const auto kept = [&](size_t n) { return static_cast<double>((n + step - 1) / step); };
   const double truth = v.truth ? 4.0 * static_cast<double>(v.truth->bands) : 0;
-  return kept(v.values.samples) * kept(v.values.lines) * (3.0 * static_cast<double>(v.values.bands) + 1 + truth) * 4 /
-         3;
+  return kept(v.values.samples) * kept(v.values.lines) *
+         (206.0 / 64 * static_cast<double>(v.values.bands) + 1 + truth) * 4 / 3;
 }
 
 // Numbers [band][pixel] of every `step`-th column and row. scale: what a stored number counts.
@@ -202,6 +203,26 @@ Json about_flags() {
   return flags;
 }
 
+// Bands that are written one after the other, each as steps from the last one; but a browser that wants one band must
+// read those that it is told from, so that every eighth stands by itself.
+class Bands {
+ public:
+  Bands(LivePage& page, LiveKind kind) : page_(page), kind_(kind) {}
+  void put(const std::string& id, Packed packed) {
+    const bool alone = count_++ % 8 == 0;
+    page_.steps(id, kind_, packed, alone ? std::nullopt : std::optional(LivePage::Base{id_, last_.codes}));
+    id_ = id;
+    last_ = std::move(packed);
+  }
+
+ private:
+  LivePage& page_;
+  LiveKind kind_;
+  size_t count_ = 0;
+  std::string id_;
+  Packed last_;
+};
+
 // The blocks of an image, the bands of its picture first; begins the page when it is the first image. Returns what
 // packing lost.
 Json put_blocks(LivePage& page, const Viewed& v, size_t number, size_t step) {
@@ -218,11 +239,12 @@ Json put_blocks(LivePage& page, const Viewed& v, size_t number, size_t step) {
   if (order.empty()) once(0);  // what a page shows first
   const size_t first = order.size();
   for (size_t b = 0; b < bands; ++b) once(b);
+  Bands value_bands(page, LiveKind::half), error_bands(page, LiveKind::log8);
   for (size_t i = 0; i < bands; ++i) {
     if (number == 0 && i == first) page.begin();
-    const Packed p = packed_half(std::span(values).subspan(order[i] * pixels, pixels));
-    page.data(prefix + strf("v%zu", order[i]), LiveKind::half, p.bytes, p.first);
+    Packed p = packed_half(std::span(values).subspan(order[i] * pixels, pixels));
     lost_values = std::max(lost_values, p.loss);
+    value_bands.put(prefix + strf("v%zu", order[i]), std::move(p));
   }
   if (number == 0 && first == bands) page.begin();
   const std::vector<float> flags = read_kept(v.base + "_quality.img", step);
@@ -231,9 +253,9 @@ Json put_blocks(LivePage& page, const Viewed& v, size_t number, size_t step) {
   page.data(prefix + "q", LiveKind::u8, bits);
   const std::vector<float> errors = read_kept(v.base + "_error.img", step);
   for (size_t b = 0; b < bands; ++b) {
-    const Packed p = packed_log8(std::span(errors).subspan(b * pixels, pixels));
-    page.data(prefix + strf("e%zu", b), LiveKind::log8, p.bytes, p.first, p.second);
+    Packed p = packed_log8(std::span(errors).subspan(b * pixels, pixels));
     lost_errors = std::max(lost_errors, p.loss);
+    error_bands.put(prefix + strf("e%zu", b), std::move(p));
   }
   if (v.truth) {
     const std::vector<float> truth = read_kept(v.base + "_truth.img", step);

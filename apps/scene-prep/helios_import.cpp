@@ -15,12 +15,13 @@ namespace suite {
 
 namespace {
 
-HeliosText text_of(const std::string& path, const TrackedInputs& inputs, Report& report) {
-  const auto corner_of = [&](const std::string& name) {
-    const GeoReference ref = read_georeference(inputs.path_of(name));
-    return std::array<double, 4>{ref.to_map[0], ref.to_map[3], ref.to_map[1], -ref.to_map[5]};
-  };
-  return parse_helios(read_text(path), path, corner_of, report);
+HeliosText text_of(const std::string& path, TrackedInputs& inputs, Report& report) {
+  const HeliosFiles files{[&](const std::string& name) {
+                            const GeoReference ref = read_georeference(inputs.path_of(name));
+                            return std::array<double, 4>{ref.to_map[0], ref.to_map[3], ref.to_map[1], -ref.to_map[5]};
+                          },
+                          [&](const std::string& name) { return read_text(inputs.add(name).path, size_t{1} << 30); }};
+  return parse_helios(read_text(path), path, files, report);
 }
 
 Draft read(const std::string& path, const ImportOptions& options, Report& report) {
@@ -34,7 +35,7 @@ Draft read(const std::string& path, const ImportOptions& options, Report& report
 bool convert(const std::string& path, const ImportOptions& options, const std::string& folder) {
   namespace fs = std::filesystem;
   Report report(scene_issues());
-  const TrackedInputs inputs(path, options.search);
+  TrackedInputs inputs(path, options.search);
   const HeliosText made = text_of(path, inputs, report);
   const std::string text = (fs::path(folder) / fs::path(path).stem()).string() + ".yaml";
   check_outputs({text});

@@ -43,7 +43,7 @@ void put_cells(LivePage& page, const sqt::Bundle& bundle, size_t view, size_t ch
   const Packed packed = packed_half(values);
   lost = std::max(lost, packed.loss);
   page.data("c" + id, LiveKind::u8, std::as_bytes(std::span(corners)));
-  page.data("v" + id, LiveKind::half, packed.bytes, packed.first);
+  page.data("v" + id, LiveKind::half, std::as_bytes(std::span(packed.codes)), packed.first);
   page.data("m" + id, LiveKind::f32, std::as_bytes(std::span(masses)));
   page.data("o" + id, LiveKind::u8, orders);
 }

@@ -164,7 +164,7 @@ std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& op
 std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& options) {
   const std::string text = read_text(path, size_t{1} << 30);
   std::vector<std::string> lines;
-  for (size_t at = 0; at < text.size();) {
+  for (size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0; at < text.size();) {
     const size_t end = std::min(text.find('\n', at), text.size());
     lines.push_back(trimmed(std::string_view(text).substr(at, end - at)));
     at = end + 1;
@@ -174,15 +174,22 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
     return Error(Where{path, static_cast<int>(std::min(at, lines.size() - 1) + 1), 1, {}, -1}, what,
                  "a DIRSIG emissivity file is expected");
   };
-  if (lines.empty()) throw Error(Where{path, 0, 0, {}, -1}, "is empty");
+  const auto skip_empty = [&] {
+    while (at < lines.size() && lines[at].empty()) ++at;
+  };
+  skip_empty();
+  if (at >= lines.size()) throw Error(Where{path, 0, 0, {}, -1}, "is empty");
   double count = 0;
   if (!number(lines[at], count) || count < 1 || count > 100000 || count != std::floor(count))
-    throw fault("line 1 is no number of curves");
+    throw fault("its first line is no number of curves");
   // 91 weights of the angles 0 to 90 degrees: they describe how a classical solver falls off, which the scattering
   // models of this suite have of their own.
-  for (at = 1; at <= 91; ++at)
+  ++at;
+  for (int k = 0; k < 91; ++k, ++at) {
+    skip_empty();
     if (double weight = 0; at >= lines.size() || !number(lines[at], weight))
       throw fault("one of 91 angular weights is missing");
+  }
   std::vector<NamedCurve> out;
   while (out.size() < static_cast<size_t>(count)) {
     while (at < lines.size() && (lines[at].empty() || lines[at] == "CURVE_END")) ++at;

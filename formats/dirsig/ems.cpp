@@ -28,7 +28,8 @@ bool read_rows(TextLines& lines, bool wavenumbers, CurveFile& made) {
   bool more = false;
   while (lines.next()) {
     if (lines.words() == 1) {
-      more = true;
+      // What ends one curve says nothing of the next.
+      more = lines.word(0) != "CURVE_END" || lines.next();
       break;
     }
     const double first = lines.number_in(0, wavenumbers ? "wavenumber" : "wavelength", 1e-3, 1e7);
@@ -59,6 +60,24 @@ void read_curves(TextLines& lines, size_t count, CurveFile& made) {
     throw lines.error_at_end(strf("%zu curves, and %zu are announced in line 1", made.value.size(), count));
 }
 
+// Emissivities that noise or rounding has put beyond 0 to 1; those that are farther off are faults of the file.
+void keep_within_one(CurveFile& made) {
+  constexpr double kNear = 0.05;
+  size_t count = 0;
+  double most = 0;
+  for (std::vector<double>& curve : made.value)
+    for (double& v : curve) {
+      const double off = std::max(-v, v - 1);
+      if (!(off > 0) || off > kNear) continue;
+      v = v < 0 ? 0 : 1;
+      ++count, most = std::max(most, off);
+    }
+  if (count == 0) return;
+  made.moved = true;
+  made.account.children.back().mark(
+      Fate::approximated, strf("%zu emissivities beyond 0 to 1, by %.2g at most, are taken as 0 and 1", count, most));
+}
+
 }  // namespace
 
 CurveFile parse_ems(std::string_view text, const std::string& file) {
@@ -84,6 +103,7 @@ CurveFile parse_ems(std::string_view text, const std::string& file) {
                                  "degrees",
                                  made.weights.front(), made.weights.back()));
   read_curves(lines, static_cast<size_t>(count), made);
+  keep_within_one(made);
   return made;
 }
 

@@ -11,6 +11,7 @@ namespace suite::dirsig {
 struct CurveFile {
   std::vector<double> weights;                            // of the angles 0 to 90 degrees; of .ems only
   bool even = true;                                       // all weights are 1
+  bool moved = false;                                     // emissivities beyond 0 to 1 became 0 or 1
   std::vector<std::vector<double>> wavelength_um, value;  // of each curve, wavelengths ascending
   Item account;
 };

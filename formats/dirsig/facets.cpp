@@ -52,8 +52,10 @@ void same_shape(const Item& block, Names names, double first) {
     item->mark(Fate::approximated, "the shape of the lobe is that of the first wavelength");
 }
 
-void add_block(const Item& block, FacetFit& fit) {
+void add_block(const Item& block, bool emissivity, FacetFit& fit) {
   block.mark(Fate::exact);
+  if (const Item* diffuse = emissivity ? block.any({"RHO_D", "RHOD"}) : nullptr)
+    diffuse->mark(Fate::approximated, "the emissivity says what is diffuse");
   const bool first = fit.n.empty();
   fit.um.push_back(optional(block, {"LAMBDA", "WAVELENGTH"}, 1e-3, 1e4, 0));
   fit.n.push_back(optional(block, {"N", "INDEX", "N_REAL"}, 0.05, 20, 1.5));
@@ -155,12 +157,13 @@ bool SceneWriter::read_facets(const Item& name, const Item& section, const Folde
   const std::string kind = lower_case(name.value);
   const bool germer = kind.find("germer") != kind.npos || kind.find("priest") != kind.npos;
   const bool nef = kind.find("nef") != kind.npos || kind.find("beard") != kind.npos;
+  const bool emissivity = section.any({"EMISSIVITY_FILE", "EMISSIVITY_FILENAME"});
   FacetFit fit;
   if (is_block(section)) {
-    add_block(section, fit);
+    add_block(section, emissivity, fit);
   } else if (const Item* file = facet_file(section, folders)) {
-    for (const Item* block : file->all("FIT_PARAMS")) add_block(*block, fit);
-    if (fit.n.empty() && is_block(*file)) add_block(*file, fit);
+    for (const Item* block : file->all("FIT_PARAMS")) add_block(*block, emissivity, fit);
+    if (fit.n.empty() && is_block(*file)) add_block(*file, emissivity, fit);
     file->mark(Fate::exact);
     if (fit.n.empty()) {
       file->mark_all(Fate::unsupported, "no FIT_PARAMS { N = ..., SIGMA = ... } in it");
@@ -179,8 +182,10 @@ bool SceneWriter::read_facets(const Item& name, const Item& section, const Folde
   to.set("diffuse", body_of(section, folders, fit, where));
   name.mark(Fate::approximated, "the model of the same name, of unpolarised light");
   if (germer) {
-    if (const Item* on = section.find("ENABLE_DIFFUSE_CONTRIBUTION"); on && !on->boolean())
+    if (const Item* on = section.find("ENABLE_DIFFUSE_CONTRIBUTION"); on && !on->boolean()) {
       to.set("diffuse", Tree::number(0, on->where));
+      if (const Item* diffuse = section.any({"RHO_D", "RHOD"})) diffuse->mark(Fate::ignored, "switched off");
+    }
     if (const Item* on = section.find("ENABLE_SHADOWING_FUNCTION"); on && !on->boolean())
       on->mark(Fate::approximated, "facets shadow each other here in any case");
     return true;

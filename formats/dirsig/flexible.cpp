@@ -269,12 +269,13 @@ void read_jitter(const Item& motion, Tree* jitter) {
       from->mark_all(Fate::unsupported, "things of a scene do not shake");
       continue;
     }
-    if (const Item* type = from->find("@type")) type->mark(Fate::exact);
+    const char* kept = "read by what stands in it";
+    expect_word(from->find("@type"), {"uncorrelated", "correlated", "none", "gaussian"}, kept);
     const double unit = turn ? radians_of(from->any({"@angularunits", "@units"}), false) : 1;
     for (const char* name : {"x", "y", "z"})
       if (const Item* axis = from->any({name, std::string(name) + "axis", std::string(name) + "jitter"})) {
-        if (const Item* type = axis->find("@type")) type->mark(Fate::exact);
-        if (const Item* kind = axis->find("@distribution")) kind->mark(Fate::exact);
+        expect_word(axis->find("@type"), {"uncorrelated", "correlated", "none", "gaussian", "normal"}, kept);
+        expect_word(axis->find("@distribution"), {"gaussian", "normal"}, "taken as gaussian");
         Tree made = axis_jitter(*axis, turn ? "sigma_rad" : "sigma_m", turn ? "mean_rad" : "mean_m",
                                 turn ? "density_rad2_hz" : "density_m2_hz", unit);
         if (!made.empty()) jitter->set((turn ? "rotate_" : "") + std::string(name), std::move(made));

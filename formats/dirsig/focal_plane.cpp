@@ -10,6 +10,14 @@ namespace {
 // DIRSIG's own defaults of paths a pixel (its manual calls them samples).
 constexpr double kFewest = 20, kMost = 100, kRelativeError = 0.01;
 
+// Seconds of a unit of time; without one the number is seconds.
+double seconds_of(const Item* units) {
+  if (!units) return 1;
+  constexpr double seconds[] = {1, 1, 1, 1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6};
+  return seconds[units->choice(
+      {"seconds", "second", "s", "milliseconds", "millisecond", "ms", "microseconds", "microsecond", "us"})];
+}
+
 struct Truth {
   const char *theirs, *ours;
 };
@@ -105,17 +113,12 @@ void SimulationWriter::read_array(const Item& array, Tree& instrument, Tree& mad
 void SimulationWriter::read_clock(const Item& clock, Tree& instrument) {
   const Item *type = clock.find("@type"), *rate = clock.find("rate");
   if (type) type->mark(Fate::exact);
-  if (const Item* units = clock.find("@temporalunits"))
-    units->mark(lower_case(units->value).starts_with("hertz") ? Fate::exact : Fate::unsupported,
-                "rates are taken in hertz");
+  expect_word(clock.find("@temporalunits"), {"hertz", "hz"}, "rates are taken in hertz");
   if ((type && lower_case(type->value) != "independent") || !rate) {
     if (type) type->mark(Fate::unsupported, "only clocks of their own are known here: one capture a task");
     return clock.mark_all(Fate::unsupported, "of a clock that is not known here");
   }
-  if (const Item* units = rate->find("@units"))
-    units->mark(lower_case(units->value).starts_with("hertz") || lower_case(units->value) == "hz" ? Fate::exact
-                                                                                                  : Fate::unsupported,
-                "rates are taken in hertz");
+  expect_word(rate->find("@units"), {"hertz", "hz"}, "rates are taken in hertz");
   if (const double hz = rate->number_in(0, 1e9); hz > 0) {
     Tree& made_clock = instrument.set("clock", Tree::map(clock.where));
     made_clock.set("rate_hz", Tree::number(hz, rate->where));
@@ -144,7 +147,7 @@ void SimulationWriter::read_image_file(const Item& image) {
 }
 
 void SimulationWriter::read_capture(const Item& method, Tree& made) {
-  if (const Item* type = method.find("@type")) type->mark(Fate::exact);
+  expect_word(method.find("@type"), {"simple", "raw"}, "taken as a simple capture");
   const Item* image = method.find("imagefile");
   const Item *flux = image ? image->find("@fluxunits") : nullptr, *area = image ? image->find("@areaunits") : nullptr;
   if (image) read_image_file(*image);
@@ -152,8 +155,9 @@ void SimulationWriter::read_capture(const Item& method, Tree& made) {
   if (const Item* integration = method.find("temporalintegration")) {
     const Item* tdi = integration->find("@tdi");
     if (const Item* time = integration->find("time")) {
-      if (const Item* units = time->find("@units")) units->mark(Fate::exact);
-      seconds = time->number_in(0, 86400);
+      const double unit = seconds_of(time->find("@units"));
+      seconds = unit * time->number_in(0, 86400 / unit);
+      if (unit != 1) time->mark(Fate::converted, strf("%g s", seconds));
       made.set("integration_time_s", Tree::number(seconds, time->where));
     }
     if (const Item* samples = integration->find("samples"))
@@ -234,7 +238,8 @@ void SimulationWriter::read_truth(const Item& plane) {
     }
     if (const Item* name = collection->find("name")) name->mark(Fate::ignored, "for people");
     if (const Item* image = collection->find("imagefile"))
-      image->mark_all(Fate::converted, "truth stands in NAME_truth.img");
+      for (const char* key : {"basename", "extension", "schedule", "datatype"})
+        if (const Item* said = image->find(key)) said->mark(Fate::converted, "truth stands in NAME_truth.img");
     const Item* list = collection->find("collectorlist");
     for (const Item* collector : list ? list->all("collector") : std::vector<const Item*>{}) {
       collector->mark(Fate::exact);

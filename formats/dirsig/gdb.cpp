@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "formats/dirsig/texts.h"
 #include "math/vec.h"
 
 namespace suite::dirsig {
@@ -158,7 +159,13 @@ class GdbReader {
 
 }  // namespace
 
-Gdb parse_gdb(std::string_view text, const std::string& file) { return GdbReader(text, file).run(); }
+Gdb parse_gdb(std::string_view text, const std::string& file) {
+  std::string how;
+  const std::string plain = plain_text(std::string(text), file, how);
+  Gdb made = GdbReader(plain, file).run();
+  if (!how.empty()) made.account.mark(Fate::converted, how);
+  return made;
+}
 
 ObjAccount account_of_obj(std::string_view text, const std::string& file) {
   struct Kind {

@@ -10,6 +10,7 @@ namespace suite::dirsig {
 namespace {
 
 constexpr size_t kDeepest = 60;
+constexpr const char* kSections = "a section begins and ends on lines of its own";
 
 void fill(const XmlElement& from, Item& to) {
   to.name = std::string(from.name());
@@ -67,6 +68,7 @@ class SectionReader {
       take(text.substr(begin, end - begin));
       begin = end + 1;
     }
+    if (!waiting_.empty()) throw Error(waiting_at_, not_a_line(waiting_), kSections);
     if (open_.size() > 1)
       throw open_.back()->error("the section '" + open_.back()->name + "' has no end", "a line '}' closes it");
     return top;
@@ -90,14 +92,26 @@ class SectionReader {
     line = trimmed(line);
     if (line.empty()) return;
     if (line == "}") return close(line);
+    // A name whose '{' stands on the next line.
+    if (!waiting_.empty()) {
+      const std::string_view name = waiting_;
+      waiting_ = {};
+      if (line.front() != '{') throw Error(waiting_at_, not_a_line(name), kSections);
+      return section(name, line.substr(1), waiting_at_);
+    }
     const size_t brace = line.find('{'), equals = line.find('=');
     if (equals != line.npos && (brace == line.npos || equals < brace)) return key(line, equals);
     // Tables of digital counts have lines "0:grass".
     if (const size_t colon = line.find(':'); brace == line.npos && colon != line.npos) return key(line, colon);
-    if (brace == line.npos)
-      throw Error(here(line), "'" + std::string(line.substr(0, 60)) + "' is neither KEY = VALUE nor SECTION {",
-                  "a section begins and ends on lines of its own");
-    section(line, brace);
+    if (brace == line.npos) {
+      waiting_ = line, waiting_at_ = here(line);
+      if (line.find_first_of(" \t/*<>") != line.npos) throw Error(waiting_at_, not_a_line(line), kSections);
+      return;
+    }
+    section(trimmed(line.substr(0, brace)), line.substr(brace + 1), here(line));
+  }
+  static std::string not_a_line(std::string_view line) {
+    return "'" + std::string(line.substr(0, 60)) + "' is neither KEY = VALUE nor SECTION {";
   }
 
   void key(std::string_view line, size_t equals) {
@@ -111,16 +125,27 @@ class SectionReader {
     if (item.name.empty()) throw item.error("a value without a key", "KEY = VALUE");
   }
 
-  void section(std::string_view line, size_t brace) {
+  // rest: what stands behind the '{': nothing, one key, or the end of the section.
+  void section(std::string_view name, std::string_view rest, const Where& where) {
     Item& item = open_.back()->children.emplace_back();
-    item.name = upper_case(trimmed(line.substr(0, brace)));
-    item.where = here(line);
+    item.name = upper_case(name);
+    item.where = where;
     if (item.name.empty()) throw item.error("a section without a name", "NAME {");
-    const std::string_view rest = trimmed(line.substr(brace + 1));
-    if (rest == "}") return;
-    if (!rest.empty()) throw item.error("something stands behind the '{'", "a section's content begins on a new line");
+    rest = trimmed(rest);
+    const bool ends = rest.ends_with('}');
+    if (ends) rest = trimmed(rest.substr(0, rest.size() - 1));
+    if (rest.find_first_of("{}") != rest.npos)
+      throw item.error("more than one section in a line", "a section's content begins on a new line");
     if (open_.size() >= kDeepest) throw item.error(strf("sections nested deeper than %zu", kDeepest));
     open_.push_back(&item);
+    const size_t equals = rest.find('=');
+    if (equals != rest.npos && rest.find('=', equals + 1) != rest.npos)
+      throw item.error("more than one key in a line", "every key stands on a line of its own");
+    if (equals != rest.npos)
+      key(rest, equals);
+    else if (!rest.empty())
+      throw item.error("something stands behind the '{'", "a section's content begins on a new line");
+    if (ends) open_.pop_back();
   }
 
   void close(std::string_view line) {
@@ -133,6 +158,8 @@ class SectionReader {
   std::vector<Item*> open_;
   int line_ = 0;
   size_t begin_ = 0, length_ = 0;
+  std::string_view waiting_;  // a name that may be a section's
+  Where waiting_at_;
 };
 
 }  // namespace
@@ -158,7 +185,6 @@ Item parse_json(std::string_view text, const std::string& file) {
 
 Item parse_sections(std::string_view text, const std::string& file, const std::string& root) {
   if (text.find('\0') != text.npos) throw Error(Where{file, 0, 0, {}, -1}, "is not a text file");
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   return SectionReader(text, file).run(root);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/files.h"
 #include "formats/dirsig/grammar.h"
+#include "formats/dirsig/texts.h"
 
 namespace suite::dirsig {
 
@@ -124,47 +125,31 @@ std::string Import::name_of(const std::string& path) const {
   return near.empty() ? whole.string() : near.string();
 }
 
-// The text of a file in UTF-8. Editors of Windows wrote Latin-1, which any text can be taken for.
-std::string Import::text_of(const std::string& path, bool& latin) {
-  std::string text = read_text(path, kLargestText);
-  latin = utf8_bytes(text) < text.size();
-  if (!latin) return text;
-  std::string out;
-  for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (u < 0x80)
-      out += c;
-    else
-      out += {static_cast<char>(0xc0 | (u >> 6)), static_cast<char>(0x80 | (u & 0x3f))};
-  }
-  return out;
-}
-
-const Item& Import::added(const std::string& path, const std::string& kind, Item root, bool latin) {
+const Item& Import::added(const std::string& path, const std::string& kind, Item root, const std::string& how) {
   const Item& item = ledger_.add(path, kind, std::move(root));
-  if (latin) item.mark(Fate::converted, "the file is not UTF-8 and is taken as Latin-1");
+  if (!how.empty()) item.mark(Fate::converted, how);
   return item;
 }
 
 const Item& Import::xml(const std::string& path, const std::string& kind) {
   if (const Item* there = known(path)) return *there;
-  bool latin = false;
-  const std::string text = text_of(path, latin);
-  return added(path, kind, parse_xml(text, path), latin);
+  std::string how;
+  const std::string text = plain_text_of(path, kLargestText, how);
+  return added(path, kind, parse_xml(text, path), how);
 }
 
 const Item& Import::json(const std::string& path) {
   if (const Item* there = known(path)) return *there;
-  bool latin = false;
-  const std::string text = text_of(path, latin);
-  return added(path, "simulation", parse_json(text, path), latin);
+  std::string how;
+  const std::string text = plain_text_of(path, kLargestText, how);
+  return added(path, "simulation", parse_json(text, path), how);
 }
 
 const Item& Import::sections(const std::string& path, const std::string& kind, const std::string& root) {
   if (const Item* there = known(path)) return *there;
-  bool latin = false;
-  const std::string text = text_of(path, latin);
-  return added(path, kind, parse_sections(text, path, root), latin);
+  std::string how;
+  const std::string text = plain_text_of(path, kLargestText, how);
+  return added(path, kind, parse_sections(text, path, root), how);
 }
 
 const Item& Import::keep(const std::string& path, const std::string& kind, Item root) {

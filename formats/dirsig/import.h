@@ -38,8 +38,7 @@ class Import {
   const Item* known(const std::string& path) const { return ledger_.of(path); }
 
  private:
-  static std::string text_of(const std::string& path, bool& latin);
-  const Item& added(const std::string& path, const std::string& kind, Item root, bool latin);
+  const Item& added(const std::string& path, const std::string& kind, Item root, const std::string& how);
   std::string replaced(std::string_view name, std::string& how) const;
   std::vector<std::string> search_;
   std::string base_;

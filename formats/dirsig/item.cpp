@@ -54,6 +54,12 @@ std::optional<double> number_in_text(std::string_view text) {
   return value;
 }
 
+void expect_word(const Item* item, std::initializer_list<std::string_view> known, const std::string& note) {
+  if (!item) return;
+  const bool one = std::find(known.begin(), known.end(), lower_case(item->value)) != known.end();
+  item->mark(one ? Fate::exact : Fate::unsupported, one ? "" : note);
+}
+
 const Item* Item::find(std::string_view key) const {
   asked_.emplace(key);
   for (const Item& child : children)

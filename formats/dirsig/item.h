@@ -66,6 +66,10 @@ class Item {
   mutable std::set<std::string, std::less<>> asked_;
 };
 
+// Marks a word (of a type, of a unit) that must be one of those, in any case, for what is made of the rest to hold:
+// exact, else unsupported with the note. item: may be null.
+void expect_word(const Item* item, std::initializer_list<std::string_view> known, const std::string& note);
+
 // A number as these files write them ("+5.0e-01", "1.", ".5"); nothing when it is none or not finite.
 std::optional<double> number_in_text(std::string_view text);
 std::string lower_case(std::string_view text);

@@ -1,7 +1,11 @@
 // Lists of geometry in XML (.glist): objects, their geometry, where they are placed.
+#include <algorithm>
+#include <cstdint>
+
 #include "base/files.h"
 #include "formats/dirsig/motion.h"
 #include "formats/dirsig/scene_writer.h"
+#include "formats/dirsig/texts.h"
 
 namespace suite::dirsig {
 
@@ -15,6 +19,33 @@ bool disabled(const Item& item) {
   if (!enabled || enabled->boolean()) return false;
   item.mark_all(Fate::ignored, "disabled");
   return true;
+}
+
+// Where an object has several geometries, each instance draws one of them. Their cumulative shares; 1 each unless said.
+std::vector<double> shares_of(const std::vector<const Item*>& bases) {
+  std::vector<double> sums;
+  for (const Item* base : bases) {
+    const Item* weight = base->any({"@weight", "weight"});
+    const double mine = weight ? weight->number_in(0, 1e9) : 1;
+    sums.push_back((sums.empty() ? 0 : sums.back()) + mine);
+    if (bases.size() > 1)
+      base->mark(Fate::approximated,
+                 strf("one of %zu, drawn for each instance by the weights; DIRSIG's draws are others", bases.size()));
+  }
+  if (!(sums.back() > 0)) throw bases[0]->error("no geometry has a weight above 0");
+  return sums;
+}
+
+// The number that the n-th instance draws: the same whenever the list is read.
+// Based on: G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014 (SplitMix64's
+// finisher).
+size_t drawn(const std::vector<double>& sums, size_t n) {
+  if (sums.size() == 1) return 0;
+  uint64_t z = 0x9e3779b97f4a7c15u * (n + 1);
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  const double at = static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53 * sums.back();
+  return static_cast<size_t>(std::upper_bound(sums.begin(), sums.end() - 1, at) - sums.begin());
 }
 
 }  // namespace
@@ -38,13 +69,15 @@ void SceneWriter::read_list_file(const std::string& path, const Scope& scope, Tr
                 "a list must not lead back to itself");
   Scope mine = scope;
   mine.folders.insert(mine.folders.begin(), folder_of(path));
-  std::string head = read_text(path, size_t{64} << 20).substr(0, 4096);
-  if (trimmed(head).starts_with('<')) {
+  std::string how;
+  if (trimmed(plain_text_of(path, size_t{64} << 20, how)).starts_with('<')) {
     const Item& list = import_.xml(path, "geometry list");
     if (list.name != "geometrylist") throw list.error("the root is <" + list.name + ">", "<geometrylist> is expected");
     read_glist(list, mine, to);
   } else {
-    read_odb(import_.sections(path, "object database", "odb"), mine, to);
+    const Item& odb = import_.sections(path, "object database", "odb");
+    if (odb.children.empty()) odb.mark(Fate::unsupported, "there is nothing in it: it places nothing");
+    read_odb(odb, mine, to);
   }
   --depth_;
 }
@@ -88,31 +121,39 @@ void SceneWriter::read_object(const Item& object, const Scope& scope, Tree& to) 
     sources_.emplace_back(&object, mine);
     return;
   }
-  if (const Item* base = object.find("basegeometry")) return read_instances(object, mine, *base, to);
+  if (const std::vector<const Item*> bases = object.all("basegeometry"); !bases.empty())
+    return read_instances(object, mine, bases, to);
   object.mark(Fate::unsupported, "an object without geometry that is known here");
 }
 
-void SceneWriter::read_instances(const Item& object, const Scope& scope, const Item& base, Tree& to) {
+void SceneWriter::read_instances(const Item& object, const Scope& scope, const std::vector<const Item*>& bases,
+                                 Tree& to) {
   size_t placed = 0;
-  std::string plain;  // what instances without materials of their own place
+  const std::vector<double> shares = shares_of(bases);
+  std::set<const Item*> used;
+  std::map<const Item*, std::string> plain;  // what instances without materials of their own place
   for (const char* kind : {"staticinstance", "dynamicinstance"})
     for (const Item* instance : object.all(kind)) {
       ++placed;
       if (disabled(*instance)) continue;
       instance->mark(Fate::exact);
+      const Item& base = *bases[drawn(shares, placed)];
+      used.insert(&base);
       if (instance->has("assign")) {
         Scope mine = scope;
         read_assigned(*instance, mine);
         to.push(placement_of(*instance, base_of(base, mine)));
         continue;
       }
-      if (plain.empty()) plain = base_of(base, scope);
-      to.push(placement_of(*instance, plain));
+      if (!plain.count(&base)) plain[&base] = base_of(base, scope);
+      to.push(placement_of(*instance, plain.at(&base)));
     }
+  for (const Item* base : bases)
+    if (placed && !used.count(base)) base->mark_all(Fate::ignored, "no instance drew it");
   if (placed) return;
   // DIRSIG places nothing without an instance; a list of populations may.
   object.mark(Fate::unsupported, "no instance that is known here: it is not placed");
-  base.mark_all(Fate::unsupported, "not placed");
+  for (const Item* base : bases) base->mark_all(Fate::unsupported, "not placed");
 }
 
 std::string SceneWriter::base_of(const Item& base, const Scope& scope) {

@@ -64,7 +64,6 @@ void SceneWriter::read_maps(const Item& list, const Folders& folders) {
       map.mark_all(Fate::ignored, "disabled");
       continue;
     }
-    map.mark(Fate::exact);
     read_map(map, folders);
   }
 }
@@ -132,7 +131,20 @@ void SceneWriter::read_classes(const Item& map, bool channels, const Scope& scop
     else
       materials.set(count, std::move(mine));
   };
-  for (const Item* entry : table->all("entry")) add(entry->at("dc").text(), entry->at("matid").text(), entry->where);
+  std::vector<const Item*> entries = table->all("entry");
+  // Of a mixture the counts are the channels' numbers.
+  if (channels) {
+    for (const Item* entry : entries)
+      entry->at("dc").number(Fate::converted, "channels follow each other in the order of their numbers");
+    std::stable_sort(entries.begin(), entries.end(), [](const Item* a, const Item* b) {
+      return a->at("dc").number(Fate::converted) < b->at("dc").number(Fate::converted);
+    });
+    for (size_t i = 1; i < entries.size(); ++i)
+      if (entries[i]->at("dc").number(Fate::converted) != entries[i - 1]->at("dc").number(Fate::converted) + 1)
+        entries[i]->at("dc").mark(Fate::approximated,
+                                  "not the number after the last one: the next channel all the same");
+  }
+  for (const Item* entry : entries) add(entry->at("dc").text(), entry->at("matid").text(), entry->where);
   // Of a database: lines "0:grass".
   for (const Item& line : table->children)
     if (line.name != "entry" && !line.name.starts_with('@')) add(line.name, line.text(), line.where);
@@ -194,6 +206,7 @@ void SceneWriter::read_map(const Item& map, const Folders& folders) {
   const auto kind = kinds.find(map.name);
   if (kind == kinds.end())
     return map.mark_all(Fate::unsupported, "a map that is not known here: what it changes stays even");
+  map.mark(Fate::exact);
   std::vector<std::string> ids;
   for (const Item* list : map.all("matidlist"))
     for (const Item* id : list->all("matid")) ids.push_back(material(id->text(), scope_));

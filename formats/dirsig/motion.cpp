@@ -185,7 +185,7 @@ Tree track_of(const Item& motion, const MotionPlace& place, Tree* jitter) {
 }
 
 Tree track_of_mov(const Item& mov, const MotionPlace& place) {
-  if (const Item* version = mov.find("DIRSIG_MOV")) version->mark(Fate::exact);
+  expect_word(mov.find("DIRSIG_MOV"), {"1.0", "1"}, "read as version 1.0");
   if (const Item* options = mov.find("OPTIONS")) options->mark_all(Fate::unsupported, "options of delta motion");
   const Item& init = mov.at("INIT_POSITION");
   double t = 0;

@@ -47,8 +47,8 @@ const Item* rate_of(const Item& from) {
   if (const Item* rate = from.any({"scanrate", "rate", "frequency"})) return rate;
   const Item* clock = from.find("clock");
   if (!clock) return nullptr;
-  for (const char* said : {"@type", "@temporalunits"})
-    if (const Item* item = clock->find(said)) item->mark(Fate::exact);
+  expect_word(clock->find("@type"), {"independent"}, "taken as a clock of its own");
+  expect_word(clock->find("@temporalunits"), {"hertz", "hz"}, "rates are taken in hertz");
   return clock->find("rate");
 }
 
@@ -252,7 +252,7 @@ void SimulationWriter::read_lens(const Item& properties, Tree& to) {
   if (const Item* focus = properties.find("focusdistance"))
     to.set("focus_distance_m", Tree::number(focus->number_in(1e-6, 1e12), focus->where));
   if (const Item* d = properties.find("distortion")) {
-    if (const Item* type = d->find("@type")) type->mark(Fate::exact);
+    expect_word(d->find("@type"), {"brown", "brownconrady", "brown-conrady"}, "taken as that of Brown and Conrady");
     Tree& made = to.set("distortion", Tree::map(d->where));
     for (const char* key : {"k1", "k2", "k3", "p1", "p2"})
       if (const Item* value = d->find(key)) made.set(key, Tree::number(value->number(), value->where));

@@ -119,11 +119,13 @@ void SceneWriter::read_folders(const Item& scene) {
   const auto folders = [&](const char* name) {
     Folders list;
     for (const Item* one : scene.all(name)) {
-      one->mark(Fate::exact);
       std::string path = one->value;
       for (char& c : path) c = c == '\\' ? '/' : c;
       if (path.starts_with("$SCENE_DIR")) path = path.size() > 11 ? path.substr(11) : ".";
-      if (!path.empty() && !path.starts_with('$')) list.push_back(inside(base, path));
+      const bool usable = !path.empty() && !path.starts_with('$');
+      const bool there = usable && std::filesystem::is_directory(inside(base, path));
+      one->mark(there ? Fate::exact : Fate::ignored, there ? "" : "there is no such folder");
+      if (usable) list.push_back(inside(base, path));
     }
     list.push_back(base);
     return list;

@@ -51,7 +51,7 @@ class SceneWriter {
   void read_glist(const Item& list, const Scope& scope, Tree& to);
   void read_object(const Item& object, const Scope& scope, Tree& to);
   std::string base_of(const Item& base, const Scope& scope);
-  void read_instances(const Item& object, const Scope& scope, const Item& base, Tree& to);
+  void read_instances(const Item& object, const Scope& scope, const std::vector<const Item*>& bases, Tree& to);
   void read_source(const Item& object, const Scope& scope);
   Tree placement_of(const Item& instance, const std::string& target);
   void read_assigned(const Item& from, Scope& scope) const;

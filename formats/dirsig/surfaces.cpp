@@ -111,13 +111,14 @@ void SceneWriter::flat_emissivity(const Item& entry, const Item& named, double s
   reaches(file);
   Tree curve = Tree::map(named.where);
   curve.set("file", Tree::word(import_.name_of(path), named.where));
-  if (file.value.size() > 1) {
+  if (file.value.size() > 1 || file.moved) {
     // One curve a material unless a map chooses among them: their mean.
     const CurveFile mean = mean_reflectance(file, named);
     curve = Tree::map(named.where);
     curve.set("wavelength_um", Tree::numbers(mean.wavelength_um[0], named.where));
     curve.set("value", Tree::numbers(mean.value[0], named.where));
-  } else {
+  }
+  if (file.value.size() == 1) {
     named.mark(Fate::converted, "reflectance is 1 - emissivity");
   }
   const auto scaled = [&](double share) {
@@ -220,7 +221,9 @@ bool SceneWriter::read_kernels(const Item& name, const Item& section, const Fold
   for (const Weight& w : weights)
     to.set(w.ours, number_in_text(w.item->value) ? Tree::number(w.item->number_in(w.low, 1), w.item->where)
                                                  : curve_file(*w.item, folders, "weight of a kernel", 1));
-  name.mark(Fate::exact);
+  const std::string kind = lower_case(name.value);
+  const bool known = kind == "rossli" || kind == "rosslibrdf" || kind == "roujean" || kind == "roujeanbrdf";
+  name.mark(known ? Fate::exact : Fate::approximated, known ? "" : roujean ? "as Roujean's" : "as Ross and Li's");
   return true;
 }
 

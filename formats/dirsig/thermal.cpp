@@ -53,11 +53,13 @@ void SceneWriter::read_solvers(const Item& entry, Tree& to) {
     name->mark(Fate::approximated, "the balance of heat of the scene under its weather, in place of THERM");
     read_therm(solver ? *solver : entry, to);
   } else if (const Item* kelvin = solver ? solver->any({"TEMPERATURE", "CONSTANT_TEMPERATURE"}) : nullptr) {
-    name->mark(Fate::exact);
+    const bool known = kind == "datadriven" || kind == "constant" || kind == "fixed";
+    name->mark(known ? Fate::exact : Fate::approximated, known ? "" : "a constant temperature");
     to.set("temperature_k", Tree::number(kelvin->number_in(1, 1e5), kelvin->where));
   } else {
     const bool balfour = kind.find("balfour") != kind.npos;
-    name->mark(Fate::unsupported, std::string(balfour ? "what Balfour's coefficients multiply is not public"
+    name->mark(Fate::unsupported, std::string(balfour ? "which of sun, sky, air and wind each of Balfour's "
+                                                        "coefficients (SPIE 2426, 1995) multiplies is not public"
                                                       : "this solver is not known "
                                                         "here") +
                                       ": the material does not emit until it is given a temperature");

@@ -15,11 +15,16 @@ struct HeliosText {
   std::vector<Where> origins;  // of each of its lines
 };
 
+// What must be looked up in the files that parts name.
+struct HeliosFiles {
+  // The outer corner of a GeoTIFF's first pixel and its pixels' size {x, y, dx, dy} in its map.
+  std::function<std::array<double, 4>(const std::string& name)> corner_of;
+  std::function<std::string(const std::string& name)> text_of;  // the content of a point cloud of text
+};
+
 // The first scene of a document. What is left out or approximated goes to `report` (SP705 to SP708) with its line.
-// corner_of: the outer corner of a GeoTIFF's first pixel and its pixels' size {x, y, dx, dy} in its map. Error,
-// located: no XML, no scene, numbers that are none, a part without a file.
-HeliosText parse_helios(std::string_view text, const std::string& file,
-                        const std::function<std::array<double, 4>(const std::string& name)>& corner_of, Report& report);
+// Error, located: no XML, no scene, numbers that are none, a part without a file; as `files`.
+HeliosText parse_helios(std::string_view text, const std::string& file, const HeliosFiles& files, Report& report);
 
 // By a file's name and its first bytes.
 bool is_helios(const std::string& path, std::string_view head);

@@ -11,6 +11,7 @@
 #include "base/number_text.h"
 #include "base/yaml_text.h"
 #include "formats/helios/helios.h"
+#include "formats/helios/xyz.h"
 #include "formats/xml/xml.h"
 
 namespace suite {
@@ -50,9 +51,8 @@ double number(const XmlElement& e, const std::string& text) {
 
 class Reader {
  public:
-  Reader(const std::function<std::array<double, 4>(const std::string&)>& corner_of, const std::string& file,
-         Report& report)
-      : corner_of_(corner_of), file_(file), report_(report) {}
+  Reader(const HeliosFiles& files, const std::string& file, Report& report)
+      : files_(files), file_(file), report_(report) {}
   HeliosText run(const XmlElement& document);
 
  private:
@@ -68,16 +68,18 @@ class Reader {
   void load(const XmlElement& e, const std::string& kind, Part& part);
   void load_terrain(const XmlElement& e, const std::string& path, Part& part);
   void load_voxels(const XmlElement& e, const std::string& path, Part& part);
+  void load_points(const XmlElement& e, const std::string& path, Part& part);
   void rotate(const XmlElement& e, Part& part);
   void translate(const XmlElement& e, Part& part);
   // Whether it is new.
-  bool name_for(const std::string& path, std::map<std::string, std::string>& names, std::string& name);
+  bool name_for(const std::string& path, const std::string& how, std::map<std::string, std::string>& names,
+                std::string& name);
   static std::optional<std::string> value_of(const XmlElement& e, std::string_view key);
   void tell(const char* code, const XmlElement& e, const std::string& what) {
     report_.add(code, file_, {e.where(), what});
   }
 
-  const std::function<std::array<double, 4>(const std::string&)>& corner_of_;
+  const HeliosFiles& files_;
   const std::string& file_;
   Report& report_;
   Lines objects_, grids_, volumes_, world_;
@@ -93,9 +95,10 @@ std::optional<std::string> Reader::value_of(const XmlElement& e, std::string_vie
   return found;
 }
 
-// One name for each file: its stem.
-bool Reader::name_for(const std::string& path, std::map<std::string, std::string>& names, std::string& name) {
-  const auto [at, fresh] = names.try_emplace(path);
+// One name for each file and way of reading it: its stem.
+bool Reader::name_for(const std::string& path, const std::string& how, std::map<std::string, std::string>& names,
+                      std::string& name) {
+  const auto [at, fresh] = names.try_emplace(path + "\n" + how);
   if (fresh) {
     const std::string stem = std::filesystem::path(path).stem().string();
     at->second = stem;
@@ -106,8 +109,8 @@ bool Reader::name_for(const std::string& path, std::map<std::string, std::string
 }
 
 void Reader::load_terrain(const XmlElement& e, const std::string& path, Part& part) {
-  if (!name_for(path, object_of_, part.object)) return;
-  const auto c = corner_of_(path);
+  if (!name_for(path, "", object_of_, part.object)) return;
+  const auto c = files_.corner_of(path);
   objects_.add("  " + yaml_quoted(part.object) + ": {terrain: " + yaml_quoted(path) +
                    strf(", local: {origin: [%.17g, %.17g], gsd: [%.17g, %.17g]}, material: %s}", c[0], c[1], c[2], c[3],
                         kSurface),
@@ -118,22 +121,36 @@ void Reader::load_voxels(const XmlElement& e, const std::string& path, Part& par
   if (const std::string mode = lower(value_of(e, "intersectionMode").value_or("transmittive")); mode != "transmittive")
     tell("SP707", e,
          "voxels of mode '" + printable(mode) + "' are solid cubes there; here their leaves fill their cells evenly");
-  if (name_for(path, grid_of_, part.grid))
+  if (name_for(path, "", grid_of_, part.grid))
     grids_.add("  " + yaml_quoted(part.grid) + ": {voxels: " + yaml_quoted(path) + ", medium: " + kFoliage + "}",
                e.where());
 }
 
+// Cubes where points are, as there.
+void Reader::load_points(const XmlElement& e, const std::string& path, Part& part) {
+  const double said = number(e, value_of(e, "voxelSize").value_or("0")), edge = said == 0 ? 1 : said;
+  if (!(edge > 0)) throw e.fault(strf("a voxelSize of %g", edge), "metres, above 0");
+  const std::string separators = value_of(e, "separator").value_or("");
+  if (!name_for(path, strf("%.17g %s", edge, separators.c_str()), object_of_, part.object)) return;
+  const Cubes cubes = cubes_of_xyz(files_.text_of(path), path, separators, edge);
+  tell("SP707", e,
+       strf("%zu points are %zu solid cubes of %g m, as there; their colours and normals are left out", cubes.points,
+            cubes.count, edge));
+  objects_.add(
+      "  " + yaml_quoted(part.object) + ": {obj_text: " + yaml_quoted(cubes.obj) + ", material: " + kSurface + "}",
+      e.where());
+}
+
 void Reader::load(const XmlElement& e, const std::string& kind, Part& part) {
-  if (kind == "xyzloader")
-    return tell("SP705", e, "a point cloud of text; as LAS it can be ground or leaves (formats/las)");
   std::string path = value_of(e, "filepath").value_or("");
   if (path.empty()) throw e.fault("there is no param 'filepath'");
   std::replace(path.begin(), path.end(), '\\', '/');
   if (path.find('*') != path.npos) return tell("SP705", e, "several files at once, '" + printable(path) + "'");
+  if (kind == "xyzloader") return load_points(e, path, part);
   if (kind == "geotiffloader") return load_terrain(e, path, part);
   if (kind == "detailedvoxels") return load_voxels(e, path, part);
   const bool y_up = lower(value_of(e, "up").value_or("z")) == "y";
-  if (name_for(path + (y_up ? " y" : ""), object_of_, part.object))
+  if (name_for(path, y_up ? "y" : "", object_of_, part.object))
     objects_.add("  " + yaml_quoted(part.object) + ": {obj: " + yaml_quoted(path) + (y_up ? ", up: y" : "") +
                      ", material: " + kSurface + "}",
                  e.where());
@@ -248,10 +265,8 @@ HeliosText Reader::run(const XmlElement& document) {
 }  // namespace
 }  // namespace helios
 
-HeliosText parse_helios(std::string_view text, const std::string& file,
-                        const std::function<std::array<double, 4>(const std::string& name)>& corner_of,
-                        Report& report) {
-  return helios::Reader(corner_of, file, report).run(XmlElement::parse(text, file));
+HeliosText parse_helios(std::string_view text, const std::string& file, const HeliosFiles& files, Report& report) {
+  return helios::Reader(files, file, report).run(XmlElement::parse(text, file));
 }
 
 bool is_helios(const std::string& path, std::string_view head) {

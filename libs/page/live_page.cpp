@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/markup.h"
 #include "page/live_texts.h"
+#include "page/steps.h"
 
 namespace suite {
 
@@ -29,6 +30,10 @@ const char* name_of(LiveKind kind) {
     default:
       return "f32";
   }
+}
+
+std::string attributes_of(LiveKind kind, double first, double second) {
+  return strf(" data-kind=\"%s\" data-first=\"%.9g\" data-second=\"%.9g\"", name_of(kind), first, second);
 }
 
 // JSON inside an element: nothing in it may look like the element's end. "<" stands in strings alone.
@@ -65,15 +70,25 @@ LivePage::LivePage(const std::string& path, const std::string& title, const std:
       in_markup(title) + "</title>\n<style>\n" + std::string(live_text("live.css")) + "</style></head>\n<body><h1>" +
       in_markup(title) + "</h1><main id=\"app\"></main><noscript>This page draws with JavaScript.</noscript>\n");
   json("about", about);
-  std::vector<std::string> all{"live.js"};
+  std::vector<std::string> all{"live.js", "steps.js"};
   all.insert(all.end(), scripts.begin(), scripts.end());
   for (const std::string& name : all) file_.write("<script>\n" + std::string(live_text(name)) + "</script>\n");
 }
 
 void LivePage::data(const std::string& id, LiveKind kind, std::span<const std::byte> bytes, double first,
                     double second) {
-  file_.write(strf("<script type=\"text/plain\" id=\"%s\" data-kind=\"%s\" data-first=\"%.9g\" data-second=\"%.9g\">",
-                   id.c_str(), name_of(kind), first, second));
+  block(id, attributes_of(kind, first, second), bytes);
+}
+
+void LivePage::steps(const std::string& id, LiveKind kind, const Packed& packed, const std::optional<Base>& base) {
+  std::string attributes = attributes_of(kind, packed.first, packed.second);
+  attributes += strf(" data-count=\"%zu\"", packed.codes.size());
+  if (base) attributes += " data-base=\"" + base->id + "\"";
+  block(id, attributes, in_steps(packed.codes, base ? base->codes : std::span<const uint16_t>{}));
+}
+
+void LivePage::block(const std::string& id, const std::string& attributes, std::span<const std::byte> bytes) {
+  file_.write("<script type=\"text/plain\" id=\"" + id + "\"" + attributes + ">");
   file_.write(base64(bytes));
   file_.write("</script>\n");
 }

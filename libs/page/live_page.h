@@ -2,6 +2,7 @@
 // content security policy forbids it to) and opens from a disk without a server. The scripts stand in libs/page/live.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
+#include "page/packed.h"
 
 namespace suite {
 
@@ -21,13 +23,20 @@ enum class LiveKind { half, log8, u8, u32, f32 };
 class LivePage {
  public:
   // path: of the HTML file, which appears on commit(). scripts: names in libs/page/live, run in this order after
-  // "live.js". about: what the scripts find as `about`. Error: folder missing or not writable, path an input of the
-  // run.
+  // "live.js" and "steps.js". about: what the scripts find as `about`. Error: folder missing or not writable, path an
+  // input of the run.
   LivePage(const std::string& path, const std::string& title, const std::vector<std::string>& scripts,
            const Json& about);
   // A block of numbers, as base64. id: letters, digits and dots, each once.
   void data(const std::string& id, LiveKind kind, std::span<const std::byte> bytes, double first = 0,
             double second = 0);
+  // The same of codes (packed.h, kind half or log8), in as few bytes as steps.h makes of them. base: the id of a block
+  // that stands before, with the codes of it.
+  struct Base {
+    std::string id;
+    std::span<const uint16_t> codes;
+  };
+  void steps(const std::string& id, LiveKind kind, const Packed& packed, const std::optional<Base>& base);
   // A JSON value, which scripts find by its id.
   void json(const std::string& id, const Json& value);
   // Calls begin() of the last script; a page calls it once.
@@ -36,6 +45,8 @@ class LivePage {
   void commit();
 
  private:
+  void block(const std::string& id, const std::string& attributes, std::span<const std::byte> bytes);
+
   AtomicFile file_;
 };
 

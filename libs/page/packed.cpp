@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace suite {
 
@@ -43,11 +42,11 @@ Packed packed_half(std::span<const float> values) {
   Packed p;
   const double largest = largest_of(values);
   if (largest > 0) p.first = std::ilogb(largest) - 14;
-  p.bytes.resize(values.size() * 2);
+  p.codes.resize(values.size());
   for (size_t i = 0; i < values.size(); ++i) {
     const double scaled = std::ldexp(static_cast<double>(values[i]), -static_cast<int>(p.first));
     const uint16_t bits = half_bits(static_cast<float>(scaled));
-    std::memcpy(&p.bytes[2 * i], &bits, 2);
+    p.codes[i] = bits;
     if (std::isfinite(values[i]) && std::fabs(values[i]) > kTiny * largest)
       p.loss = std::max(p.loss, std::fabs(of_half(bits) / scaled - 1));
   }
@@ -63,7 +62,7 @@ Packed packed_log8(std::span<const float> values) {
   p.first = high > 0 ? low : 1;
   const double step = high > low ? std::log(high / low) / 253 : 0;
   p.second = std::exp(step);
-  p.bytes.resize(values.size());
+  p.codes.resize(values.size());
   for (size_t i = 0; i < values.size(); ++i) {
     const double v = values[i];
     double code = 0;
@@ -72,7 +71,7 @@ Packed packed_log8(std::span<const float> values) {
       code = 2 + (step > 0 ? std::clamp(std::nearbyint(std::log(v / low) / step), 0.0, 253.0) : 0);
       p.loss = std::max(p.loss, std::fabs(low * std::pow(p.second, code - 2) / v - 1));
     }
-    p.bytes[i] = static_cast<std::byte>(code);
+    p.codes[i] = static_cast<uint16_t>(code);
   }
   return p;
 }

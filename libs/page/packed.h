@@ -1,6 +1,5 @@
 // Numbers in few bytes for pages (live_page.h), with what that loses measured.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,7 +7,7 @@
 namespace suite {
 
 struct Packed {
-  std::vector<std::byte> bytes;
+  std::vector<uint16_t> codes;
   double first = 0, second = 0;  // as LiveKind tells
   double loss = 0;               // the largest |stored - value| / |value|; values under 2^-24 of the largest stay out
 };
@@ -18,8 +17,8 @@ struct Packed {
 // infinities stay infinite.
 Packed packed_half(std::span<const float> values);
 
-// One byte each, for positive numbers of which the size matters (standard errors): equal steps of the logarithm between
-// the smallest and the largest positive value; zero is kept, NaN and what is negative or infinite becomes NaN.
+// Codes below 256, for positive numbers of which the size matters (standard errors): equal steps of the logarithm
+// between the smallest and the largest positive value; zero is kept, NaN and what is negative or infinite becomes NaN.
 Packed packed_log8(std::span<const float> values);
 
 // The bits of the binary16 nearest to x, ties to even; beyond 65504 infinite.

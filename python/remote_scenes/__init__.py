@@ -10,6 +10,8 @@ from .chips import write_chips
 from .envi import EnviHeader, FormatError, open_envi, read_header, read_values
 from .errors import (Finding, InputError, Interrupted, ProgramBug, ProgramError, ProgramMissing, ProgramWarning,
                      UsageError)
+from .fitted import FittedFunction, direction, open_sqt
+from .library import set_threads
 from .netcdf import write_netcdf
 from .programs import Run, find_program, run_program, version
 from .results import Result
@@ -18,14 +20,16 @@ from .scene import (Material, Medium, Object, Origin, Placement, PreparedScene, 
 from .simulation import (Atmosphere, Band, Fisheye, FrameCamera, Lamp, Moon, Orthographic, Output, Points, Sensor, Simulation,
                          Sky, Sun, bands, render)
 from .temperatures import open_temperatures
+from .traced import Hits, TracedScene, open_scene
 from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
 
 __version__ = "0.1.0"
 __all__ = [
-    "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FormatError", "FrameCamera",
-    "InputError", "Interrupted", "Keys", "Lamp", "Material", "Medium", "Moon", "Object", "OpenKeys", "Origin", "Orthographic",
-    "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError", "ProgramMissing", "ProgramWarning",
-    "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun", "UsageError", "bands", "box", "check_scene",
-    "cylinder", "disk", "find_program", "layer", "mesh", "open_envi", "open_temperatures", "plane", "prepare_scene", "read_header", "read_values",
-    "render", "run_program", "sphere", "terrain", "version", "write_chips", "write_netcdf",
+    "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FittedFunction",
+    "FormatError", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "Material", "Medium", "Moon", "Object",
+    "OpenKeys", "Origin", "Orthographic", "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError",
+    "ProgramMissing", "ProgramWarning", "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun",
+    "TracedScene", "UsageError", "bands", "box", "check_scene", "cylinder", "direction", "disk", "find_program", "layer",
+    "mesh", "open_envi", "open_scene", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
+    "read_values", "render", "run_program", "set_threads", "sphere", "terrain", "version", "write_chips", "write_netcdf",
 ]

@@ -84,6 +84,19 @@ function(suite_app name)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
+# suite_c_library(<name> HEADER h SOURCES ... USES ...): a shared library of apps/ with a plain C header, for other programs and
+# languages. Only what the header declares can be seen from outside.
+function(suite_c_library name)
+  cmake_parse_arguments(A "" "HEADER" "SOURCES;USES" ${ARGN})
+  add_library(${name} SHARED ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE suite_flags ${A_USES})
+  target_link_options(${name} PRIVATE LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/${name}.map LINKER:--no-undefined)
+  set_target_properties(${name} PROPERTIES VERSION 1.0 SOVERSION 1 LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
+                        LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.map)
+  install(TARGETS ${name} LIBRARY DESTINATION lib)
+  install(FILES ${A_HEADER} DESTINATION include)
+endfunction()
+
 # suite_forbid(<target> libraries...): the configuration fails when the target links one of them, by whatever way.
 function(suite_forbid target)
   set(open ${target})

@@ -9,6 +9,7 @@ function block(id) {
   return element && {
     text: element.firstChild ? element.firstChild.data : '', kind: element.dataset.kind,
     first: Number(element.dataset.first), second: Number(element.dataset.second),
+    count: Number(element.dataset.count || 0), base: element.dataset.base,  // of codes in steps alone (steps.js)
   };
 }
 
@@ -39,19 +40,21 @@ function unpacked(bytes, kind, first, second) {
   if (kind === 'u8') return bytes;
   if (kind === 'u32') return new Uint32Array(bytes.buffer, 0, bytes.length >> 2);
   if (kind === 'f32') return new Float32Array(bytes.buffer, 0, bytes.length >> 2);
-  if (kind === 'half') {
-    const bits = new Uint16Array(bytes.buffer, 0, bytes.length >> 1), out = new Float32Array(bits.length);
-    const table = halfTable(), scale = 2 ** first;
-    for (let i = 0; i < bits.length; ++i) out[i] = table[bits[i]] * scale;
-    return out;
-  }
-  const sizes = Float32Array.from({length: 256}, (_, c) => c === 0 ? NaN : c === 1 ? 0 : first * second ** (c - 2));
-  return Float32Array.from(bytes, c => sizes[c]);
+  return ofCodes(kind === 'half' ? new Uint16Array(bytes.buffer, 0, bytes.length >> 1) : bytes, kind, first, second);
+}
+
+// Numbers of codes: bits of binary16, or steps of the logarithm.
+function ofCodes(codes, kind, first, second) {
+  const out = new Float32Array(codes.length), half = kind === 'half', scale = half ? 2 ** first : 1;
+  const table = half ? halfTable() : Float32Array.from({length: 256}, (_, c) => c === 0 ? NaN : c === 1 ? 0 : first * second ** (c - 2));
+  for (let i = 0; i < codes.length; ++i) out[i] = table[codes[i]] * scale;
+  return out;
 }
 
 // All numbers of a block; null while it is not there.
 function numbersOf(id) {
   const b = block(id);
+  if (b && b.count) return numbersOfSteps(id, b);
   return b && unpacked(bytesOf(b.text), b.kind, b.first, b.second);
 }
 
@@ -59,6 +62,7 @@ function numbersOf(id) {
 function numberAt(id, index) {
   const b = block(id);
   if (!b) return NaN;
+  if (b.count) return numberOfSteps(id, b, index);
   const size = kBytes[b.kind], from = index * size, group = Math.floor(from / 3);
   const bytes = bytesOf(b.text.slice(4 * group, 4 * (Math.floor((from + size - 1) / 3) + 1)));
   return unpacked(bytes.slice(from - 3 * group, from - 3 * group + size), b.kind, b.first, b.second)[0];

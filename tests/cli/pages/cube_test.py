@@ -146,12 +146,41 @@ sensors:
             np.testing.assert_array_equal(drawn[:, 3] > 0, flags > 0)
             self.assertEqual(browser.faults, [])
 
+    def test_every_number_is_the_binary16_of_the_file(self):
+        """What steps between neighbours and bands lose: nothing, in all bands and pixels, whatever stands in them."""
+        values, errors, _ = make_cube(self.folder, 21, 37)  # no multiples of 64 and 8
+        rng = np.random.default_rng(3)
+        values[rng.random(values.shape) < 0.05] *= -1e-3
+        values[rng.random(values.shape) < 0.02] = np.nan
+        values[4, 5:9], values[5], errors[7], errors[8, ::3] = np.inf, 0, np.nan, 0
+        values.tofile(self.folder / "cam.img")
+        errors.tofile(self.folder / "cam_error.img")
+        done = view("-o", self.folder, "--view", self.folder / "x.html", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with Browser() as browser:
+            browser.open(self.folder / "x.html")
+            for band in range(21):
+                listed = browser.run(f"Array.from(numbersKept('i0.v{band}'), String)")
+                got = np.array([float(v.replace("Infinity", "inf")) for v in listed])
+                plain = values[band].ravel()
+                finite = np.abs(plain[np.isfinite(plain)]).max()
+                first = np.floor(np.log2(finite)) - 14 if finite else 0
+                np.testing.assert_array_equal(got, (plain / 2 ** first).astype(np.float16).astype(float) * 2 ** first)
+                single = browser.run(f"Array.from({{length: 37 * 37}}, (_, i) => String(numberAt('i0.v{band}', i)))")
+                self.assertEqual(single, listed)
+                listed = browser.run(f"Array.from(numbersKept('i0.e{band}'), String)")
+                got, wanted = np.array([float(v) for v in listed]), errors[band].ravel()
+                np.testing.assert_allclose(got, wanted, rtol=0.03)
+                self.assertTrue(((got == 0) == (wanted == 0)).all())
+            self.assertEqual(browser.faults, [])
+
     def test_224_bands_of_512_by_512(self):
         values, errors, _ = make_cube(self.folder, 224, 512)
         page = Path(KEEP or self.folder) / "big.html"
         done = view("-o", self.folder, "--view", page, "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertLess(page.stat().st_size, 256 << 20)
+        # 24 bits a value and its error took 224 MiB; waves under noise of 1 % take 10 bits.
+        self.assertLess(page.stat().st_size, 100 << 20)
         with Browser() as browser:
             begin = time.monotonic()
             browser.open(page)
@@ -169,9 +198,9 @@ sensors:
             np.testing.assert_allclose(got[0], values[:, row, column], rtol=2 ** -11)
             np.testing.assert_allclose(got[1], errors[:, row, column], rtol=0.03)
             self.keep(browser, "cube_big")
-            # On a machine that others use too, the picture's share of the processor's time is what is promised.
-            self.assertLess(cpu * picture / ready, 3)
-            self.assertLess(picture, 0.5 * ready)
+            # All of it, in the processor's time: others use this machine too.
+            self.assertLess(cpu, 3)
+            self.assertLess(picture, ready)
             self.assertEqual(browser.faults, [])
 
     def test_what_does_not_fit_is_told(self):

@@ -61,7 +61,7 @@ class Documents(Case):
 
     def test_notebooks_run_and_carry_no_results(self):
         notebooks = sorted((ROOT / "python/notebooks").glob("*.ipynb"))
-        self.assertEqual(len(notebooks), 5)
+        self.assertEqual(len(notebooks), 6)
         for path in notebooks:
             with self.subTest(path.name):
                 document = json.loads(path.read_text())

@@ -2,8 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "base/params.h"
 #include "formats/helios/helios.h"
+#include "formats/helios/xyz.h"
+#include "math/vec.h"
 #include "scene/issues.h"
 #include "support/helios_kit.h"
 #include "support/message_of.h"
@@ -14,12 +19,12 @@ namespace {
 using testing::HasSubstr;
 
 HeliosText parse(const std::string& text, Report& report) {
-  return parse_helios(
-      text, "s.xml",
-      [](const std::string&) {
-        return std::array<double, 4>{100, 200, 0.5, 0.25};
-      },
-      report);
+  return parse_helios(text, "s.xml",
+                      {[](const std::string&) {
+                         return std::array<double, 4>{100, 200, 0.5, 0.25};
+                       },
+                       [](const std::string&) { return std::string("0.1 0.2 0 255 0 0\n1.9 0.2 0 255 0 0\n# end\n"); }},
+                      report);
 }
 
 TEST(Helios, Filters) {
@@ -27,7 +32,7 @@ TEST(Helios, Filters) {
   const HeliosText made = parse(test::helios_scene(), report);
   const Params root = Params::parse_made(made.yaml, "s.xml", made.origins);
   const auto world = root.at("world").items();
-  ASSERT_EQ(world.size(), size_t{3});
+  ASSERT_EQ(world.size(), size_t{4});
   EXPECT_EQ(world[0].text("place"), "tree");
   EXPECT_EQ(world[1].text("place"), "tree");  // one file, one object
   EXPECT_EQ(world[0].text("tag"), "tree-1");
@@ -44,8 +49,50 @@ TEST(Helios, Filters) {
   EXPECT_EQ(objects.at("ground").at("local").at("gsd").as_numbers(), (std::vector<double>{0.5, 0.25}));
   EXPECT_EQ(root.at("grids").at("crown").text("voxels"), "crown.vox");
   EXPECT_EQ(root.at("volumes").items()[0].at("translate").as_vec3()[2], 3);
-  EXPECT_EQ(report.count("SP705"), size_t{1});  // the point cloud
+  EXPECT_EQ(world[3].text("place"), "points");
+  EXPECT_THAT(objects.at("points").at("obj_text").as_text(), HasSubstr("f 1 4 3\n"));
+  EXPECT_EQ(report.count("SP705"), size_t{0});
+  EXPECT_EQ(report.count("SP707"), size_t{1});  // points are cubes
   EXPECT_EQ(report.count("SP708"), size_t{2});
+}
+
+// The area and the volume of cubes, by the divergence theorem over the triangles.
+std::array<double, 2> area_and_volume(const std::string& obj) {
+  std::vector<Vec3> v;
+  double area = 0, volume = 0;
+  std::istringstream text(obj);
+  for (std::string word; text >> word;) {
+    if (word == "v") {
+      Vec3 p;
+      text >> p.x >> p.y >> p.z;
+      v.push_back(p);
+    } else {
+      size_t i[3];
+      text >> i[0] >> i[1] >> i[2];
+      const Vec3 a = v[i[0] - 1], n = cross(v[i[1] - 1] - a, v[i[2] - 1] - a);
+      area += 0.5 * std::sqrt(dot(n, n));
+      volume += dot(a, n) / 6;
+    }
+  }
+  return {area, volume};
+}
+
+TEST(HeliosPoints, AreCubesWithoutFacesWithin) {
+  // Three cubes of 0.5 m in a row, one of which has two points, and one apart.
+  const std::string text = "0 0 0\n0.6,0.1 0.2\n 0.7 0.1\t0.2 9 9\n1.0 0.4 0.4\n// no point\n\n5 5 5\n";
+  const helios::Cubes cubes = helios::cubes_of_xyz(text, "p.xyz", ",", 0.5);
+  EXPECT_EQ(cubes.points, size_t{5});
+  EXPECT_EQ(cubes.count, size_t{4});
+  const auto [area, volume] = area_and_volume(cubes.obj);
+  EXPECT_NEAR(volume, 4 * 0.125, 1e-12);
+  EXPECT_NEAR(area, 0.25 * (14 + 6), 1e-12);
+  // The control: cubes that do not touch have all of their faces.
+  EXPECT_NEAR(area_and_volume(helios::cubes_of_xyz(text, "p.xyz", ",", 0.05).obj)[0], 0.0025 * 6 * 5, 1e-12);
+  EXPECT_THAT(message_of([] { helios::cubes_of_xyz("# none\n", "p.xyz", "", 1); }), HasSubstr("without a point"));
+  EXPECT_THAT(message_of([] { helios::cubes_of_xyz("1 2 3\n1 2\n", "p.xyz", "", 1); }), HasSubstr("p.xyz:2"));
+  EXPECT_THAT(message_of([] { helios::cubes_of_xyz("1 2 3\n1 x 2\n", "p.xyz", "", 1); }), HasSubstr("p.xyz:2:3"));
+  EXPECT_THAT(message_of([] { helios::cubes_of_xyz("0 0 0\n1e6 1e6 1e6\n", "p.xyz", "", 0.1); }),
+              HasSubstr("larger voxelSize"));
 }
 
 TEST(Helios, FaultsHaveTheirLine) {
