@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/params.h"
 #include "base/progress.h"
 #include "compare.h"
 #include "formats/brdf_csv/brdf_csv.h"
@@ -35,8 +37,12 @@ class Fitted final : public sqt::Function {
 struct Kind {
   const char* extension;
   long long least, most, otherwise;  // of --export-size
+  bool own_table;                    // with an error of its own
 };
-constexpr Kind kKinds[] = {{".csv", 2, 180, 18}, {".raw", 2, 180, 18}, {".bsdf", 8, 512, 64}, {".xml", 2, 7, 0}};
+constexpr Kind kKinds[] = {{".csv", 2, 180, 18, false},
+                           {".raw", 2, 180, 18, false},
+                           {".bsdf", 8, 512, 0, true},
+                           {".xml", 1, static_cast<long long>(TensorTree::kMostLeaves / 1000), 0, true}};
 
 const Kind& kind_of(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
@@ -104,17 +110,38 @@ class OneChannel final : public sqt::Function {
   size_t channel_;
 };
 
-// How the file differs from the fit; both are asked at the same 1e5 pairs of directions.
-void tell_errors(const std::string& path, const sqt::Bundle& bundle, const sqt::Function& file, size_t channel) {
-  const bool one = file.info().wavelength_um.size() < bundle.channels();
-  const Comparison c = one ? compare(bundle, OneChannel(bundle, file, channel), 100000) : compare(bundle, file, 100000);
-  const Comparison::Figures& f = one ? c.channels.at(channel) : c.overall;
+// How a table differs from the fit; both are asked at the same 1e5 pairs of directions.
+Comparison::Figures difference(const sqt::Bundle& bundle, const sqt::Function& table, size_t channel) {
+  const bool one = table.info().wavelength_um.size() < bundle.channels();
+  const Comparison c =
+      one ? compare(bundle, OneChannel(bundle, table, channel), 100000) : compare(bundle, table, 100000);
+  return one ? c.channels.at(channel) : c.overall;
+}
+
+std::string figures_text(const Comparison::Figures& f) {
   auto height = [](double ratio) { return ratio > 0 ? 1 / ratio : 0; };  // of the file's lobes over the fit's
-  note(
-      strf("%s against the fit: l1 %.3g %%, cos_rmse %.3g %%, rmse %.3g /sr, energy %+.3g %%, peaks at 20/45/70 deg "
-           "%.3f %.3f %.3f",
-           path.c_str(), 100 * f.l1, 100 * f.cos_rmse, f.rmse, -100 * f.bias, height(f.peak_ratio_20),
-           height(f.peak_ratio_45), height(f.peak_ratio_70)));
+  return strf("l1 %.3g %%, cos_rmse %.3g %%, rmse %.3g /sr, energy %+.3g %%, peaks at 20/45/70 deg %.3f %.3f %.3f",
+              100 * f.l1, 100 * f.cos_rmse, f.rmse, -100 * f.bias, height(f.peak_ratio_20), height(f.peak_ratio_45),
+              height(f.peak_ratio_70));
+}
+
+// What is asked of a table: what --export-error says, else the error that the fit states of itself (of all channels, or
+// of one), at least kFinest; kFinest for fits that state none.
+constexpr double kFinest = 1e-3;
+double aim_of(const InspectOptions& o, const SqtFile& file, std::optional<size_t> channel) {
+  if (o.export_error > 0) return o.export_error;
+  const Params header = Params::parse_text(file.header, o.file);
+  std::optional<Params> figures = header.find("errors");
+  if (figures) figures = figures->find(channel ? "channels" : "overall");
+  if (figures && channel) figures = *channel < figures->size() ? std::optional((*figures)[*channel]) : std::nullopt;
+  return std::max(kFinest, figures ? figures->number("l1", 0) : 0);
+}
+
+void tell_difference(const InspectOptions& o, const Comparison::Figures& f, double aim, const std::string& larger) {
+  note(o.export_to + " against the fit: " + figures_text(f));
+  if (f.l1 > aim)
+    warn(strf("%s: l1 of %.3g %% is more than the %.3g %% that were to be kept%s", o.export_to.c_str(), 100 * f.l1,
+              100 * aim, larger.c_str()));
 }
 
 // The part of the total that no table of values holds.
@@ -127,49 +154,68 @@ void tell_dirac(const sqt::Bundle& bundle, const std::string& path) {
   warn(strf("%s: the Dirac lobe beside the values, up to %.3g of the total, is not in it", path.c_str(), most));
 }
 
-void export_bsdf(const InspectOptions& o, const sqt::Bundle& bundle, size_t side) {
+// Tables twice as fine until one keeps the error, when none is asked for.
+void export_bsdf(const InspectOptions& o, const SqtFile& file) {
+  const Fitted fitted(*file.bundle);
+  const double aim = aim_of(o, file, std::nullopt);
   RglSize size;
-  size.side = side;
-  const Fitted fitted(bundle);
-  const std::vector<std::byte> file =
-      rgl_of(fitted, "made by: " + command_line() + "\ntheta_i, phi_i: of the viewer", size);
-  write_file(o.export_to, file);
-  tell_errors(o.export_to, bundle, *sqt::swapped(parse_rgl(file, o.export_to)), 0);
+  for (size.side = static_cast<size_t>(o.export_size ? o.export_size : 64);; size.side *= 2) {
+    const std::string about = "made by: " + command_line() + "\ntheta_i, phi_i: of the viewer";
+    const std::vector<std::byte> table = rgl_of(fitted, about, size);
+    const Comparison::Figures f = difference(*file.bundle, *sqt::swapped(parse_rgl(table, o.export_to)), 0);
+    if (!o.export_size && f.l1 > aim && size.side < 512) continue;
+    write_file(o.export_to, rgl_of(fitted, about + "\nagainst the fit: " + figures_text(f), size));
+    note(strf("%s: tables of %zu x %zu", o.export_to.c_str(), size.side, size.side));
+    return tell_difference(o, f, aim, size.side < 512 ? ": --export-size makes it finer" : "");
+  }
 }
 
-void export_tree(const InspectOptions& o, const sqt::Bundle& bundle, long long levels) {
-  const bool isotropic = bundle.info().function.isotropic;
-  if (!levels) levels = isotropic ? 6 : 4;
-  if (!isotropic && levels > 5) throw UsageError("--export-size of an anisotropic tensor tree is 2 to 5");
+// The tree knows its error from few points; a stricter aim until what is measured keeps the error, or leaves run out.
+void export_tree(const InspectOptions& o, const SqtFile& file) {
+  const sqt::Bundle& bundle = *file.bundle;
+  const Fitted fitted(bundle);
   const size_t channel = static_cast<size_t>(o.channel);
-  const TensorTree tree(Fitted(bundle), channel, static_cast<int>(levels), 0.02);
-  write_file(o.export_to, tree.xml(command_line()));
-  note(strf("%s: channel %lld (%g um) as Visible, %zu leaves", o.export_to.c_str(), o.channel,
-            bundle.info().function.wavelength_um[channel], tree.leaves()));
-  tell_errors(o.export_to, bundle, tree, channel);
+  const double aim = aim_of(o, file, channel);
+  const size_t most = o.export_size ? 1000 * static_cast<size_t>(o.export_size) : TensorTree::kMostLeaves;
+  TensorTree tree(fitted, channel, {.error = 0.95 * aim, .leaves = most});
+  Comparison::Figures f = difference(bundle, tree, channel);
+  double stricter = 0.95 * aim;
+  while (f.l1 > aim && !tree.full()) {
+    stricter *= std::clamp(0.95 * aim / f.l1, 0.5, 0.95);
+    tree = TensorTree(fitted, channel, {.error = stricter, .leaves = most});
+    f = difference(bundle, tree, channel);
+  }
+  write_file(o.export_to, tree.xml(command_line() + "\nagainst the fit: " + figures_text(f)));
+  note(strf("%s: channel %lld (%g um) as Visible, %zu leaves, the smallest 2^-%d wide", o.export_to.c_str(), o.channel,
+            bundle.info().function.wavelength_um[channel], tree.leaves(), tree.levels()));
+  tell_difference(o, f, aim, most < TensorTree::kMostLeaves ? ": --export-size allows more leaves" : "");
 }
 
 }  // namespace
 
 void check_export(const InspectOptions& o) {
   if (o.export_to.empty()) {
-    if (o.export_size) throw UsageError("--export-size goes with --export");
+    if (o.export_size || o.export_error != 0) throw UsageError("--export-size and --export-error go with --export");
     return;
   }
   const Kind& kind = kind_of(o.export_to);
   if (o.export_size && (o.export_size < kind.least || o.export_size > kind.most))
     throw UsageError(strf("--export-size of %s is %lld to %lld", kind.extension, kind.least, kind.most));
+  if (o.export_error != 0 && !kind.own_table)
+    throw UsageError(strf("--export-error goes with .bsdf and .xml: a %s has the fit's own values", kind.extension));
+  if (o.export_error != 0 && !(o.export_error >= 1e-4 && o.export_error <= 1))
+    throw UsageError("--export-error is 0.0001 to 1");
 }
 
-void export_bundle(const InspectOptions& o, const sqt::Bundle& bundle) {
+void export_bundle(const InspectOptions& o, const SqtFile& file) {
   const Kind& kind = kind_of(o.export_to);
-  const long long size = o.export_size ? o.export_size : kind.otherwise;
+  const auto size = static_cast<size_t>(o.export_size ? o.export_size : kind.otherwise);
   const std::string extension = kind.extension;
-  if (extension == ".bsdf") export_bsdf(o, bundle, static_cast<size_t>(size));
-  if (extension == ".xml") export_tree(o, bundle, size);
-  if (extension == ".csv") write_file(o.export_to, csv_of(bundle, static_cast<size_t>(size)));
-  if (extension == ".raw") write_file(o.export_to, raw_of(bundle, static_cast<size_t>(size)));
-  tell_dirac(bundle, o.export_to);
+  if (extension == ".bsdf") export_bsdf(o, file);
+  if (extension == ".xml") export_tree(o, file);
+  if (extension == ".csv") write_file(o.export_to, csv_of(*file.bundle, size));
+  if (extension == ".raw") write_file(o.export_to, raw_of(*file.bundle, size));
+  tell_dirac(*file.bundle, o.export_to);
   note("wrote " + o.export_to);
 }
 

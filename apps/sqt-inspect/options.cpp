@@ -58,11 +58,15 @@ void declare_options(Cli& cli, InspectOptions& o) {
              "write it for others: .csv (angles and values), .raw (raw sample text), .bsdf (Mitsuba's measured), .xml "
              "(Radiance's tensor tree, one --channel)",
              "FILE");
-  cli.option(
-      "--export-size", o.export_size,
-      "of --export: steps from pole to horizon of .csv and .raw (18), side of the tables of .bsdf (64), levels of "
-      ".xml (6; anisotropic 4)",
-      "N");
+  cli.option("--export-size", o.export_size,
+             "of --export: steps from pole to horizon of .csv and .raw (18), side of the tables of .bsdf (64 or as "
+             "many more as "
+             "keep the error, to 512), thousands of leaves of .xml at most (20000)",
+             "N");
+  cli.option("--export-error", o.export_error,
+             "of .bsdf and .xml: relative L1 to the fit that they are to keep, 0.0001 to 1 (none given: what the fit "
+             "states of itself)",
+             "E");
   cli.option("--size", o.size, "pixels of --sphere and of a slice of --map, 16 to 4096", "N");
   cli.option("--channel", o.channel, "channel of --map, --plot, --sample, --error-map and --export FILE.xml, from 0",
              "N");

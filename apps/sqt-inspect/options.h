@@ -12,7 +12,7 @@ struct InspectOptions {
   bool json = false, check = false, no_edges = false;
   std::string map, slice, plot, compare, compare_model, error_map, eval, sphere, export_to;
   std::string views, view;  // view: page
-  double zoom = 0;
+  double zoom = 0, export_error = 0;
   std::string out = "30,0";
   long long channel = 0, panels = 6, sample = 0, seed = 1, pairs = 400000, size = 512, export_size = 0;
 };

@@ -144,7 +144,7 @@ int inspect(const Cli&, const InspectOptions& o) {
   make_folders_of({o.map, o.slice, o.plot, o.sphere, o.error_map, o.view, o.export_to});
   draw_pictures(o, bundle, data);
   if (!o.view.empty()) write_lobe_view(bundle, o.view);
-  if (!o.export_to.empty()) export_bundle(o, bundle);
+  if (!o.export_to.empty()) export_bundle(o, file);
   if (o.check) return run_check(o, bundle);
   if (data)
     run_compare(o, bundle, *data);

@@ -9,7 +9,8 @@ namespace suite::sqt {
 
 namespace {
 
-constexpr size_t kDimensions = 4, kNeighbours = 8;
+constexpr size_t kDimensions = 4, kNeighbours = 8, kView = 2;  // kView: the coordinate of views of isotropic data
+constexpr double kSame = 1e-6;                                 // closer coordinates are of one place
 using Point = std::array<double, kDimensions>;
 
 // Balanced k-d tree over points, implicit: the middle of every range splits it along the widest side of that range.
@@ -127,31 +128,111 @@ class Scattered final : public Function {
     const size_t channels = info_.wavelength_um.size();
     if (s.out.size() != s.in.size() || s.value.size() != s.in.size() * channels || channels == 0)
       throw Error("scattered samples: the numbers of directions and values do not fit");
-    std::array<std::vector<Point>, 2> points;
-    for (size_t i = 0; i < s.in.size(); ++i) {
-      bool valid = true;
-      for (size_t c = 0; c < channels; ++c) valid &= std::isfinite(s.value[i * channels + c]);
-      if (!valid || (surface() && (!(s.out[i].z > 0) || s.in[i].z == 0))) continue;
-      const size_t side = side_of(s.in[i]);
-      points[side].push_back(coordinates(s.out[i], s.in[i]));
-      for (size_t c = 0; c < channels; ++c) values_[side].push_back(static_cast<float>(s.value[i * channels + c]));
+    for (size_t side = 0; side < 2; ++side) {
+      std::vector<Sample> list;
+      for (size_t i = 0; i < s.in.size(); ++i)
+        if (counts(s, i) && side_of(s.in[i]) == side) list.push_back({coordinates(s.out[i], s.in[i]), i});
+      if (!list.empty()) keep(std::move(list), s, side);
     }
-    if (points[0].empty() && points[1].empty())
+    if (slices_[0].empty() && slices_[1].empty())
       throw Error("scattered samples: none of them is valid", "every channel of a sample needs a finite value");
-    for (size_t side = 0; side < 2; ++side)
-      if (!points[side].empty()) trees_[side] = std::make_unique<NearestTree>(std::move(points[side]));
   }
   const Info& info() const override { return info_; }
   void value(Dir out, Dir in, std::span<double> f) const override {
     const size_t side = side_of(in);
     const bool nothing = surface() && (!(out.z > 0) || in.z == 0 || (in.z < 0 && info_.domain == Domain::hemisphere));
-    if (nothing || !trees_[side]) {
-      std::fill(f.begin(), f.end(), nothing ? std::nan("") : 0.0);
-      return;
-    }
-    std::array<NearestTree::Found, kNeighbours> found;
+    std::fill(f.begin(), f.end(), nothing ? std::nan("") : 0.0);
+    if (nothing || slices_[side].empty()) return;
     const Point at = coordinates(out, in);
-    const size_t count = trees_[side]->nearest(at, found);
+    const std::vector<Slice>& slices = slices_[side];
+    const auto above = std::upper_bound(slices.begin(), slices.end(), at[kView],
+                                        [](double view, const Slice& slice) { return view < slice.view; });
+    if (above == slices.begin() || above == slices.end())  // beyond the views the last one holds
+      return add(above == slices.begin() ? slices.front() : slices.back(), at, side, 1, f);
+    const Slice& below = *(above - 1);
+    const double t = (at[kView] - below.view) / (above->view - below.view);
+    add(below, at, side, 1 - t, f);
+    add(*above, at, side, t, f);
+  }
+
+ private:
+  struct Sample {
+    Point at;
+    size_t index;
+  };
+  bool counts(const Samples& s, size_t i) const {
+    const size_t channels = info_.wavelength_um.size();
+    for (size_t c = 0; c < channels; ++c)
+      if (!std::isfinite(s.value[i * channels + c])) return false;
+    return !surface() || (s.out[i].z > 0 && s.in[i].z != 0);
+  }
+  // Samples of one view of isotropic data, or all samples.
+  struct Slice {
+    double view;                  // coordinate kView
+    NearestTree tree;             // bilateral places stand on both sides of the plane of the view
+    std::vector<uint32_t> place;  // of each point of the tree
+  };
+
+  // Samples of one place become their mean: the two sides of bilateral data that are measured on both, above all, would
+  // else fill the neighbourhood with half as many places.
+  void keep(std::vector<Sample> list, const Samples& s, size_t side) {
+    const size_t channels = info_.wavelength_um.size();
+    const auto cell = [](const Sample& sample) {
+      std::array<long long, kDimensions> k{};
+      for (size_t d = 0; d < kDimensions; ++d) k[d] = std::llround(sample.at[d] / kSame);
+      std::swap(k[0], k[kView]);  // the view first
+      return k;
+    };
+    std::stable_sort(list.begin(), list.end(), [&](const Sample& a, const Sample& b) { return cell(a) < cell(b); });
+    std::vector<Point> places;
+    for (size_t first = 0, last = 0; first < list.size(); first = last) {
+      std::vector<double> sum(channels, 0);
+      for (; last < list.size() && cell(list[last]) == cell(list[first]); ++last)
+        for (size_t c = 0; c < channels; ++c) sum[c] += s.value[list[last].index * channels + c];
+      for (const double v : sum) values_[side].push_back(static_cast<float>(v / static_cast<double>(last - first)));
+      places.push_back(list[first].at);
+    }
+    const std::vector<size_t> ends = views(places);
+    for (size_t first = 0, k = 0; k < ends.size(); first = ends[k++])
+      slices_[side].push_back(slice(std::span(places).subspan(first, ends[k] - first), first));
+    sliced_[side] = ends.size() > 1;
+  }
+
+  // Where the views of places in their order end. An instrument's tables have few views with many places each: these
+  // are interpolated by themselves, for places that stand far apart within a view have nearer ones in other views, of
+  // which a plane through the nearest would be one. One slice for everything else.
+  std::vector<size_t> views(const std::vector<Point>& places) const {
+    constexpr size_t kPlacesOfAView = 24;
+    std::vector<size_t> ends;
+    size_t first = 0;
+    for (size_t i = 1; i <= places.size(); ++i) {
+      if (i < places.size() && places[i][kView] - places[i - 1][kView] <= 2 * kSame) continue;
+      if (!surface() || !info_.isotropic || i - first < kPlacesOfAView) return {places.size()};
+      ends.push_back(i), first = i;
+    }
+    return ends;
+  }
+
+  Slice slice(std::span<const Point> places, size_t first) const {
+    std::vector<Point> points;
+    std::vector<uint32_t> place;
+    for (size_t i = 0; i < places.size(); ++i) {
+      Point at = places[i];
+      points.push_back(at), place.push_back(static_cast<uint32_t>(first + i));
+      if (!surface() || !info_.isotropic || !info_.bilateral || at[1] <= kSame) continue;
+      at[1] = -at[1];
+      points.push_back(at), place.push_back(static_cast<uint32_t>(first + i));
+    }
+    const double view = places.front()[kView];
+    return {view, NearestTree(std::move(points)), std::move(place)};
+  }
+
+  // Adds `share` times what a slice says.
+  void add(const Slice& slice, Point at, size_t side, double share, std::span<double> f) const {
+    if (sliced_[side]) at[kView] = slice.view;
+    const size_t dimensions = sliced_[side] ? 2 : all_dimensions();
+    std::array<NearestTree::Found, kNeighbours> found;
+    const size_t count = slice.tree.nearest(at, found);
     // Weights fall to zero at the farthest of the neighbours, so that the function is continuous as neighbours change.
     double farthest = 0;
     for (size_t i = 0; i < count; ++i) farthest = std::max(farthest, found[i].distance2);
@@ -161,24 +242,22 @@ class Scattered final : public Function {
     for (size_t i = 0; i < count; ++i) {
       const double d = std::sqrt(found[i].distance2) + 1e-9;
       weight[i] = std::pow((farthest - d) / (farthest * d), 2) + 1e-12;
-      const Point& p = trees_[side]->point(found[i].index);
-      for (size_t k = 0; k < dimensions(); ++k) away[i][k] = (p[k] - at[k]) / farthest;
+      const Point& p = slice.tree.point(found[i].index);
+      for (size_t k = 0; k < dimensions; ++k) away[i][k] = (p[k] - at[k]) / farthest;
     }
-    make_linear(std::span(weight).first(count), away, dimensions());
+    make_linear(std::span(weight).first(count), away, dimensions);
     for (size_t c = 0; c < f.size(); ++c) {
       double sum = 0, low = INFINITY, high = -INFINITY;
       for (size_t i = 0; i < count; ++i) {
-        const double v = values_[side][found[i].index * f.size() + c];
+        const double v = values_[side][size_t{slice.place[found[i].index]} * f.size() + c];
         sum += weight[i] * v, low = std::min(low, v), high = std::max(high, v);
       }
-      f[c] = std::clamp(sum, low, high);
+      f[c] += share * std::clamp(sum, low, high);
     }
   }
-
- private:
   bool surface() const { return info_.quantity == Quantity::bsdf; }
   // Of the coordinates, those that are not 0 in any case.
-  size_t dimensions() const {
+  size_t all_dimensions() const {
     return info_.quantity == Quantity::phase ? 1 : info_.quantity == Quantity::bsdf && !info_.isotropic ? 4 : 3;
   }
   size_t side_of(Dir in) const { return surface() && in.z < 0 ? 1 : 0; }
@@ -197,8 +276,9 @@ class Scattered final : public Function {
     return {x, info_.bilateral ? std::fabs(y) : y, 0.5 * polar_angle(out), 0};
   }
   Info info_;
-  std::unique_ptr<NearestTree> trees_[2];
-  std::vector<float> values_[2];
+  std::vector<Slice> slices_[2];  // of each side, by view
+  bool sliced_[2] = {false, false};
+  std::vector<float> values_[2];  // [place][channel]
 };
 
 }  // namespace

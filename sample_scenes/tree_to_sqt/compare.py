@@ -2,11 +2,12 @@
 """compare.py FOLDER [--within PERCENT]
 
 Holds the canopy's reflectance factors by the surface that was measured (out/surface_SUN_90_brf.csv) against those of the trees, the mean of
-four sides from which the sun comes (out/forest_SUN_AZIMUTH_brf.csv): views to 60 degrees, further than 15 degrees from the hot spot. A line for each sun, band and plane; with --within,
+the sides from which the sun comes (out/forest_SUN_AZIMUTH_brf.csv): views to 60 degrees, further than 15 degrees from the hot spot. A line for each sun, band and plane; with --within,
 exit code 1 where a mean or the root mean square of the differences, less the trees' own noise, is larger.
 """
 import argparse
 import csv
+import glob
 import os
 import sys
 
@@ -16,23 +17,24 @@ parser.add_argument("--within", type=float)
 args = parser.parse_args()
 
 
-def table(scene, sun, azimuths):
-    """{(band, plane, view): (reflectance factor, its standard error)}, means over azimuths"""
+def table(scene, sun):
+    """{(band, plane, view): (reflectance factor, its standard error)}, means over the sun's azimuths"""
     sums = {}
-    for azimuth in azimuths:
-        with open(os.path.join(args.folder, "out", f"{scene}_{sun}_{azimuth}_brf.csv")) as f:
+    files = glob.glob(os.path.join(args.folder, "out", f"{scene}_{sun}_*_brf.csv"))
+    for name in files:
+        with open(name) as f:
             for r in csv.DictReader(f):
                 key = r["band"], r["plane"], float(r["view_zenith_deg"])
                 value, squares = sums.get(key, (0, 0))
                 sums[key] = value + float(r["brf"]), squares + float(r["standard_error"]) ** 2
-    n = len(azimuths)
+    n = len(files)
     return {key: (value / n, squares**0.5 / n) for key, (value, squares) in sums.items()}
 
 
 far = 0
 print("sun  band  plane       mean %   rms %   noise %   largest % (at view)")
 for sun in (30, 55):
-    trees, surface = table("forest", sun, (0, 90, 180, 270)), table("surface", sun, (90,))
+    trees, surface = table("forest", sun), table("surface", sun)
     for band, plane in sorted({key[:2] for key in trees}, reverse=True):
         d, noise, largest = [], 0, (0, 0)
         for (b, p, view), (brf, error) in trees.items():

@@ -16,12 +16,13 @@ parser = argparse.ArgumentParser()
 parser.add_argument("folder", nargs="?", default=".")
 parser.add_argument("--trees", type=int, default=160, help="on a tile")
 parser.add_argument("--leaves", type=int, default=220, help="of a tree")
-parser.add_argument("--paths", type=int, default=2400000, help="of the goniometer, for each view")
+parser.add_argument("--paths", type=int, default=2400000, help="of the goniometer, for each view zenith")
 parser.add_argument("--views", type=int, default=2048, help="paths of each view of the comparison, for each side of the sun")
 args = parser.parse_args()
 random.seed(5)
 TILE, CROWN, MIDDLE, LEAF = 40.0, (1.4, 1.4, 2.2), 3.6, 0.12
 TOP = MIDDLE + CROWN[2] + LEAF
+SIDES = 12  # from which the trees are seen and lit: those of one tile are no even forest
 
 
 def write(name, text):
@@ -94,11 +95,13 @@ sensors:
     view_zenith_deg: [0, 7.5, 15, 22.5, 30, 37.5, 45, 52.5, 60, 67.5, 75, 82.5]
     rings: 24
     azimuths: 24
-    paths: {args.paths}
+    view_azimuths: {SIDES}
+    bilateral: true
+    paths: {args.paths // SIDES}
 """)
-for scene, azimuths in (("forest", (0, 90, 180, 270)), ("surface", (90,))):
+for scene, azimuths in (("forest", range(0, 360, 360 // SIDES)), ("surface", (90,))):
     for sun in (30, 55):
-        for azimuth in azimuths:  # the trees of one tile are no even forest: the sun comes from four sides
+        for azimuth in azimuths:
             write(f"view_{scene}_{sun}_{azimuth}.yaml", f"""scene: {scene}.h5
 max_nodes: 64
 sun: {{direction: {{zenith_deg: {sun}, azimuth_deg: {azimuth}}}, irradiance: 1, collimated: true}}

@@ -4,9 +4,9 @@
 // Rays come in from a few view zeniths all over the patch; what they would carry back is binned by the direction in
 // which the paths leave the scene. Under a sky of radiance 1 everywhere and without a sun, a bin holds the integral of
 // f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there.
-// Assumes: a patch whose mean does not depend on the view azimuth (the samples are isotropic), in a scene that repeats
-// itself or that is wider than light travels sideways.
-// Based on: Goodenough & Brown, section V-B (multi-scale modelling).
+// Assumes: a scene that repeats itself or that is wider than light travels sideways. The samples are isotropic: the
+// mean over the view azimuths from which the patch is seen, each with the light turned with it. Based on: Goodenough &
+// Brown, section V-B (multi-scale modelling).
 #include <cmath>
 
 #include "sensor/kinds/simple.h"
@@ -30,8 +30,11 @@ class Goniometer final : public SimpleSensor {
     rings_ = static_cast<uint32_t>(p.integer("rings", 2, 256, 16));
     const uint32_t azimuths = static_cast<uint32_t>(p.integer("azimuths", 2, 512, 32));
     if (azimuths % 2) throw p.at("azimuths").error("the number of azimuths must be even");
+    sides_ = static_cast<uint32_t>(p.integer("view_azimuths", 1, 512, 1));
+    if (azimuths % sides_) throw p.at("view_azimuths").error("the number of azimuths must be a multiple of it");
+    bilateral_ = p.boolean("bilateral", false);
     capture_.columns = static_cast<uint32_t>(zeniths_.size());
-    capture_.rows = 1;
+    capture_.rows = sides_;
     capture_.neighbours = false;
     capture_.bin_by = Capture::BinBy::escape;
     capture_.bins = rings_ * azimuths;
@@ -39,8 +42,8 @@ class Goniometer final : public SimpleSensor {
     done();
   }
   SensorRay ray(const RayRequest& r) const override {
-    // The view comes from azimuth 0 (east), as the format has it.
-    const Dir out = dir_from_angles(zeniths_[r.problem], 0);
+    const size_t view = r.problem % zeniths_.size(), side = r.problem / zeniths_.size();
+    const Dir out = dir_from_angles(zeniths_[view], 2 * kPi * static_cast<double>(side) / sides_);
     return {{patch_.at(r.u[0], r.u[1], height_) + out * back_, -out, moment(r.u[2])}};
   }
 
@@ -59,10 +62,7 @@ class Goniometer final : public SimpleSensor {
           const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins,
                        phi = 2 * kPi * (a + 0.5) / azimuths, s = std::sqrt(1 - z * z);
           text += strf("%zu %.9g %.9g %.9g", v, s * std::cos(phi), s * std::sin(phi), z);
-          for (size_t b = 0; b < bands_.size(); ++b)
-            text +=
-                strf(" %.7g",
-                     d.result.radiance[(v * capture_.bins + size_t{ring} * azimuths + a) * bands_.size() + b] / cell);
+          for (size_t b = 0; b < bands_.size(); ++b) text += strf(" %.7g", value(d, v, ring, a, b) / cell);
           text += "\n";
         }
     d.texts.push_back({name_ + ".rawbh", std::move(text)});
@@ -71,10 +71,26 @@ class Goniometer final : public SimpleSensor {
         "sun";
     d.picture = false;
   }
+  // Over the sides; the format has the view at azimuth 0.
+  double mean(const Delivery& d, size_t view, uint32_t ring, uint32_t azimuth, size_t band) const {
+    const uint32_t azimuths = capture_.bins / rings_;
+    double sum = 0;
+    for (uint32_t side = 0; side < sides_; ++side) {
+      const size_t problem = view + size_t{side} * zeniths_.size(),
+                   bin = size_t{ring} * azimuths + (azimuth + side * (azimuths / sides_)) % azimuths;
+      sum += d.result.radiance[(problem * capture_.bins + bin) * bands_.size() + band];
+    }
+    return sum / sides_;
+  }
+  double value(const Delivery& d, size_t view, uint32_t ring, uint32_t azimuth, size_t band) const {
+    const double one = mean(d, view, ring, azimuth, band);
+    return bilateral_ ? 0.5 * (one + mean(d, view, ring, capture_.bins / rings_ - 1 - azimuth, band)) : one;
+  }
   Patch patch_;
   double height_ = 0, back_ = 0;
   std::vector<double> zeniths_;
-  uint32_t rings_ = 0;
+  uint32_t rings_ = 0, sides_ = 1;
+  bool bilateral_ = false;
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(SampleScenes, AForestAsASurface) {
   const CommandResult r = run_command(
       kPath + "cd '" + folder.path() + "' && python3 '" + sample +
       "make_inputs.py' . --leaves 60 --paths 60000 --views 128 && sed -i 's/rings: 24/rings: 12/; s/azimuths: "
-      "24/azimuths: 16/' measure.yaml && scene-prep forest.yaml -o forest.h5 -q && dirsig-render measure.yaml -o "
+      "24/azimuths: 12/' measure.yaml && scene-prep forest.yaml -o forest.h5 -q && dirsig-render measure.yaml -o "
       "out -q && sqt-fit out/canopy.rawbh -o canopy.sqt --views 8 --order 4 --min-peak 0 && scene-prep "
       "surface.yaml -o surface.h5 -q && for v in view_*.yaml; do dirsig-render $v -o out -q; done && python3 '" +
       sample + "compare.py' .");
