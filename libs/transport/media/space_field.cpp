@@ -83,6 +83,17 @@ void FieldSpace::remember(uint32_t p, Vec3 place) {
   ScatterPlace& e = events_[p];
   e.place = place;
   e.contents = flights_.contents();
+  set_rates(e);
+}
+
+void FieldSpace::stand(uint32_t p) {
+  ScatterPlace& e = events_[p];
+  e.contents.clear();
+  if (const uint32_t medium = stacks_[p].medium(ambient_); medium != kNone) e.contents.push_back({medium, 1, 0});
+  set_rates(e);
+}
+
+void FieldSpace::set_rates(ScatterPlace& e) const {
   const std::vector<size_t>& bins = optics_.state().knots;
   for (size_t k = 0; k < bins.size(); ++k) {
     e.rate[k] = 0;
@@ -131,12 +142,11 @@ Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
   return {1, v.data()};
 }
 
-bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
-                        Continuation& on) {
+bool FieldSpace::scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const {
   const ScatterPlace& e = events_[p];
-  const size_t own = optics_.state().knots[static_cast<size_t>(live.knot)];
+  const size_t own = optics_.state().knots[static_cast<size_t>(knot)];
   // Draw who scatters, then how.
-  double choice = who * e.rate[live.knot];
+  double choice = who * e.rate[knot];
   const BakedMedium* scatterer = nullptr;
   for (const Constituent& c : e.contents) {
     const BakedMedium& m = optics_.media()[c.medium];
@@ -146,11 +156,16 @@ bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, st
     if ((choice -= rate) < 0) break;
   }
   if (!scatterer) return false;
-  const double cosine = scatterer->phase->sample(u.x, live.knot);
-  on.in = scattered_direction(-live.direction, cosine, u.y);
+  in = scattered_direction(out, scatterer->phase->sample(u.x, knot), u.y);
+  return true;
+}
+
+bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
+                        Continuation& on) {
+  if (!scatter(p, -live.direction, live.knot, u, who, on.in)) return false;
   densities(p, -live.direction, on.in, {on.density, optics_.state().knots.size()});
   on.dirac = false;
-  on.weight = evaluate(p, cosine, dense);
+  on.weight = evaluate(p, scattering_cosine(-live.direction, on.in), dense);
   return true;
 }
 

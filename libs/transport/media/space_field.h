@@ -38,13 +38,18 @@ class FieldSpace {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);
   }
 
-  // The event that ended the last flight of path p.
+  // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
+  void stand(uint32_t p);
+  // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at the reference.
+  double scattering(uint32_t p) const { return events_[p].rate[0]; }
   Vec3 place(uint32_t p) const { return events_[p].place; }
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // v; dense: memory for a spectrum.
   Factor evaluate(uint32_t p, double cosine, std::span<float> dense);
   // Draws a direction. who: number that chooses the scatterer. Nothing when nothing scatters.
   bool sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense, Continuation& on);
+  // Its direction alone, when seen from `out`; the density is that of densities().
+  bool scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const;
 
   void clear_sight() { sight_.clear(); }
   // Names a ray from path p, at the event that ended its flight or else at a surface.
@@ -70,6 +75,7 @@ class FieldSpace {
     double rate[kMaxKnots];  // scattering coefficient
   };
   void remember(uint32_t p, Vec3 place);
+  void set_rates(ScatterPlace& e) const;
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
 
   const Surface& surface_;
