@@ -109,7 +109,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
   const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
   if constexpr (Surfaces::kDense > 0)
     if (refracted_ && is_first(node) && refracted_->interfaces().has(surfaces_.material(node.path))) {
-      constexpr double kLeast = 0.2;  // of the first: what it mirrors is weak, but as bright in dark bands as all else
+      // What water mirrors is weak, but in dark bands all there is. A power of 1/2: counts of strata have no rest.
+      constexpr double kLeast = 0.125;
       const int reflecting = refracted_->interfaces().lobe(surfaces_.material(node.path), true);
       if (reflecting != SmoothInterfaces::kNoLobe)
         return surfaces_.sample_either(node.path, -path.direction, reflecting, kLeast, lobe_u, path.knot, memory, on);

@@ -6,9 +6,9 @@
 // medium scatters what comes along the way (density g), the others as the node does (density p): the density of all is
 //   (1 - s) p + s g
 // for continuations and for all that is shared with them. s follows from how much of the light is scattered before it
-// has come to the interface. Roulette takes light from such a direction for as much brighter as g is than even light,
-// 1 / 4 pi: else it would end these paths for having a large density.
-// Based on: the one-sample model of Veach & Guibas, "Optimally combining sampling techniques for Monte Carlo
+// has come to the interface, and how much of that forwards: from the mean cosine. Roulette takes light from such a
+// direction for as much brighter as g is than even light, 1 / 4 pi: else it would end these paths for having a large
+// density. Based on: the one-sample model of Veach & Guibas, "Optimally combining sampling techniques for Monte Carlo
 // rendering", 1995; directions by incident light: J. Vorba et al., "Path guiding in production", SIGGRAPH 2019 courses.
 #pragma once
 #include <algorithm>
@@ -31,7 +31,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQ
       space_.stand(node.path);
     }
     const double depth = space_.scattering(node.path) * way.at[0].length;
-    guide = {-(node.event ? kMostInMedia : kMostAtSurfaces) * std::expm1(-depth), way.direction};
+    const double forward = std::max(0.0, space_.asymmetry(node.path));
+    guide = {-(node.event ? kMostInMedia : kMostAtSurfaces) * forward * std::expm1(-depth), way.direction};
   }
 }
 

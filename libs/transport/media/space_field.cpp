@@ -20,6 +20,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       air_(c.environment.atmosphere.get()),
       ambient_(c.surface.tracer().scene().ambient),
       field_(c.surface.tracer().scene(), c.optics.state(), c.surface.tracer().periodic()),
+      plain_air_(air_ && !c.optics.air() && field_.placed().empty() && ambient_ == kNone),
       bodies_(c.surface),
       flights_(field_, c.optics, c.knot_probability, air_),
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
@@ -27,8 +28,12 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       ways_(c.width),
       events_(c.width),
       phase_(c.optics.state().size()) {
-  for (const BakedMedium& m : c.optics.media())
-    index_.push_back(std::sqrt(double{m.index_squared[c.optics.state().knots[0]]}));
+  for (const BakedMedium& m : c.optics.media()) {
+    const size_t reference = c.optics.state().knots[0];
+    index_.push_back(std::sqrt(double{m.index_squared[reference]}));
+    if (m.scatters()) m.phase->asymmetry(phase_);
+    asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
+  }
 }
 
 void FieldSpace::start(uint32_t p, const LivePath& live) {
@@ -37,14 +42,16 @@ void FieldSpace::start(uint32_t p, const LivePath& live) {
   if (bodies_.any()) stacks_[p] = bodies_.around(live.origin, live.time, statistics_);
 }
 
-Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool,
-                       std::span<float> through, std::span<float> emitted) {
+Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+                       bool ends, std::span<float> through, std::span<float> emitted) {
   Way& way = ways_[p];
   if (way.gap > 0) bodies_.settle(hit, ray, way.gap);
   if (!hit.hit()) bodies_.leave_scene(stacks_[p]);
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
+  if (plain_air_ && medium == kNone && !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
+    return fly_in_air(live, length, ends, through, emitted);
   const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
@@ -79,6 +86,21 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   return flight;
 }
 
+// Air alone: its transmittance and radiance are known at once.
+Flight FieldSpace::fly_in_air(const LivePath& live, double length, bool ends, std::span<float> through,
+                              std::span<float> emitted) const {
+  const bool outside = live.surfaces + live.scatterings > 0 && length == std::numeric_limits<double>::infinity();
+  if (outside && !ends) {
+    air_->sky_radiance(live.origin, live.direction, through, emitted);
+    return {Arrival::met, {}, false, emitted.data()};
+  }
+  if (outside)
+    air_->skylight(live.origin, live.direction, through, emitted);
+  else
+    air_->path(live.origin, live.direction, length, through, emitted);
+  return {Arrival::met, {1, through.data()}, true, emitted.data()};
+}
+
 void FieldSpace::remember(uint32_t p, Vec3 place) {
   ScatterPlace& e = events_[p];
   e.place = place;
@@ -91,6 +113,14 @@ void FieldSpace::stand(uint32_t p) {
   e.contents.clear();
   if (const uint32_t medium = stacks_[p].medium(ambient_); medium != kNone) e.contents.push_back({medium, 1, 0});
   set_rates(e);
+}
+
+double FieldSpace::asymmetry(uint32_t p) const {
+  const ScatterPlace& e = events_[p];
+  double sum = 0;
+  for (const Constituent& c : e.contents)
+    sum += c.density * double{optics_.media()[c.medium].scattering[optics_.state().knots[0]]} * asymmetry_[c.medium];
+  return e.rate[0] > 0 ? sum / e.rate[0] : 0;
 }
 
 void FieldSpace::set_rates(ScatterPlace& e) const {
