@@ -140,11 +140,23 @@ class PathKernel final : public PathTracing {
   bool asks_through(const NodeAt& node) const;
   void shine_refracted();
   void shine_refracted(const RefractedQuestion& q, size_t knot);
-  void shine_along(const RefractedWay& way, const RefractedQuestion& q, size_t knot);
+  bool shine_along(const RefractedWay& way, const RefractedQuestion& q, size_t knot);
   std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
   bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
   bool is_owned(const Question& q, size_t ray);
+  static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
+  // kernel_guide.h: continuations towards where media scatter such lights forwards.
+  struct Guide {
+    double share = 0;  // of continuations that are drawn about `toward`; 0: none
+    Dir toward;
+  };
+  void guide(const RefractedQuestion& q, const RefractedWay& way);
+  double guided_share(const NodeAt& node) const {
+    return guides_.empty() ? 0 : guides_[static_cast<size_t>(&node - nodes_.data())].share;
+  }
+  SUITE_INLINE double mix(const NodeAt& node, Dir in, bool dirac, std::span<float> density) const;
+  bool draw_guided(const NodeAt& node, double who, std::span<float> memory, Continuation& on);
   // Whether its last node has asked for all light that comes along the way which it has taken since.
   bool is_asked_through(const Path& path) const {
     return refracted_ && path.bends > 0 && path.bends <= RefractedWay::kMostEvents;
@@ -163,6 +175,7 @@ class PathKernel final : public PathTracing {
   void go_on();
   SUITE_INLINE bool go_on(size_t i);
   SUITE_INLINE bool draw(size_t i, Continuation& on);
+  SUITE_INLINE bool draw(size_t i, std::span<float> memory, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
   bool fail(uint32_t p);
   SUITE_INLINE double survives(uint32_t p, double brightest);
@@ -222,6 +235,7 @@ class PathKernel final : public PathTracing {
   SightRays sight_rays_;
   std::vector<Question> questions_;
   std::vector<RefractedQuestion> refracted_questions_;
+  std::vector<Guide> guides_;  // of nodes; where nothing refracts none
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;

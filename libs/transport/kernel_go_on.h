@@ -36,7 +36,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   const double shares = weigh(p, on, own, brightest);
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
   if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
-  const double alive = survives(p, brightest);
+  const double alive = survives(p, brightest * on.bright);
   if (alive == 0 || cut(p, nodes_[i].event)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
@@ -84,23 +84,38 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fail(uint32_t p) {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continuation& on) {
   const NodeAt& node = nodes_[i];
-  const Path& path = paths_[node.path];
-  const Vec2 u{path.u[0], path.u[1]};
   constexpr bool kDraws = Surfaces::kDense > 0 || Space::kScatters;
   const std::span<float> memory = kDraws ? dense(node.path) : std::span<float>{};
-  bool drawn;
+  if (!draw(i, memory, on)) return false;
+  if (kDraws && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
+  on.bright = mix(node, on.in, on.dirac, {on.density, knots()});
+  return true;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::span<float> memory, Continuation& on) {
+  const NodeAt& node = nodes_[i];
+  const Path& path = paths_[node.path];
+  const Vec2 u{path.u[0], path.u[1]};
   if constexpr (Space::kScatters) {
-    if (node.event) {
-      const double who = dimensions::of_flight(path.stream, path.sample, path.flights)[2];
-      drawn = space_.sample(node.path, path, u, who, memory, on);
-      if (drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
-      return drawn;
+    const std::array<double, 4> more =
+        node.event ? dimensions::of_flight(path.stream, path.sample, path.flights) : std::array<double, 4>{};
+    if (const double share = guided_share(node); share > 0) {
+      const double chosen = node.event ? more[3] : numbers(node, dimensions::kOfSecond)[1];
+      if (chosen < share) return draw_guided(node, chosen / share, memory, on);
     }
+    if (node.event) return space_.sample(node.path, path, u, more[2], memory, on);
   }
   const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
-  drawn = surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
-  if (kDraws && drawn && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
-  return drawn;
+  if constexpr (Surfaces::kDense > 0)
+    if (refracted_ && is_first(node) && refracted_->interfaces().has(surfaces_.material(node.path))) {
+      // What water mirrors is weak, but in dark bands all there is. A power of 1/2: counts of strata have no rest.
+      constexpr double kLeast = 0.125;
+      const int reflecting = refracted_->interfaces().lobe(surfaces_.material(node.path), true);
+      if (reflecting != SmoothInterfaces::kNoLobe)
+        return surfaces_.sample_either(node.path, -path.direction, reflecting, kLeast, lobe_u, path.knot, memory, on);
+    }
+  return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
 }
 
 // The probability with which the path has survived; 0 when roulette ends it.

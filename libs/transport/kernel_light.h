@@ -90,6 +90,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
+  shine_refracted();
   const std::span<const uint8_t> blocked = sight_rays_.blocked();
   for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
@@ -108,7 +109,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
     }
     if (!behind_earth) shine(q, i, passes);
   }
-  shine_refracted();
 }
 
 // Density with which continuations are drawn towards `in` and get as far as the light, over all knots.
@@ -120,6 +120,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   if constexpr (Space::kScatters)
     if (node.event) space_.densities(node.path, -path.direction, in, {density, knots()});
   if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots()});
+  mix(node, in, false, {density, knots()});
   double sum = 0;
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
   for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];

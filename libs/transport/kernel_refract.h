@@ -80,6 +80,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_owned(const Questio
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
   if constexpr (Surfaces::kDense > 0) {
+    if (refracted_) guides_.assign(nodes_.size(), {});
     for (const RefractedQuestion& q : refracted_questions_) {
       const Path& path = paths_[nodes_[q.node].path];
       const std::vector<size_t>& set = refracted_->interfaces().set_of();
@@ -139,25 +140,26 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
   }
   constexpr uint64_t kPurpose = 0x62656e74;
   const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-  for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed)) shine_along(way, q, knot);
+  for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed))
+    if (shine_along(way, q, knot)) guide(q, way);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const RefractedWay& way,
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const RefractedWay& way,
                                                                       const RefractedQuestion& q, size_t knot) {
   const NodeAt& node = nodes_[q.node];
   const uint32_t p = node.path;
   const Path& path = paths_[p];
   const auto most = static_cast<uint32_t>(options_.max_nodes);
-  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return;
-  if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way.direction)) return;
+  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
+  if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way.direction)) return false;
   const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
   const Factor factor = evaluate(node, way.direction, memory);
   for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
   double arrival = 0;
-  if (!weaken(node, way, knot, through, arrival)) return;
+  if (!weaken(node, way, knot, through, arrival)) return false;
   const auto from_light = sent(q, way);
-  if (!from_light) return;
+  if (!from_light) return false;
   const double scale = from_light->scale * way.spreading * way.trials;
   WaterSeen water = WaterSeen::nothing;
   if (waters_.any()) {
@@ -182,6 +184,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
     if (doubtful) c.missed = 0;  // there may be as much again
     contribute();
   }
+  return true;
 }
 
 // What a light sends along a way, per solid angle there; of a lamp per m2 across the way, over the density of the

@@ -4,6 +4,7 @@
 #include "transport/kernel_back.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
+#include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
 #include "transport/kernel_refract.h"
 #include "transport/media/space_field.h"

@@ -1,6 +1,7 @@
 #include "transport/surfaces_any.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "transport/receiver.h"
 
@@ -85,16 +86,10 @@ bool AnySurfaces::sample(size_t, uint32_t p, const Hit&, Dir out, Vec2 u, double
   const Dir to = at.frame.to_local(out);
   const auto drawn = model.sample(to, u, lobe_u, knot);
   if (!drawn) return false;
+  if (drawn->delta) return take_dirac(p, to, *drawn, knot, dense, on);
   on.in = at.frame.to_world(drawn->in);
   if (dot(on.in, at.geometric_normal) * drawn->in.z <= 0) return false;  // would leak through the real surface
-  on.dirac = drawn->delta;
-  const std::span<float> density{on.density, knots_};
-  if (drawn->delta) {
-    model.delta_weight(to, drawn->lobe, knot, dense);
-    model.delta_probability(to, drawn->lobe, knot, density);
-    on.weight = {1, dense.data()};
-    return true;
-  }
+  on.dirac = false;
   on.weight = {1, nullptr};
   if (!local(p))
     if (const auto factored = model.factored(to, drawn->in)) on.weight = {factored->scale, factored->spectrum};
@@ -102,7 +97,39 @@ bool AnySurfaces::sample(size_t, uint32_t p, const Hit&, Dir out, Vec2 u, double
     model.eval(to, drawn->in, dense);
     on.weight = {1, dense.data()};
   }
-  model.pdf(to, drawn->in, density);
+  model.pdf(to, drawn->in, {on.density, knots_});
+  return true;
+}
+
+bool AnySurfaces::take_dirac(uint32_t p, Dir to, const ScatterModel::Sample& drawn, int knot, std::span<float> dense,
+                             Continuation& on) const {
+  const Interaction& at = *at_[p];
+  on.in = at.frame.to_world(drawn.in);
+  if (dot(on.in, at.geometric_normal) * drawn.in.z <= 0) return false;  // would leak through the real surface
+  on.dirac = true;
+  at.baked->model->delta_weight(to, drawn.lobe, knot, dense);
+  at.baked->model->delta_probability(to, drawn.lobe, knot, {on.density, knots_});
+  on.weight = {1, dense.data()};
+  return true;
+}
+
+bool AnySurfaces::sample_either(uint32_t p, Dir out, int reflecting, double least, double lobe_u, int knot,
+                                std::span<float> dense, Continuation& on) const {
+  const Interaction& at = *at_[p];
+  const Dir to = at.frame.to_local(out);
+  float reflected[kMaxKnots];
+  at.baked->model->delta_probability(to, reflecting, knot, {reflected, knots_});
+  const auto chosen = [&](size_t k) {
+    const double R = double{reflected[k]};
+    return R > 0 && R < 1 ? std::clamp(R, least, 1 - least) : R;
+  };
+  const bool reflects = lobe_u < chosen(static_cast<size_t>(knot));
+  const auto drawn = at.baked->model->sample(to, {0.5, 0.5}, reflects ? 0 : std::nextafter(1.0, 0.0), knot);
+  if (!drawn || (drawn->lobe == reflecting) != reflects || !take_dirac(p, to, *drawn, knot, dense, on)) return false;
+  for (size_t k = 0; k < knots_; ++k) {
+    const double own = reflects ? double{reflected[k]} : 1 - double{reflected[k]};
+    if (own > 0) on.density[k] *= static_cast<float>((reflects ? chosen(k) : 1 - chosen(k)) / own);
+  }
   return true;
 }
 

@@ -17,6 +17,7 @@ struct Continuation {
   bool dirac = false;
   Factor weight;  // w, not yet divided by the density
   float density[kMaxKnots];
+  double bright = 1;  // light that may come from there, over even light: for roulette
 };
 
 class AnySurfaces {
@@ -48,6 +49,9 @@ class AnySurfaces {
   // Draws where path p, node i of the stage, goes on; false when it ends there.
   bool sample(size_t i, uint32_t p, const Hit& hit, Dir out, Vec2 u, double lobe_u, int knot, std::span<float> dense,
               Continuation& on) const;
+  // The same at a surface that only reflects, by a lobe, and passes light on: each gets at least `least` of the paths.
+  bool sample_either(uint32_t p, Dir out, int reflecting, double least, double lobe_u, int knot, std::span<float> dense,
+                     Continuation& on) const;
   // The numbers u of node i of a stage, then that of all of its n nodes, before sample(): nothing to prepare.
   void prepare(size_t, Vec2) {}
   void prepare_all(size_t) {}
@@ -61,6 +65,8 @@ class AnySurfaces {
   Emission emission(uint32_t p, Dir out, std::span<float> dense) const;
 
  private:
+  bool take_dirac(uint32_t p, Dir to, const ScatterModel::Sample& drawn, int knot, std::span<float> dense,
+                  Continuation& on) const;
   bool local(uint32_t p) const { return at_[p]->own && at_[p]->baked == &at_[p]->own->made; }
 
   const Surface& surface_;

@@ -20,6 +20,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       air_(c.environment.atmosphere.get()),
       ambient_(c.surface.tracer().scene().ambient),
       field_(c.surface.tracer().scene(), c.optics.state(), c.surface.tracer().periodic()),
+      plain_air_(air_ && !c.optics.air() && field_.placed().empty() && ambient_ == kNone),
       bodies_(c.surface),
       flights_(field_, c.optics, c.knot_probability, air_),
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
@@ -27,8 +28,12 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       ways_(c.width),
       events_(c.width),
       phase_(c.optics.state().size()) {
-  for (const BakedMedium& m : c.optics.media())
-    index_.push_back(std::sqrt(double{m.index_squared[c.optics.state().knots[0]]}));
+  for (const BakedMedium& m : c.optics.media()) {
+    const size_t reference = c.optics.state().knots[0];
+    index_.push_back(std::sqrt(double{m.index_squared[reference]}));
+    if (m.scatters()) m.phase->asymmetry(phase_);
+    asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
+  }
 }
 
 void FieldSpace::start(uint32_t p, const LivePath& live) {
@@ -37,14 +42,16 @@ void FieldSpace::start(uint32_t p, const LivePath& live) {
   if (bodies_.any()) stacks_[p] = bodies_.around(live.origin, live.time, statistics_);
 }
 
-Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool,
-                       std::span<float> through, std::span<float> emitted) {
+Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
+                       bool ends, std::span<float> through, std::span<float> emitted) {
   Way& way = ways_[p];
   if (way.gap > 0) bodies_.settle(hit, ray, way.gap);
   if (!hit.hit()) bodies_.leave_scene(stacks_[p]);
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
+  if (plain_air_ && medium == kNone && !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
+    return fly_in_air(live, length, ends, through, emitted);
   const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
@@ -79,10 +86,44 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   return flight;
 }
 
+// Air alone: its transmittance and radiance are known at once.
+Flight FieldSpace::fly_in_air(const LivePath& live, double length, bool ends, std::span<float> through,
+                              std::span<float> emitted) const {
+  const bool outside = live.surfaces + live.scatterings > 0 && length == std::numeric_limits<double>::infinity();
+  if (outside && !ends) {
+    air_->sky_radiance(live.origin, live.direction, through, emitted);
+    return {Arrival::met, {}, false, emitted.data()};
+  }
+  if (outside)
+    air_->skylight(live.origin, live.direction, through, emitted);
+  else
+    air_->path(live.origin, live.direction, length, through, emitted);
+  return {Arrival::met, {1, through.data()}, true, emitted.data()};
+}
+
 void FieldSpace::remember(uint32_t p, Vec3 place) {
   ScatterPlace& e = events_[p];
   e.place = place;
   e.contents = flights_.contents();
+  set_rates(e);
+}
+
+void FieldSpace::stand(uint32_t p) {
+  ScatterPlace& e = events_[p];
+  e.contents.clear();
+  if (const uint32_t medium = stacks_[p].medium(ambient_); medium != kNone) e.contents.push_back({medium, 1, 0});
+  set_rates(e);
+}
+
+double FieldSpace::asymmetry(uint32_t p) const {
+  const ScatterPlace& e = events_[p];
+  double sum = 0;
+  for (const Constituent& c : e.contents)
+    sum += c.density * double{optics_.media()[c.medium].scattering[optics_.state().knots[0]]} * asymmetry_[c.medium];
+  return e.rate[0] > 0 ? sum / e.rate[0] : 0;
+}
+
+void FieldSpace::set_rates(ScatterPlace& e) const {
   const std::vector<size_t>& bins = optics_.state().knots;
   for (size_t k = 0; k < bins.size(); ++k) {
     e.rate[k] = 0;
@@ -131,12 +172,11 @@ Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
   return {1, v.data()};
 }
 
-bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
-                        Continuation& on) {
+bool FieldSpace::scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const {
   const ScatterPlace& e = events_[p];
-  const size_t own = optics_.state().knots[static_cast<size_t>(live.knot)];
+  const size_t own = optics_.state().knots[static_cast<size_t>(knot)];
   // Draw who scatters, then how.
-  double choice = who * e.rate[live.knot];
+  double choice = who * e.rate[knot];
   const BakedMedium* scatterer = nullptr;
   for (const Constituent& c : e.contents) {
     const BakedMedium& m = optics_.media()[c.medium];
@@ -146,11 +186,16 @@ bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, st
     if ((choice -= rate) < 0) break;
   }
   if (!scatterer) return false;
-  const double cosine = scatterer->phase->sample(u.x, live.knot);
-  on.in = scattered_direction(-live.direction, cosine, u.y);
+  in = scattered_direction(out, scatterer->phase->sample(u.x, knot), u.y);
+  return true;
+}
+
+bool FieldSpace::sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense,
+                        Continuation& on) {
+  if (!scatter(p, -live.direction, live.knot, u, who, on.in)) return false;
   densities(p, -live.direction, on.in, {on.density, optics_.state().knots.size()});
   on.dirac = false;
-  on.weight = evaluate(p, cosine, dense);
+  on.weight = evaluate(p, scattering_cosine(-live.direction, on.in), dense);
   return true;
 }
 

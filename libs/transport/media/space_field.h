@@ -26,7 +26,8 @@ class FieldSpace {
   Vec3 ray_from(uint32_t p, const LivePath& live) const { return ways_[p].gap > 0 ? ways_[p].from : live.origin; }
   // One flight of path p towards `hit`, which `ray` found, over `length` m at most. through, emitted: memory for
   // spectra.
-  Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool,
+  // ends: light from the end of the way is to come through it.
+  Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool ends,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
   // Flights bring all light of the air: media on the way dim it in parts.
@@ -38,13 +39,20 @@ class FieldSpace {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);
   }
 
-  // The event that ended the last flight of path p.
+  // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
+  void stand(uint32_t p);
+  // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at the reference.
+  // Mean cosine of its scattering at the reference, over all that is there.
+  double scattering(uint32_t p) const { return events_[p].rate[0]; }
+  double asymmetry(uint32_t p) const;
   Vec3 place(uint32_t p) const { return events_[p].place; }
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // v; dense: memory for a spectrum.
   Factor evaluate(uint32_t p, double cosine, std::span<float> dense);
   // Draws a direction. who: number that chooses the scatterer. Nothing when nothing scatters.
   bool sample(uint32_t p, const LivePath& live, Vec2 u, double who, std::span<float> dense, Continuation& on);
+  // Its direction alone, when seen from `out`; the density is that of densities().
+  bool scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const;
 
   void clear_sight() { sight_.clear(); }
   // Names a ray from path p, at the event that ended its flight or else at a surface.
@@ -69,7 +77,10 @@ class FieldSpace {
     std::vector<Constituent> contents;
     double rate[kMaxKnots];  // scattering coefficient
   };
+  Flight fly_in_air(const LivePath& live, double length, bool ends, std::span<float> through,
+                    std::span<float> emitted) const;
   void remember(uint32_t p, Vec3 place);
+  void set_rates(ScatterPlace& e) const;
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
 
   const Surface& surface_;
@@ -77,10 +88,12 @@ class FieldSpace {
   const Atmosphere* air_;
   uint32_t ambient_;
   VolumeField field_;
+  const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
   Bodies bodies_;
   Flights flights_;
   MediaSight sight_;
-  std::vector<double> index_;  // of refraction at the reference, per medium
+  std::vector<double> index_;      // of refraction at the reference, per medium
+  std::vector<double> asymmetry_;  // mean cosine of scattering there
   std::vector<MediumStack> stacks_;
   std::vector<Way> ways_;
   std::vector<ScatterPlace> events_;

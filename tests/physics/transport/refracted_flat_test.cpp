@@ -47,7 +47,8 @@ TEST(RefractedFlat, ChanceAgreesWithAsking) {
   // Negative control: counted twice it would be twice as much.
   EXPECT_LT(r.radiance[0], 1.5 * truth);
   const auto asked = see_bed({}, 10 * kDegree, 30 * kDegree, 4096);
-  EXPECT_LT(asked.standard_error[0], 0.2 * r.standard_error[0]);
+  // 0.2 was the bound before an eighth of the paths went to what the surface mirrors, which is nothing here.
+  EXPECT_LT(asked.standard_error[0], 0.3 * r.standard_error[0]);
 }
 
 TEST(RefractedFlat, Extremes) {
