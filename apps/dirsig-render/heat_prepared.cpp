@@ -97,8 +97,12 @@ double bytes_of(const PreparedHeat& p) {
   const double found = paths * 8 + 4.0 * HeatSpec::kBlocks * (kHeatParts + 2) + 4.0 * Sunlight::kContrasts * kHeatParts;
   const double tracing = 4 * (moments + kSkyPatches), making = 4 * moments + paths * 8 * 4;
   const double balance = paths * 8 * 2 + 4 * moments * 3 + kNodes;
+  // Elements that conduct to each other are followed at once: what they receive and emit, and the vectors of nodes of
+  // the search for what solves their equations.
+  const double lateral = p.spec.lateral ? 8 * moments * 2 + kNodes * 4 : 0;
   const double errors = 4 * moments * 3 + 4.0 * HeatSpec::kBlocks * kHeatParts + 8.0 * 2 * kHeatParts;
-  return static_cast<double>(p.faces->size()) * (found + std::max({tracing, making, balance, errors}));
+  return static_cast<double>(p.faces->size()) *
+         (found + std::max({tracing, making, balance + lateral, errors + lateral}));
 }
 
 void check_size(const PreparedHeat& p, const Simulation& sim) {

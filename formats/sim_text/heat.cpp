@@ -54,6 +54,19 @@ void read_what_is_kept(const Params& heat, HeatRequest& out) {
     }
 }
 
+// What follows each element for itself alone cannot go with it.
+void read_lateral(const Params& heat, HeatRequest& out) {
+  const auto lateral = heat.find("lateral_conduction");
+  if (!lateral) return;
+  out.spec.lateral = lateral->as_bool();
+  if (!out.spec.lateral) return;
+  for (const auto& [given, name] :
+       {std::pair{out.spec.audit > 0, "audit"}, {out.final_gather, "final_gather"}, {out.leave_out > 0, "leave_out_k"}})
+    if (given)
+      throw lateral->error(std::string("conduction along the surface is not known to '") + name + "'",
+                           "drop one of them");
+}
+
 void read_points(const Params& heat, HeatRequest& out) {
   const auto gather = heat.find("final_gather");
   if (!gather) return;
@@ -110,6 +123,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   const double length = out.span ? out.span->end - out.span->begin : 86400;
   s.periodic = heat->boolean("repeats", length <= 90000);
   read_points(*heat, out);
+  read_lateral(*heat, out);
   if (!s.periodic && length < 86400)
     throw heat->error("a span that does not repeat begins with a whole day",
                       "make it a day or longer, or 'repeats: true'");

@@ -321,6 +321,13 @@ void Elements::make_elements(const std::vector<bool>& heated) {
   }
 }
 
+uint32_t Elements::Grid::cell_at(const PrimitiveFaces::Place& p) const {
+  const Face& part = parts[p.face];
+  const auto column = std::min(part.columns - 1, static_cast<uint32_t>(p.a * part.columns));
+  const auto row = std::min(part.rows - 1, static_cast<uint32_t>(p.b * part.rows));
+  return cuts.find(part.first + row * part.columns + column, {p.a, p.b});
+}
+
 std::optional<uint32_t> Elements::cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const {
   const auto found = slot_of_.find(instance);
   if (found == slot_of_.end() || slots_.empty()) return std::nullopt;
@@ -333,11 +340,7 @@ std::optional<uint32_t> Elements::cell_at(uint32_t instance, uint32_t triangle, 
     return group.first_cell + inside;
   }
   const Grid& grid = grids_[group.grid];
-  const PrimitiveFaces::Place p = grid.faces.place(slot.to_local.point(position));
-  const Grid::Face& part = grid.parts[p.face];
-  const auto column = std::min(part.columns - 1, static_cast<uint32_t>(p.a * part.columns));
-  const auto row = std::min(part.rows - 1, static_cast<uint32_t>(p.b * part.rows));
-  return group.first_cell + grid.cuts.find(part.first + row * part.columns + column, {p.a, p.b});
+  return group.first_cell + grid.cell_at(grid.faces.place(slot.to_local.point(position)));
 }
 
 bool Elements::covers(const Hit& hit) const {

@@ -29,6 +29,12 @@ struct HeatElement {
   Dir normal;        // of its front, mean; unit
 };
 
+// Two elements that touch.
+struct ElementContact {
+  uint32_t a = 0, b = 0;
+  double ratio = 0;  // of the length that they touch along to the distance of their middles, of all their instances
+};
+
 // Numbers of the choice of a point; one block of four numbers (math/sampling.h) an attempt.
 struct PointDraw {
   const SampleStream& stream;
@@ -65,6 +71,10 @@ class Elements {
   std::optional<Hit> hit_at(const HeatedPlace& place) const;
   // False beyond the places where surfaces without end are cut off, and on what has no elements.
   bool covers(const Hit& hit) const;
+
+  // Which elements of one object touch (elements_contacts.cpp), each pair once. Elements that share a cell of a class
+  // map touch those of other cells for their shares, and nothing of their own.
+  std::vector<ElementContact> contacts() const;
 
   // Leaves out those that are not kept, by element: their places have none. The others keep their order.
   void keep(const std::vector<bool>& kept);
@@ -107,6 +117,7 @@ class Elements {
       return faces.area(c.face) * (c.high.x - c.low.x) * (c.high.y - c.low.y);
     }
     void split(uint32_t cell);
+    uint32_t cell_at(const PrimitiveFaces::Place& place) const;
   };
   struct Planned {  // a group to be
     std::vector<Slot> slots;
@@ -114,6 +125,7 @@ class Elements {
     uint32_t grid;
   };
   class Refinement;
+  class GridTouching;
   struct Seen;  // while they are made
   struct Local {
     Vec3 position, normal;

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "heat/heat_audit.h"
 #include "heat/heat_notes.h"
+#include "heat/lateral.h"
 #include "heat/path_errors.h"
 #include "heat/step_errors.h"
 #include "spectral/planck.h"
@@ -263,11 +264,11 @@ void keep(const SurfaceHistory& h, const SurfaceLoads& loads, const ExchangePath
 }
 
 // Temperatures under the loads, from where a span that does not repeat begins.
-SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const ExchangePaths& exchange, size_t outside_count,
-                        const SurfaceLoads& loads, const WeatherLoads& weather, const HeatSpec& spec,
-                        double& past_error) {
+SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const SurfaceNeighbours& neighbours,
+                        const ExchangePaths& exchange, size_t outside_count, const SurfaceLoads& loads,
+                        const WeatherLoads& weather, const HeatSpec& spec, double& past_error) {
   const ExchangeMatrix matrix = exchange.matrix(outside_count);
-  CoupledSurfaces surfaces(groups, matrix);
+  CoupledSurfaces surfaces(groups, matrix, neighbours);
   double mean_air = 0;
   for (const double T : weather.air_kelvin) mean_air += T / static_cast<double>(weather.air_kelvin.size());
   surfaces.start(mean_air);
@@ -321,16 +322,23 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   const std::vector<SurfaceGroup> groups =
       surface_groups(scene.elements, scene.faces, scene.optics, exchange.emissivity);
   SurfaceLoads loads = face_loads(scene, found.sun, weather, spec);
+  const LateralConduction lateral =
+      spec.lateral ? lateral_conduction(scene.elements, scene.optics) : LateralConduction{};
   HeatResult result;
-  SurfaceHistory h = balanced(groups, exchange, scene.faces.outsides(), loads, weather, spec, result.past_error);
+  SurfaceHistory h =
+      balanced(groups, lateral.neighbours, exchange, scene.faces.outsides(), loads, weather, spec, result.past_error);
   keep(h, loads, exchange, found.sun, weather, spec, result);
   result.assumed = scene.optics.assumed;
   result.notes = heat_notes(scene, found, !weather.humid);
-  if (const std::string note = visitors_note(scene, exchange, h); !note.empty()) result.notes.push_back(note);
+  if (!spec.lateral)
+    for (const std::string& note : lateral_notes(scene.tracer.scene(), scene.elements, scene.optics, h))
+      result.notes.push_back(note);
+  for (const std::string& note : {apart_note(lateral), visitors_note(scene, exchange, h)})
+    if (!note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
   tell_done(progress, 1);
   begin(progress, "errors", 1);
-  const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo};
+  const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo, lateral.neighbours};
   LinearErrors errors = linear_errors(solved);
   result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
   result.step_error = step_errors(solved);

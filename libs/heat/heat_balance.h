@@ -40,6 +40,7 @@ struct HeatSpec {
   double target = 0;           // K, by the paths: asks for as many (target_paths.h); 0 = the paths are given
   double tolerance = 0.01;     // K, of sweeps and of the past
   double ground_albedo = 0.2;  // of sunlight, beyond the scene
+  bool lateral = false;        // elements conduct to their neighbours along the surface, too (lateral.h)
   uint64_t seed = 1;
   size_t audit = 0;  // probes of heat_audit.h; 0 = none
   static constexpr uint32_t kBlocks = 8;

@@ -16,37 +16,6 @@ constexpr double kFilm = 12;  // W/(m2 K), of a light wind with radiation
 
 std::string share_text(double share) { return strf("%.0f %%", 100 * share); }
 
-// Conduction along a surface evens out what lies nearer to each other than 3 sqrt(k d / h) (a fin's length, h as kFilm;
-// d no deeper than a day's warmth goes); elements that are smaller differ more than they should.
-double evened_over(const std::vector<SlabLayer>& layers) {
-  constexpr double kDay = 86400;  // s
-  double sheet = 0;               // W/K
-  for (const SlabLayer& layer : layers) {
-    const double k = layer.conductivity[0], deep = std::sqrt(k * kDay / (kPi * layer.density * layer.specific_heat[0]));
-    sheet += k * std::min(layer.thickness, deep);
-    if (layer.thickness > deep) break;
-  }
-  return 3 * std::sqrt(sheet / kFilm);
-}
-
-std::vector<std::string> lateral_notes(const Scene& scene, const Elements& elements, const HeatOptics& optics) {
-  std::vector<size_t> small(scene.materials.size(), 0), all(scene.materials.size(), 0);
-  std::vector<double> reach(scene.materials.size(), 0);
-  for (size_t m = 0; m < reach.size(); ++m) reach[m] = evened_over(optics.heated[m].layers);
-  for (size_t e = 0; e < elements.size(); ++e) {
-    const uint32_t m = elements[e].material;
-    ++all[m], small[m] += std::sqrt(elements[e].area) < reach[m];
-  }
-  std::vector<std::string> notes;
-  for (size_t m = 0; m < reach.size(); ++m)
-    if (small[m] > 0)
-      notes.push_back(
-          strf("material '%s': %zu of %zu elements are smaller than the %.2g m over which conduction along the "
-               "surface evens temperatures out, which is left out: fewer elements show what is there",
-               scene.materials[m].id.c_str(), small[m], all[m], reach[m]));
-  return notes;
-}
-
 // Infrared that ends on closed backs: of what ends on a material, the share from behind.
 std::string back_note(const HeatScene& scene, const ExchangePaths& exchange) {
   constexpr double kLittle = 1e-3;  // as the rounding of places on closed bodies may let through
@@ -154,7 +123,6 @@ std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& 
         strf("%zu surfaces without end mirror or refract without scattering: sunlight that goes from one to "
              "another and on may be found in part only",
              sun.mirrored.endless));
-  for (const std::string& sentence : lateral_notes(tracer.scene(), elements, optics)) notes.push_back(sentence);
   if (const std::string sentence = back_note(scene, exchange); !sentence.empty()) notes.push_back(sentence);
   if (uses_media(tracer.scene())) notes.push_back("media are passed by: they neither shade nor warm anything here");
   if (exchange.unfinished() > 1e-6)

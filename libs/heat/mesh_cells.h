@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "heat/cell_contacts.h"
 #include "heat/cell_cuts.h"
 #include "scene/scene.h"
 
@@ -35,8 +36,11 @@ class MeshCells {
   // Cuts a cell in two of about equal areas, the second of which becomes the last cell: pieces of triangles through the
   // middle of their longest side, several triangles as the constructor does.
   void split(uint32_t cell);
+  // Which cells touch, as the mesh lies in the world (mesh_contacts.cpp).
+  std::vector<CellContact> contacts(const Affine3& to_world) const;
 
  private:
+  class Touching;
   struct Facet {
     Vec3 centre, normal;
     double area;

@@ -34,6 +34,8 @@ class Parts {
 
 double cube(double T) { return T * T * T; }
 
+constexpr double kLeft = 1e-4;  // of a step's search along the surface: errors need no more
+
 class Errors {
  public:
   explicit Errors(const SolvedSurfaces& s)
@@ -54,12 +56,12 @@ class Errors {
     begin(blocks_, 1 / (n * (n - 1)));
     loads_by_block();
     every_face([this](size_t f) { add_uneven_sky(f), take_mean(f); });
-    return follow();
+    return follow(s_.neighbours);
   }
   std::vector<float> of_size() {
     begin(Sunlight::kContrasts, 1.0 / Sunlight::kContrasts);
     every_face([this](size_t f) { spread_of(f); });
-    return follow();
+    return follow({});
   }
 
  private:
@@ -75,18 +77,21 @@ class Errors {
     });
   }
 
-  std::vector<float> follow() const {
+  std::vector<float> follow(const SurfaceNeighbours& neighbours) const {
     std::vector<float> out(faces_ * kHeatParts, 0.0f);
-    for (const SurfaceGroup& group : s_.groups) {
-      const size_t count = group.front_rows.size();
-      parallel_for(0, (count + kTogether - 1) / kTogether, 1, [&](size_t begin, size_t end) {
-        for (size_t p = begin; p < end; ++p) {
-          const size_t first = p * kTogether, n = std::min(kTogether, count - first);
-          group.layers.empty() ? massless(group, first, n, out) : conduct(group, first, n, out);
-        }
-      });
-    }
+    const std::vector<SurfacePart> parts = surface_parts(s_.groups, faces_, neighbours);
+    parallel_for(0, parts.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p)
+        group_of(parts[p], 0).layers.empty() ? massless(parts[p], out) : conduct(parts[p], out);
+    });
     return out;
+  }
+  const SurfaceGroup& group_of(const SurfacePart& part, size_t i) const { return s_.groups[part.members[i].group]; }
+  uint32_t front(const SurfacePart& part, size_t i) const {
+    return group_of(part, i).front_rows[part.members[i].element];
+  }
+  uint32_t back(const SurfacePart& part, size_t i) const {
+    return group_of(part, i).back_rows[part.members[i].element];
   }
 
   void weather_by_part() {
@@ -214,29 +219,31 @@ class Errors {
     to = static_cast<float>(std::sqrt(double{to} * double{to} + kelvin * kelvin * weight_));
   }
 
-  void massless(const SurfaceGroup& group, size_t first, size_t n, std::vector<float>& out) const {
-    for (size_t i = first; i < first + n; ++i) {
-      const uint32_t front = group.front_rows[i];
+  void massless(const SurfacePart& part, std::vector<float>& out) const {
+    const bool open = !group_of(part, 0).back_rows.empty();
+    for (size_t i = 0; i < part.members.size(); ++i) {
+      const uint32_t above = front(part, i), below = open ? back(part, i) : kNone;
       for (size_t b = 0; b < cases_; ++b)
         for (size_t p = 0; p < kHeatParts; ++p) {
-          double flux = deviation(front, b, p), loss = slope(front, p);
-          if (!group.back_rows.empty())
-            flux += deviation(group.back_rows[i], b, p), loss += slope(group.back_rows[i], p);
+          double flux = deviation(above, b, p), loss = slope(above, p);
+          if (open) flux += deviation(below, b, p), loss += slope(below, p);
           if (!(loss > 0)) continue;
-          add(out, front, p, flux / loss);
-          if (!group.back_rows.empty()) add(out, group.back_rows[i], p, flux / loss);
+          add(out, above, p, flux / loss);
+          if (open) add(out, below, p, flux / loss);
         }
     }
   }
 
-  void conduct(const SurfaceGroup& group, size_t first, size_t n, std::vector<float>& out) const {
+  void conduct(const SurfacePart& part, std::vector<float>& out) const {
+    const SurfaceGroup& group = group_of(part, 0);
+    const size_t n = part.members.size();
+    const bool open = !group.back_rows.empty();
     const double length = s_.weather.moments.back() - s_.weather.moments.front();
     const std::vector<double> steps(kHeatParts, length / kHeatParts);
-    const FaceBalance behind = back_balance(group.behind);
     for (size_t b = 0; b < cases_; ++b) {
       std::vector<SlabLayer> layers = group.layers;
       for (SlabLayer& layer : layers) layer.heat_generation = 0;
-      SlabBatch batch(layers, n, {60, !group.back_rows.empty()});
+      SlabBatch batch(layers, n, {60, open, part.neighbours, kLeft});
       batch.start(0, kBase);
       const auto line = [&](FaceLines& lines, size_t i, double slope, double flux) {
         lines.linear[i] = {slope, slope};
@@ -246,14 +253,10 @@ class Errors {
       const BatchLoads loads = [&](double begin, double, const SlabBatch&, FaceLines& top, FaceLines& bottom) {
         const auto p = std::min(kHeatParts - size_t{1}, static_cast<size_t>(begin / length * kHeatParts + 0.5));
         for (size_t i = 0; i < n; ++i) {
-          const uint32_t front = group.front_rows[first + i];
-          line(top, i, slope(front, p), deviation(front, b, p));
-          if (group.back_rows.empty()) {
-            line(bottom, i, behind.linear, 0);
-          } else {
-            const uint32_t back = group.back_rows[first + i];
-            line(bottom, i, slope(back, p), deviation(back, b, p));
-          }
+          const uint32_t above = front(part, i), below = open ? back(part, i) : kNone;
+          line(top, i, slope(above, p), deviation(above, b, p));
+          open ? line(bottom, i, slope(below, p), deviation(below, b, p))
+               : line(bottom, i, back_balance(group_of(part, i).behind).linear, 0);
         }
       };
       // The second period, from which the slow part of what the first one left is removed.
@@ -266,8 +269,8 @@ class Errors {
       });
       for (size_t p = 0; p < kHeatParts; ++p)
         for (size_t i = 0; i < n; ++i) {
-          add(out, group.front_rows[first + i], p, tops[p * n + i] - kBase);
-          if (!group.back_rows.empty()) add(out, group.back_rows[first + i], p, bottoms[p * n + i] - kBase);
+          add(out, front(part, i), p, tops[p * n + i] - kBase);
+          if (open) add(out, back(part, i), p, bottoms[p * n + i] - kBase);
         }
     }
   }

@@ -12,6 +12,7 @@ struct SolvedSurfaces {
   const SurfaceLoads& loads;
   const SurfaceHistory& history;
   double ground_albedo;
+  const SurfaceNeighbours& neighbours;
 };
 
 struct LinearErrors {
@@ -22,7 +23,7 @@ struct LinearErrors {
 // linearised about the solution, as a periodic state. Of the paths: each block's own loads against those of all; what
 // neighbours make of it is left out: they emit as solved. Of the size: direct sun on the points of the element
 // (Sunlight::beam_spread); what sky and neighbours send is taken as even over it, and conduction along the surface,
-// which evens out, is left out. At least kHeatParts moments.
+// which evens out, is left out there; errors of the paths go along it. At least kHeatParts moments.
 LinearErrors linear_errors(const SolvedSurfaces& solved);
 
 }  // namespace suite

@@ -27,6 +27,8 @@ SlabBatch::SlabBatch(std::vector<SlabLayer> layers, size_t elements, SlabBatchOp
   if (elements_ == 0) throw Error("a batch of slabs without an element", "at least one");
   if (!(options.resolution > 0 && std::isfinite(options.resolution)))
     throw Error(strf("a resolution of %g s", options.resolution), "more than 0");
+  neighbours_ = std::move(options.neighbours), left_ = options.left;
+  if (neighbours_) SUITE_CHECK_EQ(neighbours_->size(), elements_);
   grid_ = make_slab_grid(layers_, options.resolution, options.fast_below);
   const size_t n = nodes(), blocks = (elements_ + kLanes - 1) / kLanes;
   now_.resize(blocks * n);
@@ -312,6 +314,10 @@ double SlabBatch::attempt(double dt, const BatchLoads& loads) {
   loads(t_, t_ + dt, *this, top_lines_, bottom_lines_);
   check_lines(top_lines_, "top");
   check_lines(bottom_lines_, "bottom");
+  if (neighbours_) {
+    step_lateral(dt);
+    return *std::max_element(estimate_.begin(), estimate_.end());
+  }
   if (linear_) eliminate(kD * dt);
   const size_t blocks = now_.size() / nodes();
   for (size_t block = 0; block < blocks; ++block) {

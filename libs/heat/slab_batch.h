@@ -7,13 +7,15 @@
 // that do not depend on temperature the nodes between the faces are eliminated once a step length; what is left are two
 // equations an element in the temperatures of its faces, solved by Newton's method, which converges from any start
 // because both are increasing and convex. With other properties Newton's method takes all nodes and an elimination an
-// element and turn.
+// element and turn. Elements that conduct to each other along the surface are solved together (slab_batch_lateral.h).
 #pragma once
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "heat/averaged_table.h"
+#include "heat/slab_neighbours.h"
 #include "thermal/slab_grid.h"
 #include "thermal/step_control.h"
 
@@ -37,13 +39,15 @@ using BatchLoads =
     std::function<void(double begin, double end, const SlabBatch& batch, FaceLines& top, FaceLines& bottom)>;
 
 struct SlabBatchOptions {
-  double resolution = 60;   // s: automatic grids resolve what diffuses within this time
-  bool fast_below = false;  // the bottom face changes as fast as the top one
+  double resolution = 60;                                 // s: automatic grids resolve what diffuses within this time
+  bool fast_below = false;                                // the bottom face changes as fast as the top one
+  std::shared_ptr<const SlabNeighbours> neighbours = {};  // of its elements; none: each conducts for itself
+  double left = 1e-11;  // of what neighbours give each other, where a step ends its search; energy is kept that well
 };
 
 class SlabBatch {
  public:
-  // Error: layers as in Slab, no element.
+  // Error: layers as in Slab, no element, neighbours of other ones.
   SlabBatch(std::vector<SlabLayer> layers, size_t elements, SlabBatchOptions options = {});
 
   // Sets time (s) and temperature (K) of all nodes. Error: not within 1..10000 K.
@@ -75,6 +79,14 @@ class SlabBatch {
   const FaceLines& top_lines() const { return top_lines_; }
   const FaceLines& bottom_lines() const { return bottom_lines_; }
   double estimate(size_t element) const { return estimate_[element]; }
+
+  // Of batches whose elements have neighbours, [element][node]: solves (capacity C + weight (K + L + faces)) x = right
+  // in place, C the heat capacities, K and L conduction in depth and to neighbours at the present temperatures, slopes
+  // of the faces in W/(m2 K) by element; adds to a gain (W/m2) what neighbours bring at temperatures x.
+  bool has_neighbours() const { return neighbours_ != nullptr; }
+  void solve_lateral(double capacity, double weight, std::span<const double> top, std::span<const double> bottom,
+                     std::vector<double>& x) const;
+  void add_from_neighbours(const std::vector<double>& x, std::vector<double>& gain) const;
 
   struct Counters {
     long long steps = 0, rejected = 0, eliminations = 0;
@@ -129,9 +141,12 @@ class SlabBatch {
   void estimate_error(size_t block, double dt, const FaceEnds& faces);
   void keep_means(size_t block);
   void keep_estimates(size_t block, const Lanes* errors);
+  class Lateral;
+  void step_lateral(double dt);
+  void step_backward(double dt, const std::vector<FaceEnds>& faces, const std::vector<Lanes>& stored);
   // Properties that depend on temperature.
   void evaluate(const Lanes* kelvin, const Faces& faces, Lanes* heat, Lanes* gain) const;
-  void set_matrix(const Lanes* kelvin, const Faces& faces, double scale);
+  void set_matrix(const Lanes* kelvin, const Faces& faces, double scale, Row* rows) const;
   void solve_matrix(Lanes* right);
   void solve_newton(const Lanes* history, const Faces& faces, double scale, Lanes* kelvin);
   void step_newton(size_t block, double dt, const FaceEnds& faces);
@@ -141,6 +156,8 @@ class SlabBatch {
   std::vector<SlabLayer> layers_;
   size_t elements_;
   SlabGrid grid_;
+  std::shared_ptr<const SlabNeighbours> neighbours_;
+  double left_ = 0;
   bool linear_ = true;  // properties do not depend on temperature
   double t_ = 0, next_step_ = 1;
   std::vector<Lanes> now_, end_;                     // K, by block and node

@@ -43,7 +43,7 @@ void SlabBatch::evaluate(const Lanes* kelvin, const Faces& faces, Lanes* heat, L
 }
 
 // The matrix of Newton's method at `kelvin`: lower, diagonal and upper of every node.
-void SlabBatch::set_matrix(const Lanes* kelvin, const Faces& faces, double scale) {
+void SlabBatch::set_matrix(const Lanes* kelvin, const Faces& faces, double scale, Row* rows) const {
   const size_t n = nodes();
   const auto& h = grid_.heat;
   const auto& k = grid_.conductance;
@@ -58,19 +58,19 @@ void SlabBatch::set_matrix(const Lanes* kelvin, const Faces& faces, double scale
     for (size_t v = 0; v < kVectors; ++v) {
       const Four a = kelvin[i].v[v], b = kelvin[i + 1].v[v];
       const Four own = scale * (k0 + a * (k1 + a * (k2 + a * k3))), next = k0 + b * (k1 + b * (k2 + b * k3));
-      matrix_[i].diagonal.v[v] = scale * up.v[v] + own;
-      matrix_[i].upper.v[v] = -scale * next;
-      matrix_[i + 1].lower.v[v] = -own;
+      rows[i].diagonal.v[v] = scale * up.v[v] + own;
+      rows[i].upper.v[v] = -scale * next;
+      rows[i + 1].lower.v[v] = -own;
       up.v[v] = next;
     }
   }
   for (size_t v = 0; v < kVectors; ++v)
-    matrix_[n - 1].diagonal.v[v] = scale * (up.v[v] + slope(faces.bottom, kelvin[n - 1], v));
+    rows[n - 1].diagonal.v[v] = scale * (up.v[v] + slope(faces.bottom, kelvin[n - 1], v));
   for (size_t i = 0; i < n; ++i) {
     const double h0 = h[0][i], h1 = 2 * h[1][i], h2 = 3 * h[2][i], h3 = 4 * h[3][i], h4 = 5 * h[4][i];
     for (size_t v = 0; v < kVectors; ++v) {
       const Four T = kelvin[i].v[v];
-      matrix_[i].diagonal.v[v] += h0 + T * (h1 + T * (h2 + T * (h3 + T * h4)));
+      rows[i].diagonal.v[v] += h0 + T * (h1 + T * (h2 + T * (h3 + T * h4)));
     }
   }
 }
@@ -105,7 +105,7 @@ void SlabBatch::solve_newton(const Lanes* history, const Faces& faces, double sc
     evaluate(kelvin, faces, heat_.data(), gain_.data());
     for (size_t i = 0; i < n; ++i)
       for (size_t v = 0; v < kVectors; ++v) right_[i].v[v] = history[i].v[v] + scale * gain_[i].v[v] - heat_[i].v[v];
-    set_matrix(kelvin, faces, scale);
+    set_matrix(kelvin, faces, scale, matrix_.data());
     solve_matrix(right_.data());
     far = Lanes();
     for (size_t i = 0; i < n; ++i)
@@ -144,7 +144,7 @@ void SlabBatch::step_newton(size_t block, double dt, const FaceEnds& faces) {
       const Four to_middle = between[i].v[v] - stored[i].v[v], rest = heat_[i].v[v] - history[i].v[v];
       right_[i].v[v] = (kError2 * to_middle + kError3 * rest) / kD + dt * (kError1 - kError2) * rates[i].v[v];
     }
-  set_matrix(end, faces.end, s);
+  set_matrix(end, faces.end, s, matrix_.data());
   solve_matrix(right_.data());
   keep_estimates(block, right_.data());
 }

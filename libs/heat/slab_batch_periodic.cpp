@@ -77,6 +77,36 @@ void solve_mean(const SlabGrid& grid, const FaceHarmonics& top, const FaceHarmon
   }
 }
 
+// The same of elements that conduct to each other, all at once: [element][node].
+void solve_mean_lateral(const SlabBatch& batch, const FaceHarmonics& top, const FaceHarmonics& bottom,
+                        const FaceLines& top_lines, const FaceLines& bottom_lines, std::vector<double>& x) {
+  const size_t elements = batch.elements(), n = batch.nodes();
+  std::vector<double> top_slope(elements), bottom_slope(elements), gain(x.size());
+  SlabGrid buffer;
+  double largest = INFINITY;
+  for (int turn = 0; turn < 50 && largest > 1e-3; ++turn) {
+    for (size_t e = 0; e < elements; ++e) {
+      const SlabGrid& grid = batch.linearised(e, buffer);
+      const std::vector<double>& k = grid.conductance[0];
+      double *g = &gain[e * n], *T = &x[e * n];
+      std::copy(grid.source.begin(), grid.source.end(), g);
+      for (size_t i = 0; i + 1 < n; ++i) g[i] -= k[i] * (T[i] - T[i + 1]), g[i + 1] += k[i] * (T[i] - T[i + 1]);
+      const double t = T[0], b = T[n - 1], qt = top_lines.quartic[e] * cube(t), qb = bottom_lines.quartic[e] * cube(b);
+      g[0] += top.mean_constant(e) - t * (top.mean_linear(e) + qt);
+      g[n - 1] += bottom.mean_constant(e) - b * (bottom.mean_linear(e) + qb);
+      top_slope[e] = top.mean_linear(e) + 4 * qt + kLeastExchange, bottom_slope[e] = bottom.mean_linear(e) + 4 * qb;
+    }
+    batch.add_from_neighbours(x, gain);
+    batch.solve_lateral(0, 1, top_slope, bottom_slope, gain);
+    largest = 0;
+    for (size_t i = 0; i < x.size(); ++i) {
+      x[i] = std::clamp(x[i] + gain[i], std::fmax(1.0, 0.2 * x[i]), std::fmin(1e4, 5 * x[i]));
+      largest = std::fmax(largest, std::fabs(gain[i]));
+    }
+  }
+}
+
+// Harmonics are those of each element for itself: for those that neighbours hold, the periods that follow mend them.
 void start_from_harmonics(SlabBatch& batch, double t0, std::span<const double> steps, const BatchLoads& loads) {
   const size_t elements = batch.elements(), n = batch.nodes();
   FaceHarmonics top(elements), bottom(elements);
@@ -93,12 +123,16 @@ void start_from_harmonics(SlabBatch& batch, double t0, std::span<const double> s
     bottom.add(bottom_lines, waves);
     t += dt;
   }
+  std::vector<double> all(elements * n);
+  for (size_t e = 0; e < elements; ++e)
+    for (size_t i = 0; i < n; ++i) all[e * n + i] = batch.kelvin(e, i);
+  if (batch.has_neighbours()) solve_mean_lateral(batch, top, bottom, top_lines, bottom_lines, all);
   for (size_t e = 0; e < elements; ++e) {
     SlabGrid buffer;
     const SlabGrid& grid = batch.linearised(e, buffer);
-    std::vector<double> x(n);
-    for (size_t i = 0; i < n; ++i) x[i] = batch.kelvin(e, i);
-    solve_mean(grid, top, bottom, top_lines.quartic[e], bottom_lines.quartic[e], e, x);
+    std::vector<double> x(all.begin() + static_cast<std::ptrdiff_t>(e * n),
+                          all.begin() + static_cast<std::ptrdiff_t>((e + 1) * n));
+    if (!batch.has_neighbours()) solve_mean(grid, top, bottom, top_lines.quartic[e], bottom_lines.quartic[e], e, x);
     const double t_mean = x[0], b_mean = x[n - 1];
     const double t_slope = top.mean_linear(e) + 4 * top_lines.quartic[e] * cube(t_mean),
                  b_slope = bottom.mean_linear(e) + 4 * bottom_lines.quartic[e] * cube(b_mean);
@@ -137,6 +171,33 @@ void remaining(const SlabGrid& grid, double period, double top, double bottom, s
   solve(grid, 1.0, period / 2, top, bottom, change);
 }
 
+// The same of all elements, as they are at present: [element][node].
+void remaining(const SlabBatch& batch, double period, const FaceSlopes& slopes, std::vector<double>& change) {
+  const size_t elements = batch.elements(), n = batch.nodes();
+  SlabGrid buffer;
+  if (!batch.has_neighbours()) {
+    std::vector<double> one(n);
+    for (size_t e = 0; e < elements; ++e) {
+      const auto begin = change.begin() + static_cast<std::ptrdiff_t>(e * n);
+      std::copy_n(begin, n, one.begin());
+      remaining(batch.linearised(e, buffer), period, slopes.top[e] / period, slopes.bottom[e] / period, one);
+      std::copy(one.begin(), one.end(), begin);
+    }
+    return;
+  }
+  std::vector<double> top(elements), bottom(elements);
+  for (size_t e = 0; e < elements; ++e)
+    top[e] = slopes.top[e] / period + kLeastExchange, bottom[e] = slopes.bottom[e] / period;
+  const auto times_heat = [&](double factor) {
+    for (size_t e = 0; e < elements; ++e) {
+      const SlabGrid& grid = batch.linearised(e, buffer);
+      for (size_t i = 0; i < n; ++i) change[e * n + i] *= grid.heat[0][i] * factor;
+    }
+  };
+  times_heat(1 / period), batch.solve_lateral(0, 1, top, bottom, change);
+  times_heat(1), batch.solve_lateral(1, period / 2, top, bottom, change);
+}
+
 }  // namespace
 
 PeriodicResult find_periodic(SlabBatch& batch, double t0, std::span<const double> steps, const BatchLoads& loads,
@@ -160,16 +221,11 @@ PeriodicResult find_periodic(SlabBatch& batch, double t0, std::span<const double
     }
     ++result.sweeps;
     result.distance = 0;
-    std::vector<double> left(elements * n), change(n);
-    SlabGrid buffer;
-    for (size_t e = 0; e < elements; ++e) {
-      for (size_t i = 0; i < n; ++i) change[i] = batch.kelvin(e, i) - begin[e * n + i];
-      remaining(batch.linearised(e, buffer), period, slopes.top[e] / period, slopes.bottom[e] / period, change);
-      for (size_t i = 0; i < n; ++i) {
-        left[e * n + i] = change[i];
-        result.distance = std::fmax(result.distance, std::fabs(change[i]));
-      }
-    }
+    std::vector<double> left(elements * n);
+    for (size_t e = 0; e < elements; ++e)
+      for (size_t i = 0; i < n; ++i) left[e * n + i] = batch.kelvin(e, i) - begin[e * n + i];
+    remaining(batch, period, slopes, left);
+    for (const double d : left) result.distance = std::fmax(result.distance, std::fabs(d));
     if (result.distance <= options.tolerance) return result;
     if (result.sweeps >= options.most_sweeps)
       throw Error(strf("slabs are not periodic after %d periods: %g K are left", result.sweeps, result.distance),

@@ -49,28 +49,46 @@ class Hats {
   std::vector<double> late_, span_, weights_;
 };
 
-// Some elements of a group, whose faces are numbered anew.
+// Some elements, whose faces are numbered anew.
 struct Sampled {
-  SurfaceGroup group;
-  std::vector<uint32_t> face;  // as they were; fronts, then open backs
-  size_t every = 1;
+  std::vector<SurfaceGroup> groups;
+  SurfaceNeighbours neighbours;
+  std::vector<uint32_t> face;  // as they were
 };
 
-Sampled sampled(const SurfaceGroup& all, size_t most) {
-  Sampled out{all, {}, (all.front_rows.size() + most - 1) / most};
+// Those of a group's elements that are picked.
+void add_picked(const SurfaceGroup& all, const std::vector<size_t>& picked, Sampled& out) {
+  SurfaceGroup& group = out.groups.emplace_back(all);
   const auto thin = [&](auto& values, const auto& from) {
     values.clear();
-    for (size_t i = 0; i < from.size(); i += out.every) values.push_back(from[i]);
+    for (const size_t i : picked)
+      if (!from.empty()) values.push_back(from[i]);
   };
-  thin(out.group.cosine_up, all.cosine_up);
-  thin(out.group.front_emissivity, all.front_emissivity), thin(out.group.back_emissivity, all.back_emissivity);
+  thin(group.cosine_up, all.cosine_up);
+  thin(group.front_emissivity, all.front_emissivity), thin(group.back_emissivity, all.back_emissivity);
   for (auto rows : {&SurfaceGroup::front_rows, &SurfaceGroup::back_rows}) {
-    thin(out.group.*rows, all.*rows);
-    for (uint32_t& row : out.group.*rows) {
+    thin(group.*rows, all.*rows);
+    for (uint32_t& row : group.*rows) {
       out.face.push_back(row);
       row = static_cast<uint32_t>(out.face.size() - 1);
     }
   }
+}
+
+// All that conduct to others along the surface.
+Sampled bodies(const SolvedSurfaces& s, const std::vector<bool>& touches) {
+  Sampled out;
+  for (const SurfaceGroup& group : s.groups) {
+    std::vector<size_t> picked;
+    for (size_t i = 0; i < group.front_rows.size(); ++i)
+      if (touches[group.front_rows[i]]) picked.push_back(i);
+    if (!picked.empty()) add_picked(group, picked, out);
+  }
+  std::vector<uint32_t> now(touches.size(), 0);
+  for (uint32_t f = 0; f < out.face.size(); ++f) now[out.face[f]] = f;
+  for (const auto& c : s.neighbours.contacts) out.neighbours.contacts.push_back({now[c.a], now[c.b], c.ratio});
+  for (const uint32_t face : out.face)
+    out.neighbours.areas.push_back(face < s.neighbours.areas.size() ? s.neighbours.areas[face] : 1);
   return out;
 }
 
@@ -102,7 +120,7 @@ class Levels {
       hats.put(&s_.history.received[from], &loads.outside[to]);
       if (!s_.loads.source.empty()) loads.source.push_back(s_.loads.source[sample_.face[f]]);
     }
-    CoupledSurfaces surfaces({sample_.group}, matrix_);
+    CoupledSurfaces surfaces(sample_.groups, matrix_, sample_.neighbours);
     surfaces.start(s_.history.kelvin_at(sample_.face.front(), 0));
     return surfaces.solve(loads, options_).kelvin.values();
   }
@@ -147,18 +165,31 @@ std::vector<float> step_errors(const SolvedSurfaces& solved, const StepErrorOpti
   std::vector<float> out(faces * kHeatParts, 0.0f);
   if (moments < kFewest) return out;
   const std::vector<size_t> once = longer(moments, 1), twice = longer(moments, 2), fourfold = longer(moments, 4);
-  for (const SurfaceGroup& group : solved.groups) {
-    if (group.layers.empty() || group.front_rows.empty()) continue;
-    const Sampled sample = sampled(group, options.sample);
+  const auto solve = [&](const Sampled& sample) {
     const Levels levels(solved, sample, options.tolerance);
     const std::vector<double> a = levels.solve(once), b = levels.solve(twice), c = levels.solve(fourfold);
     for (size_t f = 0; f < sample.face.size(); ++f)
       errors_of(&a[f * once.size()], &b[f * twice.size()], &c[f * fourfold.size()], twice, fourfold, moments,
                 &out[sample.face[f] * kHeatParts]);
+  };
+  std::vector<bool> touches(faces, false);
+  for (const auto& c : solved.neighbours.contacts) touches[c.a] = touches[c.b] = true;
+  if (!solved.neighbours.contacts.empty()) solve(bodies(solved, touches));
+  for (const SurfaceGroup& group : solved.groups) {
+    std::vector<size_t> alone, picked;
+    for (size_t i = 0; i < group.front_rows.size(); ++i)
+      if (!touches[group.front_rows[i]]) alone.push_back(i);
+    if (group.layers.empty() || alone.empty()) continue;
+    const size_t every = (alone.size() + options.sample - 1) / options.sample;
+    for (size_t i = 0; i < alone.size(); i += every) picked.push_back(alone[i]);
+    Sampled sample;
+    add_picked(group, picked, sample);
+    solve(sample);
     for (const auto* rows : {&group.front_rows, &group.back_rows})
-      for (size_t i = 0; i < rows->size(); ++i)
-        if (i % sample.every != 0)
-          std::copy_n(&out[(*rows)[i - i % sample.every] * kHeatParts], kHeatParts, &out[(*rows)[i] * kHeatParts]);
+      for (size_t i = 0; !rows->empty() && i < alone.size(); ++i)
+        if (i % every != 0)
+          std::copy_n(&out[(*rows)[alone[i - i % every]] * kHeatParts], kHeatParts,
+                      &out[(*rows)[alone[i]] * kHeatParts]);
   }
   return out;
 }

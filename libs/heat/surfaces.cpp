@@ -13,6 +13,11 @@ namespace {
 
 constexpr size_t kTogether = 256;  // elements a piece of parallel work
 
+// Parts of few elements are pieces themselves.
+void for_elements(size_t count, const std::function<void(size_t, size_t)>& body) {
+  count <= kTogether ? body(0, count) : parallel_for(0, count, kTogether, body);
+}
+
 double emitted_by(double kelvin) { return kStefanBoltzmann * kelvin * kelvin * kelvin * kelvin; }
 
 std::vector<StepLine> lines_of(const SurfaceLoads& loads, const std::vector<double>& values) {
@@ -136,20 +141,23 @@ struct CoupledSurfaces::Through {
 // Only of those faces that are worked on: histories of all faces at once would be as much memory as their answers.
 struct CoupledSurfaces::Received {
   Received(const CoupledSurfaces& of, const Part& part, const Through& through) : moments(through.moments) {
-    const SurfaceGroup& group = of.groups_[part.group];
-    const auto take = [&](const std::vector<uint32_t>& all, std::vector<double>& out) {
-      if (all.empty()) return;
-      out.resize(part.count * moments);
-      for (size_t i = 0; i < part.count; ++i)
-        of.exchange_.receive_one(all[part.first + i], *through.around, {&out[i * moments], moments});
-    };
-    take(group.front_rows, front), take(group.back_rows, back);
+    const size_t count = part.members.size();
+    front.resize(count * moments);
+    if (!of.group_of(part, 0).back_rows.empty()) back.resize(count * moments);
+    for_elements(count, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        of.exchange_.receive_one(of.front_row(part, i), *through.around, {&front[i * moments], moments});
+        if (!back.empty())
+          of.exchange_.receive_one(of.back_row(part, i), *through.around, {&back[i * moments], moments});
+      }
+    });
   }
   size_t moments;
   std::vector<double> front, back;  // W/m2, by element of the part and moment
 };
 
-CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange)
+CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange,
+                                 const SurfaceNeighbours& neighbours)
     : groups_(std::move(groups)),
       exchange_(exchange),
       step_error_(exchange.elements()),
@@ -174,15 +182,16 @@ CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const Exchang
     back_balance(group.behind);
     if (group.layers.empty() && (group.behind.kind != BackCondition::Kind::flux || group.behind.value != 0))
       throw Error("surfaces without heat capacity have something behind them", "layers, or a back that is open");
-    for (size_t first = 0; first < count; first += kTogether) {
-      Part part{g, first, std::min(kTogether, count - first), 0, {}, {}};
-      if (!group.layers.empty())
-        part.batch.emplace(group.layers, part.count, SlabBatchOptions{60, !group.back_rows.empty()});
-      parts_.push_back(std::move(part));
-    }
   }
   for (size_t row = 0; row < seen.size(); ++row)
     if (seen[row] != 1) throw Error(strf("%d surfaces have row %zu of the exchange", seen[row], row), "one each");
+  for (SurfacePart& part : surface_parts(groups_, exchange.elements(), neighbours)) {
+    const SurfaceGroup& group = groups_[part.members.front().group];
+    Part& made = parts_.emplace_back(std::move(part));
+    if (!group.layers.empty())
+      made.batch.emplace(group.layers, made.members.size(),
+                         SlabBatchOptions{60, !group.back_rows.empty(), made.neighbours});
+  }
 }
 
 void CoupledSurfaces::start(double kelvin) {
@@ -201,26 +210,28 @@ void CoupledSurfaces::check(const SurfaceLoads& loads) const {
 
 void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through, const Received& received,
                            const SlabBatch& batch, FaceLines& top, FaceLines& bottom) const {
-  const SurfaceGroup& group = groups_[part.group];
-  for (size_t i = 0; i < part.count; ++i) {
-    const size_t element = part.first + i;
-    const FaceTraits front = group.front_of(element), back = group.back_of(element);
-    through.act(front, through.front[part.group], {group.front_rows[element], &received.front[i * through.moments]},
-                step, batch.top(i), top, i);
-    if (!group.back_rows.empty()) {
-      through.act(back, through.back[part.group], {group.back_rows[element], &received.back[i * through.moments]}, step,
-                  batch.bottom(i), bottom, i);
-    } else {
-      const FaceBalance behind = back_balance(group.behind);
-      bottom.constant[i] = {behind.constant, behind.constant};
-      bottom.linear[i] = {behind.linear, behind.linear};
+  for_elements(part.members.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto [g, element] = part.members[i];
+      const SurfaceGroup& group = groups_[g];
+      through.act(group.front_of(element), through.front[g],
+                  {group.front_rows[element], &received.front[i * through.moments]}, step, batch.top(i), top, i);
+      if (!group.back_rows.empty()) {
+        through.act(group.back_of(element), through.back[g],
+                    {group.back_rows[element], &received.back[i * through.moments]}, step, batch.bottom(i), bottom, i);
+      } else {
+        const FaceBalance behind = back_balance(group.behind);
+        bottom.constant[i] = {behind.constant, behind.constant};
+        bottom.linear[i] = {behind.linear, behind.linear};
+      }
     }
-  }
+  });
 }
 
 void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emitted) {
-  const SurfaceGroup& group = groups_[part.group];
   const SurfaceLoads& loads = through.loads;
+  const size_t count = part.members.size();
+  const bool open = !group_of(part, 0).back_rows.empty();
   if (!through.options.periodic || through.first) part.next = part.batch;
   SlabBatch& batch = *part.next;
   batch.restart(loads.begin);
@@ -231,28 +242,28 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
     fill(part, step++, through, received, now, top, bottom);
   };
   // What both sides emit, by element and moment.
-  std::vector<double> tops(part.count * through.moments), bottoms(group.back_rows.empty() ? 0 : tops.size());
+  std::vector<double> tops(count * through.moments), bottoms(open ? tops.size() : 0);
   const auto record = [&](size_t moment) {
-    for (size_t i = 0; i < part.count; ++i) {
-      const size_t front = group.front_rows[part.first + i];
+    for (size_t i = 0; i < count; ++i) {
+      const size_t front = front_row(part, i);
       tops[i * through.moments + moment] = emitted_by(batch.top(i));
       step_error_[front] = std::fmax(moment <= 1 ? 0 : step_error_[front], moment == 0 ? 0 : batch.estimate(i));
-      if (group.back_rows.empty()) {
+      if (!open) {
+        const BackCondition& behind = group_of(part, i).behind;
         if (moment <= 1) behind_[front] = 0;
-        if (moment > 0)
-          behind_[front] -= loads.steps[moment - 1] * back_balance(group.behind).flux(batch.bottom_mean(i));
+        if (moment > 0) behind_[front] -= loads.steps[moment - 1] * back_balance(behind).flux(batch.bottom_mean(i));
         continue;
       }
-      const size_t back = group.back_rows[part.first + i];
+      const size_t back = back_row(part, i);
       bottoms[i * through.moments + moment] = emitted_by(batch.bottom(i));
       step_error_[back] = step_error_[front];
     }
   };
   const auto hand_over = [&] {
-    for (size_t i = 0; i < part.count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
       const size_t at = i * through.moments;
-      emitted.set(group.front_rows[part.first + i], {&tops[at], through.moments});
-      if (!bottoms.empty()) emitted.set(group.back_rows[part.first + i], {&bottoms[at], through.moments});
+      emitted.set(front_row(part, i), {&tops[at], through.moments});
+      if (open) emitted.set(back_row(part, i), {&bottoms[at], through.moments});
     }
   };
   if (through.options.periodic) {
@@ -275,16 +286,16 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
     record(k + 1);
   }
   hand_over();
-  for (size_t i = 0; i < part.count; ++i) stored_[group.front_rows[part.first + i]] = taken_up(before, batch, i);
+  for (size_t i = 0; i < count; ++i) stored_[front_row(part, i)] = taken_up(before, batch, i);
 }
 
 void CoupledSurfaces::answer_massless(const Part& part, const Through& through, Histories& emitted) const {
-  const SurfaceGroup& group = groups_[part.group];
+  const SurfaceGroup& group = group_of(part, 0);
   const Received received(*this, part, through);
   std::vector<MasslessFace> faces(group.back_rows.empty() ? 1 : 2);
   std::vector<double> emits(through.moments);
-  for (size_t i = 0; i < part.count; ++i) {
-    const size_t element = part.first + i, at = i * through.moments;
+  for (size_t i = 0; i < part.members.size(); ++i) {
+    const size_t element = part.members[i].element, at = i * through.moments;
     std::vector<Through::Face> sides{{group.front_rows[element], &received.front[at]}};
     if (faces.size() > 1) sides.push_back({group.back_rows[element], &received.back[at]});
     faces.front().traits = group.front_of(element);

@@ -10,6 +10,7 @@
 #include "heat/balance.h"
 #include "heat/exchange.h"
 #include "heat/slab_batch.h"
+#include "heat/surface_parts.h"
 
 namespace suite {
 
@@ -65,9 +66,10 @@ struct SurfaceHistory {
 
 class CoupledSurfaces {
  public:
-  // The exchange must outlive this. Error: as SlabBatch, and groups whose rows are not those of the exchange, each
-  // once.
-  CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange);
+  // The exchange must outlive this. Error: as SlabBatch, groups whose rows are not those of the exchange, each once,
+  // and neighbours of other layers, or one open and one closed back.
+  CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange,
+                  const SurfaceNeighbours& neighbours = {});
   // The present state: one temperature (K) everywhere.
   void start(double kelvin);
   // Solves the span and leaves the state at its end, from where a span that is not periodic goes on: the past of n days
@@ -76,13 +78,15 @@ class CoupledSurfaces {
   SurfaceHistory solve(const SurfaceLoads& loads, const SurfaceOptions& options = {});
 
  private:
-  struct Part {  // elements of a group that go together
-    size_t group, first, count;
+  struct Part : SurfacePart {
     double distance = 0;                   // K, from the periodic state
     std::optional<SlabBatch> batch, next;  // the present state and that of the sweep; none without heat capacity
   };
   struct Through;   // what all elements share through a span
   struct Received;  // infrared that the faces of a part receive
+  const SurfaceGroup& group_of(const Part& part, size_t i) const { return groups_[part.members[i].group]; }
+  uint32_t front_row(const Part& part, size_t i) const { return group_of(part, i).front_rows[part.members[i].element]; }
+  uint32_t back_row(const Part& part, size_t i) const { return group_of(part, i).back_rows[part.members[i].element]; }
   void check(const SurfaceLoads& loads) const;
   void fill(const Part& part, size_t step, const Through& through, const Received& received, const SlabBatch& batch,
             FaceLines& top, FaceLines& bottom) const;

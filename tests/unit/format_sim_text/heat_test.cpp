@@ -63,6 +63,8 @@ TEST_F(HeatInSimulations, KeysArrive) {
   const Simulation kept = read(kWeather + "heat: {keep: operator, save_every_s: 5}");
   EXPECT_TRUE(kept.heat->keep_operator);
   EXPECT_EQ(kept.heat->save_every, 5);
+  EXPECT_FALSE(plain.heat->spec.lateral);
+  EXPECT_TRUE(read(kWeather + "heat: {lateral_conduction: true}").heat->spec.lateral);
 }
 
 TEST_F(HeatInSimulations, Messages) {
@@ -78,6 +80,10 @@ TEST_F(HeatInSimulations, Messages) {
       {kWeather + "heat: {keep: paths}", ":4:", "keep: operator"},
       {kWeather + "heat: {save_every_s: 5}", ":4:", "save_every_s"},
       {kWeather + "heat: {audit: 1}", ":4:", "one probe"},
+      {kWeather + "heat: {lateral_conduction: 2}", ":4:", "lateral_conduction"},
+      {kWeather + "heat: {lateral_conduction: true, audit: 9}", ":4:", "not known to 'audit'"},
+      {kWeather + "heat: {lateral_conduction: true, final_gather: true}", ":4:", "not known to 'final_gather'"},
+      {kWeather + "heat: {lateral_conduction: true, leave_out_k: 0.1}", ":4:", "not known to 'leave_out_k'"},
       {kWeather + "heat: {ground_albedo: 1.2}", ":4:", "ground_albedo"},
       {kWeather + "heat: {from: 0}", ":4:", "give both, or none"},
       {kWeather + "heat: {from: 100, to: 0}", ":4:", "shorter than 24 steps"},
