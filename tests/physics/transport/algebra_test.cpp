@@ -6,6 +6,7 @@
 #include "transport/estimators/standard.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
+#include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
 #include "transport/kernel_refract.h"
 #include "transport/serve.h"
