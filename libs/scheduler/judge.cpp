@@ -54,8 +54,7 @@ void Judge::finish(const JobOptions& options, uint32_t cap, JobReport& report) c
   if (with_target_ > 0) report.share_at_target = at_target_ / with_target_;
   for (const auto& [sensor, counts] : report.quality)
     if (counts.problems)
-      report.share_flagged +=
-          static_cast<double>(counts.with(quality_heavy_tail)) / static_cast<double>(report.problems);
+      report.share_flagged += static_cast<double>(counts.flagged) / static_cast<double>(report.problems);
   std::string& s = report.stopped_by;
   if (report.stopped)
     s = strf("stopped from outside after %zu of %zu captures", report.captures, report.captures_asked);

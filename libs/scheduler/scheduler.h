@@ -96,7 +96,7 @@ struct JobReport {
   double share_in_embree = 0;          // of the CPU time of the pipeline
   double median_relative_error = 0;    // standard error over radiance, reference band, all problems with radiance > 0
   double share_at_target = 0;          // of the problems of captures with a target
-  double share_flagged = 0;            // of all problems: heavy tails
+  double share_flagged = 0;            // of all problems: any flag
   std::vector<SensorQuality> quality;  // one a sensor, in their order
   WorstProblem worst;                  // at the judged bands; relative_error 0 = none
   uint32_t time_cap = 0;               // maximum of paths that a time budget was turned into; 0 = none
