@@ -145,7 +145,8 @@ TEST_F(DirsigOddFiles, ShowWhatNobodyKnows) {
       {"range.scene", {"range.scene", "geometry/range.glist", "geometry/range.odb", "materials/range.mat"}},
       {"models.scene", {"materials/models.mat", "geometry/models.odb"}},
       {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
-      {"plane.sim", {"plane.sim", "plane.scene", "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}}};
+      {"plane.sim", {"plane.sim", "plane.scene", "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}},
+      {"scan.sim", {"scan.platform", "swarm.ppd", "passes.tasks"}}};
   size_t shown = 0;
   for (const auto& [top, names] : plan)
     for (const char* name : names) {
@@ -182,6 +183,7 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
       {"models.scene", {"materials/models.mat", "materials/paint.fit", "geometry/models.odb"}},
       {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
       {"plane.sim", {"uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}},
+      {"scan.sim", {"scan.platform", "swarm.ppd", "passes.tasks"}},
       {"warm.sim", {"thermal.platform", "warm.atm"}}};
   const std::regex number(">\\s*([-+0-9.eE]+)\\s*</|=[ \t]*([-+0-9.eE]+)[ \t]*\r?\n");
   // BIAS: a lobe with a DHR has the height that gives it. datetime: a single record holds always. minimum: cuts
