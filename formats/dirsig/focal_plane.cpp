@@ -57,6 +57,9 @@ void SimulationWriter::read_focal_plane(const Item& plane, const Tree& lens, con
     Tree line = Tree::map(plane.where);
     line.set("kind", Tree::word("line", plane.where));
     line.set("line_rate_hz", *clock->find("rate_hz"));
+    const Item& said = plane.at("detectorarray").at("clock");
+    if (const Item* offset = said.find("offset"); offset && offset->number() != 0)
+      offset->mark(Fate::approximated, "lines begin with the task");
     array.set("readout", std::move(line));
     std::erase_if(made.entries, [](const auto& e) { return e.first == "clock"; });
   }

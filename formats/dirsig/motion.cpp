@@ -14,9 +14,6 @@ void read_jitter(const Item& motion, Tree* jitter);
 
 namespace {
 
-// Held so long before the first and after the last record of a motion, s. Bounds of what spins take time in proportion.
-constexpr double kHeld = 600;
-
 const Item* word_of(const Item& item, std::initializer_list<std::string_view> keys) { return item.any(keys); }
 
 double angle_of(const Item& item) {

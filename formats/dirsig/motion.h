@@ -7,6 +7,10 @@
 
 namespace suite::dirsig {
 
+// s, for which the ends of motions and of tabulated mounts are held: no public page says what lies beyond. Bounds of
+// what spins take time in proportion.
+inline constexpr double kHeld = 600;
+
 // What motions need to know of where they stand.
 struct MotionPlace {
   Import& import;

@@ -152,6 +152,14 @@ void SimulationWriter::read_tabulated_mount(const Item& from, double unit, const
   if (rows.empty()) throw from.error("a tabulated mount without entries", "<entry><datetime/><xrotation/>...");
   const size_t scans = rate ? std::max<size_t>(1, std::min(kScans, kMostEntries / rows.size())) : 1;
   if (rate) from.mark(Fate::approximated, strf("%zu scans are written out, from second 0 on", scans));
+  // As the ends of motions are held.
+  if (!rate) {
+    auto before = rows.front(), after = rows.back();
+    before.first -= kHeld, after.first += kHeld;
+    rows.insert(rows.begin(), std::move(before));
+    rows.push_back(std::move(after));
+    from.mark(Fate::approximated, strf("its ends are held for %g s", kHeld));
+  }
   Tree times = Tree::list(from.where), turns = Tree::list(from.where);
   double last = -1e300;
   for (size_t scan = 0; scan < scans; ++scan)

@@ -113,7 +113,7 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
     map.kind = MapKind::cube;
     read_cube(p, map);
   } else {
-    Raster raster = read_raster(input(p.at("file")));
+    Raster raster = pixels_of(p.at("file"));
     map.width = raster.width;
     map.height = raster.height;
     map.channels = raster.channels;

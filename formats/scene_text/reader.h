@@ -13,8 +13,9 @@
 #include "motion/map_system.h"
 
 namespace suite {
+struct Raster;
 struct WaterSpec;
-}
+}  // namespace suite
 
 namespace suite::scene_text {
 
@@ -104,6 +105,8 @@ class Reader {
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);
+  // The pixels of a map: of an ENVI image by its extension .img, else as formats/raster reads them.
+  Raster pixels_of(const Params& file);
   // property_maps.cpp
   void read_property_map(const std::string& name, const Params& p, const std::string& type);
   void read_cube(const Params& p, PropertyMap& map);

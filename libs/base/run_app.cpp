@@ -134,7 +134,7 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   try {
     app.set_version_flag("--version", info.name + " " + kVersion);
     declare(cli);
-    app.add_flag("-q,--quiet", quiet, "print errors and results only");
+    app.add_flag("-q,--quiet", quiet, "print errors, warnings and results, no progress");
     app.add_option("-j,--threads", thread_count, "worker threads; 0 = one per core; the results do not depend on it")
         ->type_name("N")
         ->check(CLI::Range(0, 4096));

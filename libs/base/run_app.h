@@ -66,7 +66,8 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
 // The command line in canonical form (program name without folder), for the headers of results.
 const std::string& command_line();
 
-// Diagnostics to standard error: note = progress of the work (silenced by --quiet), warn = "warning: ...".
+// Diagnostics to standard error: note = progress of the work (silenced by --quiet), warn = "warning: ..." (never
+// silenced: what a result lacks is told).
 void note(const std::string& text);
 void warn(const std::string& text);
 // From then on the program says nothing at all, or speaks again: of processes that run one job together only one is to

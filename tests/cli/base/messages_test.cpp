@@ -293,5 +293,22 @@ TEST_F(Messages, OfForeignMeasurements) {
   }
 }
 
+// What the help says of it: no progress, but warnings of what a result lacks, and the findings, which are results.
+TEST_F(Messages, QuietKeepsWarningsAndResults) {
+  const std::string convert = "scene-prep '" SUITE_TEST_DATA "/dirsig/range.scene' --convert texts";
+  for (const bool quiet : {false, true}) {
+    const CommandResult r = run(convert + (quiet ? " -q" : ""));
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_THAT(r.err, HasSubstr("warning: something of it is lost"));
+    EXPECT_EQ(r.err.find("wrote ") == std::string::npos, quiet) << r.err;
+  }
+  write("spare.yaml",
+        std::string(kScene).insert(kScene.find("objects:"), "  spare: {model: lambert, reflectance: 0.1}\n"));
+  const CommandResult r = run("scene-prep spare.yaml -o spare.h5 -q");
+  EXPECT_THAT(r.out, HasSubstr("SP103"));
+  EXPECT_EQ(r.err, "");
+  EXPECT_THAT(run("scene-prep --help").out, HasSubstr("errors, warnings and results, no progress"));
+}
+
 }  // namespace
 }  // namespace suite

@@ -145,7 +145,8 @@ TEST_F(DirsigOddFiles, ShowWhatNobodyKnows) {
       {"range.scene", {"range.scene", "geometry/range.glist", "geometry/range.odb", "materials/range.mat"}},
       {"models.scene", {"materials/models.mat", "geometry/models.odb"}},
       {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
-      {"plane.sim", {"plane.sim", "plane.scene", "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}}};
+      {"plane.sim", {"plane.sim", "plane.scene", "uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}},
+      {"scan.sim", {"scan.platform", "swarm.ppd", "passes.tasks"}}};
   size_t shown = 0;
   for (const auto& [top, names] : plan)
     for (const char* name : names) {
@@ -182,8 +183,9 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
       {"models.scene", {"materials/models.mat", "materials/paint.fit", "geometry/models.odb"}},
       {"maps.scene", {"maps.scene", "geometry/maps.glist", "materials/maps.mat"}},
       {"plane.sim", {"uniform.atm", "camera.platform", "nadir.ppd", "noon.tasks"}},
+      {"scan.sim", {"scan.platform", "swarm.ppd", "passes.tasks"}},
       {"warm.sim", {"thermal.platform", "warm.atm"}}};
-  const std::regex number(">\\s*([-+0-9.eE]+)\\s*</|=[ \t]*([-+0-9.eE]+)[ \t]*\r?\n");
+  const std::regex number(">\\s*([-+0-9.eE]+)\\s*</|=[ \t]*([-+0-9.eE]+)[ \t]*\r?\n|=\"([-+0-9.eE]+)\"");
   // BIAS: a lobe with a DHR has the height that gives it. datetime: a single record holds always. minimum: cuts
   // nothing.
   const std::regex allowed("BIAS|<datetime type=\"relative\">0|<minimum>");
@@ -193,7 +195,7 @@ TEST_F(DirsigOddFiles, EveryNumberCountsOrIsToldNotTo) {
     for (const char* name : names) {
       const std::string before = text_of(name);
       for (std::sregex_iterator at(before.begin(), before.end(), number), end; at != end; ++at) {
-        const int group = (*at)[1].matched ? 1 : 2;
+        const int group = (*at)[1].matched ? 1 : (*at)[2].matched ? 2 : 3;
         const auto value = dirsig::number_in_text((*at)[group].str());
         if (!value) continue;
         const size_t from = static_cast<size_t>(at->position(group)), length = static_cast<size_t>(at->length(group));

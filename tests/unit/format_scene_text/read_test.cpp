@@ -325,6 +325,41 @@ TEST_F(SceneText, TemperaturesAndLayers) {
       HasSubstr("thickness_m"));
 }
 
+TEST_F(SceneText, MapsMayBeEnviImages) {
+  // Bands one after the other: 2 x 1 pixels of shares 1 and 0, 1 and 3; whole numbers; kelvin.
+  const float shares[] = {1, 1, 0, 3}, kelvin[] = {290, 310};
+  const uint8_t classes[] = {7, 9};
+  const auto image = [&](const char* name, std::span<const std::byte> bytes, int bands, int type) {
+    write_file(folder_ / (std::string(name) + ".img"), bytes);
+    write_file(folder_ / (std::string(name) + ".img.hdr"),
+               std::string_view(strf("ENVI\nsamples = 2\nlines = 1\nbands = %d\nheader offset = 0\ndata type = %d\n"
+                                     "interleave = bsq\nbyte order = 0\n",
+                                     bands, type)));
+  };
+  image("shares", std::as_bytes(std::span(shares)), 2, 4), image("kelvin", std::as_bytes(std::span(kelvin)), 1, 4);
+  image("classes", std::as_bytes(std::span(classes)), 1, 1);
+  const std::string text =
+      "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2}\n  warm: {model: lambert, reflectance: 0.1, "
+      "maps: [heat]}\n  mix: {model: lambert, reflectance: 0.2, maps: [parts]}\n  chosen: {map: which}\n"
+      "maps:\n  parts: {type: mixture, file: shares.img, materials: [grey, grey], projection: uv}\n"
+      "  heat: {type: temperature, file: kelvin.img, projection: uv}\n"
+      "  which: {type: class, file: classes.img, materials: {7: grey, 9: warm}, projection: uv}\n"
+      "objects:\n  tri: {obj: tri.obj, materials: {grey: mix}}\nworld:\n  - {place: tri}\n  - {place: tri, material: "
+      "warm}\n  - {place: tri, material: chosen}\n";
+  const Scene scene = bake(text);
+  EXPECT_TRUE(report_.ok()) << report_.text();
+  ASSERT_EQ(scene.class_maps.size(), 1u);
+  EXPECT_EQ(scene.class_maps[0].classes, (std::vector<uint16_t>{0, 1}));  // the materials in their order
+  for (const PropertyMap& map : scene.property_maps)
+    EXPECT_EQ(map.values,
+              map.name == "parts" ? (std::vector<float>{1, 0, 0.25f, 0.75f}) : (std::vector<float>{290, 310}));
+  // Floats are no classes, and what is cut is told.
+  std::string wrong = text;
+  EXPECT_THAT(findings(wrong.replace(wrong.find("classes.img"), 11, "kelvin.img")), HasSubstr("has 1 of floats"));
+  write_file(folder_ / "shares.img", std::string_view("short"));
+  EXPECT_THAT(findings(text), HasSubstr("shares.img"));
+}
+
 TEST_F(SceneText, PartsOfMixturesAreWholeMaterials) {
   // A 1 x 1 pixel RGB image in the plain PPM format, which every reader of images knows.
   write_file(folder_ / "one.ppm", std::string_view("P3\n1 1\n255\n100 100 55\n"));
