@@ -16,8 +16,8 @@ parser = argparse.ArgumentParser()
 parser.add_argument("folder", nargs="?", default=".")
 parser.add_argument("--trees", type=int, default=160, help="on a tile")
 parser.add_argument("--leaves", type=int, default=220, help="of a tree")
-parser.add_argument("--paths", type=int, default=2400000, help="of the goniometer, for each view zenith")
-parser.add_argument("--views", type=int, default=2048, help="paths of each view of the comparison, for each side of the sun")
+parser.add_argument("--paths", type=int, default=3000000, help="of the goniometer, for each view zenith")
+parser.add_argument("--views", type=int, default=4096, help="paths of each view of the comparison, for each side of the sun")
 args = parser.parse_args()
 random.seed(5)
 TILE, CROWN, MIDDLE, LEAF = 40.0, (1.4, 1.4, 2.2), 3.6, 0.12
@@ -79,7 +79,8 @@ objects: {{ground: {{plane: {{width: {TILE}, depth: {TILE}}}, material: canopy}}
 world: [{{place: ground, tag: canopy}}]
 """)
 
-bands = "[{name: red, center_um: 0.66, fwhm_um: 0.01, shape: rectangular}, {name: nir, center_um: 0.85, fwhm_um: 0.01, shape: rectangular}]"
+# Narrow: between its two wavelengths the surface is linear, where leaves are not.
+bands = "[{name: red, center_um: 0.66, fwhm_um: 0.002, shape: rectangular}, {name: nir, center_um: 0.85, fwhm_um: 0.002, shape: rectangular}]"
 half = TILE / 2
 patch = f"{{origin_m: [{-half}, {-half}], size_m: [{TILE}, {TILE}]}}"
 write("measure.yaml", f"""scene: forest.h5

@@ -3,8 +3,12 @@
 // Assumes: the same on both sides, nothing transmitted, unpolarised light; evaluated at 85 deg beyond it (ground.h).
 // Based on: J. Maxwell, J. Beard et al., "Bidirectional reflectance model validation and utilization", AFAL-TR-73-303,
 // 1973; H. Westlund & G. Meyer, "A BRDF database employing the Beard-Maxwell reflection model", Graphics Interface
-// 2002, equations 1-4; Cauchy's slopes as the data base fits them and the choice of either after J. Shell,
-// "Polarimetric remote sensing in the visible to near infrared", RIT 2005, section 3.
+// 2002, equation 10: R(beta) / R(0) f_fs(theta) cos^2(theta) / (cos_i cos_o) S + rho_D + 2 rho_V / (cos_i + cos_o),
+// f_fs what comes back to where it came from. Checked against public code: S with omega and tau in radians as
+// Maxwell_Beard_Shadow_Function of SCATMECH 7 (T. Germer, NIST) has it, and the equation as readers of such files quote
+// it. From memory of the literature, with no public text found to check it: Cauchy's slopes and how the data base
+// scales them by its bias, Gaussian ones after J. Shell, "Polarimetric remote sensing in the visible to near infrared",
+// RIT 2005, section 3.
 #include "optics/models/fitted_facets.h"
 #include "optics/models/rows.h"
 

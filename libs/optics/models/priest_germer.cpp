@@ -4,7 +4,8 @@
 // Based on: R. Priest & T. Germer, "Polarimetric BRDF in the microfacet model: theory and measurements", Military
 // Sensing Symposia 2000, equation 2; the attenuation: K. Torrance & E. Sparrow, JOSA 57(9), 1967, as M. Hyde, J.
 // Schmidt, M. Havrilla, "A geometrical optics polarimetric BRDF for dielectric and metallic surfaces", Opt. Express
-// 17(24), 2009 add it, with a Lambert part.
+// 17(24), 2009 add it, with a Lambert part. Checked against SCATMECH 7 (T. Germer, NIST): Facet_BRDF_Model with
+// Gaussian slopes (whose s is sqrt(2) sigma) and Torrance_Sparrow_Shadow_Function.
 #include "optics/models/fitted_facets.h"
 #include "optics/models/rows.h"
 

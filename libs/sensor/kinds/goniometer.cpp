@@ -83,6 +83,11 @@ class Goniometer final : public SimpleSensor {
     return sum / sides_;
   }
   double value(const Delivery& d, size_t view, uint32_t ring, uint32_t azimuth, size_t band) const {
+    if (zeniths_[view] == 0) {  // all azimuths are alike for what is isotropic
+      double sum = 0;
+      for (uint32_t a = 0; a < capture_.bins / rings_; ++a) sum += mean(d, view, ring, a, band);
+      return sum * rings_ / capture_.bins;
+    }
     const double one = mean(d, view, ring, azimuth, band);
     return bilateral_ ? 0.5 * (one + mean(d, view, ring, capture_.bins / rings_ - 1 - azimuth, band)) : one;
   }
