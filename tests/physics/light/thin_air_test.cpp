@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "light/air_vertices.h"
 #include "light/stratified_air.h"
 
 namespace suite {
@@ -201,6 +202,35 @@ TEST(ThinAir, TheDrawnSkyIsTheSkyInTheMean) {
   std::printf("drawn sky: %.1f standard errors off at worst\n", worst);
   EXPECT_LT(worst, 4.5);  // two-sided 7e-6 each of some hundred
   EXPECT_GT(biased, 100);
+}
+
+// By which paths remember their ways, beside the exact ones.
+TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
+  AirSpec spec = diffuse_air();
+  spec.adjacency = true;
+  const SpectralState state = some_bins(spec);
+  const std::vector<float> sun(state.size(), 1);
+  const auto air = make_stratified_air(spec, state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}});
+  const AirVertices* const vertices = air->vertices();
+  ASSERT_TRUE(vertices);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u(0, 1);
+  double worst = 0, largest = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const double cosine = 2 * u(random) - 1;
+    const Vec3 from{1e4 * u(random), 1e4 * u(random), std::pow(10, 4 * u(random))};
+    const Dir d = dir_from_angles(std::acos(cosine), 2 * kPi * u(random));
+    const double length = cosine > 0 && i % 2 ? std::numeric_limits<double>::infinity() : std::pow(10, 4.3 * u(random));
+    if (cosine < 0 && length * -cosine > from.z) continue;
+    const auto exact = vertices->chances(from, d, length), about = vertices->about_chances(from, d, length);
+    for (size_t k = 0; k < state.knots.size(); ++k) {
+      worst = std::max(worst, std::fabs(about[k] / exact[k] - 1));
+      largest = std::max(largest, exact[k]);
+    }
+  }
+  std::printf("chances: %.3f off at worst, up to %.2f\n", worst, largest);
+  EXPECT_LT(worst, 0.1);
+  EXPECT_GT(largest, 0.5);
 }
 
 }  // namespace
