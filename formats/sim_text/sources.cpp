@@ -178,7 +178,7 @@ void check_coverage(const AskedCurve& curve, const Sensor& sensor, const Where& 
                   curve.what + " is given from " + curve.curve.range_text() + ", and band '" + b.name +
                       "' of sensor '" + sensor.name() + "'" + (where.line > 0 ? strf(" (line %d)", where.line) : "") +
                       strf(" reaches from %.4g to %.4g um", b.low_um(), b.high_um()),
-                  "give a longer curve, or declare 'outside: hold' or 'zero'");
+                  curve.hint);
     }
 }
 

@@ -87,6 +87,10 @@ struct ThinBeam {
 inline constexpr float kThin = 0.25f;  // of a depth for which the series hold, within 2e-6
 // Mean of exp(-x s) over s in 0..1, for |x| up to kThin.
 inline float mean_of_thin(float x) { return 1 - x * (0.5f - x * (1 / 6.0f - x * (1 / 24.0f - x * (1 / 120.0f)))); }
+// As mean_of_rising.
+inline float rising_of_thin(float x) {
+  return 1 - x * (2 / 3.0f - x * (0.25f - x * (1 / 15.0f - x * (1 / 72.0f - x * (1 / 420.0f)))));
+}
 // Light of a beam that is scattered once on a thin way.
 inline void scatter_thin(size_t n, const float* __restrict extinction, float length, const ThinBeam& beam,
                          const float* __restrict T, float* __restrict S) {
@@ -103,18 +107,45 @@ inline float depth_here(const LocalAir::BeamDepth& b, size_t i) {
 inline void fall_here(size_t n, const LocalAir::BeamDepth& beam, float* __restrict T) {
   for (size_t i = 0; i < n; ++i) T[i] = exp_falling(depth_here(beam, i));
 }
-// and its light that is scattered once on a way that begins there, of n bins from the first on; grows: the way over
-// which extinction adds to the depth, m; share: as of ThinBeam.
+// and its light that is scattered once on a way of `length` (m) that begins there; grows: the way over which extinction
+// adds to the depth, m; share: as of ThinBeam.
+struct BeamHere {
+  LocalAir::BeamDepth depth;
+  LocalAir::Scattered scattered;
+  float length, grows, share;
+};
 template <bool thin>
-inline void scatter_here(size_t first, size_t n, const float* __restrict extinction, float length,
-                         const LocalAir::BeamDepth& beam, const LocalAir::Scattered& scattered, float grows,
-                         float share, float* __restrict S) {
-  const float* __restrict low = scattered.low, * __restrict high = scattered.high;
+inline float scattered_here(const BeamHere& beam, float extinction, size_t i) {
+  const float* __restrict low = beam.scattered.low, * __restrict high = beam.scattered.high;
+  const float depth = depth_here(beam.depth, i), sent = low[i] + beam.scattered.share * (high[i] - low[i]);
+  const float more = extinction * beam.grows + depth * beam.share, end = depth + more, near = exp_falling(depth);
+  return sent * beam.length *
+         (thin ? near * mean_of_thin(more) : mean_of_change(near, exp_falling(end < 0 ? 0 : end), more));
+}
+// Of n bins from the first on.
+template <bool thin>
+inline void scatter_here(size_t first, size_t n, const float* __restrict extinction, const BeamHere& beam,
+                         float* __restrict S) {
+  for (size_t i = first; i < first + n; ++i) S[i] += scattered_here<thin>(beam, extinction[i], i);
+}
+// What a way does in all, of n bins from the first on: see_sources(), scatter_here(), weigh() and send() at once.
+// alone: nothing lies before it, and T and S are set.
+template <bool thin, bool alone>
+inline void pass(size_t first, size_t n, const float* __restrict extinction, const Sources& sources, float near,
+                 float far, const BeamHere& beam, float* __restrict T, float* __restrict S) {
+  const auto& [low, high, w] = sources;
+  const float length = beam.length, on = 0.5f * (far - near);
   for (size_t i = first; i < first + n; ++i) {
-    const float depth = depth_here(beam, i), sent = low[i] + scattered.share * (high[i] - low[i]);
-    const float more = extinction[i] * grows + depth * share, end = depth + more, near = exp_falling(depth);
-    S[i] +=
-        sent * length * (thin ? near * mean_of_thin(more) : mean_of_change(near, exp_falling(end < 0 ? 0 : end), more));
+    const float bottom = w[0] * low[0][i] + w[1] * low[1][i] + w[2] * low[2][i] + w[3] * low[3][i];
+    const float rise = w[0] * high[0][i] + w[1] * high[1][i] + w[2] * high[2][i] + w[3] * high[3][i] - bottom;
+    const float x = extinction[i] * length, keep = thin ? 0 : exp_falling(x);
+    const float even = x * (thin ? mean_of_thin(x) : mean_of_even(x, keep));
+    const float rising = x * (thin ? rising_of_thin(x) : mean_of_rising(x, keep));
+    const float sent =
+        scattered_here<thin>(beam, extinction[i], i) + (bottom + near * rise) * even + on * rise * rising;
+    const float through = thin ? 1 - even : keep;
+    S[i] = alone ? sent : S[i] + T[i] * sent;
+    T[i] = alone ? through : T[i] * through;
   }
 }
 // weigh() and send() of a thin way at once.
@@ -122,8 +153,7 @@ inline void send_thin(size_t n, const float* __restrict extinction, float length
                       const float* __restrict at_far, float* __restrict T, float* __restrict S) {
   for (size_t i = 0; i < n; ++i) {
     const float x = extinction[i] * length, even = x * mean_of_thin(x);
-    const float rising = 1 - x * (2 / 3.0f - x * (0.25f - x * (1 / 15.0f - x * (1 / 72.0f - x * (1 / 420.0f)))));
-    S[i] += T[i] * (at_near[i] * even + (at_far[i] - at_near[i]) * (0.5f * x * rising));
+    S[i] += T[i] * (at_near[i] * even + (at_far[i] - at_near[i]) * (0.5f * x * rising_of_thin(x)));
     T[i] -= T[i] * even;
   }
 }

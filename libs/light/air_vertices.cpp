@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "air/air_media.h"
+#include "math/falling.h"
 
 namespace suite {
 
@@ -30,6 +31,10 @@ AirVertices::AirVertices(std::shared_ptr<const AirColumn> column, const Spectral
     }
   }
   depth_ = *std::max_element(depths.begin(), depths.end());
+  over_.assign(heights.size(), PerKnot{});
+  for (size_t l = media_.size(); l-- > 0;)
+    for (size_t k = 0; k < knots_; ++k)
+      over_[l][k] = over_[l + 1][k] + scattering_[l][k] * (heights[l + 1] - heights[l]);
 }
 
 AirVertices::PerKnot AirVertices::chances(Vec3 from, Dir d, double length) const {
@@ -38,6 +43,30 @@ AirVertices::PerKnot AirVertices::chances(Vec3 from, Dir d, double length) const
     for (size_t k = 0; k < knots_; ++k) sums[k] += scattering_[p.layer][k] * p.length;
   });
   for (size_t k = 0; k < knots_; ++k) sums[k] = -std::expm1(-sums[k]);
+  return sums;
+}
+
+void AirVertices::depth_over(double height, double sign, PerKnot& sums) const {
+  const size_t l = column_->shells.layer_of(height);
+  if (l == media_.size()) return;
+  const double left = column_->shells.heights()[l + 1] - height;
+  for (size_t k = 0; k < knots_; ++k) sums[k] += sign * (over_[l + 1][k] + scattering_[l][k] * left);
+}
+
+// As in flat layers, where the way is steep enough for that.
+AirVertices::PerKnot AirVertices::about_chances(Vec3 from, Dir d, double length) const {
+  constexpr double kSteep = 0.2, kShort = 3e4;  // m
+  const Shells& shells = column_->shells;
+  const double cosine = dot(d, shells.up(from));
+  const bool out = length == kInfinity;
+  if (std::fabs(cosine) < kSteep || (out ? cosine < 0 : length > kShort)) return chances(from, d, length);
+  PerKnot sums{};
+  depth_over(shells.height(from), cosine > 0 ? 1 : -1, sums);
+  if (!out) depth_over(shells.height(from + d * length), cosine > 0 ? -1 : 1, sums);
+  for (size_t k = 0; k < knots_; ++k) {
+    const double x = std::max(0.0, sums[k] / std::fabs(cosine));
+    sums[k] = x < 0.1 ? x * (1 - x * (0.5 - x * (1 / 6.0))) : 1 - double{exp_falling(static_cast<float>(x))};
+  }
   return sums;
 }
 

@@ -39,6 +39,8 @@ class AirVertices {
   // allowed.
   using PerKnot = std::array<double, kMaxKnots>;
   PerKnot chances(Vec3 from, Dir d, double length) const;
+  // The same in a fraction of the time, within 10 %: where a weight is wanted that need not be exact.
+  PerKnot about_chances(Vec3 from, Dir d, double length) const;
   // A place on the way, drawn as light of a knot would be scattered there. u: in [0, 1). Nothing where nothing
   // scatters.
   struct Place {
@@ -57,6 +59,8 @@ class AirVertices {
 
  private:
   double to_ground(Vec3 from, Dir d) const;
+  // Scattering depth over a height, vertically.
+  void depth_over(double height, double sign, PerKnot& sums) const;
 
   std::shared_ptr<const AirColumn> column_;
   const Atmosphere& air_;
@@ -65,6 +69,7 @@ class AirVertices {
   std::vector<BakedMedium> media_;  // one a layer
   size_t knots_;
   std::vector<PerKnot> scattering_;  // of each layer, 1/m
+  std::vector<PerKnot> over_;        // depth over each level, vertically
   double depth_ = 0;                 // of all of them, vertically: the largest
 };
 

@@ -79,9 +79,12 @@ class Atmosphere {
     path(from, direction, std::numeric_limits<double>::infinity(), T, S);
   }
 
-  // S of skylight() alone. scratch: per bin.
-  virtual void sky_radiance(Vec3 from, Dir direction, std::span<float> scratch, std::span<float> S) const {
+  // S of skylight() alone, in the mean over directions near by: where that is interpolated in a table it may be one of
+  // the values there, drawn with its weight (by the direction's last digits). In S, or where it stays as long as the
+  // air. scratch: per bin.
+  virtual const float* sky_radiance(Vec3 from, Dir direction, std::span<float> scratch, std::span<float> S) const {
     skylight(from, direction, scratch, S);
+    return S.data();
   }
 
   // The layers; above the last height, or without any, there is no air.

@@ -112,21 +112,33 @@ bool BeamLight::scatter_thin(size_t b, const Shells::Piece& piece, const Growth&
   return true;
 }
 
+std::optional<air_loops::BeamHere> BeamLight::here(size_t b, const Shells::Piece& piece, const Growth& growth,
+                                                   double cosine) const {
+  if (!local_.keeps_scattering()) return std::nullopt;
+  const auto depth = local_.depth(piece.near_height, growth.near);
+  if (!depth) return std::nullopt;
+  const auto length = static_cast<float>(piece.length);
+  return air_loops::BeamHere{*depth, local_.scattered(b, piece.layer, cosine), length,
+                             length + static_cast<float>(growth.way), static_cast<float>(growth.share)};
+}
+
+std::optional<air_loops::BeamHere> BeamLight::here(size_t b, const Shells::Piece& piece, Vec3 from, Dir d) const {
+  const std::optional<Growth> grows = growth(b, piece, from, d);
+  if (!grows) return std::nullopt;
+  return here(b, piece, *grows, std::clamp(dot(beams_[b].direction, d), -1.0, 1.0));
+}
+
 // A piece that begins the way, near the scene's middle, however thin.
 bool BeamLight::scatter_here(size_t b, const Shells::Piece& piece, const Growth& growth, AirScratch& s,
                              std::span<float> S) const {
-  if (!local_.keeps_scattering()) return false;
-  const auto depth = local_.depth(piece.near_height, growth.near);
-  if (!depth) return false;
-  const LocalAir::Scattered scattered = local_.scattered(b, piece.layer, s.cosines[b]);
-  const auto length = static_cast<float>(piece.length), share = static_cast<float>(growth.share),
-             way = length + static_cast<float>(growth.way);
+  const auto beam = here(b, piece, growth, s.cosines[b]);
+  if (!beam) return false;
   const float* const k = &column_.extinction[piece.layer * bins_];
   thin_.over(piece.layer, piece.length + std::fabs(growth.way), [&](size_t i, size_t n, bool thin) {
     if (thin)
-      air_loops::scatter_here<true>(i, n, k, length, *depth, scattered, way, share, S.data());
+      air_loops::scatter_here<true>(i, n, k, *beam, S.data());
     else
-      air_loops::scatter_here<false>(i, n, k, length, *depth, scattered, way, share, S.data());
+      air_loops::scatter_here<false>(i, n, k, *beam, S.data());
   });
   s.near[b].known = false;
   return true;

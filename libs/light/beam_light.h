@@ -25,6 +25,9 @@ class BeamLight {
   // piece; set when they have been made so. Per bin.
   void add(const Shells::Piece& piece, Vec3 from, Dir d, AirScratch& s, bool& weighed, std::span<const float> T,
            std::span<float> S) const;
+  // What a piece near the scene's middle sends back of a beam, from tables (air_loops::scattered_here). Nothing: it
+  // does not lie so.
+  std::optional<air_loops::BeamHere> here(size_t b, const Shells::Piece& piece, Vec3 from, Dir d) const;
   // How deep a place lies for a beam, spread as it is there; false in the shadow of the Earth.
   bool depth(size_t b, Vec3 p, double height, std::span<float> depth) const;
   // What a metre of the beam's way sends back along the way that has begun if nothing dims it, W/(m3 sr um).
@@ -43,6 +46,8 @@ class BeamLight {
   std::optional<Growth> growth(size_t b, const Shells::Piece& piece, Vec3 from, Dir d) const;
   bool scatter_thin(size_t b, const Shells::Piece& piece, const Growth& growth, AirScratch& s, std::span<const float> T,
                     std::span<float> S) const;
+  std::optional<air_loops::BeamHere> here(size_t b, const Shells::Piece& piece, const Growth& growth,
+                                          double cosine) const;
   bool scatter_here(size_t b, const Shells::Piece& piece, const Growth& growth, AirScratch& s,
                     std::span<float> S) const;
   void scatter_lit(size_t b, const Shells::Piece& piece, Vec3 from, Dir d, AirScratch& s, std::span<const float> T,

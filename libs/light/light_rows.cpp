@@ -38,6 +38,11 @@ Curve LightContext::positive(const Params& p, const char* what, const char* unit
   return c;
 }
 
+Curve LightContext::builtin(const Params& entry, const char* what, const char* key, const Curve& given) const {
+  asked->push_back({entry.where(), what, given, "bands within " + given.range_text() + strf(", or '%s: FILE'", key)});
+  return given;
+}
+
 void read_rows(const Params& table, size_t& rows, size_t& columns, std::vector<double>& values, const char* what) {
   for (const Params& row : table.items()) {
     const std::vector<double> v = row.as_numbers();

@@ -19,6 +19,7 @@ struct AskedCurve {
   Where where;
   std::string what;  // "irradiance"
   Curve curve;
+  std::string hint = "give a longer curve, or declare 'outside: hold' or 'zero'";
 };
 
 // A raster as it is stored: row-major, first row first, channels together.
@@ -42,6 +43,8 @@ struct LightContext {
 
   // A curve of values >= 0, noted in `asked`. what, unit: for the error.
   Curve positive(const Params& p, const char* what, const char* unit) const;
+  // A curve of ours that an entry means by giving none: noted, too. key: under which one of its own would be given.
+  Curve builtin(const Params& entry, const char* what, const char* key, const Curve& given) const;
 };
 
 // name: the key of the text, and behind a blank the `kind` where a key has several: "sun", "sky clear". The first row

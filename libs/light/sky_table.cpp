@@ -1,10 +1,12 @@
 #include "light/sky_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "math/quick_angle.h"
+#include "math/sampling.h"
 
 namespace suite {
 
@@ -93,16 +95,25 @@ double SkyTable::column(double azimuth) const {
   return turn * turns_;
 }
 
-void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
+SkyTable::Place SkyTable::place(double height, Dir d) const {
   const double row = std::min(quick_polar_angle(d) * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)),
                col = column(quick_azimuth(d));
   const auto r = std::min(static_cast<size_t>(row), kRows - 2), c = std::min(static_cast<size_t>(col), columns_ - 1);
   const size_t next = c + 1 < columns_ ? c + 1 : symmetric_ || columns_ == 1 ? c : 0;
-  const auto v = static_cast<float>(row - static_cast<double>(r)), u = static_cast<float>(col - static_cast<double>(c));
+  const double above = (height - kLowest) / step_;
+  const auto low = std::min(static_cast<size_t>(above), floors_.size() - 2);
+  return {r,
+          c,
+          next,
+          low,
+          static_cast<float>(row - static_cast<double>(r)),
+          static_cast<float>(col - static_cast<double>(c)),
+          static_cast<float>(above - static_cast<double>(low))};
+}
+
+void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
+  const auto [r, c, next, low, v, u, rise] = place(height, d);
   const float weight[4] = {(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u};
-  const double place = (height - kLowest) / step_;
-  const auto low = std::min(static_cast<size_t>(place), floors_.size() - 2);
-  const auto rise = static_cast<float>(place - static_cast<double>(low));
   const float* rows[8];
   float share[8];
   const auto take = [&](size_t index, float part, size_t first) {
@@ -118,6 +129,19 @@ void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
   take(low, 1 - rise, 0);
   take(low + 1, rise, 4);
   sum<8>(rows, share, to);
+}
+
+const float* SkyTable::drawn(double height, Dir d) const {
+  const auto [r, c, next, low, v, u, rise] = place(height, d);
+  const uint64_t by_chance =
+      hash_of(std::bit_cast<uint64_t>(d.x), std::bit_cast<uint64_t>(d.y) ^ std::rotl(std::bit_cast<uint64_t>(d.z), 32));
+  // Three numbers of 21 bits.
+  const auto below = [&](int number, float share) {
+    constexpr uint64_t kMost = (1u << 21) - 1;
+    return static_cast<float>(by_chance >> (21 * number) & kMost) < share * static_cast<float>(kMost + 1);
+  };
+  return floor(below(0, rise) ? low + 1 : low) +
+         ((below(1, v) ? r + 1 : r) * columns_ + (below(2, u) ? next : c)) * bins_;
 }
 
 void SkyTable::make_light() {

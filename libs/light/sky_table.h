@@ -29,6 +29,10 @@ class SkyTable {
   // Bilinear, and linear in height: within 2e-3 of a step of a table's height it is that table alone, which changes the
   // result by at most 2e-3 of what it changes in a step. Per bin.
   void radiance(double height, Dir d, std::span<float> to) const;
+  // One of the values between which radiance() interpolates, drawn with the weight that it has there by a hash of the
+  // direction: right in the mean, and as noisy as neighbouring values differ (M. Fajardo et al., "Stochastic texture
+  // filtering", 2023). Per bin.
+  const float* drawn(double height, Dir d) const;
   // As a light to ask (Atmosphere::sky): one density for all bins, that of height 0. Null before make_light(), and
   // where the sky is black.
   const Light* light() const { return light_.get(); }
@@ -46,6 +50,12 @@ class SkyTable {
   // Column of an azimuth (rad), as a number with a fraction.
   double column(double azimuth) const;
   const float* floor(size_t index) const;
+  // Between which rows, columns and floors a place lies: the first ones, and how far it is to the second ones.
+  struct Place {
+    size_t row, column, next, floor;
+    float down, turn, rise;  // 0..1
+  };
+  Place place(double height, Dir d) const;
   void fill(size_t index, size_t row) const;
 
   double step_;

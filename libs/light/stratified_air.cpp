@@ -58,7 +58,10 @@ class StratifiedAir final : public Atmosphere {
 
   void path(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const override {
     const Vec3 end = from + d * distance;
-    if (!seen_from_above(from, d, end)) return integrate(from, d, distance, T, S, kAll);
+    if (!seen_from_above(from, d, end)) {
+      if (!pass_at_once(from, d, distance, T, S)) integrate(from, d, distance, T, S, kAll);
+      return;
+    }
     if (!outwards(end, -d, T)) transmittance(from, d, distance, T);
     view_->radiance(column_.shells.height(end), to_local(end, -d), S);
   }
@@ -83,7 +86,13 @@ class StratifiedAir final : public Atmosphere {
     return std::fabs(p.x) < kFar && std::fabs(p.y) < kFar;
   }
   // A direction in the frame of the local vertical; azimuths are the scene's.
-  Dir to_local(Vec3 p, Dir d) const { return Frame::with_tangent(column_.shells.up(p), {1, 0, 0}).to_local(d); }
+  Dir to_local(Vec3 p, Dir d) const {
+    const Dir up = column_.shells.up(p);
+    const double across = 1 - up.x * up.x;
+    if (across < 0.5) return Frame::with_tangent(up, {1, 0, 0}).to_local(d);
+    const double scale = 1 / std::sqrt(across), rise = dot(up, d);
+    return {(d.x - up.x * rise) * scale, (up.z * d.y - up.y * d.z) * scale, rise};
+  }
   // Whether a way comes through all of the air down to a place where the table of views holds, and not too slant.
   bool seen_from_above(Vec3 from, Dir d, Vec3 end) const {
     constexpr double kSlant = 0.17;
@@ -95,6 +104,34 @@ class StratifiedAir final : public Atmosphere {
     bool thermal, single, multiple;
   };
   static constexpr Which kAll{true, true, true};
+  // path() of most ways in and over a scene, in one loop a layer: where layers do not shine by themselves, under one
+  // beam that stands as over the scene's middle. False: not so.
+  bool pass_at_once(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S) const {
+    if (beams_.size() != 1 || (diffuse_ && diffuse_->low_sun())) return false;
+    bool all = true, any = false;
+    column_.shells.walk(from, d, distance, [&](const Shells::Piece& piece) {
+      const size_t l = piece.layer;
+      const auto beam = all && !emits_[l] ? once_.here(0, piece, from, d) : std::nullopt;
+      if (!(all = beam.has_value())) return;
+      const air_loops::Sources sources =
+          diffuse_ ? sources_of(l, from + d * (0.5 * (piece.near + piece.far)), d) : nothing();
+      const float* const k = extinction_of(piece);
+      const float near = share(l, piece.near_height), far = share(l, piece.far_height);
+      const auto pass = [&](auto thin, auto alone, size_t i, size_t n) {
+        air_loops::pass<thin.value, alone.value>(i, n, k, sources, near, far, *beam, T.data(), S.data());
+      };
+      const bool alone = !std::exchange(any, true);
+      thin_.over(l, std::max(piece.length, std::fabs(double{beam->grows})), [&](size_t i, size_t n, bool thin) {
+        using Yes = std::true_type;
+        using No = std::false_type;
+        if (alone)
+          thin ? pass(Yes{}, Yes{}, i, n) : pass(No{}, Yes{}, i, n);
+        else
+          thin ? pass(Yes{}, No{}, i, n) : pass(No{}, No{}, i, n);
+      });
+    });
+    return all && any;
+  }
   void integrate(Vec3 from, Dir d, double distance, std::span<float> T, std::span<float> S, Which which) const {
     std::fill(T.begin(), T.end(), 1.0f);
     std::fill(S.begin(), S.end(), 0.0f);
@@ -147,11 +184,12 @@ class StratifiedAir final : public Atmosphere {
     transmittance(from, d, std::numeric_limits<double>::infinity(), T);
     sky_->radiance(height, local, S);
   }
-  void sky_radiance(Vec3 from, Dir d, std::span<float> scratch, std::span<float> S) const override {
+  const float* sky_radiance(Vec3 from, Dir d, std::span<float> scratch, std::span<float> S) const override {
     const Dir local = to_local(from, d);
     const double height = column_.shells.height(from);
-    if (near_origin(from) && SkyTable::covers(height, local)) return sky_->radiance(height, local, S);
+    if (near_origin(from) && SkyTable::covers(height, local)) return sky_->drawn(height, local);
     integrate(from, d, std::numeric_limits<double>::infinity(), scratch, S, kAll);
+    return S.data();
   }
   bool bends() const override { return bent(std::numeric_limits<double>::infinity()); }
   const Light* sky() const override { return sky_->light(); }
@@ -240,19 +278,9 @@ class StratifiedAir final : public Atmosphere {
   // The source of a piece at its ends.
   void pass(const Shells::Piece& piece, Scratch& s, Vec3 middle, Dir d, Which which) const {
     const size_t l = piece.layer;
-    const double low = bounds_[l], thickness = bounds_[l + 1] - low;
-    const auto share = [&](double height) {
-      return static_cast<float>(std::clamp((height - low) / thickness, 0.0, 1.0));
-    };
-    const float near = share(piece.near_height), far = share(piece.far_height);
+    const float near = share(l, piece.near_height), far = share(l, piece.far_height);
     if (diffuse_ && which.multiple) {
-      const DiffuseSource::Corners corners = corners_of(middle, d);
-      air_loops::Sources sources;
-      for (size_t c = 0; c < 4; ++c) {
-        sources.low[c] = diffuse_->at(l, 0, corners.at[c]), sources.high[c] = diffuse_->at(l, 1, corners.at[c]);
-        sources.weight[c] = corners.weight[c];
-      }
-      air_loops::see_sources(bins_, sources, near, far, s.at_near.data(), s.at_far.data());
+      air_loops::see_sources(bins_, sources_of(l, middle, d), near, far, s.at_near.data(), s.at_far.data());
       if (diffuse_->low_sun())
         diffuse_->relight(l, dot(column_.shells.up(middle), beams_[0].direction), s.at_near.data(), s.at_far.data());
     } else {
@@ -264,6 +292,24 @@ class StratifiedAir final : public Atmosphere {
                             s.at_near.data(), s.at_far.data());
   }
 
+  // Where a height lies in a layer, 0..1.
+  float share(size_t l, double height) const {
+    return static_cast<float>(std::clamp((height - bounds_[l]) / (bounds_[l + 1] - bounds_[l]), 0.0, 1.0));
+  }
+  // What a layer scatters more than once.
+  air_loops::Sources sources_of(size_t l, Vec3 at, Dir d) const {
+    const DiffuseSource::Corners corners = corners_of(at, d);
+    air_loops::Sources sources;
+    for (size_t c = 0; c < 4; ++c) {
+      sources.low[c] = diffuse_->at(l, 0, corners.at[c]), sources.high[c] = diffuse_->at(l, 1, corners.at[c]);
+      sources.weight[c] = corners.weight[c];
+    }
+    return sources;
+  }
+  air_loops::Sources nothing() const {
+    const float* const dark = dark_.data();
+    return {{dark, dark, dark, dark}, {dark, dark, dark, dark}, {0, 0, 0, 0}};
+  }
   DiffuseSource::Corners corners_of(Vec3 at, Dir d) const {
     const Dir local = to_local(at, d);
     return diffuse_->corners(local.z, quick_azimuth(local));
@@ -273,6 +319,7 @@ class StratifiedAir final : public Atmosphere {
   std::vector<Beam> beams_;
   std::shared_ptr<const DiffuseSource> diffuse_;
   size_t bins_;
+  Row dark_ = Row(bins_, 0.0f);
   std::vector<double> bounds_;
   std::vector<BeamTable> tables_;
   BeamLight once_{column_, beams_, tables_};

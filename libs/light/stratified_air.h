@@ -7,7 +7,9 @@
 // Quicker where that is as good: what a beam scatters on a thin part of a way (depth below 0.25), or on the first part
 // of any under a sun near the scene's middle (local_air.h), the beam within 78 degrees of the zenith and straight,
 // comes from series and tables, within 2e-4 of itself (beam_light.h); transmittance of ways that leave the air at more
-// than 3 degrees over the level from the beams' tables, within 5e-6 (tests/physics/light/thin_air_test.cpp).
+// than 3 degrees over the level from the beams' tables, within 5e-6 (tests/physics/light/thin_air_test.cpp). The sky
+// that surfaces ask for, or that continuations meet, is one value of its table for each direction, drawn with the
+// weight that it would have between its neighbours.
 //
 // Segments are straight. With AirSpec::refraction the beams are bent on their way from outside to the places that they
 // light, in the air and, as transmittance to infinity, on surfaces (air/beam_table.h): what is left of them is that of

@@ -30,8 +30,10 @@ class AirPlaces {
   bool leave(uint32_t p) { return std::exchange(at_[p].here, false); }
   Vec3 place(uint32_t p) const { return at_[p].place; }
 
-  // AirVertices::chances.
-  AirVertices::PerKnot chances(Vec3 from, Dir d, double length) const { return vertices_.chances(from, d, length); }
+  // AirVertices::about_chances.
+  AirVertices::PerKnot chances(Vec3 from, Dir d, double length) const {
+    return vertices_.about_chances(from, d, length);
+  }
   // Puts path p to a place on a way, drawn for a knot; returns it. through: what the air on the way there leaves of
   // light. Nothing where nothing scatters. u: in [0, 1).
   std::optional<AirVertices::Place> go_to(uint32_t p, Vec3 from, Dir d, double length, double u, int knot,

@@ -190,12 +190,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
   const float* radiance = q.spectrum;
   if (!radiance) {  // its shape changes with direction
     const std::span<float> own = dense(p);
-    std::fill(own.begin(), own.end(), 0.0f);
-    if (of_air)
-      space_.sky_radiance(sight_rays_.rays()[i], transmission_, own);
-    else
+    if (of_air) {
+      radiance = space_.sky_radiance(sight_rays_.rays()[i], transmission_, own);
+      if (radiance != own.data()) throughputs_.give_back(p);
+    } else {
+      std::fill(own.begin(), own.end(), 0.0f);
       environment_.lights[q.light]->add(q.direction, sight_rays_.rays()[i].time, 1, own);
-    radiance = own.data();
+      radiance = own.data();
+    }
   }
   if (arrives && keep_first_ && q.light == environment_.sun && !node.event && is_first(node)) firsts_[p].sunlit = true;
   Contribution& c = contribution(p, q.light);

@@ -42,7 +42,7 @@ class LitAirSpace : public AirSpace {
     return flight;
   }
 
-  // The probabilities that light of each knot is scattered on a flight of a path from where it is.
+  // The probabilities that light of each knot is scattered on a flight of a path from where it is, not exactly.
   template <class L>
   AirVertices::PerKnot chances(const L& lane, double length) const {
     return places_.chances(lane.origin, lane.direction, length);

@@ -62,7 +62,7 @@ class NothingSpace {
   // What fills space all the way to the outside, as a light that nodes can ask for (Atmosphere::sky); null = none.
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }
-  void sky_radiance(const Ray&, std::span<float>, std::span<float>) const {}
+  const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   void cross(uint32_t, const Hit&, uint32_t, Dir) {}
   void clear_sight() {}
   Sight& sight() { return sight_; }
@@ -95,10 +95,9 @@ class AirSpace : public NothingSpace {
   Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
              std::span<float> emitted) const {
     const bool sky = lane.surfaces > 0 && length == std::numeric_limits<double>::infinity();
-    if (sky && !ends) {
-      air_.sky_radiance(lane.origin, lane.direction, through, emitted);
-      return {Arrival::met, {}, false, emitted.data()};
-    }
+    // In a mirror neighbouring directions would be told apart.
+    if (sky && !ends && lane.last_density > 0)
+      return {Arrival::met, {}, false, air_.sky_radiance(lane.origin, lane.direction, through, emitted)};
     if (sky)
       air_.skylight(lane.origin, lane.direction, through, emitted);
     else
@@ -108,9 +107,9 @@ class AirSpace : public NothingSpace {
   static constexpr uint16_t kEmitter = kFromAir;
   const Light* sky() const { return air_.sky(); }
   double sky_density(Dir d) const { return air_.sky_density(d); }
-  // What comes along a ray from outside. scratch, radiance: per bin.
-  void sky_radiance(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
-    air_.sky_radiance(ray.origin, ray.direction, scratch, radiance);
+  // What comes along a ray from outside (Atmosphere::sky_radiance).
+  const float* sky_radiance(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
+    return air_.sky_radiance(ray.origin, ray.direction, scratch, radiance);
   }
   bool dims(const Ray& ray, double distance, size_t, std::span<float> transmission, std::span<double>) {
     air_.transmittance(ray.origin, ray.direction, distance, transmission);

@@ -122,6 +122,9 @@ LightSpecPtr read_moon(const Params& p, const LightContext& context) {
     moon.geometry.phase = phase->as_number_in(0, 180, "degrees") * kDegree;
     moon.geometry.sun_longitude = moon.geometry.phase;
   }
+  if (moon.by_phase)
+    context.builtin(p, "the builtin spectrum of the sun, whose light the moon sends on,", "irradiance",
+                    solar_irradiance());
   return make_light(std::move(moon));
 }
 

@@ -43,7 +43,8 @@ LightSpecPtr read_sun(const Params& p, const LightContext& context) {
   SunSpec sun;
   const auto irradiance = p.find("irradiance");
   if (!irradiance || (irradiance->kind() == Params::Kind::scalar && irradiance->as_text() == "tsis")) {
-    sun.irradiance = solar_irradiance();
+    sun.irradiance =
+        context.builtin(irradiance.value_or(p), "the builtin spectrum of the sun", "irradiance", solar_irradiance());
     sun.at_1_au = true;
   } else {
     sun.irradiance = context.positive(*irradiance, "irradiance", "W/(m2 um)");

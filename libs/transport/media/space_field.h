@@ -33,7 +33,7 @@ class FieldSpace {
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }
-  void sky_radiance(const Ray&, std::span<float>, std::span<float>) const {}
+  const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   // The path goes through a surface to the other side.
   void cross(uint32_t p, const Hit& hit, uint32_t material, Dir in) {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "light/air_vertices.h"
 #include "light/stratified_air.h"
 
 namespace suite {
@@ -119,6 +120,117 @@ TEST(ThinAir, WaysOutAreThoseOfAllTheirLayers) {
   std::printf("ways out: %.1e of transmittance at worst; a milliradian beside: %.1e\n", worst, off);
   EXPECT_LT(worst, 5e-6);
   EXPECT_GT(off, 1e-3);
+}
+
+AirSpec diffuse_air() {
+  AirSpec air = hazy_air();
+  air.scattering = AirScattering::diffuse;
+  air.adjacency = false;
+  return air;
+}
+// Under the sun at 40 degrees, with light that is scattered more often.
+struct Diffuse {
+  Diffuse()
+      : state(some_bins(diffuse_air())),
+        sun(state.size(), 1),
+        air(make_stratified_air(diffuse_air(), state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}})) {}
+  SpectralState state;
+  std::vector<float> sun;
+  std::unique_ptr<const Atmosphere> air;
+};
+
+// path() goes through all at once, parts() piece by piece.
+TEST(ThinAir, WaysAtOnceAreTheSumOfTheirParts) {
+  const Diffuse lit;
+  const size_t n = lit.state.size();
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> u(0, 1);
+  std::vector<float> T(n), S(n), passed(n), thermal(n), single(n), multiple(n);
+  double worst = 0, least_more = 1;
+  size_t layers = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 from{2e3 * (u(random) - 0.5), 2e3 * (u(random) - 0.5), 1 + 1500 * u(random)};
+    const Dir d = dir_from_angles(std::acos(2 * u(random) - 1), 2 * kPi * u(random));
+    const double length = std::min(std::pow(10, 3.5 * u(random)), d.z < 0 ? (from.z - 0.5) / -d.z : 1e9);
+    lit.air->path(from, d, length, T, S);
+    ASSERT_TRUE(lit.air->parts(from, d, length, {passed, thermal, single, multiple}));
+    const Shells& shells = lit.air->shells();
+    layers = std::max(layers, shells.layer_of(shells.height(from + d * length)) - shells.layer_of(shells.height(from)));
+    for (size_t bin = 0; bin < n; ++bin) {
+      const double sum = double{thermal[bin]} + double{single[bin]} + double{multiple[bin]};
+      EXPECT_NEAR(T[bin], passed[bin], 2e-6);
+      // Where little is left of the beam, both are as exact as of what it would send undimmed (as above).
+      if (passed[bin] > 0.05) worst = std::max(worst, std::fabs(double{S[bin]} - sum) / sum);
+      if (sum > 0) least_more = std::min(least_more, double{multiple[bin]} / sum);
+    }
+  }
+  std::printf("ways at once: %.1e off their parts at worst\n", worst);
+  EXPECT_LT(worst, 5e-4);
+  EXPECT_LT(least_more, 0.5);
+  EXPECT_GT(layers, 1u);
+}
+
+// One of the values of the table for each direction; all together what lies between them.
+TEST(ThinAir, TheDrawnSkyIsTheSkyInTheMean) {
+  const Diffuse lit;
+  const size_t n = lit.state.size();
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> u(0, 1);
+  std::vector<float> T(n), S(n), kept(n);
+  constexpr int kDirections = 20000;
+  double worst = 0, biased = 0;
+  for (const double zenith_deg : {20.4, 41.3, 70.6, 85.5})
+    for (const double height : {3.0, 480.0}) {
+      std::vector<double> drawn(n), squares(n), exact(n);
+      for (int i = 0; i < kDirections; ++i) {
+        const Dir d = dir_from_angles((zenith_deg + 0.2 * u(random)) * kDegree, 0.31 + 0.01 * u(random));
+        const float* const one = lit.air->sky_radiance({0, 0, height}, d, T, kept);
+        lit.air->skylight({0, 0, height}, d, T, S);
+        for (size_t bin = 0; bin < n; ++bin) {
+          const double off = double{one[bin]} - double{S[bin]};
+          drawn[bin] += off / kDirections, squares[bin] += off * off / kDirections;
+          exact[bin] += double{S[bin]} / kDirections;
+        }
+      }
+      for (size_t bin = 0; bin < n; ++bin) {
+        const double error = std::sqrt(squares[bin] / kDirections);
+        if (!(error > 0)) continue;
+        worst = std::max(worst, std::fabs(drawn[bin]) / error);
+        biased = std::max(biased, std::sqrt(squares[bin]) / error);  // the same value for all
+      }
+    }
+  std::printf("drawn sky: %.1f standard errors off at worst\n", worst);
+  EXPECT_LT(worst, 4.5);  // two-sided 7e-6 each of some hundred
+  EXPECT_GT(biased, 100);
+}
+
+// By which paths remember their ways, beside the exact ones.
+TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
+  AirSpec spec = diffuse_air();
+  spec.adjacency = true;
+  const SpectralState state = some_bins(spec);
+  const std::vector<float> sun(state.size(), 1);
+  const auto air = make_stratified_air(spec, state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}});
+  const AirVertices* const vertices = air->vertices();
+  ASSERT_TRUE(vertices);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u(0, 1);
+  double worst = 0, largest = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const double cosine = 2 * u(random) - 1;
+    const Vec3 from{1e4 * u(random), 1e4 * u(random), std::pow(10, 4 * u(random))};
+    const Dir d = dir_from_angles(std::acos(cosine), 2 * kPi * u(random));
+    const double length = cosine > 0 && i % 2 ? std::numeric_limits<double>::infinity() : std::pow(10, 4.3 * u(random));
+    if (cosine < 0 && length * -cosine > from.z) continue;
+    const auto exact = vertices->chances(from, d, length), about = vertices->about_chances(from, d, length);
+    for (size_t k = 0; k < state.knots.size(); ++k) {
+      worst = std::max(worst, std::fabs(about[k] / exact[k] - 1));
+      largest = std::max(largest, exact[k]);
+    }
+  }
+  std::printf("chances: %.3f off at worst, up to %.2f\n", worst, largest);
+  EXPECT_LT(worst, 0.1);
+  EXPECT_GT(largest, 0.5);
 }
 
 }  // namespace
