@@ -32,6 +32,8 @@ double heap_in_use() {
   return static_cast<double>(m.uordblks) + static_cast<double>(m.hblkhd);
 }
 
+void give_back_freed() { malloc_trim(0); }
+
 void expect_large(void* data, size_t bytes) {
   if (bytes < (size_t{4} << 20)) return;
   const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));

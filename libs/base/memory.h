@@ -11,6 +11,9 @@ double available_memory();
 // Bytes that the program has allocated and not given back; 0 where the allocator does not tell (sanitizers).
 double heap_in_use();
 
+// Gives pages of what was freed among other things back to the system, where the allocator can.
+void give_back_freed();
+
 // Asks the system to back `bytes` bytes from `data` on, not yet touched, with large pages where it can: clearing and
 // mapping 4 kB at a time costs more than writing results does. Does nothing for less than 4 MiB.
 void expect_large(void* data, size_t bytes);

@@ -38,6 +38,7 @@ void CellContacts::add_line(std::span<const CellSide> sides) {
   std::vector<const CellSide*> by_begin, here;
   for (const CellSide& s : sides) by_begin.push_back(&s);
   std::stable_sort(by_begin.begin(), by_begin.end(), [](auto* a, auto* b) { return a->from < b->from; });
+  const size_t first = parts_.size();
   size_t next = 0;
   for (size_t k = 0; k + 1 < ends.size(); ++k) {
     const double low = ends[k], high = ends[k + 1], middle = (low + high) / 2;
@@ -53,25 +54,35 @@ void CellContacts::add_line(std::span<const CellSide> sides) {
         if (o->cell != s->cell) report(part, o->cell, share * length(part.b - part.a));
     }
   }
+  put_together(first);
 }
 
-std::vector<CellContact> CellContacts::found(std::span<const CellMiddle> middles) const {
-  std::vector<Part> parts = parts_;
-  std::stable_sort(parts.begin(), parts.end(),
+void CellContacts::put_together(size_t from) {
+  const auto begin = parts_.begin() + static_cast<std::ptrdiff_t>(from);
+  std::stable_sort(begin, parts_.end(),
                    [](const Part& x, const Part& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-  std::vector<CellContact> out;
-  for (size_t k = 0; k < parts.size();) {
-    Part sum{parts[k].a, parts[k].b, 0, {}, {}, {}};
-    for (; k < parts.size() && parts[k].a == sum.a && parts[k].b == sum.b; ++k) {
-      sum.length += parts[k].length, sum.middle += parts[k].middle;
-      sum.out_a += parts[k].out_a, sum.out_b += parts[k].out_b;
+  auto last = begin;
+  for (auto p = begin; p != parts_.end(); ++p) {
+    if (p == begin) continue;
+    if (p->a != last->a || p->b != last->b) {
+      *++last = *p;
+      continue;
     }
-    if (!(sum.length > 0)) continue;
-    const CellMiddle &a = middles[sum.a], &b = middles[sum.b];
-    const Vec3 contact = sum.middle / sum.length;
-    const Half from_a = half_of(a, contact, sum.out_a, sum.length), from_b = half_of(b, contact, sum.out_b, sum.length);
+    last->length += p->length, last->middle += p->middle, last->out_a += p->out_a, last->out_b += p->out_b;
+  }
+  if (begin != parts_.end()) parts_.erase(last + 1, parts_.end());
+}
+
+std::vector<CellContact> CellContacts::found(std::span<const CellMiddle> middles) && {
+  put_together(0);
+  std::vector<CellContact> out;
+  for (const Part& p : parts_) {
+    if (!(p.length > 0)) continue;
+    const CellMiddle &a = middles[p.a], &b = middles[p.b];
+    const Vec3 contact = p.middle / p.length;
+    const Half from_a = half_of(a, contact, p.out_a, p.length), from_b = half_of(b, contact, p.out_b, p.length);
     const double distance = std::fmax(from_a.distance + from_b.distance, kNearest * (a.size + b.size));
-    if (distance > 0) out.push_back({sum.a, sum.b, (from_a.across + from_b.across) / 2 / distance});
+    if (distance > 0) out.push_back({p.a, p.b, (from_a.across + from_b.across) / 2 / distance});
   }
   return out;
 }

@@ -41,7 +41,7 @@ class CellContacts {
   // A part of the cell's side that another cell lies behind, told from this side alone; the other tells its own.
   void add(const CellSide& side, uint32_t other) { report(side, other, length(side.b - side.a)); }
   // middles: by cell. Cells touch once: what several lines have of a pair is put together.
-  std::vector<CellContact> found(std::span<const CellMiddle> middles) const;
+  std::vector<CellContact> found(std::span<const CellMiddle> middles) &&;
 
  private:
   struct Part {  // of a contact, as seen by one of both
@@ -50,6 +50,7 @@ class CellContacts {
     Vec3 middle, out_a, out_b;  // of a's and b's reports, times length; zero of the other's
   };
   void report(const CellSide& side, uint32_t other, double length);
+  void put_together(size_t from);  // parts of the same pair, of those from there on
   std::vector<Part> parts_;
 };
 

@@ -363,6 +363,9 @@ std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material
     if (elements_[e].material == material) return e;
     if (!best || elements_[e].area > elements_[*best].area) best = e;
   }
+  // Elements ascend with their cells, and so do those that were left out.
+  const auto of_cell = std::ranges::equal_range(left_out_, *cell, {}, &LeftOut::cell);
+  if (std::ranges::find(of_cell, material, &LeftOut::material) != of_cell.end()) return std::nullopt;
   return best;
 }
 

@@ -63,8 +63,8 @@ class Elements {
   Hit point(size_t element, const PointDraw& draw) const;
   // Places (m) all over the element's cell, so many on each instance that it is of, one instance after the other.
   std::vector<Vec3> places_by_instance(size_t element, const SampleStream& stream, uint32_t each) const;
-  // The element of a material at a place; nothing where none is (what moves). Where the cell has none
-  // of this material, as at the edges of maps, the largest one of the cell.
+  // The element of a material at a place; nothing where none is (what moves, what was left out). Where the cell never
+  // had one of this material, as at the edges of maps, the largest one of the cell.
   std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;
   std::optional<uint32_t> at(const Hit& hit, uint32_t material) const;
   // The place as a hit; nothing where its instance has no elements.
@@ -78,6 +78,14 @@ class Elements {
 
   // Leaves out those that are not kept, by element: their places have none. The others keep their order.
   void keep(const std::vector<bool>& kept);
+  // The number that an element had among all.
+  uint32_t number(size_t element) const {
+    return numbers_.empty() ? static_cast<uint32_t>(element) : numbers_[element];
+  }
+  struct LeftOut {
+    uint32_t number, cell, material;
+  };
+  const std::vector<LeftOut>& left_out() const { return left_out_; }  // ascending
 
   size_t budget() const { return budget_; }  // as asked
   double total_area() const { return total_area_; }
@@ -157,6 +165,8 @@ class Elements {
   std::vector<uint32_t> group_of_cell_;
   std::vector<uint32_t> first_element_;  // by cell; cells + 1
   std::vector<HeatElement> elements_;
+  std::vector<uint32_t> numbers_;  // among all, where some were left out
+  std::vector<LeftOut> left_out_;
   double total_area_ = 0;
   size_t moving_ = 0, shared_cells_ = 0;
 };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "heat/cell_contacts.h"
 #include "heat/elements.h"
@@ -21,44 +20,71 @@ class Elements::GridTouching {
       const double scale = size_of(to_world_);
       middles_.push_back({world(cell.face, middle), std::sqrt(grid_.area(c) * scale)});
     }
+    std::vector<Line> lines;
     for (uint32_t c = 0; c < grid_.cells.size(); ++c)
-      for (int k = 0; k < 4; ++k) add_side(c, k);
-    for (const auto& [line, sides] : lines_) contacts_.add_line(sides);
+      for (int k = 0; k < 4; ++k)
+        if (const Side side = side_of(c, k); side.still > 0 && side.still < 1)
+          lines.push_back({{grid_.cells[c].face, k / 2, std::llround(std::ldexp(side.still, 40))}, c, k});
+        else
+          add_border(c, side);
+    std::ranges::stable_sort(lines, {}, &Line::key);
+    std::vector<CellSide> sides;
+    for (size_t k = 0; k < lines.size();) {
+      const std::array<int64_t, 3> key = lines[k].key;
+      sides.clear();
+      for (; k < lines.size() && lines[k].key == key; ++k)
+        each_part(lines[k].cell, side_of(lines[k].cell, lines[k].which),
+                  [&](const CellSide& s) { sides.push_back(s); });
+      contacts_.add_line(sides);
+    }
   }
-  std::vector<CellContact> found() const { return contacts_.found(middles_); }
+  std::vector<CellContact> found() && { return std::move(contacts_).found(middles_); }
 
  private:
   static constexpr size_t kParts = 8;  // of a side: chords; on a border each is asked what lies behind it
+  struct Side {                        // in the coordinates of its face
+    double still, low, up;
+    bool by_x;  // the coordinate that changes
+    Vec2 at(double x) const { return by_x ? Vec2{x, still} : Vec2{still, x}; }
+  };
+  struct Line {
+    std::array<int64_t, 3> key;  // face, coordinate that stands still, its value
+    uint32_t cell;
+    int which;
+  };
 
   Vec3 world(size_t face, Vec2 p) const { return to_world_.point(grid_.faces.point(face, p.x, p.y).position); }
 
   // 0, 1: low and high x; 2, 3: low and high y.
-  void add_side(uint32_t c, int which) {
-    const Grid::Cell& cell = grid_.cells[c];
-    const bool by_x = which >= 2, high = which % 2 == 1;
-    const double still = by_x ? (high ? cell.high.y : cell.low.y) : (high ? cell.high.x : cell.low.x);
-    const double low = by_x ? cell.low.x : cell.low.y, up = by_x ? cell.high.x : cell.high.y;
-    const auto at = [&](double x) { return by_x ? Vec2{x, still} : Vec2{still, x}; };
-    const auto line = std::array<int64_t, 3>{cell.face, which / 2, std::llround(std::ldexp(still, 40))};
+  Side side_of(uint32_t c, int which) const {
+    const auto& [face, low, high] = grid_.cells[c];
+    return which < 2 ? Side{which == 0 ? low.x : high.x, low.y, high.y, false}
+                     : Side{which == 2 ? low.y : high.y, low.x, high.x, true};
+  }
+
+  template <class Use>
+  void each_part(uint32_t c, const Side& side, const Use& use) const {
+    const size_t face = grid_.cells[c].face;
     for (size_t k = 0; k < kParts; ++k) {
-      const auto share = [&](double parts) { return low + (up - low) * parts / kParts; };
-      CellSide s{c, share(double{1} * static_cast<double>(k)), share(static_cast<double>(k) + 1), {}, {}, {}};
-      s.a = world(cell.face, at(s.from)), s.b = world(cell.face, at(s.to));
-      const Vec3 side = s.b - s.a, in = middles_[c].place - (s.a + s.b) / 2;
-      const double l = length(side);
+      const auto share = [&](double parts) { return side.low + (side.up - side.low) * parts / kParts; };
+      CellSide s{c, share(static_cast<double>(k)), share(static_cast<double>(k) + 1), {}, {}, {}};
+      s.a = world(face, side.at(s.from)), s.b = world(face, side.at(s.to));
+      const Vec3 along = s.b - s.a, in = middles_[c].place - (s.a + s.b) / 2;
+      const double l = length(along);
       if (!(l > 1e-9 * middles_[c].size)) continue;  // at a pole
-      const Vec3 across = in - side * (dot(in, side) / (l * l));
+      const Vec3 across = in - along * (dot(in, along) / (l * l));
       if (!(length(across) > 0)) continue;
       s.out = across / -length(across);
-      if (still > 0 && still < 1)
-        lines_[line].push_back(s);
-      else
-        add_border(s, cell.face, at((s.from + s.to) / 2));
+      use(s);
     }
   }
 
+  void add_border(uint32_t c, const Side& side) {
+    each_part(c, side, [&](const CellSide& s) { add_behind(s, grid_.cells[c].face, side.at((s.from + s.to) / 2)); });
+  }
+
   // A little further than the face goes: beside it, or on the next face around an edge.
-  void add_border(const CellSide& s, size_t face, Vec2 place) {
+  void add_behind(const CellSide& s, size_t face, Vec2 place) {
     const PrimitiveFaces::Point on = grid_.faces.point(face, place.x, place.y);
     const Vec3 p = to_world_.point(on.position), normal = normalized(to_world_.normal(on.normal));
     const double step = 1e-6 * middles_[s.cell].size;
@@ -77,7 +103,6 @@ class Elements::GridTouching {
   const Affine3& to_world_;
   Affine3 to_local_;
   std::vector<CellMiddle> middles_;
-  std::map<std::array<int64_t, 3>, std::vector<CellSide>> lines_;  // by face, coordinate that stands still, its value
   CellContacts contacts_;
 };
 

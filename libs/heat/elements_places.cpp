@@ -1,4 +1,6 @@
 // Elements that are left, and places on them as hits.
+#include <algorithm>
+
 #include "base/error.h"
 #include "heat/elements.h"
 
@@ -8,12 +10,18 @@ void Elements::keep(const std::vector<bool>& kept) {
   SUITE_CHECK_EQ(kept.size(), elements_.size());
   std::vector<HeatElement> left;
   std::vector<uint32_t> first{0};
+  std::vector<uint32_t> numbers;
   total_area_ = 0;
   for (size_t c = 0; c + 1 < first_element_.size(); ++c) {
     for (uint32_t e = first_element_[c]; e < first_element_[c + 1]; ++e)
-      if (kept[e]) left.push_back(elements_[e]), total_area_ += elements_[e].area;
+      if (kept[e])
+        left.push_back(elements_[e]), numbers.push_back(number(e)), total_area_ += elements_[e].area;
+      else
+        left_out_.push_back({number(e), elements_[e].cell, elements_[e].material});
     first.push_back(static_cast<uint32_t>(left.size()));
   }
+  std::ranges::sort(left_out_, {}, &LeftOut::number);
+  numbers_ = std::move(numbers);
   elements_ = std::move(left), first_element_ = std::move(first);
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "heat/heat_audit.h"
 #include "heat/heat_notes.h"
@@ -327,6 +328,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   HeatResult result;
   SurfaceHistory h =
       balanced(groups, lateral.neighbours, exchange, scene.faces.outsides(), loads, weather, spec, result.past_error);
+  give_back_freed();
   keep(h, loads, exchange, found.sun, weather, spec, result);
   result.assumed = scene.optics.assumed;
   result.notes = heat_notes(scene, found, !weather.humid);
@@ -336,6 +338,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   for (const std::string& note : {apart_note(lateral), visitors_note(scene, exchange, h)})
     if (!note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
+  give_back_freed();
   tell_done(progress, 1);
   begin(progress, "errors", 1);
   const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo, lateral.neighbours};

@@ -15,6 +15,9 @@ class HeatFaces {
 
   size_t size() const { return element_.size(); }
   uint32_t element(size_t face) const { return element_[face]; }
+  // The number that the face would have if no element had been left out: what its paths are drawn by, so that they are
+  // the same.
+  uint32_t number(size_t face) const { return numbers_.empty() ? static_cast<uint32_t>(face) : numbers_[face]; }
   bool is_back(size_t face) const { return face >= fronts_; }
   uint32_t back_of(uint32_t element) const { return back_[element]; }  // kNone: not open
 
@@ -47,6 +50,7 @@ class HeatFaces {
   std::vector<bool> has_heat_;
   size_t fronts_;
   std::vector<uint32_t> element_, back_, own_, materials_;
+  std::vector<uint32_t> numbers_;  // empty: the faces' own
 };
 
 }  // namespace suite

@@ -29,14 +29,15 @@ double HeatField::kelvin(const HeatedPlace& place, double time) const {
   if (!element) return result_->air_at(time);
   const double kelvin = result_->kelvin_at(*element, time);
   if (!points_ || !points_->tells(*element, time)) return kelvin;
-  return std::clamp(kelvin + points_->above(*element, place, time), range_[0], range_[1]);
+  return std::clamp(kelvin + points_->above(*element, place, time).value_or(0), range_[0], range_[1]);
 }
 
 double HeatField::error(const HeatedPlace& place, double time) const {
   const std::optional<uint32_t> element = elements_->at(place, place.material);
   if (!element) return NAN;
   HeatErrors errors = result_->errors_at(*element, time);
-  if (points_ && points_->tells(*element, time)) errors.size = 0;
+  // Points that do not settle have their element's temperature, and its error.
+  if (points_ && points_->tells(*element, time) && points_->above(*element, place, time)) errors.size = 0;
   return errors.total();
 }
 

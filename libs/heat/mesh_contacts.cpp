@@ -71,10 +71,10 @@ class MeshCells::Touching {
     lines(edges_, [](const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; });
   }
 
-  std::vector<CellContact> found() const {
+  std::vector<CellContact> found() && {
     std::vector<CellMiddle> middles;
     for (uint32_t c = 0; c < m_.size(); ++c) middles.push_back(middle_of(c));
-    return contacts_.found(middles);
+    return std::move(contacts_).found(middles);
   }
 
  private:

@@ -52,8 +52,15 @@ Vec2 numbers_of(const HeatedPlace& place) {
 
 }  // namespace
 
+static std::atomic<uint64_t> numbers = 1;
+
 PointHeat::PointHeat(const HeatScene& scene, const WeatherLoads& weather, const HeatResult& result)
-    : scene_(scene), weather_(weather), result_(result), paths_{1, 1, 1}, air_(air_by_moment(weather)) {
+    : number_(numbers++),
+      scene_(scene),
+      weather_(weather),
+      result_(result),
+      paths_{1, 1, 1},
+      air_(air_by_moment(weather)) {
   if (!result.periodic)
     throw Error("points are told apart from elements in a span that repeats alone",
                 "'repeats: true', or no final_gather");
@@ -86,10 +93,27 @@ std::unique_ptr<SunlightWave> PointHeat::take_wave() const {
   return wave;
 }
 
-double PointHeat::above(uint32_t element, const HeatedPlace& place, double time) const {
+std::optional<double> PointHeat::above(uint32_t element, const HeatedPlace& place, double time) const {
+  struct Last {
+    uint64_t of = 0;
+    uint32_t element = 0, instance = 0, triangle = 0;
+    Vec3 position;
+    double time = 0;
+    bool operator==(const Last&) const = default;
+  };
+  thread_local Last last;
+  thread_local std::optional<double> answer;
+  const Last asked{number_, element, place.instance, place.triangle, place.position, time};
+  if (asked == last) return answer;
+  answer = found(element, place, time);
+  last = asked;
+  return answer;
+}
+
+std::optional<double> PointHeat::found(uint32_t element, const HeatedPlace& place, double time) const {
   const auto begun = std::chrono::steady_clock::now();
   const std::optional<Hit> hit = scene_.elements.hit_at(place);
-  if (!hit) return 0;
+  if (!hit) return std::nullopt;
   std::unique_ptr<SunlightWave> wave = take_wave();
   const size_t n = result_.moments;
   std::vector<float> more(n), kelvin(n);
@@ -107,7 +131,8 @@ double PointHeat::above(uint32_t element, const HeatedPlace& place, double time)
   if (!settled) unsettled_ += 1;
   nanoseconds_ += static_cast<uint64_t>(
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begun).count());
-  return settled ? result_.between_moments(kelvin, time) : 0;
+  if (!settled) return std::nullopt;
+  return result_.between_moments(kelvin, time);
 }
 
 std::vector<float> straight_sunlight(const HeatScene& scene, const WeatherLoads& weather, const HeatResult& result,

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "heat/heat_balance.h"
 #include "heat/point_response.h"
@@ -27,8 +28,9 @@ class PointHeat {
   ~PointHeat();
   // Whether a place on an element at a time (s) is told apart from it.
   bool tells(uint32_t element, double time) const;
-  // K, by how much it is warmer. From any thread.
-  double above(uint32_t element, const HeatedPlace& place, double time) const;
+  // K, by how much it is warmer; nothing where that does not settle, or the place is none. From any thread; what one
+  // asks twice running is found once.
+  std::optional<double> above(uint32_t element, const HeatedPlace& place, double time) const;
   // Places asked so far, and the seconds of all threads that took.
   uint64_t asked() const { return asked_; }
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
@@ -36,7 +38,9 @@ class PointHeat {
   uint64_t unsettled() const { return unsettled_; }
 
  private:
+  std::optional<double> found(uint32_t element, const HeatedPlace& place, double time) const;
   std::unique_ptr<SunlightWave> take_wave() const;
+  const uint64_t number_;  // among all that there were
   const HeatScene scene_;
   const WeatherLoads& weather_;
   const HeatResult& result_;

@@ -32,7 +32,6 @@ SlabBatch::SlabBatch(std::vector<SlabLayer> layers, size_t elements, SlabBatchOp
   grid_ = make_slab_grid(layers_, options.resolution, options.fast_below);
   const size_t n = nodes(), blocks = (elements_ + kLanes - 1) / kLanes;
   now_.resize(blocks * n);
-  end_.resize(blocks * n);
   for (auto* v : {&middle_, &gain_, &right_, &heat_}) v->resize(n);
   matrix_.resize(n);
   for (auto* v : {&top_mean_, &bottom_mean_, &estimate_}) v->resize(elements_);
@@ -312,6 +311,7 @@ void SlabBatch::keep_estimates(size_t block, const Lanes* errors) {
 
 double SlabBatch::attempt(double dt, const BatchLoads& loads) {
   loads(t_, t_ + dt, *this, top_lines_, bottom_lines_);
+  end_.resize(now_.size());
   check_lines(top_lines_, "top");
   check_lines(bottom_lines_, "bottom");
   if (neighbours_) {

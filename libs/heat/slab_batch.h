@@ -54,6 +54,8 @@ class SlabBatch {
   void start(double t, double kelvin);
   // Sets the time alone: the same temperatures begin another period.
   void restart(double t) { t_ = t; }
+  // Gives memory back that the next step takes again.
+  void rest() { std::vector<Lanes>().swap(end_); }
   void set_kelvin(size_t element, size_t node, double kelvin);
 
   // One step (s, > 0) of all elements. Error: loads that are not finite, or negative where they must not be.

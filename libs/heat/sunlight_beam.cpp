@@ -41,7 +41,7 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
 
 SampleStream SunlightWave::stream(uint32_t slot, uint64_t purpose) const {
   const uint32_t each = options_.blocks * options_.paths;
-  return SampleStream(options_.seed, purpose, slot / each, slot % each / options_.paths);
+  return SampleStream(options_.seed, purpose, faces_.number(slot / each), slot % each / options_.paths);
 }
 
 Dir SunlightWave::towards_sun(const Watch& watch, double t) const {
@@ -224,7 +224,7 @@ void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const Po
       const double off = takes[k][p] - mean[p];
       variance += off * off / static_cast<double>(n);
       for (uint32_t c = 0; c < kContrasts; ++c)
-        sums[c][p] += hash_of(options_.seed, watches.front().face, k, c) & 1 ? off : -off;
+        sums[c][p] += hash_of(options_.seed, faces_.number(watches.front().face), k, c) & 1 ? off : -off;
     }
   for (const auto& contrast : sums)
     for (const double v : contrast) met += v * v / kContrasts;

@@ -133,7 +133,8 @@ void SunlightWave::ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t 
   for (uint32_t j = 0; j < joins_; ++j) {
     // Even over the joins of a block's paths, so that each has the whole day, shifted at random for each surface on the
     // way.
-    const double shift = unit_double(hash_of(options_.seed, path.slot / options_.paths, n));
+    const uint32_t of_block = faces_.number(face) * options_.blocks + within / options_.paths;
+    const double shift = unit_double(hash_of(options_.seed, of_block, n));
     double at = (sample(path.slot) * joins_ + j + number(0, j)) / (1.0 * options_.paths * joins_) + shift;
     at -= std::floor(at);
     const uint32_t moment = sunny_[std::min(sunny_.size() - 1, static_cast<size_t>(at * count))];

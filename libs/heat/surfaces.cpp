@@ -232,7 +232,9 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
   const SurfaceLoads& loads = through.loads;
   const size_t count = part.members.size();
   const bool open = !group_of(part, 0).back_rows.empty();
-  if (!through.options.periodic || through.first) part.next = part.batch;
+  // A span that repeats begins anywhere, others each time where they are.
+  if (through.options.periodic && through.first) part.next = std::move(part.batch);
+  if (!through.options.periodic) part.next = part.batch;
   SlabBatch& batch = *part.next;
   batch.restart(loads.begin);
   const Received received(*this, part, through);
@@ -277,6 +279,7 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
       for (size_t begin = 0; begin < values->size(); begin += through.moments)
         (*values)[begin] = (*values)[begin + through.moments - 1];
     hand_over();
+    batch.rest();
     return;
   }
   const SlabBatch before = batch;
@@ -287,6 +290,7 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
   }
   hand_over();
   for (size_t i = 0; i < count; ++i) stored_[front_row(part, i)] = taken_up(before, batch, i);
+  batch.rest();
 }
 
 void CoupledSurfaces::answer_massless(const Part& part, const Through& through, Histories& emitted) const {

@@ -1,10 +1,9 @@
 #include "trace/tile_memory.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "trace/embree_internal.h"
@@ -225,7 +224,7 @@ bool TileMemory::make_room(uint64_t bytes, const Tile& tile, const TileState& ow
       changed_.wait_for(lock, std::chrono::microseconds(200));
   }
   // Freed blocks lie among others; the allocator gives their pages back when asked.
-  if (dropped) malloc_trim(0);
+  if (dropped) give_back_freed();
   return true;
 }
 

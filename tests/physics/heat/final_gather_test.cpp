@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "heat/heat_field.h"
 #include "heat/point_heat.h"
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
@@ -68,7 +69,7 @@ Off off_fine_elements(double kelvin, bool beam_alone) {
                                 0};
         const uint32_t in = coarse.kit.elements->at(place, 0).value();
         const double T = coarse.result.kelvin_at(in, t);
-        element += T / kPoints, told += (T + (points.tells(in, t) ? points.above(in, place, t) : 0)) / kPoints;
+        element += T / kPoints, told += (T + (points.tells(in, t) ? points.above(in, place, t).value() : 0)) / kPoints;
       }
       off.points += std::pow(told - exact, 2), off.elements += std::pow(element - exact, 2), ++count;
     }
@@ -93,6 +94,39 @@ TEST(FinalGather, TheRestIsThatOfTheElement) {
   const Off off = off_fine_elements(295, false);
   EXPECT_LT(off.points, 0.3);
   EXPECT_GT(off.elements, 1);
+}
+
+// A point whose temperature does not settle, as under a beam of 1e7 W/m2, has its element's and how much places differ
+// from that as an error; others do not.
+TEST(FinalGather, WhatDoesNotSettleHasTheErrorOfItsElement) {
+  Solved s(16, 64, summer_weather(), 295, false);
+  s.result.straight = straight_sunlight(s.scene(), s.loads, s.result, s.spec);
+  const double t = 12 * 3600;
+  for (const bool settles : {true, false}) {
+    if (!settles)
+      for (float& w : s.result.straight) w = -1e7f;
+    const PointHeat points(s.scene(), s.loads, s.result);
+    const HeatField field(std::shared_ptr<const Elements>(std::shared_ptr<void>(), s.kit.elements.get()),
+                          std::shared_ptr<const HeatResult>(std::shared_ptr<void>(), &s.result),
+                          std::shared_ptr<const PointHeat>(std::shared_ptr<void>(), &points));
+    size_t told = 0;
+    for (uint32_t e = 0; e < s.kit.elements->size(); ++e) {
+      if (!points.tells(e, t)) continue;
+      const Hit hit = s.kit.elements->point(e, {SampleStream(7, 0, e), 0, 0});
+      const HeatedPlace place{hit.position, hit.normal, s.kit.tracer->object(hit.object).instance, hit.triangle, 0};
+      HeatErrors errors = s.result.errors_at(e, t);
+      if (settles) errors.size = 0;
+      EXPECT_EQ(points.above(e, place, t).has_value(), settles);
+      EXPECT_EQ(field.error(place, t), errors.total());
+      if (!settles) {
+        EXPECT_EQ(field.kelvin(place, t), s.result.kelvin_at(e, t));
+      }
+      ++told;
+    }
+    EXPECT_GT(told, 0u);
+    EXPECT_EQ(points.asked(), told) << "the same place twice running";
+    EXPECT_EQ(points.unsettled(), settles ? 0u : told);
+  }
 }
 
 }  // namespace
