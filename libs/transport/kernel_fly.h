@@ -369,7 +369,9 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::emit(uint32_t p) {
   if constexpr (Surfaces::kDense > 0) {
     if (!surfaces_.warm(p)) return;
-    const auto emission = surfaces_.emission(p, -paths_[p].direction, dense(p));
+    const std::span<float> memory = dense(p);
+    const auto emission = surfaces_.emission(p, -paths_[p].direction, memory);
+    space_.emit_within(p, memory);
     Contribution& c = contribution(p, kFromMatter);
     c.order -= 1;  // not scattered by what emits
     c.factor = emission.emissivity;

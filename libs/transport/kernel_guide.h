@@ -21,7 +21,8 @@ namespace suite {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQuestion& q, const RefractedWay& way) {
   if constexpr (kGuides) {
-    constexpr double kMostAtSurfaces = 0.8, kMostInMedia = 0.5;
+    // A path across to that light has many places to be scattered back from: each takes a little of it.
+    constexpr double kAtSurfaces = 0.8, kAlong = 0.5, kAcross = 0.1;
     const NodeAt& node = nodes_[q.node];
     Guide& guide = guides_[q.node];
     if (!q.end.far || guide.share > 0) return;
@@ -32,7 +33,9 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQ
     }
     const double depth = space_.scattering(node.path) * way.at[0].length;
     const double forward = std::max(0.0, space_.asymmetry(node.path));
-    guide = {-(node.event ? kMostInMedia : kMostAtSurfaces) * forward * std::expm1(-depth), way.direction};
+    const double along = std::max(0.0, dot(paths_[node.path].direction, way.direction));
+    const double most = node.event ? kAcross + (kAlong - kAcross) * along : kAtSurfaces;
+    guide = {-most * forward * std::expm1(-depth), way.direction};
   }
 }
 

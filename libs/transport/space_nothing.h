@@ -59,6 +59,8 @@ class NothingSpace {
     return lane.origin;
   }
   double index(uint32_t) const { return 1; }
+  // What path p sees a surface emit into empty space, made that of one in the matter that fills space there. Per bin.
+  void emit_within(uint32_t, std::span<float>) const {}
   // What fills space all the way to the outside, as a light that nodes can ask for (Atmosphere::sky); null = none.
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }

@@ -108,6 +108,13 @@ void FieldSpace::remember(uint32_t p, Vec3 place) {
   set_rates(e);
 }
 
+void FieldSpace::emit_within(uint32_t p, std::span<float> emission) const {
+  const uint32_t medium = stacks_[p].medium(ambient_);
+  if (medium == kNone) return;
+  const std::vector<float>& squared = optics_.media()[medium].index_squared;
+  for (size_t i = 0; i < emission.size(); ++i) emission[i] *= squared[i];
+}
+
 void FieldSpace::stand(uint32_t p) {
   ScatterPlace& e = events_[p];
   e.contents.clear();

@@ -30,6 +30,8 @@ class FieldSpace {
   Flight fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length, bool ends,
              std::span<float> through, std::span<float> emitted);
   double index(uint32_t p) const { return index_of(stacks_[p].medium(ambient_)); }
+  // Times the squared index (Planck's law in matter, as of the media themselves).
+  void emit_within(uint32_t p, std::span<float> emission) const;
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }
