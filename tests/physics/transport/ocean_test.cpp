@@ -11,6 +11,7 @@
 #include "optics/phases/sea_particles.h"
 #include "tests/support/media_kit.h"
 #include "tests/support/ocean_reference.h"
+#include "tests/support/ring_light.h"
 
 namespace suite::test {
 namespace {
@@ -171,6 +172,27 @@ TEST(Ocean, RendersAsTheReferenceUnderTheSun) {
       std::printf("sun, problem %d, b/c %.1f\n", petzold ? 2 : 1, albedo);
       expect_all(ocean(petzold, albedo), sources, 1, reference.under_sun(1));
     }
+}
+
+// The same without asking, met by chance: the sun turned about the vertical, a ring from 58 to 62 degrees. For what is
+// compared that is the same. b / c of 0.2 would take hours.
+TEST(Ocean, RendersParticlesAsTheReferenceUnderARing) {
+  if (!long_run()) GTEST_SKIP() << "minutes until it is resolved";
+  const double inner = 58 * kDegree, outer = 62 * kDegree, high = std::cos(inner), low = std::cos(outer);
+  RingSpec ring;
+  ring.inner = inner, ring.outer = outer;
+  ring.radiance = Curve::constant(1 / (kPi * (high * high - low * low)));
+  SourceSpecs sources;
+  sources.add({std::make_shared<const RingLight>(ring)});
+  // Gauss's two points in the squared cosine, which is what the flux goes by.
+  OceanLight truth;
+  for (const double side : {-1.0, 1.0}) {
+    const double mu2 = 0.5 * (high * high + low * low) + side / std::sqrt(3.0) * 0.5 * (high * high - low * low);
+    const OceanLight l = OceanReference(phase_of(true), 0.9, kIndex, std::sqrt(mu2), 16).under_sun(1);
+    truth.down += 0.5 * l.down, truth.up += 0.5 * l.up, truth.nadir += 0.5 * l.nadir;
+  }
+  std::printf("ring, problem 2, b/c 0.9\n");
+  expect_all(ocean(true, 0.9), sources, 1, truth);
 }
 
 }  // namespace
