@@ -60,6 +60,15 @@ double taken_up(const SlabBatch& before, const SlabBatch& after, size_t element)
   return stored;
 }
 
+// The state of a sweep: a span that repeats begins anywhere, others each time where they are.
+template <class Part>
+SlabBatch& begun(Part& part, bool periodic, bool first, double time) {
+  if (periodic && first) part.next = std::move(part.batch);
+  if (!periodic) part.next = part.batch;
+  part.next->restart(time);
+  return *part.next;
+}
+
 bool is_fixed(const FaceTraits& face) {
   return face.convection && !face.convection->asks_surface() && face.wetness == 0;
 }
@@ -232,11 +241,7 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
   const SurfaceLoads& loads = through.loads;
   const size_t count = part.members.size();
   const bool open = !group_of(part, 0).back_rows.empty();
-  // A span that repeats begins anywhere, others each time where they are.
-  if (through.options.periodic && through.first) part.next = std::move(part.batch);
-  if (!through.options.periodic) part.next = part.batch;
-  SlabBatch& batch = *part.next;
-  batch.restart(loads.begin);
+  SlabBatch& batch = begun(part, through.options.periodic, through.first, loads.begin);
   const Received received(*this, part, through);
   size_t step = 0;
   const BatchLoads lines = [&](double begin, double, const SlabBatch& now, FaceLines& top, FaceLines& bottom) {

@@ -159,6 +159,57 @@ TEST(Elements, SameSceneSameFingerprint) {
   EXPECT_NE(a.elements->fingerprint(), finer.elements->fingerprint());
 }
 
+// Elements that are left take the same paths as with all, whatever their numbers are then, backs too.
+TEST(Elements, LeavingSomeOutChangesNoPathsOfOthers) {
+  const HeatKit kit(mixed(), 3000);
+  std::vector<bool> kept(kit.elements->size());
+  for (size_t e = 0; e < kept.size(); ++e) kept[e] = e % 3 != 1;
+  Elements some(*kit.tracer, kit.optics.has_heat, 3000, 0);
+  some.keep(kept);
+  const HeatFaces few(some, kit.optics);
+  const PathOptions paths{2, 2, 3};
+  const SunCourse course = still_sun(normalized(Vec3{1, 0.3, 1}), 0.005, {0, 600, 1200});
+  const Sunlight all = kit.sunlight(course, paths),
+                 left = trace_sunlight(*kit.tracer, some, few, kit.optics, course, paths);
+  size_t backs = 0, lit = 0;
+  for (size_t f = 0; f < few.size(); ++f) {
+    const size_t was = few.number(f);
+    EXPECT_EQ(kit.faces->is_back(was), few.is_back(f));
+    EXPECT_EQ(kit.faces->element(was), some.number(few.element(f)));
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(left.beam[3 * f + k], all.beam[3 * was + k]) << f;
+    for (size_t p = 0; p < kSkyPatches; ++p)
+      EXPECT_EQ(left.sky[f * kSkyPatches + p], all.sky[was * kSkyPatches + p]) << f;
+    backs += few.is_back(f), lit += left.beam[3 * f] > 0;
+  }
+  EXPECT_GE(backs, 2u);
+  EXPECT_GT(lit, 10u);
+}
+
+// In a cell of two materials of a map, places of the one that was left out are not the other's.
+TEST(Elements, LeftOutOfACellOfAMap) {
+  HeatedScene s;
+  const uint32_t a = s.heated(0.9, heat()), b = s.heated(0.5, heat());
+  s.mesh(quad(1, 0, a));
+  ClassMap map;
+  map.name = "halves", map.width = 2, map.height = 1, map.classes = {0, 1}, map.materials = {a, b};
+  map.drape = {-1, 1, 1, 2, Drape::Extend::none};
+  s.scene()->class_maps = {map};
+  s.scene()->map_bindings = {{a, 0}};
+  const HeatKit kit(std::move(s), 1);
+  Elements elements(*kit.tracer, kit.optics.has_heat, 1, 0);
+  ASSERT_GT(elements.shared_cells(), 0u);
+  std::vector<bool> kept(elements.size());
+  std::vector<Hit> places;
+  for (size_t e = 0; e < kept.size(); ++e) {
+    kept[e] = elements[e].material == a;
+    places.push_back(elements.point(e, {SampleStream(1, 0, e), 0, 0}));
+  }
+  const Elements whole(*kit.tracer, kit.optics.has_heat, 1, 0);
+  elements.keep(kept);
+  for (size_t e = 0; e < kept.size(); ++e)
+    EXPECT_EQ(elements.at(places[e], whole[e].material).has_value(), static_cast<bool>(kept[e])) << e;
+}
+
 TEST(Elements, RefuseScenesWithoutAny) {
   HeatedScene s;
   s.plane(1, 1, s.given(1, 300));
