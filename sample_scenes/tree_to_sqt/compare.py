@@ -31,7 +31,7 @@ def table(scene, sun):
     return {key: (value / n, squares**0.5 / n) for key, (value, squares) in sums.items()}
 
 
-far = 0
+far = views = near = 0
 print("sun  band  plane       mean %   rms %   noise %   largest % (at view)")
 for sun in (30, 55):
     trees, surface = table("forest", sun), table("surface", sun)
@@ -44,9 +44,11 @@ for sun in (30, 55):
             d.append(100 * (surface[b, p, view][0] / brf - 1))
             noise += (100 * error / brf) ** 2
             largest = max(largest, (abs(d[-1]), view))
+            views, near = views + 1, near + (abs(d[-1]) <= 3)
         if not d:
             continue
         mean, rms, noise = sum(d) / len(d), (sum(v * v for v in d) / len(d)) ** 0.5, (noise / len(d)) ** 0.5
         far += args.within is not None and (abs(mean) > args.within or rms**2 - noise**2 > args.within**2)
         print(f"{sun:3d}  {band:4s}  {plane:10s}  {mean:+6.2f}  {rms:6.2f}  {noise:8.2f}   {largest[0]:.1f} ({largest[1]:+.0f})")
+print(f"{near} of {views} views are within 3 %")
 sys.exit(far > 0)
