@@ -85,26 +85,33 @@ class NothingSpace {
   Sight sight_;
 };
 
-// Air without media: transmittance and path radiance of each segment are known at once.
+// A way through air alone, whose transmittance and radiance are known at once. seen: the sensor's own way is behind;
+// ends: light from the end of the way is to come through it.
+template <class L>
+Flight fly_through_air(const Atmosphere& air, const L& lane, bool seen, double length, bool ends,
+                       std::span<float> through, std::span<float> emitted) {
+  const bool sky = seen && length == std::numeric_limits<double>::infinity();
+  // In a mirror neighbouring directions would be told apart.
+  if (sky && !ends && lane.last_density > 0)
+    return {Arrival::met, {}, false, air.sky_radiance(lane.origin, lane.direction, through, emitted)};
+  if (sky)
+    air.skylight(lane.origin, lane.direction, through, emitted);
+  else
+    air.path(lane.origin, lane.direction, length, through, emitted);
+  return {Arrival::met, {1, through.data()}, true, emitted.data()};
+}
+
+// Air without media.
 class AirSpace : public NothingSpace {
  public:
   static constexpr bool kFills = true;
   static constexpr uint32_t kDense = 2;
   explicit AirSpace(const SpaceContext& c) : NothingSpace(c), air_(*c.environment.atmosphere) {}
 
-  // ends: light from the end of the way is to come through it.
   template <class L>
   Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
              std::span<float> emitted) const {
-    const bool sky = lane.surfaces > 0 && length == std::numeric_limits<double>::infinity();
-    // In a mirror neighbouring directions would be told apart.
-    if (sky && !ends && lane.last_density > 0)
-      return {Arrival::met, {}, false, air_.sky_radiance(lane.origin, lane.direction, through, emitted)};
-    if (sky)
-      air_.skylight(lane.origin, lane.direction, through, emitted);
-    else
-      air_.path(lane.origin, lane.direction, length, through, emitted);
-    return {Arrival::met, {1, through.data()}, true, emitted.data()};
+    return fly_through_air(air_, lane, lane.surfaces > 0, length, ends, through, emitted);
   }
   static constexpr uint16_t kEmitter = kFromAir;
   const Light* sky() const { return air_.sky(); }

@@ -51,7 +51,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
   if (plain_air_ && medium == kNone && !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
-    return fly_in_air(live, length, ends, through, emitted);
+    return fly_through_air(*air_, live, live.surfaces + live.scatterings > 0, length, ends, through, emitted);
   const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
@@ -84,21 +84,6 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   way = {onward->start, onward->gap};
   flight.arrival = Arrival::onward;
   return flight;
-}
-
-// Air alone: its transmittance and radiance are known at once.
-Flight FieldSpace::fly_in_air(const LivePath& live, double length, bool ends, std::span<float> through,
-                              std::span<float> emitted) const {
-  const bool outside = live.surfaces + live.scatterings > 0 && length == std::numeric_limits<double>::infinity();
-  if (outside && !ends) {
-    air_->sky_radiance(live.origin, live.direction, through, emitted);
-    return {Arrival::met, {}, false, emitted.data()};
-  }
-  if (outside)
-    air_->skylight(live.origin, live.direction, through, emitted);
-  else
-    air_->path(live.origin, live.direction, length, through, emitted);
-  return {Arrival::met, {1, through.data()}, true, emitted.data()};
 }
 
 void FieldSpace::remember(uint32_t p, Vec3 place) {

@@ -79,8 +79,6 @@ class FieldSpace {
     std::vector<Constituent> contents;
     double rate[kMaxKnots];  // scattering coefficient
   };
-  Flight fly_in_air(const LivePath& live, double length, bool ends, std::span<float> through,
-                    std::span<float> emitted) const;
   void remember(uint32_t p, Vec3 place);
   void set_rates(ScatterPlace& e) const;
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }

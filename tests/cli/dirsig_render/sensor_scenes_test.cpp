@@ -77,7 +77,7 @@ TEST(SampleScenes, AForestAsASurface) {
     std::istringstream words(line);
     std::string sun, band, plane;
     double mean = 1e9;
-    words >> sun >> band >> plane >> mean;
+    if (!(words >> sun >> band >> plane >> mean)) continue;  // how many views are within 3 %
     EXPECT_LT(std::fabs(mean), 4) << line;
     ++planes;
   }
