@@ -2,8 +2,8 @@
 
 # title, what it is, command in the root of the checkout
 BENCHES = (
-    ("Air", "`tests/bench/air --pairs 3`: CPU seconds of paths through 60 bands in vacuum, in air, and with what the scene makes of the air's light; "
-            "medians of the ratios with their quartiles; baking.", ("tests/bench/air", "--pairs", "3")),
+    ("Air", "`tests/bench/air --pairs 2 --paths 4`: CPU seconds of paths through 60 bands in vacuum, in air, and with what the scene makes of the air's light; "
+            "medians of the ratios with their quartiles; baking.", ("tests/bench/air", "--pairs", "2", "--paths", "4")),
     ("Heat", "`tests/bench/heat --elements 1000,10000`: a street's day in a balance of heat, 64 paths an element, its stages, all cores.",
      ("tests/bench/heat", "--elements", "1000,10000")),
     ("Water", "`build/release/bench/refraction_bench`: a pool's floor under waves and a disk of 1 degree, the sun asked for through the surface and found by chance.",
