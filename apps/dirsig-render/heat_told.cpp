@@ -81,10 +81,10 @@ std::vector<std::string> heat_sentences(const HeatResult& h, const PreparedHeat&
       "standard error by the paths %.2g K (root mean square over the area), half of the faces below %.2g K, "
       "the worst %.2g K; by the steps in time %.2g K, by the sweeps %.1g K, by the past %.1g K",
       std::sqrt(sum / area), by_face[by_face.size() / 2], worst, std::sqrt(steps / area), h.sweep_error, h.past_error));
-  out.push_back(
-      strf("places within an element differ from its mean by %.2g K (root mean square) where direct sun does; "
-           "`elements` makes that smaller",
-           std::sqrt(sizes / area)));
+  out.push_back(strf(
+      "places within an element differ from its mean by %.2g K (root mean square) where direct sun does; "
+      "`elements` makes that smaller%s",
+      std::sqrt(sizes / area), p.spec.lateral ? "; conduction along the surface, too, which this does not know" : ""));
   const auto& b = h.balance;
   const double scale = 1 / p.elements->total_area();
   out.push_back(

@@ -20,21 +20,9 @@ double off_stack(double emissivity, int shields) {
   }
 }
 
-// A sheet of aluminium whose absorptance and emissivity are one number: the temperature of its balance does not know
-// it.
+// The temperature of its balance does not know the number.
 double off_bare_metal(double emissivity) {
-  HeatedScene s;
-  s.plane(4, 4,
-          s.heated(emissivity, heat({{"thickness_m", 1e-3},
-                                     {"density_kg_m3", 2700},
-                                     {"specific_heat_j_kg_k", 900},
-                                     {"conductivity_w_m_k", 237}})));
-  const HeatKit kit(std::move(s), 4);
-  StillWeather w;
-  w.direct = 459.3;
-  HeatSpec run;
-  run.span = {0, 86400}, run.tolerance = 1e-4;
-  const HeatResult r = kit.solve(still_loads(w, run.span, 24), run);
+  const HeatResult r = in_the_sun(aluminium_sheet(emissivity), 24);
   double worst = 0;
   for (const float T : r.kelvin)
     worst = std::fmax(worst, std::fabs(double{T} - std::pow(459.3 / kStefanBoltzmann, 0.25)));

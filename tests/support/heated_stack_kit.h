@@ -48,4 +48,23 @@ inline Stack stack(double emissivity, int shields, uint32_t paths, uint64_t seed
   return out;
 }
 
+// A sheet of aluminium of 1 mm without air, adiabatic behind, whose absorptance and emissivity are one number.
+inline HeatKit aluminium_sheet(double emissivity) {
+  HeatedScene s;
+  s.plane(4, 4,
+          s.heated(emissivity, heat({{"thickness_m", 1e-3},
+                                     {"density_kg_m3", 2700},
+                                     {"specific_heat_j_kg_k", 900},
+                                     {"conductivity_w_m_k", 237}})));
+  return {std::move(s), 4};
+}
+// Its temperatures in a beam of 459.3 W/m2 from the zenith under an empty sky, found by so many steps a day.
+inline HeatResult in_the_sun(const HeatKit& sheet, size_t steps) {
+  StillWeather w;
+  w.direct = 459.3;
+  HeatSpec run;
+  run.span = {0, 86400}, run.tolerance = 1e-4;
+  return sheet.solve(still_loads(w, run.span, steps), run);
+}
+
 }  // namespace suite::test

@@ -106,18 +106,8 @@ TEST(Cavities, LeadShieldBetweenBlackPlates) {
 // Aluminium of 1 mm without air, adiabatic behind, absorptance and emissivity 0.02, under an empty sky and a beam of
 // 459.3 W/m2 from the zenith: 300 K, and C / (4 emissivity sigma T^3) = 5.5 h to get there.
 TEST(Cavities, BareAluminiumInTheSun) {
-  HeatedScene s;
-  s.plane(4, 4,
-          s.heated(0.02, heat({{"thickness_m", 1e-3},
-                               {"density_kg_m3", 2700},
-                               {"specific_heat_j_kg_k", 900},
-                               {"conductivity_w_m_k", 237}})));
-  const HeatKit kit(std::move(s), 4);
-  StillWeather w;
-  w.direct = 459.3;
-  HeatSpec run;
-  run.span = {0, 86400}, run.tolerance = 1e-4;
-  const HeatResult r = kit.solve(still_loads(w, run.span, 144), run);
+  const HeatKit kit = aluminium_sheet(0.02);
+  const HeatResult r = in_the_sun(kit, 144);
   double worst = 0;
   for (const float T : r.kelvin) worst = std::fmax(worst, std::fabs(double{T} - 300));
   std::printf("aluminium: within %.4f K of 300 K; absorptance %.5f, emissivity %.5f\n", worst, double{r.absorptance[0]},
