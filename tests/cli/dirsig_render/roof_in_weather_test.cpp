@@ -85,6 +85,19 @@ TEST_F(RoofInWeather, PointsNeedWhatElementsWereFoundWith) {
   EXPECT_THAT(twice.err, HasSubstr("points are told apart from their elements in a span that repeats alone"));
 }
 
+// Conduction along the surface changes temperatures; what follows each element for itself does not know it.
+TEST_F(RoofInWeather, HeatGoesAlongTheSurfaceOnRequest) {
+  const std::string few = "dirsig-render sim.yaml --heat-only --paths 2 --set heat.elements=200 -o ";
+  const std::string alone = " --set heat.final_gather=false", lateral = " --set heat.lateral_conduction=true";
+  const CommandResult refused = run(few + "never" + lateral);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("'final_gather'"));
+  const CommandResult off = run(few + "off" + alone), on = run(few + "on" + alone + lateral);
+  ASSERT_EQ(off.code, 0) << off.err;
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_NE(read_text(folder_ / "on/heat.csv"), read_text(folder_ / "off/heat.csv"));
+}
+
 // Elements that the cameras do not see, and that matter less than a hundredth of a kelvin, are left out; the file
 // knows, and refuses those who look elsewhere.
 TEST_F(RoofInWeather, WhatDoesNotMatterIsLeftOut) {
