@@ -14,9 +14,9 @@ LAKE, LAKE_RADIUS, LAKE_DEPTH = (-800.0, -420.0), 110.0, 6.0
 TOWN = (-520.0, -340.0, 280.0, -70.0)              # level ground, and its height
 TOWN_M = 6.0
 
-MEADOW, FOREST, WHEAT, MAIZE, SOIL, ROAD, PAVING, BED, ROCK = range(1, 10)
+MEADOW, FOREST, WHEAT, MAIZE, SOIL, ROAD, PAVING, BED, ROCK, PASTURE = range(1, 11)
 NAMES = {MEADOW: "meadow", FOREST: "forest_floor", WHEAT: "wheat", MAIZE: "maize", SOIL: "soil", ROAD: "asphalt", PAVING: "paving",
-         BED: "bed", ROCK: "rock"}
+         BED: "bed", ROCK: "rock", PASTURE: "pasture"}
 PIXEL = 1.0                                        # of the map, m
 STREETS_Y = [-100.0, -190.0, -280.0]               # of the town: east to west
 STREETS_X = [-460.0, -330.0, -200.0, -70.0, 60.0, 190.0]
@@ -175,7 +175,7 @@ class Cover:
     @staticmethod
     def _parcels():
         """Fields of the plain in the west and of the shelf in the south-east."""
-        kinds = (WHEAT, MAIZE, SOIL, MEADOW)
+        kinds = (WHEAT, MAIZE, SOIL, PASTURE)
         out = []
         for j in range(-1250, 1600, 150):
             for i in range(-3750, 1100, 230):
@@ -211,6 +211,41 @@ class Cover:
 
     def write(self, path):
         write_png(path, self.map)
+
+
+TUFT, TUFTS = 0.5, 512                             # pixel (m) and pixels of the pasture's texture, which repeats
+DRILL, DRILLS, ROW_PIXELS = 0.25, 384, 3           # those of the maize, whose rows run north and stand 0.75 m apart
+
+
+def periodic_noise(x, y, cells):
+    """As noise, repeating after so many cells."""
+    i, j = math.floor(x), math.floor(y)
+    corners = [[noise(float((i + a) % cells), float((j + b) % cells)) for a in (0, 1)] for b in (0, 1)]
+    u, v = x - i, y - j
+    u, v = u * u * (3 - 2 * u), v * v * (3 - 2 * v)
+    return (corners[0][0] * (1 - u) + corners[0][1] * u) * (1 - v) + (corners[1][0] * (1 - u) + corners[1][1] * u) * v
+
+
+def octaves(pixels, *cells):
+    """Rows of a texture that repeats, 0 to 1: noise of so many cells across, each half as strong as the one before."""
+    share = [0.5 ** k for k in range(len(cells))]
+    return [[sum(w * periodic_noise(i * n / pixels, j * n / pixels, n) for w, n in zip(share, cells)) / sum(share) for i in range(pixels)] for j in range(pixels)]
+
+
+def write_tufts(path):
+    """Dense and thin grass: what picks one of the measured curves at each place."""
+    write_png(path, [bytes(round(255 * v) for v in row) for row in octaves(TUFTS, 16, 64, 256)])
+
+
+def write_rows(path):
+    """Shares of leaves and soil in rows of maize, as an ENVI image of two bands: leaves close over the row, more where it grows well."""
+    leaves = [[min(1.0, (0.55 + 0.45 * v) * (1.0 if i % ROW_PIXELS == 1 else 0.75)) for i, v in enumerate(row)] for row in octaves(DRILLS, 12, 96)]
+    with open(path + ".hdr", "w") as out:
+        out.write("ENVI\nsamples = %d\nlines = %d\nbands = 2\nheader offset = 0\ndata type = 1\ninterleave = bsq\nbyte order = 0\n" % (DRILLS, DRILLS))
+    with open(path, "wb") as out:
+        for soil in (False, True):
+            for row in leaves:
+                out.write(bytes(round(255 * (1 - v if soil else v)) for v in row))
 
 
 def write_png(path, rows):

@@ -4,6 +4,7 @@
 Ground from the shipped elevation raster, a river, a lake, a town, fields, forest, traffic, the weather of a clear day in June, and scene.yaml.
 TREES (default 30000, more than there are places) is the most that are planted. Needs Python 3 and its standard library only; some 20 seconds.
 """
+import lzma
 import math
 import os
 import random
@@ -144,6 +145,11 @@ def write_scene(path, land, planted):
     out.write("# Written by make_scene.py.\n" + open(HEAD).read() + "\n" + materials.text() + "\nmaps:\n  cover:\n    type: class\n    file: cover.png\n    materials: {%s}\n"
               % ", ".join("%d: %s" % item for item in ground.NAMES.items()))
     out.write("    projection: drape\n    drape: {origin: [%g, %g], gsd: %g, extend: clamp}\n" % (ground.WEST, ground.NORTH, ground.PIXEL))
+    # Pasture: at every place one of 43 measured curves of grass, so that brightness and colour vary together as they were measured.
+    out.write("  tufts:\n    type: texture\n    file: tufts.png\n    family: {file: grass_texture.ems, outside: hold}\n    bands_um: [[0.5, 0.6]]\n    projection: drape\n"
+              "    drape: {origin: [0, 0], gsd: %g, extend: repeat}\n" % ground.TUFT)
+    out.write("  rows:\n    type: mixture\n    file: rows.img\n    materials: [maize_leaf, soil]\n    projection: drape\n    drape: {origin: [0, 0], gsd: %g, extend: repeat}\n"
+              % ground.DRILL)
     out.write("\nobjects:\n  ground: {terrain: heights.img, local: {origin: [%g, %g], gsd: %g}, material: covered}\n"
               % (ground.WEST - ground.STEP / 2, ground.NORTH + ground.STEP / 2, ground.STEP))
     # The water's own waves; it lies below the ground beyond its banks.
@@ -200,6 +206,10 @@ def main():
     land.write(os.path.join(folder, "heights.img"))
     cover = ground.Cover(land)
     cover.write(os.path.join(folder, "cover.png"))
+    ground.write_tufts(os.path.join(folder, "tufts.png"))
+    ground.write_rows(os.path.join(folder, "rows.img"))
+    with lzma.open(os.path.join(HERE, "grass_texture.ems.xz")) as packed, open(os.path.join(folder, "grass_texture.ems"), "wb") as out:
+        out.write(packed.read())
     write_scene(os.path.join(folder, "scene.yaml"), land, plant(land, cover, int(sys.argv[2]) if len(sys.argv) > 2 else 30000))
     weather(os.path.join(folder, "weather.csv"))
     bands = "".join("              - {name: b%03d, center_um: %.4f, fwhm_um: 0.02, shape: rectangular}\n" % (k + 1, 0.4 + 0.02 * k) for k in range(100))

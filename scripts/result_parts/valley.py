@@ -34,6 +34,7 @@ def prepare(folder, root, binaries):
     if os.path.exists(f"{folder}/scene.h5"):
         return
     subprocess.run([sys.executable, f"{root}/sample_scenes/valley/make_scene.py", folder, str(TREES)], check=True)
+    subprocess.run([f"{binaries}/sqt-fit", f"{root}/sample_scenes/calibration_range/satin_purple_rgb.bsdf", "-o", "satin.sqt", "-q"], cwd=folder, check=True)
     subprocess.run([f"{binaries}/scene-prep", "scene.yaml", "-o", "scene.h5", "-q"], cwd=folder, check=True, capture_output=True)
 
 
