@@ -27,25 +27,26 @@ class ParticlePhase final : public PhaseFunction {
       tables_.emplace_back(std::vector<double>(cosines.begin(), cosines.end()),
                            std::vector<double>(phase.begin(), phase.end()));
     }
+    for (size_t i = 0; i < cosines.size(); ++i)
+      for (const CosineTable& table : tables_) densities_.push_back(static_cast<float>(table.values()[i]));
   }
-  void eval(double c, std::span<float> p) const override {
-    const std::span<const double> cosines = phase_cosines();
-    const size_t above = static_cast<size_t>(std::upper_bound(cosines.begin(), cosines.end(), c) - cosines.begin());
-    const size_t i = std::clamp<size_t>(above, 1, cosines.size() - 1);
-    const float t = static_cast<float>(std::clamp((c - cosines[i - 1]) / (cosines[i] - cosines[i - 1]), 0.0, 1.0));
-    const float *a = &values_[(i - 1) * size_], *b = a + size_;
-    for (size_t w = 0; w < size_; ++w) p[w] = a[w] + (b[w] - a[w]) * t;
-  }
+  void eval(double c, std::span<float> p) const override { between(values_, size_, c, p.data()); }
   double sample(double u, int knot) const override { return tables_[static_cast<size_t>(knot)].sample(u); }
-  void pdf(double c, std::span<float> p) const override {
-    for (size_t k = 0; k < tables_.size(); ++k) p[k] = static_cast<float>(tables_[k].at(c));
-  }
+  void pdf(double c, std::span<float> p) const override { between(densities_, tables_.size(), c, p.data()); }
   void asymmetry(std::span<float> g) const override { std::copy(asymmetry_.begin(), asymmetry_.end(), g.begin()); }
   bool spectrally_uniform() const override { return size_ == 1; }
 
  private:
+  // Rows of n values, one an angle.
+  static void between(const std::vector<float>& rows, size_t n, double c, float* __restrict p) {
+    const PhasePlace place = phase_place(c);
+    const float *a = &rows[place.below * n], *b = a + n, t = static_cast<float>(place.share);
+    for (size_t i = 0; i < n; ++i) p[i] = a[i] + (b[i] - a[i]) * t;
+  }
+
   size_t size_;
   std::vector<float> values_, asymmetry_;
+  std::vector<float> densities_;  // 1/sr, [angle][knot]
   std::vector<CosineTable> tables_;
 };
 

@@ -1,7 +1,9 @@
 #include "air/phase_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "base/error.h"
 #include "math/vec.h"
@@ -51,9 +53,42 @@ const std::vector<double>& all_cosines() {
   return cosines;
 }
 
+// The last angle of the grid (counted by ascending cosine) that lies below each of many places, even in the sine of
+// half the angle, in which the peak is as wide as the rest: a search begins there.
+class Beginnings {
+ public:
+  static size_t of(double cosine) {
+    static const Beginnings all;
+    return all.below_[place(cosine)];
+  }
+
+ private:
+  static constexpr size_t kPlaces = 2048;
+  static size_t place(double cosine) {
+    return static_cast<size_t>(std::sqrt(std::clamp(0.5 - 0.5 * cosine, 0.0, 1.0)) * (kPlaces - 1));
+  }
+  Beginnings() {
+    const std::vector<double>& c = all_cosines();
+    for (size_t i = 0; i < kPlaces; ++i) {
+      const double s = static_cast<double>(i + 1) / (kPlaces - 1);  // where the place ends: its least cosine
+      const size_t above = static_cast<size_t>(std::upper_bound(c.begin(), c.end(), 1 - 2 * s * s) - c.begin());
+      below_[i] = static_cast<uint16_t>(std::clamp<size_t>(above, 1, c.size() - 1) - 1);
+    }
+  }
+  std::array<uint16_t, kPlaces> below_;
+};
+
 }  // namespace
 
 std::span<const double> phase_cosines() { return all_cosines(); }
+
+PhasePlace phase_place(double cosine) {
+  const std::vector<double>& c = all_cosines();
+  size_t i = Beginnings::of(cosine);
+  while (i > 0 && c[i] > cosine) --i;
+  while (i + 2 < c.size() && c[i + 1] <= cosine) ++i;
+  return {i, std::clamp((cosine - c[i]) / (c[i + 1] - c[i]), 0.0, 1.0)};
+}
 
 std::span<const double> stored_cosines() {
   static const std::vector<double> cosines = cosines_of(stored_angles());

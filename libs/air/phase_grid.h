@@ -4,6 +4,7 @@
 // linear in the cosine: every integral below is exact for that function, which is the one that phases/cosine_table.h
 // samples, so that moments and samples agree.
 #pragma once
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,12 @@ namespace suite {
 
 // Cosines, ascending from -1 to 1.
 std::span<const double> phase_cosines();
+// Where a cosine lies between two of them: at a share of the way from `below` to the next one.
+struct PhasePlace {
+  size_t below;
+  double share;  // 0..1
+};
+PhasePlace phase_place(double cosine);
 // Integral over the sphere of values (1/sr) given there.
 double phase_integral(std::span<const double> values);
 // Legendre moments, integral of P_l p over the sphere, l = 0 .. count-1; moment 1 is the asymmetry.

@@ -46,4 +46,11 @@ double Shells::way_down_to(Vec3 from, Dir d, double height) const {
   return l.on_the_way_down(above, std::sqrt(disc));
 }
 
+double Shells::way_up_to(Vec3 from, Dir d, double height) const {
+  const Line l = line(from, d);
+  const double above = l.above(height), disc = l.discriminant(above);
+  if (!(l.slope > 0) || !(disc >= 0)) return std::numeric_limits<double>::infinity();
+  return l.on_the_way_up(above, std::sqrt(disc));
+}
+
 }  // namespace suite

@@ -52,6 +52,8 @@ class Shells {
   double lowest_height(Vec3 from, Dir d, double distance) const;
   // How far it is from a point in the air down to a height below it, m; infinite when a ray does not come there.
   double way_down_to(Vec3 from, Dir d, double height) const;
+  // The same up to a height above it, on a ray that rises there.
+  double way_up_to(Vec3 from, Dir d, double height) const;
 
   // A part of a segment within one layer. Height rises or falls all along it, as pieces end at the lowest point, too.
   struct Piece {

@@ -11,6 +11,12 @@ namespace suite {
 
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The share of light that is scattered on a way of scattering depth x, within 1e-6.
+double scattered(double x) {
+  return x < 0.1 ? x * (1 - x * (0.5 - x * (1 / 6.0 - x * (1 / 24.0 - x * (1 / 120.0)))))
+                 : 1 - double{exp_falling(static_cast<float>(x))};
+}
 }  // namespace
 
 AirVertices::AirVertices(std::shared_ptr<const AirColumn> column, const SpectralState& state, const Atmosphere& air,
@@ -42,7 +48,7 @@ AirVertices::PerKnot AirVertices::chances(Vec3 from, Dir d, double length) const
   column_->shells.walk(from, d, length, [&](const Shells::Piece& p) {
     for (size_t k = 0; k < knots_; ++k) sums[k] += scattering_[p.layer][k] * p.length;
   });
-  for (size_t k = 0; k < knots_; ++k) sums[k] = -std::expm1(-sums[k]);
+  for (size_t k = 0; k < knots_; ++k) sums[k] = scattered(sums[k]);
   return sums;
 }
 
@@ -53,24 +59,63 @@ void AirVertices::depth_over(double height, double sign, PerKnot& sums) const {
   for (size_t k = 0; k < knots_; ++k) sums[k] += sign * (over_[l + 1][k] + scattering_[l][k] * left);
 }
 
-// As in flat layers, where the way is steep enough for that.
-AirVertices::PerKnot AirVertices::about_chances(Vec3 from, Dir d, double length) const {
-  constexpr double kSteep = 0.2, kShort = 3e4;  // m
+std::optional<AirVertices::Steep> AirVertices::steep(Vec3 from, Dir d, double length) const {
+  constexpr double kSteep = 0.12, kShort = 3e4;  // m
   const Shells& shells = column_->shells;
   const double cosine = dot(d, shells.up(from));
   const bool out = length == kInfinity;
-  if (std::fabs(cosine) < kSteep || (out ? cosine < 0 : length > kShort)) return chances(from, d, length);
-  PerKnot sums{};
-  depth_over(shells.height(from), cosine > 0 ? 1 : -1, sums);
-  if (!out) depth_over(shells.height(from + d * length), cosine > 0 ? -1 : 1, sums);
+  if (std::fabs(cosine) < kSteep || (out ? cosine < 0 : length > kShort)) return std::nullopt;
+  Steep way{
+      std::fabs(cosine), shells.height(from), out ? shells.heights().back() : shells.height(from + d * length), {}, {}};
+  depth_over(way.near_height, 1, way.near);
+  depth_over(way.far_height, 1, way.far);
+  return way;
+}
+
+AirVertices::PerKnot AirVertices::about_chances(Vec3 from, Dir d, double length) const {
+  const auto way = steep(from, d, length);
+  if (!way) return chances(from, d, length);
+  PerKnot all{};
+  for (size_t k = 0; k < knots_; ++k) all[k] = scattered(std::fabs(way->near[k] - way->far[k]) / way->cosine);
+  return all;
+}
+
+// By height, as if layers were flat: the density is the one with which that draws, whatever they are.
+std::optional<AirVertices::Place> AirVertices::draw_steep(const Steep& way, Vec3 from, Dir d, double length, double u,
+                                                          size_t knot) const {
+  PerKnot all;
+  for (size_t k = 0; k < knots_; ++k) all[k] = scattered(std::fabs(way.near[k] - way.far[k]) / way.cosine);
+  if (!(all[knot] > 0)) return std::nullopt;
+  const Shells& shells = column_->shells;
+  const bool up = way.far_height > way.near_height;
+  const double passed = -std::log1p(-u * all[knot]) * way.cosine, over = way.near[knot] + (up ? -passed : passed);
+  // The layer at whose foot the depth over it is still `over`, of those between both ends.
+  const size_t first = shells.layer_of(std::min(way.near_height, way.far_height));
+  size_t l = static_cast<size_t>(std::upper_bound(over_.begin() + static_cast<ptrdiff_t>(first), over_.end(), over,
+                                                  [&](double v, const PerKnot& o) { return v > o[knot]; }) -
+                                 over_.begin());
+  l = std::clamp<size_t>(l, first + 1, media_.size()) - 1;
+  while (l > first && !(scattering_[l][knot] > 0)) --l;
+  const PerKnot& rates = scattering_[l];
+  if (!(rates[knot] > 0)) return std::nullopt;
+  const double height =
+      std::clamp(shells.heights()[l] + (over_[l][knot] - over) / rates[knot], std::min(way.near_height, way.far_height),
+                 std::max(way.near_height, way.far_height));
+  const double distance = up ? shells.way_up_to(from, d, height) : shells.way_down_to(from, d, height);
+  if (!(distance < kInfinity)) return std::nullopt;
+  Place place{std::clamp(distance, 0.0, length), l, {}};
+  const double rise = std::fabs(dot(d, shells.up(from + d * place.distance))) / way.cosine;
   for (size_t k = 0; k < knots_; ++k) {
-    const double x = std::max(0.0, sums[k] / std::fabs(cosine));
-    sums[k] = x < 0.1 ? x * (1 - x * (0.5 - x * (1 / 6.0))) : 1 - double{exp_falling(static_cast<float>(x))};
+    if (!(all[k] > 0)) continue;
+    const double here = over_[l][k] + (shells.heights()[l] - height) * rates[k],
+                 gone = std::fabs(here - way.near[k]) / way.cosine;
+    place.density[k] = rates[k] * rise * double{exp_falling(static_cast<float>(gone))} / all[k];
   }
-  return sums;
+  return place;
 }
 
 std::optional<AirVertices::Place> AirVertices::draw(Vec3 from, Dir d, double length, double u, size_t knot) const {
+  if (const auto way = steep(from, d, length)) return draw_steep(*way, from, d, length, u, knot);
   const PerKnot all = chances(from, d, length);
   if (!(all[knot] > 0)) return std::nullopt;
   const double wanted = -std::log1p(-u * all[knot]);
@@ -87,7 +132,8 @@ std::optional<AirVertices::Place> AirVertices::draw(Vec3 from, Dir d, double len
     const double way = std::min((wanted - passed[knot]) / rates[knot], p.length);
     place = {p.near + way, p.layer, {}};
     for (size_t k = 0; k < knots_; ++k) {
-      if (all[k] > 0) place->density[k] = rates[k] * std::exp(-passed[k] - rates[k] * way) / all[k];
+      if (all[k] > 0)
+        place->density[k] = rates[k] * double{exp_falling(static_cast<float>(passed[k] + rates[k] * way))} / all[k];
       passed[k] += rates[k] * p.length;
     }
     done = passed[knot] > wanted;

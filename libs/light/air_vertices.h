@@ -35,18 +35,18 @@ class AirVertices {
   static constexpr double kLeastDepth = 1e-4;
   bool any() const { return depth_ > kLeastDepth; }
 
-  // The probabilities, one a knot, with which light is scattered on a way if nothing is absorbed. length: m, infinity
-  // allowed.
+  // The probabilities, one a knot, with which light is scattered on a way if nothing is absorbed, within 1e-6. length:
+  // m, infinity allowed.
   using PerKnot = std::array<double, kMaxKnots>;
   PerKnot chances(Vec3 from, Dir d, double length) const;
   // The same in a fraction of the time, within 10 %: where a weight is wanted that need not be exact.
   PerKnot about_chances(Vec3 from, Dir d, double length) const;
-  // A place on the way, drawn as light of a knot would be scattered there. u: in [0, 1). Nothing where nothing
-  // scatters.
+  // A place on the way, drawn as light of a knot would be scattered there (on a steep way: if layers were flat). u: in
+  // [0, 1). Nothing where nothing scatters.
   struct Place {
     double distance;  // m
     size_t layer;
-    PerKnot density;  // with which light of each knot would be, 1/m
+    PerKnot density;  // with which it would have been drawn for each knot, 1/m
   };
   std::optional<Place> draw(Vec3 from, Dir d, double length, double u, size_t knot) const;
   // What scatters in a layer: density 1.
@@ -61,6 +61,13 @@ class AirVertices {
   double to_ground(Vec3 from, Dir d) const;
   // Scattering depth over a height, vertically.
   void depth_over(double height, double sign, PerKnot& sums) const;
+  // A way all along which height rises or falls with nearly the same slope.
+  struct Steep {
+    double cosine, near_height, far_height;  // the cosine is positive
+    PerKnot near, far;                       // depths over its ends
+  };
+  std::optional<Steep> steep(Vec3 from, Dir d, double length) const;
+  std::optional<Place> draw_steep(const Steep& way, Vec3 from, Dir d, double length, double u, size_t knot) const;
 
   std::shared_ptr<const AirColumn> column_;
   const Atmosphere& air_;

@@ -29,7 +29,8 @@ class CosineTable {
     asymmetry_ = moment / whole;
   }
   bool valid() const { return valid_; }
-  double asymmetry() const { return asymmetry_; }  // mean cosine
+  double asymmetry() const { return asymmetry_; }               // mean cosine
+  const std::vector<double>& values() const { return value_; }  // at the table's cosines, normalised, 1/sr
   // 1/sr.
   double at(double c) const {
     const size_t above = static_cast<size_t>(std::upper_bound(cosine_.begin(), cosine_.end(), c) - cosine_.begin());

@@ -233,5 +233,47 @@ TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
   EXPECT_GT(largest, 0.5);
 }
 
+// A place moves on with the number that draws it, by what its density says.
+TEST(ThinAir, PlacesAreDrawnWithTheDensityTheyTell) {
+  AirSpec spec = diffuse_air();
+  spec.adjacency = true;
+  const SpectralState state = some_bins(spec);
+  const std::vector<float> sun(state.size(), 1);
+  const auto air = make_stratified_air(spec, state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}});
+  const AirVertices* const vertices = air->vertices();
+  ASSERT_TRUE(vertices);
+  constexpr int kSteps = 40000;
+  struct Way {
+    Vec3 from;
+    double zenith_deg, length;
+  };
+  const double far = std::numeric_limits<double>::infinity();
+  for (const Way& way :
+       {Way{{0, 0, 2}, 10, far}, Way{{0, 0, 2}, 77, far}, Way{{9e3, 0, 3100}, 60, far}, Way{{0, 0, 9000}, 140, 1.1e4},
+        Way{{0, 0, 2}, 70, 800}, Way{{0, 0, 2}, 89, far}, Way{{0, 0, 500}, 95, 4000}, Way{{0, 0, 7e5}, 160, 7.4e5}})
+    for (size_t knot = 0; knot < state.knots.size(); ++knot) {
+      const Dir d = dir_from_angles(way.zenith_deg * kDegree, 0.7);
+      double before = 0, integral = 0, others = 0, skewed = 0;
+      for (int i = 0; i < kSteps; ++i) {
+        const auto place = vertices->draw(way.from, d, way.length, (i + 0.5) / kSteps, knot);
+        ASSERT_TRUE(place);
+        ASSERT_GE(place->distance, before);
+        ASSERT_LE(place->distance, way.length);
+        const double height = air->shells().height(way.from + d * place->distance);
+        EXPECT_GE(height, air->shells().heights()[place->layer] - 1e-3);
+        EXPECT_LE(height, air->shells().heights()[place->layer + 1] + 1e-3);
+        // The integral over the places of the density with which others draw them is 1 for each of them.
+        const size_t other = (knot + 1) % state.knots.size();
+        others += place->density[other] / place->density[knot] / kSteps;
+        if (i > 0) integral += place->density[knot] * (place->distance - before);
+        if (i > 0) skewed += place->density[knot] * (place->distance - before) * (1 + 0.02 * i / kSteps);
+        before = place->distance;
+      }
+      EXPECT_NEAR(integral, 1, 3e-3) << way.zenith_deg;
+      EXPECT_NEAR(others, 1, 3e-3) << way.zenith_deg;
+      EXPECT_GT(std::fabs(skewed - 1), 3e-3);  // were it wrong by two parts in a hundred at the far end
+    }
+}
+
 }  // namespace
 }  // namespace suite
