@@ -31,7 +31,7 @@ struct LightNature {
   bool moves = false;   // what it sends depends on the time of the ray
   bool placed = false;  // stands in the scene, and draw_place() finds it
   int numbers = 2;      // random numbers that sample() uses, 2 or 4
-  int draws = 1;        // samples of it that the first node of a path may take (lamps: min(kMostDraws, lamps))
+  int draws = 1;        // samples of it that the first node of a path may take (lamps: kMostDraws, one: 1)
   static constexpr int kMostDraws = 4;
 };
 

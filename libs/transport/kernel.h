@@ -76,6 +76,10 @@ class PathKernel final : public PathTracing {
   bool is_first(const NodeAt& node) const { return paths_[node.path].order() == 1; }
   LightReceiver receiver(const NodeAt& node) const;
   double time(const NodeAt& node) const { return paths_[node.path].time; }
+  // How many samples of the light share its density there, whatever becomes of them: 1 unless said before propose().
+  void set_draws(const NodeAt& node, const Asked& light, int draws) {
+    if (!light.nature.far && !glowing_.empty()) last_[node.path].draws = draws;
+  }
   // Puts a question: is this sample visible? draws: samples of the light that share its density.
   void propose(const NodeAt& node, const Asked& light, const LightSample& sample, int draws);
   void set_parallel() { sight_rays_.parallel = sight_rays_.size(); }

@@ -54,7 +54,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
   if (refracted_ && light.nature.far && is_refracted(light.nature)) want_refracted(node, light, sample);
   if (Space::kGoesBack && node.event && light.index == kFromAir) return;  // the same as over the even ground
   if (!node.event && !surfaces_.takes(p, hit, -path.direction, sample.direction)) return;
-  if (!light.nature.far && !glowing_.empty()) last_[p].draws = draws;
   Vec3 origin;
   if constexpr (Space::kScatters) {
     if (node.event) origin = space_.place(p);

@@ -262,7 +262,8 @@ Lamps::Lamps(std::span<const LampSpec> specs, const Tracer& tracer, const Spectr
   nature_.drawn = core.tree != nullptr;
   nature_.placed = core.tree && !core.images;
   nature_.numbers = 4;
-  nature_.draws = static_cast<int>(std::clamp<size_t>(size(), 1, LightNature::kMostDraws));
+  // Two or three, too: that each is among the strata of a choice is more likely with more of them.
+  nature_.draws = size() > 1 ? LightNature::kMostDraws : 1;
 }
 
 std::optional<LightMet> Lamps::met_surface(const LightReceiver& from, const Hit& hit, uint32_t material, Dir direction,

@@ -49,6 +49,7 @@ class Sqt final : public ScatterModel {
       most_.push_back(beyond && range.outside == Outside::zero ? 0 : 1);
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
+    channels_ = used(shape_), knot_channels_ = used(knot_);
     for (const double wavelength : info.function.wavelength_um)
       total_of_.push_back(
           static_cast<size_t>(std::lower_bound(info.magnitude_um.begin(), info.magnitude_um.end(), wavelength) -
@@ -58,9 +59,12 @@ class Sqt final : public ScatterModel {
   void eval(Dir out, Dir in, std::span<float> w) const override {
     thread_local std::vector<double> f, W;
     f.resize(bundle_->channels());
-    bundle_->value(out, in, f);
+    if (channels_.size() == f.size())
+      bundle_->value(out, in, f);
+    else
+      for (const size_t c : channels_) f[c] = bundle_->value(out, in, c);
     magnitudes(out, W);
-    for (size_t c = 0; c < f.size(); ++c) {
+    for (const size_t c : channels_) {
       const double total = f[c] > 0 ? W[total_of_[c]] : 0;
       f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
     }
@@ -92,9 +96,12 @@ class Sqt final : public ScatterModel {
   void pdf(Dir out, Dir in, std::span<float> p) const override {
     thread_local std::vector<double> q;
     q.resize(bundle_->channels());
-    bundle_->pdf(out, in, q);
+    if (knot_channels_.size() == q.size())
+      bundle_->pdf(out, in, q);
+    else
+      for (const size_t c : knot_channels_) q[c] = bundle_->pdf(out, in, c);
     if (has_delta())
-      for (size_t c = 0; c < q.size(); ++c) q[c] *= 1 - dirac(out, c).share;
+      for (const size_t c : knot_channels_) q[c] *= 1 - dirac(out, c).share;
     for (size_t k = 0; k < p.size(); ++k)
       p[k] = static_cast<float>((1 - knot_[k].t) * q[knot_[k].low] + knot_[k].t * q[knot_[k].high]);
   }
@@ -127,6 +134,13 @@ class Sqt final : public ScatterModel {
     const double low = dirac(out, b.low).share;
     return b.t > 0 ? (1 - b.t) * low + b.t * dirac(out, b.high).share : low;
   }
+  static std::vector<size_t> used(const std::vector<Between>& shapes) {
+    std::vector<size_t> channels;
+    for (const Between& s : shapes) channels.insert(channels.end(), {s.low, s.high});
+    std::sort(channels.begin(), channels.end());
+    channels.erase(std::unique(channels.begin(), channels.end()), channels.end());
+    return channels;
+  }
   void magnitudes(Dir out, std::vector<double>& W) const {
     W.resize(bundle_->info().magnitude_um.size());
     bundle_->magnitude(out, W);
@@ -140,7 +154,8 @@ class Sqt final : public ScatterModel {
   std::vector<Between> shape_, magnitude_;  // per bin
   std::vector<double> most_;                // per bin: the largest total, 0 where nothing is stored and `zero` declared
   std::vector<Between> knot_;               // per knot
-  std::vector<size_t> total_of_;            // per channel: where its total stands among the magnitudes
+  std::vector<size_t> channels_, knot_channels_;  // that bins, that knots need
+  std::vector<size_t> total_of_;                  // per channel: where its total stands among the magnitudes
 };
 
 // The tests fit a bundle to each.

@@ -54,6 +54,7 @@ struct StandardEstimator {
     if (light.first_number == 2) u = {u[2], u[3], 0, 0};
     const LightReceiver at = light.nature.far ? LightReceiver{} : kernel.receiver(node);
     const int draws = kernel.is_first(node) && !node.event ? std::min(options.lamp_draws, light.nature.draws) : 1;
+    kernel.set_draws(node, light, draws);
     // Strata of the choice; the other numbers are the first one's, turned round.
     const auto turned = [](double x, int k) {
       const double y = x + k * (1.0 / LightNature::kMostDraws);
