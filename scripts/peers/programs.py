@@ -36,8 +36,8 @@ class Ours:
 
     def prepare(self):
         base = f"{self.folder}/{self.scene.name}"
-        if self.scene.fitted:
-            self._run(f"{BIN}/sqt-fit", *self.scene.fitted, "--swap", "-o", base + ".sqt", "-q", "--report", base + "_fit.json")
+        for name, *options in self.scene.fitted:
+            self._run(f"{BIN}/sqt-fit", *options, "--swap", "-o", f"{self.folder}/{name}.sqt", "-q", "--report", f"{self.folder}/{name}_fit.json")
         self._run(f"{BIN}/scene-prep", base + "_scene.yaml", "-o", base + ".h5", "--no-crossing-check")
         self.before = min(self._whole(1, 5) for _ in range(3))  # loading and building, and one path
         self.seconds_of_path = None

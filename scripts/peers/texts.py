@@ -27,7 +27,7 @@ class Scene:
     volumes: str = ""   # media, grids and volumes
     channels: str = ""  # of "rgb": bands of 1 nm at 0.65, 0.55, 0.45 um against those channels of Mitsuba's; else one grey band
     volumetric: bool = False
-    fitted: tuple = ()  # options of sqt-fit, first of all the .bsdf, that make NAME.sqt
+    fitted: tuple = ()  # (FIT, options of sqt-fit, first of all the .bsdf) that make FIT.sqt
     exact: float = 0    # radiance of every pixel, where it is known
 
 
