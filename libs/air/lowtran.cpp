@@ -5,9 +5,9 @@
 // Assumes: of an exp(-(C U)^a) the k-distribution is the one-sided stable law of index a, scaled by C; so several
 // levels together give what LOWTRAN gives for the summed amount. Where two neighbouring bands of a gas overlap in no
 // value, there is nothing of it between. Other than LOWTRAN's: the collision complex of oxygen (O4) in the visible,
-// added, and the head of oxygen's B band, sharper (scripts/bake_air). Based on: F. X. Kneizys et al., "Users guide to
-// LOWTRAN 7", AFGL-TR-88-0177, 1988; the numbers in lowtran_table.inc. O4: G. D. Greenblatt et al., J. Geophys. Res.
-// 95, 1990 (peaks and widths of its bands).
+// added, and the heads of oxygen's A and B bands, sharper (scripts/bake_air). Based on: F. X. Kneizys et al., "Users
+// guide to LOWTRAN 7", AFGL-TR-88-0177, 1988; the numbers in lowtran_table.inc. O4: G. D. Greenblatt et al., J.
+// Geophys. Res. 95, 1990 (peaks and widths of its bands).
 #include <algorithm>
 #include <cmath>
 
