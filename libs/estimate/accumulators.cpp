@@ -125,29 +125,50 @@ void Accumulators::estimate(size_t problem, size_t band, double& mean, double& s
   standard_error = shares.used < 2 ? INFINITY : std::sqrt(square);  // one scramble tells nothing about its own error
 }
 
-void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
-  std::fill(means.begin(), means.end(), 0.0);
-  std::fill(errors.begin(), errors.end(), 0.0);
-  const uint32_t n = accepted(problem);
-  if (!n) return;
+namespace {
+
+// One pass over the bands; S: scrambles. sum: theirs; weight: of their squared deviations, 0 where a scramble has none.
+template <int S>
+void estimate_all(const std::array<const double*, 8>& sum, const Shares& shares, double n, std::span<double> means,
+                  std::span<double> errors) {
+  double per[S], weight[S];
+  for (int s = 0; s < S; ++s) {
+    per[s] = shares.count[s] > 0 ? 1 / shares.count[s] : 0;
+    weight[s] = shares.count[s] > 0 ? shares.weight[s] : 0;
+  }
+  const double per_sample = 1 / n;
   double* __restrict const mean = means.data();
-  double* __restrict const square = errors.data();
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    const double* __restrict sum = sums(problem, s);
-    for (size_t b = 0; b < shape_.bands; ++b) mean[b] += sum[b];
-  }
-  for (size_t b = 0; b < shape_.bands; ++b) mean[b] /= n;
-  const Shares shares(*this, problem);
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double* __restrict sum = sums(problem, s);
-    const double count = shares.count[s], weight = shares.weight[s];
-    for (size_t b = 0; b < shape_.bands; ++b) {
-      const double d = sum[b] / count - mean[b];
-      square[b] += weight * d * d;
+  double* __restrict const error = errors.data();
+  for (size_t b = 0; b < means.size(); ++b) {
+    double total = 0, square = 0;
+    for (int s = 0; s < S; ++s) total += sum[s][b];
+    const double middle = total * per_sample;
+    for (int s = 0; s < S; ++s) {
+      const double d = sum[s][b] * per[s] - middle;
+      square += weight[s] * (d * d);
     }
+    mean[b] = middle;
+    error[b] = std::sqrt(square);
   }
-  for (size_t b = 0; b < shape_.bands; ++b) square[b] = shares.used < 2 ? INFINITY : std::sqrt(square[b]);
+}
+
+}  // namespace
+
+void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
+  const uint32_t n = accepted(problem);
+  if (!n) {
+    std::fill(means.begin(), means.end(), 0.0);
+    std::fill(errors.begin(), errors.end(), 0.0);
+    return;
+  }
+  std::array<const double*, 8> sum{};
+  for (int s = 0; s < shape_.scrambles; ++s) sum[static_cast<size_t>(s)] = sums(problem, s);
+  const Shares shares(*this, problem);
+  if (shape_.scrambles == 4)
+    estimate_all<4>(sum, shares, n, means, errors);
+  else
+    estimate_all<8>(sum, shares, n, means, errors);
+  if (shares.used < 2) std::fill(errors.begin(), errors.end(), INFINITY);
 }
 
 Accumulators::Shortfall Accumulators::shortfall(size_t problem) const {

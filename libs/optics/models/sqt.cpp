@@ -149,10 +149,10 @@ class Sqt final : public ScatterModel {
   }
 
   std::shared_ptr<const sqt::Bundle> bundle_;
-  Betweens shape_, magnitude_;  // per bin
-  std::vector<double> most_;                // per bin: the largest total, 0 where nothing is stored and `zero` declared
-  std::vector<Between> knot_;               // per knot
-  std::vector<size_t> total_of_;            // per channel: where its total stands among the magnitudes
+  Betweens shape_, magnitude_;    // per bin
+  std::vector<double> most_;      // per bin: the largest total, 0 where nothing is stored and `zero` declared
+  std::vector<Between> knot_;     // per knot
+  std::vector<size_t> total_of_;  // per channel: where its total stands among the magnitudes
 };
 
 // The tests fit a bundle to each.
