@@ -106,31 +106,10 @@ struct Shares {
   int used = 0;
 };
 
-}  // namespace
-
-void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
-  mean = standard_error = 0;
-  const uint32_t n = accepted(problem);
-  if (!n) return;
-  double total = 0;
-  for (int s = 0; s < shape_.scrambles; ++s) total += sums(problem, s)[band];
-  mean = total / n;  // rejected samples are not averaged in
-  double square = 0;
-  const Shares shares(*this, problem);
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double d = sums(problem, s)[band] / shares.count[s] - mean;
-    square += shares.weight[s] * d * d;
-  }
-  standard_error = shares.used < 2 ? INFINITY : std::sqrt(square);  // one scramble tells nothing about its own error
-}
-
-namespace {
-
-// One pass over the bands; S: scrambles. sum: theirs; weight: of their squared deviations, 0 where a scramble has none.
+// One pass over values of a problem. S: scrambles. sum: theirs, from the first value on.
 template <int S>
-void estimate_all(const std::array<const double*, 8>& sum, const Shares& shares, double n, std::span<double> means,
-                  std::span<double> errors) {
+void estimate_values(const std::array<const double*, 8>& sum, const Shares& shares, double n, std::span<double> means,
+                     std::span<double> errors) {
   double per[S], weight[S];
   for (int s = 0; s < S; ++s) {
     per[s] = shares.count[s] > 0 ? 1 / shares.count[s] : 0;
@@ -154,7 +133,7 @@ void estimate_all(const std::array<const double*, 8>& sum, const Shares& shares,
 
 }  // namespace
 
-void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
+void Accumulators::estimate(size_t problem, size_t first, std::span<double> means, std::span<double> errors) const {
   const uint32_t n = accepted(problem);
   if (!n) {
     std::fill(means.begin(), means.end(), 0.0);
@@ -162,12 +141,13 @@ void Accumulators::estimate(size_t problem, std::span<double> means, std::span<d
     return;
   }
   std::array<const double*, 8> sum{};
-  for (int s = 0; s < shape_.scrambles; ++s) sum[static_cast<size_t>(s)] = sums(problem, s);
+  for (int s = 0; s < shape_.scrambles; ++s) sum[static_cast<size_t>(s)] = sums(problem, s) + first;
   const Shares shares(*this, problem);
   if (shape_.scrambles == 4)
-    estimate_all<4>(sum, shares, n, means, errors);
+    estimate_values<4>(sum, shares, n, means, errors);
   else
-    estimate_all<8>(sum, shares, n, means, errors);
+    estimate_values<8>(sum, shares, n, means, errors);
+  // One scramble tells nothing about its own error.
   if (shares.used < 2) std::fill(errors.begin(), errors.end(), INFINITY);
 }
 
