@@ -106,48 +106,49 @@ struct Shares {
   int used = 0;
 };
 
-}  // namespace
-
-void Accumulators::estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
-  mean = standard_error = 0;
-  const uint32_t n = accepted(problem);
-  if (!n) return;
-  double total = 0;
-  for (int s = 0; s < shape_.scrambles; ++s) total += sums(problem, s)[band];
-  mean = total / n;  // rejected samples are not averaged in
-  double square = 0;
-  const Shares shares(*this, problem);
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double d = sums(problem, s)[band] / shares.count[s] - mean;
-    square += shares.weight[s] * d * d;
+// One pass over values of a problem. S: scrambles. sum: theirs, from the first value on.
+template <int S>
+void estimate_values(const std::array<const double*, 8>& sum, const Shares& shares, double n, std::span<double> means,
+                     std::span<double> errors) {
+  double per[S], weight[S];
+  for (int s = 0; s < S; ++s) {
+    per[s] = shares.count[s] > 0 ? 1 / shares.count[s] : 0;
+    weight[s] = shares.count[s] > 0 ? shares.weight[s] : 0;
   }
-  standard_error = shares.used < 2 ? INFINITY : std::sqrt(square);  // one scramble tells nothing about its own error
+  const double per_sample = 1 / n;
+  double* __restrict const mean = means.data();
+  double* __restrict const error = errors.data();
+  for (size_t b = 0; b < means.size(); ++b) {
+    double total = 0, square = 0;
+    for (int s = 0; s < S; ++s) total += sum[s][b];
+    const double middle = total * per_sample;
+    for (int s = 0; s < S; ++s) {
+      const double d = sum[s][b] * per[s] - middle;
+      square += weight[s] * (d * d);
+    }
+    mean[b] = middle;
+    error[b] = std::sqrt(square);
+  }
 }
 
-void Accumulators::estimate(size_t problem, std::span<double> means, std::span<double> errors) const {
-  std::fill(means.begin(), means.end(), 0.0);
-  std::fill(errors.begin(), errors.end(), 0.0);
+}  // namespace
+
+void Accumulators::estimate(size_t problem, size_t first, std::span<double> means, std::span<double> errors) const {
   const uint32_t n = accepted(problem);
-  if (!n) return;
-  double* __restrict const mean = means.data();
-  double* __restrict const square = errors.data();
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    const double* __restrict sum = sums(problem, s);
-    for (size_t b = 0; b < shape_.bands; ++b) mean[b] += sum[b];
+  if (!n) {
+    std::fill(means.begin(), means.end(), 0.0);
+    std::fill(errors.begin(), errors.end(), 0.0);
+    return;
   }
-  for (size_t b = 0; b < shape_.bands; ++b) mean[b] /= n;
+  std::array<const double*, 8> sum{};
+  for (int s = 0; s < shape_.scrambles; ++s) sum[static_cast<size_t>(s)] = sums(problem, s) + first;
   const Shares shares(*this, problem);
-  for (int s = 0; s < shape_.scrambles; ++s) {
-    if (!(shares.count[s] > 0)) continue;
-    const double* __restrict sum = sums(problem, s);
-    const double count = shares.count[s], weight = shares.weight[s];
-    for (size_t b = 0; b < shape_.bands; ++b) {
-      const double d = sum[b] / count - mean[b];
-      square[b] += weight * d * d;
-    }
-  }
-  for (size_t b = 0; b < shape_.bands; ++b) square[b] = shares.used < 2 ? INFINITY : std::sqrt(square[b]);
+  if (shape_.scrambles == 4)
+    estimate_values<4>(sum, shares, n, means, errors);
+  else
+    estimate_values<8>(sum, shares, n, means, errors);
+  // One scramble tells nothing about its own error.
+  if (shares.used < 2) std::fill(errors.begin(), errors.end(), INFINITY);
 }
 
 Accumulators::Shortfall Accumulators::shortfall(size_t problem) const {

@@ -117,9 +117,13 @@ class Accumulators {
   //   V = sum a_s d_s^2 / (1 + sum a_s),  a = share^2 / (1 - 2 share),  d = deviation of the scramble's mean,
   // because E[d_s^2] = (1 - 2 share_s) variance_s + V. Infinite when fewer than two scrambles have samples. Means and
   // shares are those of accepted samples.
-  void estimate(size_t problem, size_t band, double& mean, double& standard_error) const;
+  void estimate(size_t problem, size_t band, double& mean, double& standard_error) const {
+    estimate(problem, band, {&mean, 1}, {&standard_error, 1});
+  }
   // The same for all values of a problem at once; spans of bands() values.
-  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const;
+  void estimate(size_t problem, std::span<double> means, std::span<double> standard_errors) const {
+    estimate(problem, 0, means, standard_errors);
+  }
 
   // Takes over, row by row, what another has computed further: after any sequence of joins a row is that of the part
   // that went furthest with it. Both must be of one run and one shape but for the number of problems and, where the
@@ -142,6 +146,8 @@ class Accumulators {
   std::array<Column<const std::byte>, kColumns> columns() const { return columns_of<const std::byte>(*this); }
 
  private:
+  // Of so many values from `first` on as the spans hold.
+  void estimate(size_t problem, size_t first, std::span<double> means, std::span<double> standard_errors) const;
   size_t row(size_t problem, int scramble) const {
     return problem * static_cast<size_t>(shape_.scrambles) + static_cast<size_t>(scramble);
   }

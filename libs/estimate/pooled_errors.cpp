@@ -22,9 +22,6 @@ class Rows {
   }
   long rows() const { return static_cast<long>(errors_.size() / width_); }
   const double* row(long y) const { return &kept_[static_cast<size_t>(y % (2 * kReach + 1)) * width_]; }
-  const double* of(size_t problem, size_t columns, size_t values) const {
-    return row(static_cast<long>(problem / columns)) + problem % columns * values;
-  }
   // Does it tell others anything? Whether it was changed already or not.
   bool tells(size_t problem, const PoolInput& in) const {
     return std::isfinite(errors_[problem * in.values + in.reference]);
@@ -47,15 +44,16 @@ double likeness(double theirs, double mine) {
   return 1 / (1 + octaves * octaves);
 }
 
-// The problems around one, and what each counts.
+// The problems around one: the squares of their errors, and what each counts, so that the weighted sum is the variance
+// of the prior; the degrees of freedom of that, 0 where there is none.
 struct Neighbours {
-  std::array<size_t, kMost> problem{};
+  std::array<const double*, kMost> square{};
   std::array<double, kMost> weight{};
   size_t count = 0;
+  double degrees = 0;
 };
 
-// Weights such that the weighted sum of the squares of errors is the prior's variance; returns its degrees of freedom,
-// 0 where there is none.
+// Returns the degrees of freedom.
 double weigh(const Rows& squares, const PoolInput& in, long x, long y, Neighbours& n) {
   const long columns = in.columns;
   const auto here = static_cast<size_t>(y * columns + x);
@@ -66,11 +64,12 @@ double weigh(const Rows& squares, const PoolInput& in, long x, long y, Neighbour
     for (long u = std::max(0L, x - kReach); u <= std::min(columns - 1, x + kReach); ++u) {
       if (u == x && v == y) continue;
       const auto there = static_cast<size_t>(v * columns + u);
-      const double square = squares.row(v)[static_cast<size_t>(u) * in.values + in.reference];
+      n.square[n.count] = squares.row(v) + static_cast<size_t>(u) * in.values;
+      const double square = n.square[n.count][in.reference];
       const double theirs = in.scatter[there];
       const double w = !squares.tells(there, in) ? 0 : mine > 0 && theirs > 0 ? likeness(theirs, mine) : mine == theirs;
       alike += w, scatter += w * theirs, like += w * square, all += square;
-      n.problem[n.count] = there, n.weight[n.count++] = w;
+      n.weight[n.count++] = w;
     }
   const double own_kind = scatter > 0 ? like * mine / scatter : 0, around = in.around[here] * in.around[here];
   if (around > own_kind && all > 0) {
@@ -83,6 +82,38 @@ double weigh(const Rows& squares, const PoolInput& in, long x, long y, Neighbour
   return kPriorDegrees * std::min(1.0, alike);
 }
 
+// Values of a problem that are worked on together: their sums over the neighbours stay in registers, and what a row of
+// problems shares in the nearest cache.
+constexpr size_t kTogether = 32;
+
+// Sums the neighbours' squares of N values from `first` on by weight; N a multiple of four.
+template <size_t N>
+void sum_prior(const Neighbours& around, size_t first, double* prior) {
+  using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+  Four sum[N / 4] = {};
+  for (size_t k = 0; k < around.count; ++k) {
+    const auto* const square = reinterpret_cast<const Four*>(around.square[k] + first);
+    for (size_t i = 0; i < N / 4; ++i) sum[i] += around.weight[k] * square[i];
+  }
+  for (size_t i = 0; i < N / 4; ++i) reinterpret_cast<Four*>(prior)[i] = sum[i];
+}
+void sum_prior(const Neighbours& around, size_t first, size_t count, double* prior) {
+  if (count == kTogether) return sum_prior<kTogether>(around, first, prior);
+  std::fill_n(prior, count, 0.0);
+  for (size_t k = 0; k < around.count; ++k)
+    for (size_t b = 0; b < count; ++b) prior[b] += around.weight[k] * around.square[k][first + b];
+}
+
+// own: squares of the errors.
+void join(const Neighbours& around, double own_degrees, const double* __restrict own, const double* __restrict prior,
+          size_t count, double* __restrict error) {
+  const double p = around.degrees, per = 1 / (own_degrees + p);
+  for (size_t b = 0; b < count; ++b) {
+    const double pooled = std::sqrt((own_degrees * own[b] + p * prior[b]) * per);
+    error[b] = error[b] < INFINITY ? pooled : error[b];
+  }
+}
+
 }  // namespace
 
 void pool_errors(const PoolInput& in, double own_degrees, std::span<double> errors) {
@@ -90,21 +121,19 @@ void pool_errors(const PoolInput& in, double own_degrees, std::span<double> erro
   for (long y = 0; y < squares.rows(); ++y) {
     squares.keep(y + kReach);
     parallel_for(0, in.columns, 64, [&](size_t begin, size_t end) {
-      std::vector<double> prior(in.values);
-      Neighbours around;
-      for (size_t x = begin; x < end; ++x) {
-        const double p = weigh(squares, in, static_cast<long>(x), y, around);
-        if (!(p > 0)) continue;
-        std::fill(prior.begin(), prior.end(), 0.0);
-        for (size_t k = 0; k < around.count; ++k) {
-          const double* const square = squares.of(around.problem[k], in.columns, in.values);
-          for (size_t b = 0; b < in.values; ++b) prior[b] += around.weight[k] * square[b];
+      std::vector<Neighbours> around(end - begin);
+      for (size_t x = begin; x < end; ++x)
+        around[x - begin].degrees = weigh(squares, in, static_cast<long>(x), y, around[x - begin]);
+      std::array<double, kTogether> prior;
+      for (size_t first = 0; first < in.values; first += kTogether)
+        for (size_t x = begin; x < end; ++x) {
+          const Neighbours& n = around[x - begin];
+          if (!(n.degrees > 0)) continue;
+          const size_t count = std::min(kTogether, in.values - first), at = x * in.values + first;
+          sum_prior(n, first, count, prior.data());
+          join(n, own_degrees, squares.row(y) + at, prior.data(), count,
+               &errors[static_cast<size_t>(y) * in.columns * in.values + at]);
         }
-        const double* const own = squares.row(y) + x * in.values;
-        double* const error = &errors[(static_cast<size_t>(y) * in.columns + x) * in.values];
-        for (size_t b = 0; b < in.values; ++b)
-          if (std::isfinite(error[b])) error[b] = std::sqrt((own_degrees * own[b] + p * prior[b]) / (own_degrees + p));
-      }
     });
   }
 }

@@ -4,12 +4,12 @@
 #pragma once
 #include <bit>
 #include <cstdint>
+#include <span>
 
 namespace suite {
 
-// exp(-x) for x >= 0, within 2e-7 of itself; 2^-126 from 87.3 on.
-inline float exp_falling(float x) {
-  const float y = -(x < 87.33654f ? x : 87.33654f);
+// exp(y) for -87.33654 <= y <= 89, within 2e-7 of itself; infinite from 88.4 on.
+inline float exp_within(float y) {
   constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it rounds to a whole number
   const float n = (y * 1.44269504088896341f + kRound) - kRound;
   const float r = (y - n * 0.693359375f) + n * 2.12194440e-4f;
@@ -22,6 +22,14 @@ inline float exp_falling(float x) {
   p = (p * r * r + r) + 1.0f;
   return p * std::bit_cast<float>((static_cast<int32_t>(n) + 127) << 23);
 }
+// exp(-x) for x >= 0, within 2e-7 of itself; 2^-126 from 87.3 on.
+inline float exp_falling(float x) { return exp_within(-(x < 87.33654f ? x : 87.33654f)); }
+
+// exp(-depth[i]), of depths >= 0, as exp_falling has it; `to` may be `depth`.
+void exp_falling(std::span<const float> depth, std::span<float> to);
+// exp(from - depth[i]) of any sign, within 2e-7 and the rounding of the difference to a float; 2^-126 where the
+// difference is below -87.3, infinite from 88.4 on. `to` may be `depth`.
+void exp_difference(double from, std::span<const float> depth, std::span<float> to);
 
 // What a slab of depth x >= 0 sends out towards s = 0, over what it would send if nothing dimmed it; keep: exp(-x).
 // Even: its source is the same everywhere, the mean of exp(-x s) over s in 0..1, within 2e-6. Rising: its source grows

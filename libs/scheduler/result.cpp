@@ -47,7 +47,7 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   // Few enough that bands^2 products of each take neither time nor memory.
   const size_t most = std::clamp<size_t>((size_t{4} << 20) / (bands * bands), 16, 1024);
   correlated_every_ = std::max<size_t>(1, (n + most - 1) / most);
-  products_.resize((n + correlated_every_ - 1) / correlated_every_);
+  deviations_.resize((n + correlated_every_ - 1) / correlated_every_);
 }
 
 void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) {
@@ -66,10 +66,8 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   if (lacks_[problem].truncated()) quality |= quality_truncated;
   if (lacks_[problem].unresolved()) quality |= quality_unresolved;
   truth_.finish(sums.truth(slot), paths, r.truth.data() + problem * r.truth_names.size());
-  if (problem % correlated_every_ == 0) {
-    products_[problem / correlated_every_].assign(r.bands * r.bands, 0.0);
-    correlate(sums, slot, &r.radiance[problem * values], products_[problem / correlated_every_]);
-  }
+  if (problem % correlated_every_ == 0)
+    deviations_[problem / correlated_every_] = deviations(sums, slot, &r.radiance[problem * values]);
 }
 
 Lack ResultBuilder::lack_of(size_t problem, const Accumulators& sums, size_t slot) const {
@@ -88,17 +86,18 @@ Lack ResultBuilder::lack_of(size_t problem, const Accumulators& sums, size_t slo
   return lack;
 }
 
-void ResultBuilder::correlate(const Accumulators& sums, size_t slot, const double* means,
-                              std::vector<double>& products) const {
+std::vector<float> ResultBuilder::deviations(const Accumulators& sums, size_t slot, const double* means) const {
   const size_t bands = result_.bands;
-  std::vector<double> deviation(bands);
+  std::vector<float> of;
   for (int s = 0; s < sums.scrambles(); ++s) {
     const uint32_t count = sums.accepted(slot, s);
     if (!count) continue;
-    for (size_t b = 0; b < bands; ++b) deviation[b] = means[b] > 0 ? sums.sums(slot, s)[b] / count / means[b] - 1 : 0;
-    for (size_t a = 0; a < bands; ++a)
-      for (size_t b = a; b < bands; ++b) products[a * bands + b] += deviation[a] * deviation[b];
+    const double* const sum = sums.sums(slot, s);
+    of.resize(of.size() + bands);
+    float* const to = &of[of.size() - bands];
+    for (size_t b = 0; b < bands; ++b) to[b] = means[b] > 0 ? static_cast<float>(sum[b] / count / means[b] - 1) : 0.0f;
   }
+  return of;
 }
 
 std::vector<TailSums> ResultBuilder::tail_sums() const {
@@ -139,17 +138,16 @@ void ResultBuilder::widen() {
     }
 }
 
-CaptureResult ResultBuilder::finish() {
-  std::vector<TailSums> tails = tail_sums();
-  pool(tails);
-  for (size_t i = 0; i < tails.size(); ++i)
-    tails[i].error = result_.standard_error[i * result_.values_per_problem() + reference_band_];
-  flag_heavy_tails(tails, result_.columns, neighbours_, result_.quality);
-  widen();
+// The correlation of the bands' errors.
+void ResultBuilder::correlate() {
   const size_t bands = result_.bands;
   std::vector<double> sum(bands * bands, 0.0);
-  for (const std::vector<double>& p : products_)
-    for (size_t i = 0; i < p.size(); ++i) sum[i] += p[i];
+  for (const std::vector<float>& of : deviations_)
+    for (size_t row = 0; row < of.size(); row += bands)
+      for (size_t a = 0; a < bands; ++a) {
+        const double own = of[row + a];
+        for (size_t b = a; b < bands; ++b) sum[a * bands + b] += own * of[row + b];
+      }
   std::vector<double>& correlation = result_.error_correlation;
   correlation.assign(bands * bands, 0.0);
   for (size_t a = 0; a < bands; ++a)
@@ -157,6 +155,16 @@ CaptureResult ResultBuilder::finish() {
       const double scale = std::sqrt(sum[a * bands + a] * sum[b * bands + b]);
       correlation[a * bands + b] = correlation[b * bands + a] = a == b ? 1 : scale > 0 ? sum[a * bands + b] / scale : 0;
     }
+}
+
+CaptureResult ResultBuilder::finish() {
+  std::vector<TailSums> tails = tail_sums();
+  pool(tails);
+  for (size_t i = 0; i < tails.size(); ++i)
+    tails[i].error = result_.standard_error[i * result_.values_per_problem() + reference_band_];
+  flag_heavy_tails(tails, result_.columns, neighbours_, result_.quality);
+  widen();
+  correlate();
   return std::move(result_);
 }
 

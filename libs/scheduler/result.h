@@ -33,7 +33,8 @@ class ResultBuilder {
   std::vector<TailSums> tail_sums() const;  // with errors as the scrambles tell them
   void pool(std::span<const TailSums> tails);
   void widen();
-  void correlate(const Accumulators& sums, size_t slot, const double* means, std::vector<double>& products) const;
+  std::vector<float> deviations(const Accumulators& sums, size_t slot, const double* means) const;
+  void correlate();
   CaptureResult result_;
   std::vector<double> scatter_;             // [problem] variance of the mean if samples were independent
   std::vector<Lack> lacks_;                 // [problem]
@@ -43,9 +44,10 @@ class ResultBuilder {
   const TruthPlan& truth_;
   const Goals& goals_;
   std::vector<float> largest_;  // sample of each problem
-  // Products of the bands' deviations, summed over the scrambles of every so many problems (1024 at most): all bands
-  // ride on the same paths, so they err together. Kept per problem, because sums must not depend on who comes first.
-  std::vector<std::vector<double>> products_;
+  // The bands' deviations from their means, relative, of the scrambles of every so many problems (1024 at most):
+  // [scramble][band], one behind the other. All bands ride on the same paths, so they err together. Kept per problem,
+  // because sums of their products must not depend on who comes first.
+  std::vector<std::vector<float>> deviations_;
 };
 
 }  // namespace suite

@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "transport/dimensions.h"
@@ -182,8 +183,13 @@ float BlockRun::lowest(size_t channel) const {
 }
 // One comparison rejects NaN, infinity and negative radiance alike; such a sample is counted, not averaged in.
 bool BlockRun::good(std::span<const float> light, float lowest) {
+  constexpr float kMost = 3e38f;
+  // Numbers that are not negative ascend with their bits; all else has greater ones.
+  uint32_t most = 0;
+  for (const float L : light) most = std::max(most, std::bit_cast<uint32_t>(L));
+  if (most < std::bit_cast<uint32_t>(kMost)) return true;
   unsigned all = 1;
-  for (const float L : light) all &= static_cast<unsigned>(L >= lowest) & static_cast<unsigned>(L < 3e38f);
+  for (const float L : light) all &= static_cast<unsigned>(L >= lowest) & static_cast<unsigned>(L < kMost);
   return all;
 }
 bool BlockRun::acceptable(uint32_t p, bool lost) {

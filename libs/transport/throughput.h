@@ -30,13 +30,12 @@ class SpectralThroughputs {
   // A path starts with a weight and, if not null, a spectrum of weights that outlives it.
   void begin(uint32_t p, float weight, const float* weights) {
     Chain& c = chains_[p];
-    c.steps = c.dense = 0;
+    c = {};
     if (bins_ == 1) {
       throughput_[size_t{p} * stride_] = weights ? weight * *weights : weight;
       for (size_t t = 0; t < targets_; ++t) light_[(size_t{p} * targets_ + t) * stride_] = 0;
       return;
     }
-    c.folded = false;
     add_turn(c, p, {weight, weights});
   }
   // T <- a spectrum; L stays.
@@ -75,7 +74,7 @@ class SpectralThroughputs {
 
   // L of a path.
   std::span<const float> light(uint32_t p, size_t target = 0) {
-    settle(p);
+    if (bins_ > 1 && (!chains_[p].light || chains_[p].steps > 0)) fold(p);
     return {&light_[(size_t{p} * targets_ + target) * stride_], bins_};
   }
   // T of a path as it stands.
@@ -94,7 +93,10 @@ class SpectralThroughputs {
   };
   struct Chain {
     uint32_t steps = 0, dense = 0;
-    bool folded = false;  // T and L stand in memory; else they are 1 and 0
+    bool light = false;  // L stands in memory; else it is 0
+    // T at the begin of the steps: scale t u; t: the path's own memory, or a spectrum that stands elsewhere.
+    float scale = 1;
+    const float *t = nullptr, *u = nullptr;  // null = ones; u: only with t
   };
   struct Free {
     void operator()(float* p) const { std::free(p); }
@@ -130,10 +132,11 @@ class SpectralThroughputs {
     light_[(size_t{p} * targets_ + target) * stride_] += x;
     if (second != kNone) light_[(size_t{p} * targets_ + second) * stride_] += x;
   }
-  void settle(uint32_t p) {
-    if (bins_ > 1 && (!chains_[p].folded || chains_[p].steps > 0)) fold(p);
-  }
+  // Brings L to memory, of the chain's steps, and T to few factors.
   void fold(uint32_t p);
+  void turn_by(uint32_t p, const Step& by);
+  // All of it: nothing points elsewhere.
+  void settle(uint32_t p);
 
   size_t bins_, stride_, targets_;
   std::vector<Chain> chains_;

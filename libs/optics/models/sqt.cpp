@@ -29,6 +29,17 @@ Between locate(const std::vector<double>& ascending, double x) {
   return {i, i + 1, (x - ascending[i]) / (ascending[i + 1] - ascending[i])};
 }
 
+// The same for every bin, one array each: loops over bins become vector code.
+struct Betweens {
+  std::vector<int32_t> low, high;
+  std::vector<double> t;
+  void push_back(const Between& b) {
+    low.push_back(static_cast<int32_t>(b.low)), high.push_back(static_cast<int32_t>(b.high)), t.push_back(b.t);
+  }
+  Between operator[](size_t i) const { return {static_cast<size_t>(low[i]), static_cast<size_t>(high[i]), t[i]}; }
+  double mean(const double* of, size_t i) const { return (1 - t[i]) * of[low[i]] + t[i] * of[high[i]]; }
+};
+
 class Sqt final : public ScatterModel {
  public:
   Sqt(std::shared_ptr<const sqt::Bundle> bundle, const StoredRange& range, const SpectralState& state)
@@ -68,9 +79,11 @@ class Sqt final : public ScatterModel {
       const double total = f[c] > 0 ? W[total_of_[c]] : 0;
       f[c] = total > 0 ? f[c] * std::fabs(in.z) / total : 0;
     }
+    const double* const shapes = f.data();
+    const double* const totals = W.data();
+    float* __restrict const to = w.data();
     for (size_t i = 0; i < w.size(); ++i)
-      w[i] =
-          static_cast<float>(at_bin(W, i) * ((1 - shape_[i].t) * f[shape_[i].low] + shape_[i].t * f[shape_[i].high]));
+      to[i] = static_cast<float>(std::min(most_[i], magnitude_.mean(totals, i)) * shape_.mean(shapes, i));
   }
   void total(Dir out, std::span<float> w) const override {
     thread_local std::vector<double> W;
@@ -146,16 +159,15 @@ class Sqt final : public ScatterModel {
     bundle_->magnitude(out, W);
   }
   double at_bin(const std::vector<double>& W, size_t i) const {
-    const Between& m = magnitude_[i];
-    return std::min(most_[i], (1 - m.t) * W[m.low] + m.t * W[m.high]);
+    return std::min(most_[i], magnitude_.mean(W.data(), i));
   }
 
   std::shared_ptr<const sqt::Bundle> bundle_;
-  std::vector<Between> shape_, magnitude_;  // per bin
-  std::vector<double> most_;                // per bin: the largest total, 0 where nothing is stored and `zero` declared
-  std::vector<Between> knot_;               // per knot
+  Betweens shape_, magnitude_;    // per bin
+  std::vector<double> most_;      // per bin: the largest total, 0 where nothing is stored and `zero` declared
+  std::vector<Between> knot_;     // per knot
   std::vector<size_t> channels_, knot_channels_;  // that bins, that knots need
-  std::vector<size_t> total_of_;                  // per channel: where its total stands among the magnitudes
+  std::vector<size_t> total_of_;  // per channel: where its total stands among the magnitudes
 };
 
 // The tests fit a bundle to each.

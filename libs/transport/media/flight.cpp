@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/falling.h"
+
 namespace suite {
 
 namespace {
@@ -241,10 +243,9 @@ void Flights::weigh(LivePath& live, std::span<float> through) {
   }
   const double offset = spectral ? own : 0;
   for (size_t k = 0; k < knots; ++k) live.throughput[k] *= std::exp(offset - tau_[bins_of_knots_[k]]);
-  for (size_t i = 0; i < through.size(); ++i) {
-    const float t = static_cast<float>(std::exp(offset - tau_[i]));
-    through[i] = result_.dense ? through[i] * t : t;
-  }
+  const std::span<float> onto = result_.dense ? std::span(tau_) : through;
+  spectral ? exp_difference(offset, tau_, onto) : exp_falling(tau_, onto);
+  for (size_t i = 0; result_.dense && i < through.size(); ++i) through[i] *= tau_[i];
   result_.dense = true;
 }
 
@@ -288,7 +289,7 @@ bool Flights::transmittance(std::span<const double> depth, std::span<float> tran
     clear = false;
   }
   if (clear) return false;
-  for (float& t : transmission) t = std::exp(-t);
+  exp_falling(transmission, transmission);
   return true;
 }
 

@@ -33,6 +33,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
     index_.push_back(std::sqrt(double{m.index_squared[reference]}));
     if (m.scatters()) m.phase->asymmetry(phase_);
     asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
+    one_phase_.push_back(m.scatters() && m.phase->spectrally_uniform());
   }
 }
 
@@ -148,7 +149,7 @@ Factor FieldSpace::evaluate(uint32_t p, double cosine, std::span<float> v) {
     const BakedMedium& m = optics_.media()[c.medium];
     if (!m.scatters()) continue;
     const float density = static_cast<float>(c.density);
-    if (m.phase->spectrally_uniform()) {
+    if (one_phase_[c.medium]) {
       float value = 0;
       m.phase->eval(cosine, {&value, 1});
       if (scatterers == 1) return {density * value, m.scattering.data()};

@@ -92,8 +92,9 @@ class FieldSpace {
   Bodies bodies_;
   Flights flights_;
   MediaSight sight_;
-  std::vector<double> index_;      // of refraction at the reference, per medium
-  std::vector<double> asymmetry_;  // mean cosine of scattering there
+  std::vector<double> index_;       // of refraction at the reference, per medium
+  std::vector<double> asymmetry_;   // mean cosine of scattering there
+  std::vector<uint8_t> one_phase_;  // the same phase function at all wavelengths, per medium
   std::vector<MediumStack> stacks_;
   std::vector<Way> ways_;
   std::vector<ScatterPlace> events_;
