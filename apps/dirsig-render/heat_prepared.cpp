@@ -94,15 +94,18 @@ double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - 
 double bytes_of(const PreparedHeat& p) {
   constexpr double kNodes = 4 * 30 * 8;
   const double moments = moments_of(p), paths = p.spec.paths;
-  const double found = paths * 8 + 4.0 * HeatSpec::kBlocks * (kHeatParts + 2) + 4.0 * Sunlight::kContrasts * kHeatParts;
-  const double tracing = 4 * (moments + kSkyPatches), making = 4 * moments + paths * 8 * 4;
-  const double balance = paths * 8 * 2 + 4 * moments * 3 + kNodes;
+  const double rows = HeatSpec::kBlocks + Sunlight::kContrasts;  // of parts, for errors
+  const double tracing = 4 * (moments + kSkyPatches + rows * kHeatParts + 2 * HeatSpec::kBlocks);
+  // Then what acts on a face and its errors are kept in two bytes each (compact_rows.h).
+  const double kept = 2 * moments + rows * (2 * kHeatParts + 8), making = kept + paths * 8 * 3;
+  const double balance = kept + paths * 8 * 2 + 4 * moments + kNodes;
   // Elements that conduct to each other are followed at once: what they receive and emit, and the vectors of nodes of
   // the search for what solves their equations.
   const double lateral = p.spec.lateral ? 8 * moments * 2 + kNodes * 4 : 0;
-  const double errors = 4 * moments * 3 + 4.0 * HeatSpec::kBlocks * kHeatParts + 8.0 * 2 * kHeatParts;
+  const double errors = kept + paths * 8 / HeatSpec::kBlocks * 3 + 6 * moments + 4.0 * 5 * kHeatParts;
+  const double told = 4 * moments * 4 + 4.0 * 3 * kHeatParts;  // as the result has it, in place of the paths
   return static_cast<double>(p.faces->size()) *
-         (found + std::max({tracing, making, balance + lateral, errors + lateral}));
+         std::max({paths * 8 + std::max({tracing, making, balance + lateral, errors + lateral}), told});
 }
 
 void check_size(const PreparedHeat& p, const Simulation& sim) {

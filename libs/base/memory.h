@@ -18,6 +18,12 @@ void give_back_freed();
 // mapping 4 kB at a time costs more than writing results does. Does nothing for less than 4 MiB.
 void expect_large(void* data, size_t bytes);
 
+// Gives back what a vector holds; `v = {}` keeps its memory.
+template <class T>
+void give_up(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
+
 // v.resize(n) of an empty vector, its memory announced by expect_large.
 template <class T>
 void resize_large(std::vector<T>& v, size_t n) {

@@ -23,10 +23,7 @@ class AuditTables {
   // Within the span, s.
   double wrapped(double t) const;
   double kelvin(uint32_t face, double t) const {
-    const double x = position(t);
-    const auto k = std::min(static_cast<size_t>(x), moments_ - 2);
-    const double early = solved_.history.kelvin_at(face, k), late = solved_.history.kelvin_at(face, k + 1);
-    return early + (late - early) * (x - static_cast<double>(k));
+    return between_moments([&](size_t k) { return solved_.history.kelvin_at(face, k); }, t);
   }
   double absorbed(uint32_t face, double t) const { return at(solved_.loads.absorbed, face, t); }
   double mirrored(uint32_t face, double t) const;
@@ -40,13 +37,18 @@ class AuditTables {
 
  private:
   double position(double t) const;
-  template <class Value>
-  double at(const std::vector<Value>& rows, size_t row, double t) const {
+  template <class Of>
+  double between_moments(const Of& of, double t) const {  // of(moment)
     const double x = position(t);
     const auto k = std::min(static_cast<size_t>(x), moments_ - 2);
-    const auto* r = &rows[row * moments_ + k];
-    return static_cast<double>(r[0]) +
-           (static_cast<double>(r[1]) - static_cast<double>(r[0])) * (x - static_cast<double>(k));
+    return of(k) + (of(k + 1) - of(k)) * (x - static_cast<double>(k));
+  }
+  double at(const CompactRows& rows, size_t row, double t) const {
+    return between_moments([&](size_t k) { return rows.at(row, k); }, t);
+  }
+  template <class Value>
+  double at(const std::vector<Value>& rows, size_t row, double t) const {
+    return between_moments([&](size_t k) { return static_cast<double>(rows[row * moments_ + k]); }, t);
   }
 
   const SolvedSurfaces& solved_;

@@ -43,17 +43,20 @@ double saturation_pressure(double kelvin) {
   return 611.2 * std::exp(17.67 * celsius / (celsius + 243.5));
 }
 
-double loss_to_air(const FaceTraits& face, const FaceWeather& weather, double kelvin) {
-  if (!face.convection) return 0;
+double film_of(const FaceTraits& face, const FaceWeather& weather, double kelvin) {
   const auto coefficient = [&](double wind) {
     return face.convection->coefficient(
         {kelvin, weather.air_kelvin, wind, face.cosine_up, weather.windward, weather.pressure});
   };
   // Laws bend in the wind: two winds with its mean and deviation stand for all, none below 0; weak gusts do not matter.
   const double gusts = std::fmin(weather.gusts, weather.wind);
-  const double h = gusts > 0.05 * weather.wind
-                       ? (coefficient(weather.wind - gusts) + coefficient(weather.wind + gusts)) / 2
-                       : coefficient(weather.wind);
+  return gusts > 0.05 * weather.wind ? (coefficient(weather.wind - gusts) + coefficient(weather.wind + gusts)) / 2
+                                     : coefficient(weather.wind);
+}
+
+double loss_to_air(const FaceTraits& face, const FaceWeather& weather, double kelvin) {
+  if (!face.convection) return 0;
+  const double h = weather.film >= 0 ? weather.film : film_of(face, weather, kelvin);
   double loss = h * (kelvin - weather.air_kelvin);
   if (face.wetness > 0) {
     constexpr double kHeat = 1006, kRatio = 0.622, kVapour = 2.45e6;     // J/(kg K), 1, J/kg at 20 degC

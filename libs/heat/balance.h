@@ -29,6 +29,7 @@ struct FaceWeather {
   double vapour_pressure = 0;  // Pa, of the air; asked for where the face is wet
   double pressure = 101325;    // Pa
   double source = 0;           // W/m2 released at the face from inside, e.g. by a machine
+  double film = -1;            // W/(m2 K), as film_of() has it, where it was asked before; < 0: is asked
 };
 
 // Flux into the element = constant - linear T - quartic T^4, W/m2.
@@ -41,6 +42,10 @@ struct FaceBalance {
 // Source: D. Bolton, "The computation of equivalent potential temperature", Mon. Weather Rev. 108, 1980, equation 10:
 // 0.1 % from -30 to 35 degC.
 double saturation_pressure(double kelvin);
+
+// The coefficient of the face's law of convection, W/(m2 K), as a mean over gusts; the law must be there. The film of
+// the weather is not looked at.
+double film_of(const FaceTraits& face, const FaceWeather& weather, double kelvin);
 
 // Heat the face loses to the air at a temperature, W/m2: convection h (T - air) and evaporation
 // wetness h / gamma (e_s(T) - e), gamma = c_p p / (0.622 L) by the analogy of heat and vapour transfer

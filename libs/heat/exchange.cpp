@@ -99,27 +99,39 @@ void ExchangeMatrix::receive_one(size_t element, const Histories& emitted, std::
 
 namespace {
 
+constexpr size_t kPiecesTogether = 32;  // answer to the same
+
 double kelvin_of(double emitted) { return std::sqrt(std::sqrt(emitted / kStefanBoltzmann)); }
+
+// K, of a row's history and the answer to it.
+double change_in_kelvin(const Histories& before, size_t row, std::span<const double> answer) {
+  double largest = 0;
+  for (size_t m = 0; m < answer.size(); ++m) {
+    const double after = answer[m];
+    if (!(after > 0 && after < INFINITY))
+      throw Error(strf("coupled elements answer with an emitted flux of %g W/m2", after), "positive and finite");
+    largest = std::fmax(largest, std::fabs(kelvin_of(std::fmax(before.at(row, m), 0.0)) - kelvin_of(after)));
+  }
+  return largest;
+}
 
 // The largest difference of two histories of emitted flux, as temperatures, over the rows of the second.
 double largest_change(const Histories& a, const Histories& b) {
   std::vector<double> largest(b.rows(), 0);
   parallel_for(0, b.rows(), 64, [&](size_t first, size_t last) {
-    for (size_t row = first; row < last; ++row)
-      for (size_t m = 0; m < b.moments(); ++m) {
-        const double before = a.at(row, m), after = b.at(row, m);
-        if (!(after > 0 && after < INFINITY))
-          throw Error(strf("coupled elements answer with an emitted flux of %g W/m2", after), "positive and finite");
-        largest[row] = std::fmax(largest[row], std::fabs(kelvin_of(std::fmax(before, 0.0)) - kelvin_of(after)));
-      }
+    std::vector<double> answer(b.moments());
+    for (size_t row = first; row < last; ++row) {
+      b.get(row, answer);
+      largest[row] = change_in_kelvin(a, row, answer);
+    }
   });
   return *std::max_element(largest.begin(), largest.end());
 }
 
 // What histories cannot tell of the temperature of the element that they round most, K.
-double least_change(const Histories& h) {
+double least_change(const Histories& h, size_t rows) {
   double most = 0;
-  for (size_t row = 0; row < h.rows(); ++row) {
+  for (size_t row = 0; row < rows; ++row) {
     const auto above = h.above(row);
     const double swing = double{*std::max_element(above.begin(), above.end())}, top = h.least(row) + swing;
     most = std::fmax(most, kelvin_of(top) / 4 * swing / top);
@@ -136,34 +148,81 @@ void accelerate(Anderson& anderson, const Histories& present, Histories& answer)
   for (size_t row = 0; row < answer.rows(); ++row) answer.set(row, {&next[row * answer.moments()], answer.moments()});
 }
 
-}  // namespace
-
-CouplingResult couple_histories(const ExchangeMatrix& exchange, Histories& emitted, const Respond& respond,
-                                const CouplingOptions& options) {
-  SUITE_CHECK(emitted.moments() > 0 && exchange.elements() > 0 && options.tolerance > 0);
-  SUITE_CHECK_EQ(emitted.rows(), exchange.elements() + exchange.outsides());
-  Histories answer(exchange.elements(), emitted.moments());
-  std::optional<Anderson> anderson;
-  if (options.memory > 0) anderson.emplace(std::vector<double>(answer.rows() * answer.moments(), 1.0), options.memory);
+// Sweeps until there. sweep: returns the largest change, K; least: what histories cannot tell.
+CouplingResult settle(const std::function<double()>& sweep, const std::function<double()>& least_of,
+                      const CouplingOptions& options) {
+  SUITE_CHECK(options.tolerance > 0);
   CouplingResult result;
   for (double last = 0;; last = result.change) {
-    respond(emitted, answer);
+    result.change = sweep();
     ++result.sweeps;
-    result.change = largest_change(emitted, answer);
     // Of changes that shrink by a ratio, this much is still to come.
     const double ratio = last > 0 ? std::clamp(result.change / last, 0.0, 0.99) : 0.9;
     result.distance = result.change * ratio / (1 - ratio);
-    const double least = least_change(answer);
+    const double least = least_of();
     if (result.change <= least) result.distance = std::fmin(result.distance, least);
-    const bool there =
-        result.change == 0 || (result.sweeps > 1 && (result.distance <= options.tolerance || result.change <= least));
-    if (!there && anderson && result.sweeps < options.most_sweeps) accelerate(*anderson, emitted, answer);
-    emitted.take(answer);
-    if (there) return result;
+    if (result.change == 0 || (result.sweeps > 1 && (result.distance <= options.tolerance || result.change <= least)))
+      return result;
     if (result.sweeps >= options.most_sweeps)
       throw Error(strf("coupled surfaces still change by %g K after %d sweeps", result.change, result.sweeps),
                   "allow more sweeps, or a memory for Anderson's method");
   }
+}
+
+}  // namespace
+
+double answer_in_place(Histories& emitted, size_t pieces,
+                       const std::function<void(size_t piece, const PutEmitted& put)>& answer) {
+  struct Answers {
+    std::vector<uint32_t> rows;
+    std::vector<double> values;
+    double change = 0;
+  };
+  const size_t moments = emitted.moments();
+  double largest = 0;
+  for (size_t first = 0; first < pieces; first += kPiecesTogether) {
+    std::vector<Answers> answers(std::min(kPiecesTogether, pieces - first));
+    parallel_for(0, answers.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t k = begin; k < end; ++k)
+        answer(first + k, [&](uint32_t row, std::span<const double> values) {
+          Answers& a = answers[k];
+          a.rows.push_back(row), a.values.insert(a.values.end(), values.begin(), values.end());
+          a.change = std::fmax(a.change, change_in_kelvin(emitted, row, values));
+        });
+    });
+    for (const Answers& a : answers) {
+      for (size_t i = 0; i < a.rows.size(); ++i) emitted.set(a.rows[i], {&a.values[i * moments], moments});
+      largest = std::fmax(largest, a.change);
+    }
+  }
+  return largest;
+}
+
+CouplingResult relax_histories(Histories& emitted, size_t elements, const Sweep& sweep,
+                               const CouplingOptions& options) {
+  SUITE_CHECK(emitted.moments() > 0 && elements > 0 && elements <= emitted.rows());
+  return settle([&] { return sweep(emitted); }, [&] { return least_change(emitted, elements); }, options);
+}
+
+CouplingResult couple_histories(const ExchangeMatrix& exchange, Histories& emitted, const Respond& respond,
+                                const CouplingOptions& options) {
+  SUITE_CHECK(emitted.moments() > 0 && exchange.elements() > 0);
+  SUITE_CHECK_EQ(emitted.rows(), exchange.elements() + exchange.outsides());
+  Histories answer(exchange.elements(), emitted.moments());
+  std::optional<Anderson> anderson;
+  if (options.memory > 0) anderson.emplace(std::vector<double>(answer.rows() * answer.moments(), 1.0), options.memory);
+  bool first = true;
+  const CouplingResult result = settle(
+      [&] {
+        if (!first && anderson) accelerate(*anderson, emitted, answer);
+        if (!first) emitted.take(answer);
+        first = false;
+        respond(emitted, answer);
+        return largest_change(emitted, answer);
+      },
+      [&] { return least_change(answer, answer.rows()); }, options);
+  emitted.take(answer);
+  return result;
 }
 
 }  // namespace suite

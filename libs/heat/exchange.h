@@ -51,6 +51,16 @@ class ExchangeMatrix {
   std::vector<double> factors_;  // of a row's shares, so that these sum to 1
 };
 
+// Is told W/m2 that a row emits, by moment.
+using PutEmitted = std::function<void(uint32_t row, std::span<const double> emitted)>;
+// One sweep in place: pieces of the elements (0 to pieces) answer to what all emit, some pieces to the same; then their
+// answers take its place, and the next ones see that. In parallel, the same on any number of threads. Returns the
+// largest change, K. Error: an answer that is not positive.
+double answer_in_place(Histories& emitted, size_t pieces,
+                       const std::function<void(size_t piece, const PutEmitted& put)>& answer);
+// Sets all elements' rows once; returns the largest change, K.
+using Sweep = std::function<double(Histories& emitted)>;
+
 // What the elements answer when all ends emit as in `around` (elements, then outsides): sets the rows of `emitted`,
 // W/m2. What an element receives is receive_one() of it.
 using Respond = std::function<void(const Histories& around, Histories& emitted)>;
@@ -65,6 +75,10 @@ struct CouplingResult {
   double change = 0;    // K, largest of the last sweep
   double distance = 0;  // K, as estimated from the change and its contraction
 };
+// Waveform relaxation in place, elements after elements (Gauss and Seidel): one history of all ends. Error: as
+// couple_histories.
+CouplingResult relax_histories(Histories& emitted, size_t elements, const Sweep& sweep,
+                               const CouplingOptions& options = {});
 // Waveform relaxation: from the emitted histories of all ends (elements, as guessed, then outsides, as given) the
 // answer of every element over the whole time, and again, until the histories of the elements are within the tolerance,
 // or as near as histories can tell. Plain sweeps hold two of them, the given ones and their answer; of every difference

@@ -71,10 +71,9 @@ std::vector<double> outsides(const Tracer& tracer, const HeatFaces& faces, const
   return out;
 }
 
-// W/m2 by face and moment.
-std::vector<float> absorbed(const Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
+// W/m2 by face and moment, in the place of what faces take of the beam.
+void absorb(Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
   const size_t moments = loads.moments.size();
-  std::vector<float> out(sun.faces() * moments);
   parallel_for(0, sun.faces(), 64, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f)
       for (size_t k = 0; k < moments; ++k) {
@@ -85,10 +84,9 @@ std::vector<float> absorbed(const Sunlight& sun, const WeatherLoads& loads, cons
           for (uint32_t p = 0; p < kSkyPatches; ++p) diffuse += double{takes[p] * sky[p]};
           sum += diffuse + double{sun.below[f]} * spec.ground_albedo * loads.global[k] / kPi;
         }
-        out[f * moments + k] = static_cast<float>(sum);
+        sun.beam[f * moments + k] = static_cast<float>(sum);
       }
   });
-  return out;
 }
 
 }  // namespace
@@ -162,7 +160,13 @@ SurfaceLoads first_day(const SurfaceLoads& loads, const WeatherLoads& weather, s
       for (size_t k = 0; k < moments; ++k) out.push_back(from[r * all + (k + 1 == moments ? 0 : k)]);
     return out;
   };
-  day.absorbed = cut(loads.absorbed, faces);
+  day.absorbed = CompactRows(faces, moments);
+  std::vector<float> whole(all);
+  for (size_t f = 0; f < faces; ++f) {
+    loads.absorbed.get(f, whole);
+    whole[steps] = whole[0];
+    day.absorbed.set(f, {whole.data(), moments});
+  }
   day.outside = cut(loads.outside, outsides);
   day.source = loads.source;
   const AirSeries& air = weather.air;
@@ -201,8 +205,8 @@ void sum_balance(const Elements& elements, const std::vector<SurfaceGroup>& grou
     for (size_t k = 0; k < moments; ++k) {
       const double weight = area * (k == 0 || k + 1 == moments ? 0.5 : 1) / static_cast<double>(moments - 1);
       const double kelvin = h.kelvin_at(face, k);
-      b.sunlight += weight * double{loads.absorbed[face * moments + k]};
-      b.infrared += weight * traits.emissivity * double{h.received[face * moments + k]};
+      b.sunlight += weight * loads.absorbed.at(face, k);
+      b.infrared += weight * traits.emissivity * h.received.at(face, k);
       b.emitted += weight * traits.emissivity * body(kelvin);
       b.to_air += weight * loss_to_air(traits, air[k], kelvin);
       b.source += weight * source;
@@ -222,15 +226,21 @@ void sum_balance(const Elements& elements, const std::vector<SurfaceGroup>& grou
   }
 }
 
-// All that acts on the faces through the span. Uses up what the sunlight has of moments and of the sky.
-SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoads& weather, const HeatSpec& spec) {
+// All that acts on the faces through the span, and how far paths and points may be off. Takes turns with what the
+// sunlight has of them, which makes room.
+SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoads& weather, const HeatSpec& spec,
+                        LoadErrors& errors) {
   SurfaceLoads loads;
   loads.begin = spec.span.begin;
   for (size_t k = 0; k + 1 < weather.moments.size(); ++k)
     loads.steps.push_back(weather.moments[k + 1] - weather.moments[k]);
   loads.air = weather.air;
-  loads.absorbed = absorbed(sun, weather, spec);
-  sun.beam = {}, sun.sky = {};
+  absorb(sun, weather, spec);
+  const std::vector<float> uneven = uneven_sky(sun, weather, spec.paths / HeatSpec::kBlocks);
+  give_up(sun.sky);
+  loads.absorbed = CompactRows(sun.beam, weather.moments.size());
+  give_up(sun.beam);
+  errors = load_errors(sun, uneven, weather, spec.ground_albedo);
   for (size_t f = 0; f < scene.faces.size(); ++f)
     loads.source.push_back(
         scene.faces.is_back(f) ? 0 : scene.optics.heated[scene.elements[scene.faces.element(f)].material].source);
@@ -280,6 +290,7 @@ SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const SurfaceNe
     past_error = surfaces.solve(first_day(loads, weather, exchange.faces(), outside_count), options).past_distance;
     options.periodic = false;
   }
+  options.last = true;
   SurfaceHistory h = surfaces.solve(loads, options);
   if (spec.periodic) past_error = h.past_distance;
   return h;
@@ -322,7 +333,8 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   begin(progress, "balance", 1);
   const std::vector<SurfaceGroup> groups =
       surface_groups(scene.elements, scene.faces, scene.optics, exchange.emissivity);
-  SurfaceLoads loads = face_loads(scene, found.sun, weather, spec);
+  LoadErrors load_errors;
+  SurfaceLoads loads = face_loads(scene, found.sun, weather, spec, load_errors);
   const LateralConduction lateral =
       spec.lateral ? lateral_conduction(scene.elements, scene.optics) : LateralConduction{};
   HeatResult result;
@@ -332,9 +344,6 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   keep(h, loads, exchange, found.sun, weather, spec, result);
   result.assumed = scene.optics.assumed;
   result.notes = heat_notes(scene, found, !weather.humid);
-  if (!spec.lateral)
-    for (const std::string& note : lateral_notes(scene.tracer.scene(), scene.elements, scene.optics, h))
-      result.notes.push_back(note);
   for (const std::string& note : {apart_note(lateral), visitors_note(scene, exchange, h)})
     if (!note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
@@ -342,7 +351,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   tell_done(progress, 1);
   begin(progress, "errors", 1);
   const SolvedSurfaces solved{exchange, found.sun, weather, groups, loads, h, spec.ground_albedo, lateral.neighbours};
-  LinearErrors errors = linear_errors(solved);
+  LinearErrors errors = linear_errors(solved, std::move(load_errors));
   result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
   result.step_error = step_errors(solved);
   tell_done(progress, 1);
@@ -352,8 +361,15 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
         audit_heat({scene.tracer, scene.elements, scene.faces, scene.optics, spec.periodic, spec.seed}, solved,
                    spec.audit, {}, [&](size_t more) { tell_done(progress, static_cast<double>(more)); });
   }
-  result.absorbed = std::move(loads.absorbed), result.received = std::move(h.received);
   found = {};
+  // Who touches whom takes room, in large meshes much: last.
+  if (!spec.lateral)
+    for (const std::string& note : lateral_notes(scene.tracer.scene(), scene.elements, scene.optics, h))
+      result.notes.push_back(note);
+  result.absorbed = loads.absorbed.floats();
+  loads.absorbed = {};
+  result.received = h.received.floats();
+  h.received = {};
   result.kelvin = floats_of(h.kelvin);
   return result;
 }

@@ -79,7 +79,7 @@ double taken_of_visitors(const ExchangePaths& exchange, const HeatScene& scene, 
       const uint32_t from = scene.faces.face_of(exchange.ends[k]);
       if (from == kNone || !visits[from]) continue;
       const double T = history.kelvin.at(from, m), emitted = kStefanBoltzmann * T * T * T * T;
-      more += double{exchange.weights[k]} * (emitted - double{history.received[face * moments + m]});
+      more += double{exchange.weights[k]} * (emitted - history.received.at(face, m));
     }
   }
   return all > 0 ? exchange.emissivity[face] * more / (all * looks) : 0;

@@ -112,12 +112,15 @@ class Levels {
     loads.begin = s_.loads.begin, loads.air = s_.loads.air;
     for (size_t k = 0; k + 1 < kept.size(); ++k)
       loads.steps.push_back(s_.weather.moments[kept[k + 1]] - s_.weather.moments[kept[k]]);
-    loads.absorbed.resize(sample_.face.size() * kept.size());
-    loads.outside.resize(loads.absorbed.size());
+    loads.absorbed = CompactRows(sample_.face.size(), kept.size());
+    loads.outside.resize(sample_.face.size() * kept.size());
+    std::vector<float> row(moments_), means(kept.size());
     for (size_t f = 0; f < sample_.face.size(); ++f) {
-      const size_t from = sample_.face[f] * moments_, to = f * kept.size();
-      hats.put(&s_.loads.absorbed[from], &loads.absorbed[to]);
-      hats.put(&s_.history.received[from], &loads.outside[to]);
+      s_.loads.absorbed.get(sample_.face[f], row);
+      hats.put(row.data(), means.data());
+      loads.absorbed.set(f, means);
+      s_.history.received.get(sample_.face[f], row);
+      hats.put(row.data(), &loads.outside[f * kept.size()]);
       if (!s_.loads.source.empty()) loads.source.push_back(s_.loads.source[sample_.face[f]]);
     }
     CoupledSurfaces surfaces(sample_.groups, matrix_, sample_.neighbours);

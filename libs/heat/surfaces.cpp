@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "heat/air_through.h"
 #include "spectral/planck.h"
 
 namespace suite {
@@ -19,33 +20,6 @@ void for_elements(size_t count, const std::function<void(size_t, size_t)>& body)
 }
 
 double emitted_by(double kelvin) { return kStefanBoltzmann * kelvin * kelvin * kelvin * kelvin; }
-
-std::vector<StepLine> lines_of(const SurfaceLoads& loads, const std::vector<double>& values) {
-  const AveragedTable table(loads.air.times, values, AveragedTable::Between::linear, loads.air.repeat);
-  std::vector<StepLine> lines;
-  double t = loads.begin;
-  for (const double dt : loads.steps) {
-    lines.push_back(table.over(t, t + dt));
-    t += dt;
-  }
-  return lines;
-}
-
-// A law that does not ask the surface: its coefficient, and that times the air's temperature, averaged themselves, so
-// that gusts act as they do and not as their mean.
-struct FixedLaw {
-  std::vector<StepLine> coefficient, times_air;
-};
-
-FixedLaw fixed_law(const SurfaceLoads& loads, const FaceTraits& face) {
-  std::vector<double> coefficient, times_air;
-  for (size_t i = 0; i < loads.air.times.size(); ++i) {
-    const double air = loads.air.kelvin[i];
-    coefficient.push_back(face.convection->coefficient({air, air, loads.air.wind[i], 1, true, loads.air.pressure}));
-    times_air.push_back(coefficient.back() * air);
-  }
-  return {lines_of(loads, coefficient), lines_of(loads, times_air)};
-}
 
 // J/m2 that the layers of an element took up between two states; heat capacities may depend on temperature.
 double taken_up(const SlabBatch& before, const SlabBatch& after, size_t element) {
@@ -69,10 +43,6 @@ SlabBatch& begun(Part& part, bool periodic, bool first, double time) {
   return *part.next;
 }
 
-bool is_fixed(const FaceTraits& face) {
-  return face.convection && !face.convection->asks_surface() && face.wetness == 0;
-}
-
 }  // namespace
 
 FaceTraits SurfaceGroup::front_of(size_t element) const {
@@ -92,45 +62,33 @@ FaceTraits SurfaceGroup::back_of(size_t element) const {
 struct CoupledSurfaces::Through {
   const SurfaceLoads& loads;
   const SurfaceOptions& options;
+  const AirThrough air;
   size_t moments = 0;
-  std::vector<StepLine> kelvin = {}, wind = {}, vapour = {};  // by step
-  std::vector<double> gusts = {};                             // by step
-  std::vector<FixedLaw> front = {}, back = {};                // by group; empty for laws that ask the surface
-  const Histories* around = nullptr;                          // what all ends emit
+  std::vector<FixedLaw> front = {}, back = {};  // by group
+  const Histories* around = nullptr;            // what all ends emit
   bool first = true;
 
-  struct Air {
-    double kelvin, wind, gusts, vapour;
-  };
-  Air air_at(size_t step, double fraction) const {
-    return {kelvin[step].at(fraction), wind[step].at(fraction), gusts[step], vapour[step].at(fraction)};
-  }
   struct Face {
     size_t row;              // of the exchange
     const double* longwave;  // W/m2 that it receives, by moment
   };
-  FaceWeather weather(Face face, size_t moment, const Air& air) const {
-    FaceWeather w;
-    w.absorbed = double{loads.absorbed[face.row * moments + moment]};
+  FaceWeather weather(Face face, size_t moment, const AirThrough::Air& now) const {
+    FaceWeather w = air.weather(now);
+    w.absorbed = loads.absorbed.at(face.row, moment);
     w.longwave = face.longwave[moment];
     w.source = loads.source.empty() ? 0 : loads.source[face.row];
-    w.pressure = loads.air.pressure;
-    w.air_kelvin = air.kelvin, w.wind = air.wind, w.gusts = air.gusts, w.vapour_pressure = air.vapour;
     return w;
   }
-  // The air at a moment: between the lines of the steps before and after it.
-  FaceWeather weather_at(Face face, size_t moment) const {
-    const size_t last = loads.steps.size() - 1;
-    const Air before = air_at(moment > 0 ? moment - 1 : 0, moment > 0 ? 1 : 0);
-    const Air after = air_at(std::min(moment, last), moment > last ? 1 : 0);
-    return weather(face, moment,
-                   {(before.kelvin + after.kelvin) / 2, (before.wind + after.wind) / 2,
-                    (before.gusts + after.gusts) / 2, (before.vapour + after.vapour) / 2});
+  FaceWeather weather_at(Face face, const FixedLaw& law, size_t moment) const {
+    FaceWeather w = weather(face, moment, air.around(moment));
+    if (!law.film_at.empty()) w.film = law.film_at[moment];
+    return w;
   }
   // What acts on a face through a step; its temperature is that at the step's begin.
   void act(const FaceTraits& traits, const FixedLaw& law, Face face, size_t step, double now, FaceLines& lines,
            size_t lane) const {
-    const FaceWeather begin = weather(face, step, air_at(step, 0)), end = weather(face, step + 1, air_at(step, 1));
+    FaceWeather begin = weather(face, step, air.at(step, 0)), end = weather(face, step + 1, air.at(step, 1));
+    if (!law.film_begin.empty()) begin.film = law.film_begin[step], end.film = law.film_end[step];
     lines.quartic[lane] = traits.emissivity * kStefanBoltzmann;
     const auto taken = [&](const FaceWeather& w) { return w.absorbed + w.source + traits.emissivity * w.longwave; };
     if (!law.coefficient.empty()) {
@@ -211,9 +169,10 @@ void CoupledSurfaces::start(double kelvin) {
 void CoupledSurfaces::check(const SurfaceLoads& loads) const {
   const size_t moments = loads.steps.size() + 1, faces = exchange_.elements();
   if (loads.steps.empty()) throw Error("a span of time without a step");
-  if (loads.absorbed.size() != faces * moments || loads.outside.size() != exchange_.outsides() * moments ||
-      !(loads.source.empty() || loads.source.size() == faces))
-    throw Error(strf("loads of %zu absorbed and %zu outside values", loads.absorbed.size(), loads.outside.size()),
+  if (loads.absorbed.rows() != faces || loads.absorbed.width() != moments ||
+      loads.outside.size() != exchange_.outsides() * moments || !(loads.source.empty() || loads.source.size() == faces))
+    throw Error(strf("loads of %zu x %zu absorbed and %zu outside values", loads.absorbed.rows(),
+                     loads.absorbed.width(), loads.outside.size()),
                 strf("%zu faces and %zu outsides at %zu moments", faces, exchange_.outsides(), moments));
 }
 
@@ -237,7 +196,11 @@ void CoupledSurfaces::fill(const Part& part, size_t step, const Through& through
   });
 }
 
-void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emitted) {
+void CoupledSurfaces::answer_of(Part& part, const Through& through, const PutEmitted& put) {
+  part.batch || part.next ? answer(part, through, put) : answer_massless(part, through, put);
+}
+
+void CoupledSurfaces::answer(Part& part, const Through& through, const PutEmitted& put) {
   const SurfaceLoads& loads = through.loads;
   const size_t count = part.members.size();
   const bool open = !group_of(part, 0).back_rows.empty();
@@ -269,8 +232,8 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
   const auto hand_over = [&] {
     for (size_t i = 0; i < count; ++i) {
       const size_t at = i * through.moments;
-      emitted.set(front_row(part, i), {&tops[at], through.moments});
-      if (open) emitted.set(back_row(part, i), {&bottoms[at], through.moments});
+      put(front_row(part, i), {&tops[at], through.moments});
+      if (open) put(back_row(part, i), {&bottoms[at], through.moments});
     }
   };
   if (through.options.periodic) {
@@ -298,9 +261,10 @@ void CoupledSurfaces::answer(Part& part, const Through& through, Histories& emit
   batch.rest();
 }
 
-void CoupledSurfaces::answer_massless(const Part& part, const Through& through, Histories& emitted) const {
+void CoupledSurfaces::answer_massless(const Part& part, const Through& through, const PutEmitted& put) const {
   const SurfaceGroup& group = group_of(part, 0);
   const Received received(*this, part, through);
+  const FixedLaw &front = through.front[part.members[0].group], &back = through.back[part.members[0].group];
   std::vector<MasslessFace> faces(group.back_rows.empty() ? 1 : 2);
   std::vector<double> emits(through.moments);
   for (size_t i = 0; i < part.members.size(); ++i) {
@@ -310,53 +274,60 @@ void CoupledSurfaces::answer_massless(const Part& part, const Through& through, 
     faces.front().traits = group.front_of(element);
     if (faces.size() > 1) faces.back().traits = group.back_of(element);
     for (size_t moment = 0; moment < through.moments; ++moment) {
-      for (size_t f = 0; f < faces.size(); ++f) faces[f].weather = through.weather_at(sides[f], moment);
+      for (size_t f = 0; f < faces.size(); ++f)
+        faces[f].weather = through.weather_at(sides[f], f == 0 ? front : back, moment);
       emits[moment] = emitted_by(massless_kelvin(faces));
     }
-    for (const Through::Face& side : sides) emitted.set(side.row, emits);
+    for (const Through::Face& side : sides) put(static_cast<uint32_t>(side.row), emits);
   }
 }
 
-SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOptions& options) {
-  check(loads);
-  Through through{loads, options, loads.steps.size() + 1};
-  through.kelvin = lines_of(loads, loads.air.kelvin);
-  through.wind = lines_of(loads, loads.air.wind);
-  through.vapour = lines_of(loads, loads.air.vapour_pressure);
-  const AveragedTable wind(loads.air.times, loads.air.wind, AveragedTable::Between::linear, loads.air.repeat);
-  double t = loads.begin;
-  for (const double dt : loads.steps) {
-    through.gusts.push_back(wind.deviation(t, t + dt));
-    t += dt;
+CouplingResult CoupledSurfaces::couple(Through& through, Histories& emitted) {
+  const CouplingOptions& options = through.options.coupling;
+  if (options.memory == 0) {
+    const Sweep sweep = [&](Histories& all) {
+      through.around = &all;
+      const double change = answer_in_place(
+          all, parts_.size(), [&](size_t p, const PutEmitted& put) { answer_of(parts_[p], through, put); });
+      through.first = false;
+      return change;
+    };
+    return relax_histories(emitted, exchange_.elements(), sweep, options);
   }
-  for (const SurfaceGroup& group : groups_) {
-    through.front.push_back(is_fixed(group.front) ? fixed_law(loads, group.front) : FixedLaw{});
-    through.back.push_back(is_fixed(group.back) ? fixed_law(loads, group.back) : FixedLaw{});
-  }
-  SurfaceHistory history;
-  history.moments = through.moments;
-  const size_t own = exchange_.elements();
-  Histories emitted(own + exchange_.outsides(), through.moments);
-  const std::vector<double> guess(through.moments, emitted_by(through.kelvin.front().mean()));
-  for (size_t i = 0; i < own; ++i) emitted.set(i, guess);
-  for (size_t i = 0; i < exchange_.outsides(); ++i)
-    emitted.set(own + i, {&loads.outside[i * through.moments], through.moments});
   const Respond respond = [&](const Histories& around, Histories& answers) {
     through.around = &around;
     parallel_for(0, parts_.size(), 1, [&](size_t begin, size_t end) {
       for (size_t p = begin; p < end; ++p)
-        parts_[p].batch ? answer(parts_[p], through, answers) : answer_massless(parts_[p], through, answers);
+        answer_of(parts_[p], through, [&](uint32_t row, std::span<const double> values) { answers.set(row, values); });
     });
     through.first = false;
   };
-  history.coupling = couple_histories(exchange_, emitted, respond, options.coupling);
+  return couple_histories(exchange_, emitted, respond, options);
+}
+
+SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOptions& options) {
+  check(loads);
+  Through through{loads, options, AirThrough(loads), loads.steps.size() + 1};
+  for (const SurfaceGroup& group : groups_)
+    through.front.push_back(through.air.law_of(group.front)), through.back.push_back(through.air.law_of(group.back));
+  SurfaceHistory history;
+  history.moments = through.moments;
+  const size_t own = exchange_.elements();
+  Histories emitted(own + exchange_.outsides(), through.moments);
+  const std::vector<double> guess(through.moments, emitted_by(through.air.begins_at()));
+  for (size_t i = 0; i < own; ++i) emitted.set(i, guess);
+  for (size_t i = 0; i < exchange_.outsides(); ++i)
+    emitted.set(own + i, {&loads.outside[i * through.moments], through.moments});
+  history.coupling = couple(through, emitted);
   for (Part& part : parts_) part.batch.swap(part.next);
-  history.received.resize(own * through.moments);
+  if (options.last)
+    for (Part& part : parts_) part.batch.reset(), part.next.reset();
+  history.received = CompactRows(own, through.moments);
   parallel_for(0, own, 64, [&](size_t begin, size_t end) {
     std::vector<double> row(through.moments);
     for (size_t i = begin; i < end; ++i) {
       exchange_.receive_one(i, emitted, row);
-      std::copy(row.begin(), row.end(), history.received.begin() + static_cast<std::ptrdiff_t>(i * row.size()));
+      history.received.set(i, std::vector<float>(row.begin(), row.end()));
     }
   });
   emitted.shrink(own);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "heat/balance.h"
+#include "heat/compact_rows.h"
 #include "heat/exchange.h"
 #include "heat/slab_batch.h"
 #include "heat/surface_parts.h"
@@ -40,7 +41,7 @@ struct SurfaceLoads {
   double begin = 0;           // s
   std::vector<double> steps;  // s
   AirSeries air;
-  std::vector<float> absorbed;  // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
+  CompactRows absorbed;         // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
   std::vector<double> source;   // W/m2 released at every element's front, by face; empty = none
   std::vector<double> outside;  // W/m2 emitted by the outsides of the exchange, by outside and moment
 };
@@ -49,12 +50,13 @@ struct SurfaceOptions {
   bool periodic = true;  // the span repeats; otherwise it goes on from the present state
   PeriodicOptions past;
   CouplingOptions coupling;
+  bool last = false;  // no other span follows: the state is given up for room, as soon as it can be
 };
 
 struct SurfaceHistory {
   size_t moments = 0;
   Histories kelvin;                // K, of every face
-  std::vector<float> received;     // W/m2 longwave, by face, then by moment
+  CompactRows received;            // W/m2 longwave, by face, then by moment
   std::vector<double> step_error;  // K, by face: largest estimated error of a step; 0 without heat capacity
   // J/m2 over the span, by front face: what went to what lies behind, and what the layers took up (of a span that
   // repeats nothing); 0 of backs.
@@ -90,8 +92,10 @@ class CoupledSurfaces {
   void check(const SurfaceLoads& loads) const;
   void fill(const Part& part, size_t step, const Through& through, const Received& received, const SlabBatch& batch,
             FaceLines& top, FaceLines& bottom) const;
-  void answer(Part& part, const Through& through, Histories& emitted);
-  void answer_massless(const Part& part, const Through& through, Histories& emitted) const;
+  void answer_of(Part& part, const Through& through, const PutEmitted& put);
+  void answer(Part& part, const Through& through, const PutEmitted& put);
+  void answer_massless(const Part& part, const Through& through, const PutEmitted& put) const;
+  CouplingResult couple(Through& through, Histories& emitted);
 
   std::vector<SurfaceGroup> groups_;
   const ExchangeMatrix& exchange_;

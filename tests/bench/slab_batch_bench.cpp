@@ -99,6 +99,7 @@ void coupled_day(benchmark::State& state) {
   SurfaceLoads loads;
   loads.steps.assign(144, 600);
   uint32_t random = 1;
+  std::vector<float> absorbed;
   for (uint32_t e = 0; e < count; ++e) {
     std::vector<ExchangeMatrix::Entry> row{{static_cast<uint32_t>(count), 0.5}};
     for (int k = 0; k < 64; ++k) {
@@ -108,8 +109,9 @@ void coupled_day(benchmark::State& state) {
     exchange.add_row(row);
     walls.front_rows.push_back(e);
     for (int k = 0; k <= 144; ++k)
-      loads.absorbed.push_back(sun(600.0 * k) * static_cast<double>(e) / static_cast<double>(count));
+      absorbed.push_back(static_cast<float>(sun(600.0 * k) * static_cast<double>(e) / static_cast<double>(count)));
   }
+  loads.absorbed = CompactRows(absorbed, 145);
   loads.air = {{0, 86400}, {285, 285}, {2, 2}, {0, 0}, true};
   loads.outside.assign(145, 320);
   set_threads(1);

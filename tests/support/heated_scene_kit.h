@@ -170,6 +170,13 @@ inline WeatherLoads still_loads(const StillWeather& w, TimeSpan span, size_t ste
   return out;
 }
 
+// What faces absorb of the sun's beam, W/m2 at normal incidence.
+inline CompactRows absorbed_of(const Sunlight& sun, double beam) {
+  std::vector<float> all;
+  for (const float takes : sun.beam) all.push_back(static_cast<float>(beam * double{takes}));
+  return {all, sun.moments};
+}
+
 // Loads of CoupledSurfaces without air or sun: what the outsides emit, W/m2, at all times.
 inline SurfaceLoads still_exchange(const HeatKit& kit, const std::vector<double>& outside, TimeSpan span,
                                    size_t steps) {
@@ -177,7 +184,7 @@ inline SurfaceLoads still_exchange(const HeatKit& kit, const std::vector<double>
   loads.begin = span.begin;
   loads.steps.assign(steps, (span.end - span.begin) / static_cast<double>(steps));
   loads.air = {{span.begin, span.end}, {300, 300}, {0, 0}, {0, 0}, true};
-  loads.absorbed.assign(kit.faces->size() * (steps + 1), 0);
+  loads.absorbed = CompactRows(kit.faces->size(), steps + 1);
   for (const double emitted : outside) loads.outside.insert(loads.outside.end(), steps + 1, emitted);
   return loads;
 }

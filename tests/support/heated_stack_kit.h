@@ -40,7 +40,7 @@ inline Stack stack(double emissivity, int shields, uint32_t paths, uint64_t seed
   for (int block = -1; block < 8; ++block) {
     const ExchangePaths some = block < 0 ? traced : traced.block(static_cast<uint32_t>(block));
     const SurfaceHistory h = solve_exchange(kit, some, outsides_at(kit, 10), 315);
-    const double flux = emissivity * (black(h.kelvin_at(plate, 0)) - h.received[plate * h.moments]);
+    const double flux = emissivity * (black(h.kelvin_at(plate, 0)) - h.received.at(plate, 0));
     if (block < 0) out.flux = flux;
     if (block >= 0) sum += flux / 8, squares += flux * flux / 8;
   }

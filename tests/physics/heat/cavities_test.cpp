@@ -117,7 +117,7 @@ TEST(Cavities, BareAluminiumInTheSun) {
   const ExchangePaths paths = kit.exchange({8, 8, 1});
   const ExchangeMatrix matrix = paths.matrix(kit.faces->outsides());
   SurfaceLoads loads = still_exchange(kit, outsides_at(kit, 0), {0, 5.5 * 3600}, 33);
-  std::fill(loads.absorbed.begin(), loads.absorbed.end(), 0.02 * 459.3);
+  loads.absorbed = CompactRows(std::vector<float>(kit.faces->size() * 34, 0.02f * 459.3f), 34);
   double left[2] = {};
   for (int k = 0; k < 2; ++k) {
     CoupledSurfaces surfaces(surface_groups(*kit.elements, *kit.faces, kit.optics, paths.emissivity), matrix);

@@ -31,11 +31,13 @@ SurfaceLoads day(const HeatKit& kit, const std::vector<double>& steps, const Air
   loads.air = air;
   std::vector<double> moments{0};
   for (const double dt : steps) moments.push_back(moments.back() + dt);
+  std::vector<float> absorbed;
   for (size_t f = 0; f < kit.faces->size(); ++f)
     for (const double t : moments) {
       const double up = std::fmax(0.0, -std::cos(2 * kPi * t / 86400));
-      loads.absorbed.push_back((f == 0 ? 650 : 400) * up * up);
+      absorbed.push_back(static_cast<float>((f == 0 ? 650 : 400) * up * up));
     }
+  loads.absorbed = CompactRows(absorbed, moments.size());
   loads.outside.assign(kit.faces->outsides() * moments.size(), 320);
   return loads;
 }

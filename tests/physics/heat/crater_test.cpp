@@ -64,7 +64,7 @@ TEST(Crater, ShadowOfABowl) {
     CoupledSurfaces surfaces(surface_groups(*kit.elements, *kit.faces, kit.optics, paths.emissivity), matrix);
     surfaces.start(200);
     SurfaceLoads loads = still_exchange(kit, outsides_at(kit, 3), {0, 86400}, 2);
-    for (size_t i = 0; i < loads.absorbed.size(); ++i) loads.absorbed[i] = E * double{sun.beam[i]};
+    loads.absorbed = absorbed_of(sun, E);
     const SurfaceHistory h = surfaces.solve(loads);
     RunningStats shade, emits;  // the noise of paths is in what is emitted, not in kelvin
     for (size_t e = 0; e < kit.elements->size(); ++e)

@@ -152,13 +152,15 @@ std::vector<double> with_latent_heat(const Pasture& pasture, const WeatherLoads&
   acting.outside = loads.longwave;
   // What evaporates is light that does not warm; straight between the middles of half hours, over midnight as well.
   const size_t rows = latent.size();
+  std::vector<float> absorbed;
   for (size_t k = 0; k < loads.moments.size(); ++k) {
     const double x = loads.moments[k] / kHalfHour - 0.5 + static_cast<double>(rows);
     const auto i = static_cast<size_t>(x);
     const double s = x - static_cast<double>(i);
-    acting.absorbed.push_back((1 - pasture.albedo) * loads.global[k] - (1 - s) * latent[i % rows] -
-                              s * latent[(i + 1) % rows]);
+    absorbed.push_back(static_cast<float>((1 - pasture.albedo) * loads.global[k] - (1 - s) * latent[i % rows] -
+                                          s * latent[(i + 1) % rows]));
   }
+  acting.absorbed = CompactRows(absorbed, absorbed.size());
   CoupledSurfaces surfaces({ground}, sky);
   surfaces.start(295);
   return surfaces.solve(acting).kelvin.values();

@@ -58,7 +58,7 @@ TEST(Sunlit, BlackSphereInSunAndEvenSky) {
   CoupledSurfaces surfaces(surface_groups(*kit.elements, *kit.faces, kit.optics, paths.emissivity), matrix);
   surfaces.start(300);
   SurfaceLoads loads = still_exchange(kit, outsides_at(kit, 250), {0, 86400}, 2);
-  for (size_t i = 0; i < loads.absorbed.size(); ++i) loads.absorbed[i] = E * double{sun.beam[i]};
+  loads.absorbed = absorbed_of(sun, E);
   const SurfaceHistory h = surfaces.solve(loads);
   double worst = 0, absorbed = 0, area = 0;
   for (size_t e = 0; e < kit.elements->size(); ++e) {
@@ -71,7 +71,7 @@ TEST(Sunlit, BlackSphereInSunAndEvenSky) {
     const double exact = std::sqrt(std::sqrt((E * cosine + sky) / kStefanBoltzmann));
     worst = std::fmax(worst, std::fabs(h.kelvin_at(e, 1) - exact));
     const double a = (*kit.elements)[e].area;
-    area += a, absorbed += a * loads.absorbed[e * 3 + 1];
+    area += a, absorbed += a * loads.absorbed.at(e, 1);
   }
   std::printf("black sphere: elements within %.4f K, absorbs %.3f W/m2 of %.3f, area %.5f of %.5f\n", worst,
               absorbed / area, E / 4, area, 4 * kPi);
@@ -110,7 +110,7 @@ TEST(Sunlit, SweepingShadowEdge) {
     CoupledSurfaces surfaces(surface_groups(*kit.elements, *kit.faces, kit.optics, exchange.emissivity), matrix);
     surfaces.start(300);
     SurfaceLoads loads = still_exchange(kit, outsides_at(kit, 300), {0, length}, steps);
-    for (size_t i = 0; i < loads.absorbed.size(); ++i) loads.absorbed[i] = 800 * double{sun.beam[i]};
+    loads.absorbed = absorbed_of(sun, 800);
     SurfaceOptions options;
     options.periodic = false;
     return surfaces.solve(loads, options);

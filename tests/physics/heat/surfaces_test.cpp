@@ -68,12 +68,14 @@ struct Grove {
       loads.air.vapour_pressure.push_back(sun ? 1000 : saturation_pressure(288));
     }
     const double share[8] = {0.3, 0.1, 0.5, 0.4, 0.05, 0.05, 0.6, 0.02};
+    std::vector<float> absorbed;
     for (const double s : share)
       for (size_t k = 0; k < moments; ++k) {
         const double up =
             std::fmax(0.0, -std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(moments - 1)));
-        loads.absorbed.push_back(sun ? s * 800 * up * up : 0);
+        absorbed.push_back(static_cast<float>(sun ? s * 800 * up * up : 0));
       }
+    loads.absorbed = CompactRows(absorbed, moments);
     loads.outside.assign(moments, sun ? 320 : black(288));
   }
 };
@@ -107,8 +109,8 @@ TEST(Surfaces, BalancesClose) {
       return AveragedTable(grove.loads.air.times, v, AveragedTable::Between::linear, true).over(t, t + 1e-3).begin;
     };
     FaceWeather w;
-    w.absorbed = grove.loads.absorbed[face * h.moments + k];
-    w.longwave = h.received[face * h.moments + k];
+    w.absorbed = grove.loads.absorbed.at(face, k);
+    w.longwave = h.received.at(face, k);
     w.air_kelvin = at(grove.loads.air.kelvin), w.wind = at(grove.loads.air.wind);
     w.vapour_pressure = at(grove.loads.air.vapour_pressure);
     return net_flux(traits, w, h.kelvin_at(face, k));
@@ -122,7 +124,7 @@ TEST(Surfaces, BalancesClose) {
     const double weight = 1 / static_cast<double>(h.moments - 1);
     for (size_t g = 0; g < 2; ++g) mean[g] += weight * flux(g, k, grove.groups[0].front);
     mean[2] += weight * (flux(6, k, sheet_front) + flux(7, k, sheet_back));
-    absorbed += weight * grove.loads.absorbed[k];
+    absorbed += weight * grove.loads.absorbed.at(0, k);
   }
   std::printf("balances: leaves %.2e W/m2; means of the day %.3f %.3f %.3f W/m2 of %.0f absorbed, %d sweeps\n",
               worst_leaf, mean[0], mean[1], mean[2], absorbed, h.coupling.sweeps);
