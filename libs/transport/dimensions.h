@@ -27,9 +27,10 @@ inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than fo
 inline constexpr Blocks kLight{512, kNodes* kOwnLights};
 inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
 inline constexpr Blocks kPlace{1120, kFlights};  // places in the air that paths go back to
+inline constexpr Blocks kGuided{1136, kNodes};   // guided continuations beside the first ones
 
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -46,6 +47,7 @@ enum class Hashed : uint32_t {
   light,
   flight = light + 256,
   place = flight + kPerFlight,
+  guided,
   end
 };
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
@@ -97,6 +99,11 @@ inline std::array<double, 4> of_flight(const SampleStream& stream, uint32_t samp
 inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kFlights) return stream.draw(sample, kPlace.first + n);
   return hashed(stream, sample, Hashed::place, 0, n);
+}
+// Numbers of the guided continuation from the n-th surface of a path: where to, and by which scatterer.
+inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t sample, uint32_t n) {
+  if (n < kNodes) return stream.draw(sample, kGuided.first + n);
+  return hashed(stream, sample, Hashed::guided, 0, n);
 }
 inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
   if (const uint32_t block = block_at_scattering(n, use); block != kHashed) return stream.draw(sample, block);

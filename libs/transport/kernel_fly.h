@@ -35,6 +35,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       receivers_(c.receivers ? width : 0),
       passed_(Space::kGoesBack ? width : 0),
       throughput_there_(Space::kGoesBack ? width * bins_ : 0),
+      branches_(kGuides && refracted_ && c.branches ? width : 0),
       rays_(width),
       hits_(width),
       flights_(Space::kFills ? width : 0),
@@ -93,6 +94,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
   path.bends = Path::kUnasked;
+  path.branch = Branch::none;
+  if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
   path.knot = 0;
   std::fill_n(path.relative, knots(), 1.0);

@@ -15,21 +15,28 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
     surfaces_.prepare(i, {u[0], u[1]});
   }
   surfaces_.prepare_all(nodes_.size());
-  if constexpr (Space::kGoesBack) in_stage_ = active_;
+  if (Space::kGoesBack || !branches_.empty()) in_stage_ = active_;
   active_.assign(onward_.begin(), onward_.end());
   for (size_t i = 0; i < nodes_.size(); ++i)
     if (go_on(i)) active_.push_back(nodes_[i].path);
   if constexpr (Space::kGoesBack) go_back(in_stage_);
+  if (!branches_.empty()) take_up_ended();
 }
 
 // One path; false when it ends here.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
+  records_[nodes_[i].path].end = PathEnd::absorbed;
+  if (is_guided(nodes_[i]) && guide_of(nodes_[i])->branch) branch_guided(i);
+  if (at_first_interface(nodes_[i])) branch_mirrored(i);
+  Continuation on;
+  return draw(i, on) && go_on(i, on);
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const Continuation& on) {
   const uint32_t p = nodes_[i].path;
   Path& path = paths_[p];
-  records_[p].end = PathEnd::absorbed;
-  Continuation on;
-  if (!draw(i, on)) return false;
   const double own = on.density[path.knot];
   if (own <= 0) return false;
   double brightest = 0;
@@ -44,7 +51,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   const Event event{-path.direction, on.in, medium ? kNone : surfaces_.material(p), medium, on.dirac};
   throughputs_.turn(p, event);
   throughputs_.scatter(p, {static_cast<float>(on.weight.scale / (own * shares * alive)), on.weight.spectrum}, event);
-  leave(i, on);
+  const bool passed = leave(i, on);
+  if (passed && !branches_.empty() && path.order() == 1) part(p);
   return true;
 }
 
@@ -61,11 +69,13 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, co
       brightest = path.throughput[0];
       return 1;
     }
+    if (kGuides && on.branch != Branch::none) path.other[k] = path.relative[k] * on.other[k] / own;
     path.relative[k] *= on.density[k] / own;
     shares += probability_[k] * path.relative[k];
   }
   for (size_t k = 0; k < knots(); ++k) {
     path.relative[k] /= shares, path.throughput[k] /= shares;
+    if (kGuides && on.branch != Branch::none) path.other[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;
   }
@@ -88,7 +98,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   const std::span<float> memory = kDraws ? dense(node.path) : std::span<float>{};
   if (!draw(i, memory, on)) return false;
   if (kDraws && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
-  on.bright = mix(node, on.in, on.dirac, {on.density, knots()});
+  if (kGuides && is_guided(node) && on.branch == Branch::none) share_with_guide(node, false, on);
   return true;
 }
 
@@ -100,9 +110,10 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
   if constexpr (Space::kScatters) {
     const std::array<double, 4> more =
         node.event ? dimensions::of_flight(path.stream, path.sample, path.flights) : std::array<double, 4>{};
-    if (const double share = guided_share(node); share > 0) {
-      const double chosen = node.event ? more[3] : numbers(node, dimensions::kOfSecond)[1];
-      if (chosen < share) return draw_guided(node, chosen / share, memory, on);
+    if (const double share = 1 - own_share(node); more[3] < share) {
+      if (!draw_guided(node, u, more[3] / share, memory, on)) return false;
+      share_with_guide(node, true, on);
+      return true;
     }
     if (node.event) return space_.sample(node.path, path, u, more[2], memory, on);
   }
@@ -111,9 +122,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
     if (refracted_ && is_first(node) && refracted_->interfaces().has(surfaces_.material(node.path))) {
       // What water mirrors is weak, but in dark bands all there is. A power of 1/2: counts of strata have no rest.
       constexpr double kLeast = 0.125;
-      const int reflecting = refracted_->interfaces().lobe(surfaces_.material(node.path), true);
-      if (reflecting != SmoothInterfaces::kNoLobe)
-        return surfaces_.sample_either(node.path, -path.direction, reflecting, kLeast, lobe_u, path.knot, memory, on);
+      const Dir out = -path.direction;
+      const int mirror = refracted_->interfaces().lobe(surfaces_.material(node.path), true);
+      if (mirror != SmoothInterfaces::kNoLobe && branches_.empty())
+        return surfaces_.sample_either(node.path, out, mirror, kLeast, lobe_u, path.knot, memory, on);
+      if (mirror != SmoothInterfaces::kNoLobe) {  // beside what branch_mirrored() has kept
+        const bool all = surfaces_.mirrors(node.path, out, mirror, path.knot) >= 1;
+        return surfaces_.sample_way(node.path, out, mirror, all, path.knot, memory, on);
+      }
     }
   return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
 }
@@ -139,15 +155,16 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(uint32_t p, bool e
   const uint32_t most = event ? options_.max_scatterings : static_cast<uint32_t>(options_.max_nodes);
   if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
   records_[p].end = PathEnd::max_nodes;
-  records_[p].truncated = path.throughput[0];
+  records_[p].truncated += path.throughput[0];
   return true;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const Continuation& on) {
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const Continuation& on) {
   const NodeAt& node = nodes_[i];
   const uint32_t p = node.path;
   Path& path = paths_[p];
+  path.branch = on.branch;
   if (refracted_) path.bends = bends_behind(node, on);
   if (waters_.any()) path.water = water_behind(node, on.in);
   if constexpr (Space::kScatters) {
@@ -155,14 +172,16 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
     if (node.event) {
       path.origin = space_.place(p);
       path.direction = on.in;
-      return;
+      return false;
     }
   }
   const Hit& hit = hits_[node.slot];
   path.events |= on.dirac ? by_surface | by_dirac : by_surface;
-  if (dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0) space_.cross(p, hit, surfaces_.material(p), on.in);
+  const bool passed = dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
+  if (passed) space_.cross(p, hit, surfaces_.material(p), on.in);
   path.origin = surface_.tracer().leave(hit, on.in);
   path.direction = on.in;
+  return passed;
 }
 
 }  // namespace suite

@@ -21,8 +21,9 @@ namespace suite {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQuestion& q, const RefractedWay& way) {
   if constexpr (kGuides) {
-    // A path across to that light has many places to be scattered back from: each takes a little of it.
-    constexpr double kAtSurfaces = 0.8, kAlong = 0.5, kAcross = 0.1;
+    // A path across to that light has many places to be scattered back from: each takes a little of it. What is not
+    // scattered on its way is worth kElse of what is.
+    constexpr double kAlong = 0.8, kAcross = 0.1, kElse = 0.1;
     const NodeAt& node = nodes_[q.node];
     Guide& guide = guides_[q.node];
     if (!q.end.far || guide.share > 0) return;
@@ -32,39 +33,41 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::guide(const RefractedQ
       space_.stand(node.path);
     }
     const double depth = space_.scattering(node.path) * way.at[0].length;
-    const double forward = std::max(0.0, space_.asymmetry(node.path));
+    const double forward = std::max(0.0, space_.asymmetry(node.path)), scattered = -std::expm1(-depth);
+    if (!(scattered * forward > 0)) return;
+    guide = {1, way.direction, !node.event};
+    if (guide.branch) return;
     const double along = std::max(0.0, dot(paths_[node.path].direction, way.direction));
-    const double most = node.event ? kAcross + (kAlong - kAcross) * along : kAtSurfaces;
-    guide = {-most * forward * std::expm1(-depth), way.direction};
+    guide.share = (kAcross + (kAlong - kAcross) * along) * forward * scattered / (scattered + kElse * (1 - scattered));
   }
 }
 
-// Brings densities of continuations at the knots to those of all that go on from the node; returns how much brighter
-// than even light it may be that comes from there.
+// Shares what the node draws itself (on.density: p) with what is guided. forced: it was.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::mix(const NodeAt& node, Dir in, bool dirac,
-                                                                std::span<float> density) const {
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::share_with_guide(const NodeAt& node, bool forced,
+                                                                           Continuation& on) const {
   if constexpr (kGuides) {
-    const auto share = static_cast<float>(guided_share(node));
-    if (!(share > 0)) return 1;
+    const Guide& guide = *guide_of(node);
+    const auto open = static_cast<float>(own_share(node)), guided = static_cast<float>(guide.share);
     float forward[kMaxKnots] = {};
-    if (!dirac)
-      space_.densities(node.path, -guides_[static_cast<size_t>(&node - nodes_.data())].toward, in,
-                       {forward, density.size()});
-    for (size_t k = 0; k < density.size(); ++k) density[k] = (1 - share) * density[k] + share * forward[k];
-    return 1 + 4 * kPi * double{forward[0]};
+    if (!on.dirac) space_.densities(node.path, -guide.toward, on.in, {forward, knots()});
+    for (size_t k = 0; k < knots(); ++k) {
+      const float p = open * on.density[k], g = guided * forward[k];
+      on.density[k] = forced ? g : p;
+      on.other[k] = forced ? p : g;
+    }
+    on.branch = forced ? Branch::forced : on.dirac ? Branch::none : Branch::open;
+    on.bright = 1 + 4 * kPi * double{forward[0]};
   }
-  return 1;
 }
 
 // Draws a direction about that of the light.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_guided(const NodeAt& node, double who,
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_guided(const NodeAt& node, Vec2 u, double who,
                                                                       std::span<float> memory, Continuation& on) {
   if constexpr (kGuides) {
     const Path& path = paths_[node.path];
-    const Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
-    if (!space_.scatter(node.path, -guide.toward, path.knot, {path.u[0], path.u[1]}, who, on.in)) return false;
+    if (!space_.scatter(node.path, -guide_of(node)->toward, path.knot, u, who, on.in)) return false;
     if (!node.event && !surfaces_.takes(node.path, hits_[node.slot], -path.direction, on.in)) return false;
     on.dirac = false;
     if (node.event)

@@ -119,11 +119,10 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   if constexpr (Space::kScatters)
     if (node.event) space_.densities(node.path, -path.direction, in, {density, knots()});
   if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots()});
-  mix(node, in, false, {density, knots()});
-  double sum = 0;
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
+  double sum = 0;
   for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
-  return sum;
+  return kGuides ? sum * own_share(node) : sum;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

@@ -11,6 +11,13 @@
 
 namespace suite {
 
+// Which of two ways to the next scattering a path is on that has come from an event with two branches.
+enum class Branch : uint8_t {
+  none,    // there is one
+  open,    // as it comes: scattered on the next flight or not
+  forced,  // guided, and scattered on the next flight for certain
+};
+
 // K: knots at most.
 template <int K>
 struct Lane {
@@ -20,13 +27,16 @@ struct Lane {
   uint32_t draw = 0;  // Ray::draw
   Vec3 origin;        // of the next segment
   Dir direction;
-  double time = 0;           // s
-  std::array<double, 4> u;   // numbers of the current node
-  double length = 0;         // m so far
-  double arrival = 0;        // m so far, times the index of refraction
-  double relative[K];        // r_k (shares.h)
-  double throughput[K];      // at the knots, for roulette
-  double before = 1;         // A before the last event over A after it
+  double time = 0;          // s
+  std::array<double, 4> u;  // numbers of the current node
+  double length = 0;        // m so far
+  double arrival = 0;       // m so far, times the index of refraction
+  double relative[K];       // r_k (shares.h)
+  double throughput[K];     // at the knots, for roulette
+  double before = 1;        // A before the last event over A after it
+  // r_k, with the density of the other way in which the last event's branches draw a scattering (kernel_branch.h).
+  double other[K];
+  Branch branch = Branch::none;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   uint32_t surfaces = 0;     // met so far, the receiver included

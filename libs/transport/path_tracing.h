@@ -36,6 +36,7 @@ struct KernelContext {
   const PipelineOptions& options;
   bool keep_first = false;  // truth wants to know the first surfaces
   bool receivers = false;   // rays may start at receivers
+  bool branches = true;     // paths may go on in more than one way (kernel_branch.h): their light is one sum
   bool waters = false;      // contributions are to tell what they have to do with water
 };
 

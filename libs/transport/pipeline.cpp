@@ -61,7 +61,7 @@ std::unique_ptr<const Environment> suns_of(const Capture& capture, const Spectra
 }  // namespace
 
 KernelContext Pipeline::context(const Environment& environment) const {
-  return {surface_, optics_, environment, options_, truth_.wanted(), false, channels_.of_water()};
+  return {surface_, optics_, environment, options_, truth_.wanted(), false, true, channels_.of_water()};
 }
 
 bool Pipeline::may_miss(const Capture& capture) const {
@@ -69,11 +69,19 @@ bool Pipeline::may_miss(const Capture& capture) const {
   return may_lose(context(suns ? *suns : environment_));
 }
 
+namespace {
+// Not where a path's one end says where its light belongs.
+KernelContext with_branches(KernelContext context, const Capture& capture) {
+  context.branches = capture.bin_by != Capture::BinBy::escape;
+  return context;
+}
+}  // namespace
+
 Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Environment> own, const Capture& capture,
                                size_t w, size_t g, const ChannelPlan& channels, bool lost)
     : environment(std::move(own)),
       suns(capture.suns),
-      context(x),
+      context(with_branches(x, capture)),
       width(w),
       groups(g),
       sink(w, g, channels, lost),
@@ -85,7 +93,8 @@ Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Env
 
 bool Pipeline::Workspace::serves(const Capture& capture, const ChannelPlan& channels) const {
   const auto same = [](const Dir& a, const Dir& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-  return sink.channels() == channels && (environment != nullptr) == (capture.bin_by == Capture::BinBy::sun) &&
+  return sink.channels() == channels && context.branches == with_branches(context, capture).branches &&
+         (environment != nullptr) == (capture.bin_by == Capture::BinBy::sun) &&
          (!environment || std::equal(suns.begin(), suns.end(), capture.suns.begin(), capture.suns.end(), same));
 }
 

@@ -114,7 +114,7 @@ bool RefractedSight::trace(const Search& s, Dir direction, const Chain& chain, T
   traced.end = BentRay::from(way.origin, start);
   const int most = chain.events > 0 ? chain.events : RefractedWay::kMostEvents;
   Ray ray{way.origin, direction, node.time, node.draw};
-  while (true) {
+  while (!(chain.blind && way.events == most)) {
     Hit hit;
     const bool met = hit_next(ray, hit);
     const uint32_t material = met ? surface_.material(hit) : kNone;
@@ -201,6 +201,10 @@ void RefractedSight::aim(const Search& s, Traced& traced, const Frame& start) {
 // Newton's method with halved steps. False where it does not end at a way that is open.
 bool RefractedSight::walk(const Search& s, const Traced& start, const Chain& chain, Traced& found) {
   found = start;
+  // Towards a far light it is enough to look behind the last interface in the end.
+  Chain on = chain;
+  if (s.end.far) on.events = start.way.events, on.blind = true;
+  bool stepped = false;
   const auto settled = [&] { return found.off * found.inverse < kSettled; };
   for (int step = 0; step < kMostSteps && (found.off > kArrived || !settled()); ++step) {
     const Dir from = found.way.direction;
@@ -208,11 +212,16 @@ bool RefractedSight::walk(const Search& s, const Traced& start, const Chain& cha
     double share = 1;
     for (int n = 0; n < kMostHalvings && !nearer; ++n, share *= 0.5) {
       Traced next;
-      if (!trace(s, normalized(from + (found.next - from) * share), chain, next)) continue;
+      if (!trace(s, normalized(from + (found.next - from) * share), on, next)) continue;
       nearer = next.off < found.off;
-      if (nearer) found = next;
+      if (nearer) found = next, stepped = true;
     }
     if (!nearer) break;
+  }
+  if (on.blind && stepped && found.off < kNearEnough) {
+    Traced whole;
+    if (!trace(s, found.way.direction, chain, whole) || whole.way.events != on.events) return false;
+    found = whole;
   }
   return found.off < kNearEnough && found.open && std::isfinite(found.inverse) && settled();
 }

@@ -96,6 +96,7 @@ class RefractedSight {
   struct Chain {
     uint32_t mirrors = 0;  // a bit for each interface that reflects
     int events = 0;        // how many of them; 0 = as many as the ray meets
+    bool blind = false;    // nothing is asked about what lies behind the last of them
   };
   struct Traced {
     RefractedWay way;

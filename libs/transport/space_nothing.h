@@ -49,6 +49,7 @@ class NothingSpace {
   static constexpr bool kGoesBack = false;  // ended paths go back to places on their way (kernel_back.h)
   static constexpr uint32_t kDense = 0;     // spectra that fly() needs
   using Sight = PlainSight;
+  struct Around {};  // what surrounds a path
   explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
 
   template <class L>

@@ -133,6 +133,22 @@ bool AnySurfaces::sample_either(uint32_t p, Dir out, int reflecting, double leas
   return true;
 }
 
+double AnySurfaces::mirrors(uint32_t p, Dir out, int mirror, int knot) const {
+  float reflected[kMaxKnots];
+  at_[p]->baked->model->delta_probability(at_[p]->frame.to_local(out), mirror, knot, {reflected, knots_});
+  return double{reflected[knot]};
+}
+
+bool AnySurfaces::sample_way(uint32_t p, Dir out, int mirror, bool reflects, int knot, std::span<float> dense,
+                             Continuation& on) const {
+  const Interaction& at = *at_[p];
+  const Dir to = at.frame.to_local(out);
+  const auto drawn = at.baked->model->sample(to, {0.5, 0.5}, reflects ? 0 : std::nextafter(1.0, 0.0), knot);
+  if (!drawn || (drawn->lobe == mirror) != reflects || !take_dirac(p, to, *drawn, knot, dense, on)) return false;
+  for (size_t k = 0; k < knots_; ++k) on.density[k] = on.density[k] > 0 ? 1 : 0;
+  return true;
+}
+
 // Thermal emission: (1 - W) B(T), Kirchhoff's law for this side and direction.
 AnySurfaces::Emission AnySurfaces::emission(uint32_t p, Dir out, std::span<float> dense) const {
   const Interaction& at = *at_[p];

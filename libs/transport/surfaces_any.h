@@ -18,6 +18,9 @@ struct Continuation {
   Factor weight;  // w, not yet divided by the density
   float density[kMaxKnots];
   double bright = 1;  // light that may come from there, over even light: for roulette
+  // Of an event that two branches leave: which of them this is, and the other one's density of going there.
+  Branch branch = Branch::none;
+  float other[kMaxKnots];
 };
 
 class AnySurfaces {
@@ -52,6 +55,11 @@ class AnySurfaces {
   // The same at a surface that only reflects, by a lobe, and passes light on: each gets at least `least` of the paths.
   bool sample_either(uint32_t p, Dir out, int reflecting, double least, double lobe_u, int knot, std::span<float> dense,
                      Continuation& on) const;
+  // At such a surface: the share of light of a knot that it reflects, by the lobe `mirror`,
+  double mirrors(uint32_t p, Dir out, int mirror, int knot) const;
+  // and one of the two ways, taken for certain.
+  bool sample_way(uint32_t p, Dir out, int mirror, bool reflects, int knot, std::span<float> dense,
+                  Continuation& on) const;
   // The numbers u of node i of a stage, then that of all of its n nodes, before sample(): nothing to prepare.
   void prepare(size_t, Vec2) {}
   void prepare_all(size_t) {}

@@ -42,13 +42,16 @@ class Dielectric final : public ScatterModel {
     return Sample{in, kRefract, true};
   }
   void delta_weight(Dir out, int lobe, int knot, std::span<float> weight) const override {
-    for (size_t i = 0; i < weight.size(); ++i) {
-      const size_t k = static_cast<size_t>(knot_of_bin_[i]);
-      weight[i] = lobe == kReflect ? static_cast<float>(fresnel(out, k).reflectance)
-                  : together(k, static_cast<size_t>(knot))
-                      ? static_cast<float>(fresnel(out, k).transmittance * radiance_scale(out, k))
-                      : 0.0f;
-    }
+    const auto at = [&](size_t k) {
+      const Fresnel f = fresnel(out, k);
+      return lobe == kReflect                         ? static_cast<float>(f.reflectance)
+             : together(k, static_cast<size_t>(knot)) ? static_cast<float>(f.transmittance * radiance_scale(out, k))
+                                                      : 0.0f;
+    };
+    if (uniform_) return std::fill(weight.begin(), weight.end(), at(0));
+    float of_knots[kMaxKnots];
+    for (size_t k = 0; k < index_.size(); ++k) of_knots[k] = at(k);
+    for (size_t i = 0; i < weight.size(); ++i) weight[i] = of_knots[knot_of_bin_[i]];
   }
   void delta_probability(Dir out, int lobe, int knot, std::span<float> probability) const override {
     for (size_t k = 0; k < probability.size(); ++k) {

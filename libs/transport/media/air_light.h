@@ -7,7 +7,7 @@
 //   T l e exp(-t) (1 - exp(-x)) / x,
 // with T what is left of light from the begin of the run, l its length, e emission a metre, t depth of the beam there
 // (0 for what is warm) and x the growth of all depths along the run. The air neither ends flights nor turns them.
-// The air fills bodies, too: what it does within metres of glass or water is below its own accuracy.
+// The air fills bodies of index 1, too, clouds and leaves, but none that refract.
 #pragma once
 #include <span>
 #include <vector>

@@ -42,13 +42,15 @@ bool Flights::emits(const Constituent& c) const {
   return absorbs_[c.medium] && (c.kelvin > 0 || !media_[c.medium].blackbody.empty());
 }
 
-Flights::Result Flights::fly(LivePath& live, double length, uint32_t background, Vec2 u, std::span<float> through,
-                             std::span<float> emitted) {
+Flights::Result Flights::fly(LivePath& live, double length, uint32_t background, bool airless, Vec2 u,
+                             std::span<float> through, std::span<float> emitted) {
+  airy_ = air_.any() && !airless;
   const size_t own = bins_of_knots_[static_cast<size_t>(live.knot)];
   std::fill(depth_.begin(), depth_.end(), 0.0);
   run_.clear();
   result_ = {false, length};
-  if (air_.any()) {
+  if (live.branch != Branch::none) set_whole(live, length, background);
+  if (airy_) {
     air_.begin();
     stretch_.clear();
     run_layer_ = kNone;
@@ -56,9 +58,9 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
   if (const AirLayers* layers = optics_.air())
     walk_.start(field_, live.origin, live.direction, length, background, live.time, &layers->shells, layers->first);
   else
-    walk_.start(field_, live.origin, live.direction, length, background, live.time, air_.shells());
-  if (walk_.empty() && !air_.any()) return result_;
-  double left = -std::log1p(-u.x);
+    walk_.start(field_, live.origin, live.direction, length, background, live.time, airy_ ? air_.shells() : nullptr);
+  if (walk_.empty() && !airy_) return result_;
+  double left = -std::log1p(-u.x * (live.branch == Branch::forced ? scattered_[live.knot] : 1));
   for (;;) {
     left -= pass_lone(live, left, u.y, emitted);
     if (result_.scattered || !walk_.next()) break;
@@ -80,7 +82,7 @@ Flights::Result Flights::fly(LivePath& live, double length, uint32_t background,
     run_length_ += way;
   }
   end_run(live, u.y, emitted);
-  if (air_.any()) {
+  if (airy_) {
     air_.transmittance(through);
     if (length == std::numeric_limits<double>::infinity() && !result_.scattered)
       air_.bend(live.origin, live.direction, through);
@@ -110,7 +112,7 @@ double Flights::pass_lone(const LivePath& live, double left, double u, std::span
 // air, which shines, too, densities must be alike.
 bool Flights::same_run() const {
   const std::vector<Constituent>& contents = walk_.contents();
-  if (!air_.any()) return run_.size() == 1 && contents.size() == 1 && run_[0] == contents[0];
+  if (!airy_) return run_.size() == 1 && contents.size() == 1 && run_[0] == contents[0];
   return walk_.layer() == run_layer_ &&
          std::equal(contents.begin(), contents.end(), stretch_.begin(), stretch_.end(),
                     [](const Constituent& a, const Constituent& b) { return a == b && a.density == b.density; });
@@ -119,14 +121,14 @@ bool Flights::same_run() const {
 void Flights::begin_run(const LivePath& live) {
   for (const Constituent& c : walk_.contents()) run_.push_back({c.medium, 0, c.kelvin});
   run_length_ = 0;
-  if (!air_.any()) return;
+  if (!airy_) return;
   stretch_ = walk_.contents();
   run_layer_ = walk_.layer();
   air_.enter(run_layer_, live.origin + live.direction * walk_.begin(), live.direction);
 }
 
 bool Flights::run_shines() const {
-  if (run_layer_ != kNone || (air_.any() && !run_.empty())) return run_length_ > 0;
+  if (run_layer_ != kNone || (airy_ && !run_.empty())) return run_length_ > 0;
   return any_emission_ && std::any_of(run_.begin(), run_.end(), [&](const Constituent& c) { return emits(c); });
 }
 
@@ -145,7 +147,7 @@ void Flights::emit(const LivePath& live, double u, std::span<float> emitted) {
   const bool spectral = optics_.spectral_flights();
   media_emission();
   if (spectral) set_places(live, u);
-  if (air_.any())
+  if (airy_)
     air_.pass(run_length_, tau_, emission_, u, sent_, mean_.most > 0 ? std::span(place_) : std::span<double>{});
   else
     emit_media(u);
@@ -189,7 +191,7 @@ void Flights::set_places(const LivePath& live, double share) {
     for (const Constituent& c : run_)
       knots_[k].within += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
   }
-  if (!air_.any()) return;
+  if (!airy_) return;
   mean_.place = share;
   mean_.offset = knots_[0].before;
   for (const Knot& k : knots_) mean_.offset = std::min(mean_.offset, k.before);
@@ -207,7 +209,7 @@ double Flights::ratio(size_t bin, double share) const {
   // In air runs are many and short; the mixture of all knots is then known well enough from one place: its series there
   // is true to some 1e-7.
   const double off = share - mean_.place;
-  if (air_.any() && std::fabs(off) * mean_.most < kNear)
+  if (airy_ && std::fabs(off) * mean_.most < kNear)
     return std::exp(mean_.offset - scattered) / (mean_.sum - off * (mean_.slope - 0.5 * off * mean_.bend));
   for (const Knot& k : knots_) mixture += k.share * std::exp(scattered - k.before - share * k.within);
   return 1 / mixture;
@@ -249,6 +251,25 @@ void Flights::weigh(LivePath& live, std::span<float> through) {
   result_.dense = true;
 }
 
+// F_k of the way that the path has before it (kernel_branch.h).
+void Flights::set_whole(const LivePath& live, double length, uint32_t background) {
+  whole_.assign(media_.size(), 0);
+  add_depths({live.origin, live.direction, live.time}, length, background, whole_);
+  for (size_t k = 0; k < bins_of_knots_.size(); ++k) {
+    double tau = 0;
+    for (size_t m = 0; m < whole_.size(); ++m) tau += whole_[m] * double{media_[m].scattering[bins_of_knots_[k]]};
+    scattered_[k] = -std::expm1(-tau);
+  }
+}
+
+// r_k, of both branches that may have come to where this one was scattered; over the density of being scattered there.
+double Flights::combined(const LivePath& live, size_t k, bool scattered) const {
+  if (!scattered || live.branch == Branch::none) return live.relative[k];
+  if (!(scattered_[k] > 0)) return 0;
+  const bool forced = live.branch == Branch::forced;
+  return forced ? live.relative[k] / scattered_[k] + live.other[k] : live.relative[k] + live.other[k] / scattered_[k];
+}
+
 // Brings r_k to the end of the way, divided by A; returns A.
 double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
   const size_t knots = bins_of_knots_.size();
@@ -261,7 +282,8 @@ double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
       for (const Constituent& c : walk_.contents())
         rate += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
     }
-    live.relative[k] *= std::exp(own - scattering_depth(bins_of_knots_[k])) * (rate / own_rate);
+    live.relative[k] =
+        combined(live, k, scattered) * std::exp(own - scattering_depth(bins_of_knots_[k])) * (rate / own_rate);
     shares += probability_[k] * live.relative[k];
   }
   for (size_t k = 0; k < knots; ++k) live.relative[k] /= shares;

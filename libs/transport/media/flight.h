@@ -41,7 +41,8 @@ class Flights {
   // Flies path `live` from its origin along its direction to at most `length` in `background`. through: receives what
   // the way does to every bin (without the scattering coefficient of the bin where it is scattered); emitted: the
   // light of the way as seen from its start. u: numbers in [0, 1) for the way and for what shines on it.
-  Result fly(LivePath& live, double length, uint32_t background, Vec2 u, std::span<float> through,
+  // airless: there is none of the air on the way.
+  Result fly(LivePath& live, double length, uint32_t background, bool airless, Vec2 u, std::span<float> through,
              std::span<float> emitted);
   // Where the last flight was scattered.
   const std::vector<Constituent>& contents() const { return walk_.contents(); }
@@ -63,6 +64,8 @@ class Flights {
   void set_places(const LivePath& live, double share);
   double ratio(size_t bin, double share) const;
   double scattering_depth(size_t bin) const;
+  void set_whole(const LivePath& live, double length, uint32_t background);
+  double combined(const LivePath& live, size_t knot, bool scattered) const;
   void weigh(LivePath& live, std::span<float> through);
   double join_knots(LivePath& live, bool scattered, double own_rate);
   bool emits(const Constituent& c) const;
@@ -75,8 +78,11 @@ class Flights {
   bool any_emission_ = false;
   std::vector<uint8_t> absorbs_;  // per medium
   FieldWalk walk_;
-  std::vector<double> depth_;  // per medium: density integrated so far
+  std::vector<double> depth_;    // per medium: density integrated so far
+  std::vector<double> whole_;    // the same over the whole way
+  double scattered_[kMaxKnots];  // probability of being scattered on it, where the path is one of two branches
   AirLight air_;
+  bool airy_ = false;  // on the flight under way there may be air
   // Stretches alike in a row.
   std::vector<Constituent> run_;      // density holds the integral
   std::vector<Constituent> stretch_;  // the first of them, where there is air

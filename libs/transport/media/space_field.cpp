@@ -51,13 +51,16 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
-  if (plain_air_ && medium == kNone && !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
+  const Branch branch = live.branch;
+  if (plain_air_ && medium == kNone && branch != Branch::forced &&
+      !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
     return fly_through_air(*air_, live, live.surfaces + live.scatterings > 0, length, ends, through, emitted);
-  const Flights::Result flown = flights_.fly(live, length, medium, {u[0], u[1]}, through, emitted);
+  const Flights::Result flown = flights_.fly(live, length, medium, is_airless(medium), {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},
                 flown.dense || flown.scale != 1,
                 flown.emits ? emitted.data() : nullptr};
+  live.branch = Branch::none;
   const double gap = std::exchange(way.gap, 0);
   const auto advance = [&](double distance) {
     live.length += distance;
@@ -70,10 +73,15 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
     flight.arrival = Arrival::scattered;
     return flight;
   }
+  if (branch == Branch::forced) {  // nothing scatters there
+    record.end = PathEnd::absorbed;
+    flight.arrival = Arrival::ended;
+    return flight;
+  }
   if (!hit.hit() || !bodies_.is_boundary(surface_.material(hit))) return flight;
   if (++live.flights >= kMostFlights) {
     record.end = PathEnd::max_nodes;
-    record.truncated = live.throughput[0];
+    record.truncated += live.throughput[0];
     flight.arrival = Arrival::ended;
     return flight;
   }
@@ -222,6 +230,7 @@ void FieldSpace::begin_way(uint32_t p, bool event, const Hit& hit, uint32_t mate
 
 double FieldSpace::follow_way(const Ray& from, double length, std::span<float> through, std::span<float> scratch) {
   const double index = index_of(way_.medium(ambient_));
+  const bool airless = is_airless(way_.medium(ambient_));
   depths_.assign(optics_.media().size(), 0);
   // Index-matched boundaries lie on it at most, short of its end.
   constexpr double kShort = 1 - 1e-9;
@@ -247,7 +256,7 @@ double FieldSpace::follow_way(const Ray& from, double length, std::span<float> t
     for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
   };
   if (flights_.transmittance(depths_, scratch)) weaken();
-  if (air_) air_->transmittance(from.origin, from.direction, length, scratch), weaken();
+  if (air_ && !airless) air_->transmittance(from.origin, from.direction, length, scratch), weaken();
   return index;
 }
 

@@ -19,6 +19,7 @@ class FieldSpace {
   static constexpr uint32_t kDense = 2;
   static constexpr uint16_t kEmitter = kFromMatter;
   using Sight = MediaSight;
+  using Around = MediumStack;
   explicit FieldSpace(const SpaceContext& context);
 
   // Puts a new path into the bodies around its origin.
@@ -39,6 +40,17 @@ class FieldSpace {
   // The path goes through a surface to the other side.
   void cross(uint32_t p, const Hit& hit, uint32_t material, Dir in) {
     bodies_.transmit(stacks_[p], hit, material, in, statistics_);
+  }
+
+  // The bodies around path p where it leaves a surface or an event, and a path that is put there again.
+  const Around& around(uint32_t p) const { return stacks_[p]; }
+  void put(uint32_t p, const Around& around) {
+    stacks_[p] = around;
+    ways_[p] = {};
+  }
+  bool scatters_around(uint32_t p) const {
+    const uint32_t medium = stacks_[p].medium(ambient_);
+    return medium != kNone && optics_.media()[medium].scatters();
   }
 
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
@@ -81,6 +93,8 @@ class FieldSpace {
   };
   void remember(uint32_t p, Vec3 place);
   void set_rates(ScatterPlace& e) const;
+  // Matter that is denser than the air, such as water, holds none of it.
+  bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
   double index_of(uint32_t medium) const { return medium == kNone || index_.empty() ? 1 : index_[medium]; }
 
   const Surface& surface_;
