@@ -60,7 +60,7 @@ class Sqt final : public ScatterModel {
       most_.push_back(beyond && range.outside == Outside::zero ? 0 : 1);
     }
     for (const size_t k : state.knots) knot_.push_back(shape_[k]);
-    channels_ = used(shape_), knot_channels_ = used(knot_);
+    channels_ = used(shape_, state.size()), knot_channels_ = used(knot_, knot_.size());
     for (const double wavelength : info.function.wavelength_um)
       total_of_.push_back(
           static_cast<size_t>(std::lower_bound(info.magnitude_um.begin(), info.magnitude_um.end(), wavelength) -
@@ -147,9 +147,10 @@ class Sqt final : public ScatterModel {
     const double low = dirac(out, b.low).share;
     return b.t > 0 ? (1 - b.t) * low + b.t * dirac(out, b.high).share : low;
   }
-  static std::vector<size_t> used(const std::vector<Between>& shapes) {
+  template <class Shapes>
+  static std::vector<size_t> used(const Shapes& shapes, size_t n) {
     std::vector<size_t> channels;
-    for (const Between& s : shapes) channels.insert(channels.end(), {s.low, s.high});
+    for (size_t i = 0; i < n; ++i) channels.insert(channels.end(), {shapes[i].low, shapes[i].high});
     std::sort(channels.begin(), channels.end());
     channels.erase(std::unique(channels.begin(), channels.end()), channels.end());
     return channels;
@@ -163,11 +164,11 @@ class Sqt final : public ScatterModel {
   }
 
   std::shared_ptr<const sqt::Bundle> bundle_;
-  Betweens shape_, magnitude_;    // per bin
-  std::vector<double> most_;      // per bin: the largest total, 0 where nothing is stored and `zero` declared
-  std::vector<Between> knot_;     // per knot
+  Betweens shape_, magnitude_;  // per bin
+  std::vector<double> most_;    // per bin: the largest total, 0 where nothing is stored and `zero` declared
+  std::vector<Between> knot_;   // per knot
   std::vector<size_t> channels_, knot_channels_;  // that bins, that knots need
-  std::vector<size_t> total_of_;  // per channel: where its total stands among the magnitudes
+  std::vector<size_t> total_of_;                  // per channel: where its total stands among the magnitudes
 };
 
 // The tests fit a bundle to each.
