@@ -229,7 +229,7 @@ Brought by_flights(const Scene& scene, const Optics& optics, const Atmosphere& a
       std::fill_n(live.throughput, knots, 1.0);
       live.knot = static_cast<int>(k);
       const double u = random.uniform(), v = random.uniform();
-      const Flights::Result flown = flights.fly(live, length, kNone, {u, v}, through, emitted);
+      const Flights::Result flown = flights.fly(live, length, kNone, false, {u, v}, through, emitted);
       for (size_t b = 0; b < n; ++b) {
         if (flown.emits) light[b] += probability[k] * emitted[b];
         if (!flown.scattered) left[b] += probability[k] * flown.scale * (flown.dense ? through[b] : 1);
