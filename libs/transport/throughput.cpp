@@ -1,7 +1,6 @@
 #include "transport/throughput.h"
 
 #include <algorithm>
-#include <array>
 #include <new>
 #include <utility>
 
@@ -10,29 +9,26 @@ namespace suite {
 namespace {
 
 constexpr size_t kVector = 8;
-// Spectra that are multiplied with each other; ones are left out.
-struct Factors {
-  std::array<const float*, 4> of{};
-  size_t count = 0;
-  void add(const float* spectrum) {
-    if (spectrum) of[count++] = spectrum;
-  }
-};
 
-// L <- L + scale times the product of N spectra; none: L is not yet anything, and counts as 0. kKeep: the product of
-// the last two is kept in T, which may be one of them.
-template <size_t N, bool kKeep>
-void add(float* L, bool none, float scale, const Factors& f, float* T, size_t n) {
-  const auto [a, b, c, d] = f.of;
+// L <- L + scale a b (t u), null = ones; none: L is not yet anything, and counts as 0. T: where t u is to be kept, or
+// null; it may be t or u. t and u are multiplied with each other first, kept or not: sums do not depend on where a
+// chain is folded.
+struct Product {
+  float scale;
+  const float *a, *b, *t, *u;
+};
+template <bool kA, bool kB, int kT, bool kKeep>
+void add(float* L, bool none, const Product& f, float* T, size_t n) {
+  const auto [scale, a, b, t, u] = f;
   const auto value = [=](size_t k) {
     float x = scale;
-    if constexpr (N > 0 && !(kKeep && N < 3)) x *= a[k];
-    if constexpr (N > 1 && !(kKeep && N < 4)) x *= b[k];
-    if constexpr (N > 2 && !kKeep) x *= c[k];
-    if constexpr (N > 3 && !kKeep) x *= d[k];
-    if constexpr (kKeep) {
-      const float kept = f.of[N - 2][k] * f.of[N - 1][k];
-      T[k] = kept, x *= kept;
+    if constexpr (kA) x *= a[k];
+    if constexpr (kB) x *= b[k];
+    if constexpr (kT == 1) x *= t[k];
+    if constexpr (kT == 2) {
+      const float both = t[k] * u[k];
+      if constexpr (kKeep) T[k] = both;
+      x *= both;
     }
     return x;
   };
@@ -45,19 +41,18 @@ void add(float* L, bool none, float scale, const Factors& f, float* T, size_t n)
   }
 }
 
-void add(float* L, bool none, float scale, const Factors& f, float* keep, size_t n) {
-  switch (f.count) {
-    case 0:
-      return add<0, false>(L, none, scale, f, keep, n);
-    case 1:
-      return add<1, false>(L, none, scale, f, keep, n);
-    case 2:
-      return keep ? add<2, true>(L, none, scale, f, keep, n) : add<2, false>(L, none, scale, f, keep, n);
-    case 3:
-      return keep ? add<3, true>(L, none, scale, f, keep, n) : add<3, false>(L, none, scale, f, keep, n);
-    default:
-      return keep ? add<4, true>(L, none, scale, f, keep, n) : add<4, false>(L, none, scale, f, keep, n);
-  }
+template <bool kA, bool kB>
+void add(float* L, bool none, const Product& f, float* T, size_t n) {
+  if (!f.t) return add<kA, kB, 0, false>(L, none, f, T, n);
+  if (!f.u) return add<kA, kB, 1, false>(L, none, f, T, n);
+  T ? add<kA, kB, 2, true>(L, none, f, T, n) : add<kA, kB, 2, false>(L, none, f, T, n);
+}
+
+void add(float* L, bool none, const Product& f, float* T, size_t n) {
+  if (f.a)
+    f.b ? add<true, true>(L, none, f, T, n) : add<true, false>(L, none, f, T, n);
+  else
+    f.b ? add<false, true>(L, none, f, T, n) : add<false, false>(L, none, f, T, n);
 }
 
 }  // namespace
@@ -78,13 +73,11 @@ SpectralThroughputs::SpectralThroughputs(size_t width, size_t bins, size_t targe
       throughput_(spectra(width * stride_)),
       light_(spectra(width * targets * stride_)) {}
 
-// T <- T times a step's factor.
-void SpectralThroughputs::turn_by(uint32_t p, const Step& by) {
+// t u <- t u times a step's factor.
+void SpectralThroughputs::turn_by(uint32_t p, const float* by) {
   Chain& c = chains_[p];
-  c.scale *= by.scale;
-  if (!by.a) return;
   if (!c.t) {
-    c.t = by.a;
+    c.t = by;
     return;
   }
   if (c.u) {
@@ -94,7 +87,7 @@ void SpectralThroughputs::turn_by(uint32_t p, const Step& by) {
     for (size_t k = 0; k < bins_; ++k) T[k] = t[k] * u[k];
     c.t = T;
   }
-  c.u = by.a;
+  c.u = by;
 }
 
 // What is not yet anything is written by the first step that makes it something.
@@ -107,38 +100,46 @@ void SpectralThroughputs::fold(uint32_t p) {
   const Step* const begin = &step(p, 0);
   const Step* last_turn = begin;  // behind the last that will be asked for a product
   for (const Step* s = begin; s != begin + c.steps; ++s)
-    if (s->target == kTurn && s->a) last_turn = s;
+    if (s->target == kTurn) last_turn = s;
   for (const Step* s = begin; s != begin + c.steps; ++s) {
     if (s->target == kTurn) {
-      turn_by(p, *s);
+      turn_by(p, s->a);
       continue;
     }
-    Factors f;
-    for (const float* spectrum : {s->a, s->b, c.t, c.u}) f.add(spectrum);
+    const Product product{s->scale, s->a, s->b, c.t, c.u};
     float* const keep = c.u && s < last_turn ? T : nullptr;
-    add(L + s->target * stride_, std::exchange(none, false), c.scale * s->scale, f, keep, bins_);
+    add(L + s->target * stride_, std::exchange(none, false), product, keep, bins_);
+    if (s->second != kNone)
+      add(L + s->second * stride_, false, {product.scale, s->a, s->b, keep ? keep : c.t, keep ? nullptr : c.u}, nullptr,
+          bins_);
     if (keep) c.t = T, c.u = nullptr;
-    if (s->second == kNone) continue;
-    f = {};
-    for (const float* spectrum : {s->a, s->b, c.t, c.u}) f.add(spectrum);
-    add(L + s->second * stride_, false, c.scale * s->scale, f, nullptr, bins_);
   }
   if (none) std::fill_n(L, bins_, 0.0f);
   c.light = true;
   c.steps = 0;
 }
 
-void SpectralThroughputs::settle(uint32_t p) {
-  if (bins_ == 1) return;
+void SpectralThroughputs::stand(uint32_t p) {
   fold(p);
   Chain& c = chains_[p];
   float* const T = &throughput_[size_t{p} * stride_];
-  if (c.t == T && !c.u && c.scale == 1) return;
-  const float scale = c.scale;
+  if (!c.t || (c.t == T && !c.u)) return;
   const float *const t = c.t, *const u = c.u;
 #pragma GCC ivdep
-  for (size_t k = 0; k < bins_; ++k) T[k] = scale * (t ? t[k] : 1.0f) * (u ? u[k] : 1.0f);
-  c.scale = 1, c.t = T, c.u = nullptr;
+  for (size_t k = 0; k < bins_; ++k) T[k] = u ? t[k] * u[k] : t[k];
+  c.t = T, c.u = nullptr;
+}
+
+void SpectralThroughputs::settle(uint32_t p) {
+  if (bins_ == 1) return;
+  stand(p);
+  Chain& c = chains_[p];
+  float* const T = &throughput_[size_t{p} * stride_];
+  if (c.t && c.scale == 1) return;
+  const float scale = c.scale;
+#pragma GCC ivdep
+  for (size_t k = 0; k < bins_; ++k) T[k] = c.t ? scale * T[k] : scale;
+  c.scale = 1, c.t = T;
 }
 
 }  // namespace suite

@@ -36,7 +36,8 @@ class SpectralThroughputs {
       for (size_t t = 0; t < targets_; ++t) light_[(size_t{p} * targets_ + t) * stride_] = 0;
       return;
     }
-    add_turn(c, p, {weight, weights});
+    c.scale = weight;
+    if (weights) add_turn(c, p, weights);
   }
   // T <- a spectrum; L stays.
   void resume(uint32_t p, std::span<const float> T) {
@@ -55,7 +56,7 @@ class SpectralThroughputs {
   static constexpr uint32_t kDense = 8;
   bool has_room(uint32_t p, uint32_t count) const { return chains_[p].dense + count <= kDense; }
   void make_room(uint32_t p) {
-    settle(p);
+    if (bins_ > 1) stand(p);
     chains_[p].dense = 0;
   }
   std::span<float> take(uint32_t p) { return {&dense_[(size_t{p} * kDense + chains_[p].dense++) * stride_], bins_}; }
@@ -69,7 +70,7 @@ class SpectralThroughputs {
     if (bins_ == 1) return shine_number(p, factor, scale, radiance, target, second);
     Chain& c = chains_[p];
     if (c.steps == kSteps) fold(p);
-    step(p, c.steps++) = {factor.spectrum, radiance, factor.scale * scale, target, second};
+    step(p, c.steps++) = {factor.spectrum, radiance, c.scale * (factor.scale * scale), target, second};
   }
 
   // L of a path.
@@ -88,13 +89,14 @@ class SpectralThroughputs {
   static constexpr uint16_t kTurn = 0xfffe;  // target of steps that change T
   struct Step {
     const float *a, *b;  // null = ones
-    float scale;
+    float scale;         // that of T included
     uint16_t target, second;
   };
   struct Chain {
     uint32_t steps = 0, dense = 0;
     bool light = false;  // L stands in memory; else it is 0
-    // T at the begin of the steps: scale t u; t: the path's own memory, or a spectrum that stands elsewhere.
+    // T now is scale times the turns among the steps times t u, which are from before; t: the path's own memory, or a
+    // spectrum that stands elsewhere.
     float scale = 1;
     const float *t = nullptr, *u = nullptr;  // null = ones; u: only with t
   };
@@ -105,9 +107,7 @@ class SpectralThroughputs {
   static Spectra spectra(size_t floats);
 
   Step& step(uint32_t p, uint32_t i) { return steps_[size_t{p} * kSteps + i]; }
-  void add_turn(Chain& c, uint32_t p, const Factor& f) {
-    step(p, c.steps++) = {f.spectrum, nullptr, f.scale, kTurn, kNone};
-  }
+  void add_turn(Chain& c, uint32_t p, const float* by) { step(p, c.steps++) = {by, nullptr, 1, kTurn, kNone}; }
   void multiply(uint32_t p, const Factor& f) {
     if (bins_ == 1) {
       float& T = throughput_[size_t{p} * stride_];
@@ -115,16 +115,14 @@ class SpectralThroughputs {
       return;
     }
     Chain& c = chains_[p];
-    if (c.steps > 0) {  // numbers join the turn before
-      Step& last = step(p, c.steps - 1);
-      if (last.target == kTurn && (!f.spectrum || !last.a)) {
-        last.scale *= f.scale;
-        if (f.spectrum) last.a = f.spectrum;
-        return;
-      }
+    c.scale *= f.scale;
+    if (f.spectrum) {
+      if (c.steps == kSteps) fold(p);
+      add_turn(c, p, f.spectrum);
     }
-    if (c.steps == kSteps) fold(p);
-    add_turn(c, p, f);
+    // Numbers and spectra that make up for each other must not run out of what a float can be.
+    constexpr float kFar = 0x1p20f;
+    if (!(c.scale > 1 / kFar && c.scale < kFar)) settle(p);
   }
   void shine_number(uint32_t p, const Factor& f, float scale, const float* radiance, uint16_t target, uint16_t second) {
     const float x = f.scale * scale * (f.spectrum ? *f.spectrum : 1) * (radiance ? *radiance : 1) *
@@ -134,7 +132,9 @@ class SpectralThroughputs {
   }
   // Brings L to memory, of the chain's steps, and T to few factors.
   void fold(uint32_t p);
-  void turn_by(uint32_t p, const Step& by);
+  void turn_by(uint32_t p, const float* by);
+  // The same, and T but for its scale where nothing changes it: no step points elsewhere.
+  void stand(uint32_t p);
   // All of it: nothing points elsewhere.
   void settle(uint32_t p);
 

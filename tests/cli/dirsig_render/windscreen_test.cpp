@@ -30,7 +30,9 @@ TEST_F(Windscreen, IsClearInTheVisibleAndWarmInTheInfrared) {
   const RunningStats there = block("out/thermal.img", 56, 22), beside = block("out/thermal.img", 46, 20);
   std::printf("4.55 um: %.2f +- %.2f K, %.2f +- %.2f K\n", there.mean(), there.stderr_of_mean(), beside.mean(),
               beside.stderr_of_mean());
-  EXPECT_NEAR(there.mean(), beside.mean(), 4 * std::hypot(there.stderr_of_mean(), beside.stderr_of_mean()));
+  // The sky in the mirror of the glass is not the same ten columns apart: 0.02 K, seen since paths follow it beside
+  // what the glass lets through (noise was 0.1 K).
+  EXPECT_NEAR(there.mean(), beside.mean(), 0.05 + 4 * std::hypot(there.stderr_of_mean(), beside.stderr_of_mean()));
   // Glass at 318 K of emissivity 1 - R, R = 0.066 at 55 degrees, before a sky that is colder: 1.3 to 1.8 K less.
   EXPECT_NEAR(there.mean(), 316.4, 0.4 + 4 * there.stderr_of_mean());
   // Control: through clear glass the shirt of 304 K would be seen.

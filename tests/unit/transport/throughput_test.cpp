@@ -76,6 +76,41 @@ TEST_P(Throughput, ChainsFoldToOneStepAfterTheOther) {
   }
 }
 
+// Light that is none changes when chains fold, and no bit of the rest.
+TEST_P(Throughput, NothingIsNothing) {
+  const size_t bins = GetParam();
+  Pcg32 random(9);
+  std::vector<std::vector<float>> spectra(5, std::vector<float>(bins));
+  for (auto& s : spectra)
+    for (float& x : s) x = static_cast<float>(0.5 + random.uniform());
+  const std::vector<float> dark(bins, 0);
+  SpectralThroughputs paths(2, bins, 1);
+  for (uint32_t p = 0; p < 2; ++p) paths.begin(p, 0.75f, spectra[0].data());
+  for (int step = 0; step < 60; ++step) {
+    const float scale = static_cast<float>(0.5 + random.uniform());
+    const uint32_t kind = random.next() % 3, i = random.next() % 5, j = random.next() % 5;
+    for (uint32_t p = 0; p < 2; ++p) {
+      if (kind == 0) paths.scatter(p, {scale, i == 4 ? nullptr : spectra[i].data()}, {});
+      if (kind == 1) paths.shine(p, {scale, i == 4 ? nullptr : spectra[i].data()}, 1, spectra[j].data(), 0);
+      for (int k = 0; p == 1 && k < step % 5; ++k) paths.shine(1, {1, nullptr}, 1, dark.data(), 0);
+      if (p == 1 && step % 7 == 0) paths.make_room(1);
+    }
+  }
+  for (size_t k = 0; k < bins; ++k) EXPECT_EQ(paths.light(0)[k], paths.light(1)[k]) << k;
+}
+
+// Of a narrow lobe: densities of ten thousand, again and again.
+TEST_P(Throughput, NumbersAndSpectraThatMakeUpForEachOtherDoNotRunOut) {
+  const size_t bins = GetParam();
+  const std::vector<float> narrow(bins, 1e4f), weak(bins, 1e-6f), one(bins, 1);
+  SpectralThroughputs paths(1, bins, 1);
+  paths.begin(0, 1, nullptr);
+  for (int i = 0; i < 40; ++i) paths.scatter(0, {1e-4f, narrow.data()}, {});
+  for (int i = 0; i < 40; ++i) paths.scatter(0, {1e6f, weak.data()}, {});
+  paths.shine(0, {1, nullptr}, 1, one.data(), 0);
+  for (size_t k = 0; k < bins; ++k) EXPECT_NEAR(paths.light(0)[k], 1, 1e-5) << k;
+}
+
 INSTANTIATE_TEST_SUITE_P(Bins, Throughput, testing::Values(2, 7, 8, 9, 31, 32, 33, 40, 47, 224));
 
 }  // namespace
