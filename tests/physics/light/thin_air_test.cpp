@@ -122,18 +122,18 @@ TEST(ThinAir, WaysOutAreThoseOfAllTheirLayers) {
   EXPECT_GT(off, 1e-3);
 }
 
-AirSpec diffuse_air() {
+AirSpec diffuse_air(bool adjacency) {
   AirSpec air = hazy_air();
   air.scattering = AirScattering::diffuse;
-  air.adjacency = false;
+  air.adjacency = adjacency;
   return air;
 }
 // Under the sun at 40 degrees, with light that is scattered more often.
 struct Diffuse {
-  Diffuse()
-      : state(some_bins(diffuse_air())),
+  explicit Diffuse(bool adjacency = false)
+      : state(some_bins(diffuse_air(adjacency))),
         sun(state.size(), 1),
-        air(make_stratified_air(diffuse_air(), state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}})) {}
+        air(make_stratified_air(diffuse_air(adjacency), state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}})) {}
   SpectralState state;
   std::vector<float> sun;
   std::unique_ptr<const Atmosphere> air;
@@ -206,12 +206,8 @@ TEST(ThinAir, TheDrawnSkyIsTheSkyInTheMean) {
 
 // By which paths remember their ways, beside the exact ones.
 TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
-  AirSpec spec = diffuse_air();
-  spec.adjacency = true;
-  const SpectralState state = some_bins(spec);
-  const std::vector<float> sun(state.size(), 1);
-  const auto air = make_stratified_air(spec, state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}});
-  const AirVertices* const vertices = air->vertices();
+  const Diffuse lit(true);
+  const AirVertices* const vertices = lit.air->vertices();
   ASSERT_TRUE(vertices);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(0, 1);
@@ -223,7 +219,7 @@ TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
     const double length = cosine > 0 && i % 2 ? std::numeric_limits<double>::infinity() : std::pow(10, 4.3 * u(random));
     if (cosine < 0 && length * -cosine > from.z) continue;
     const auto exact = vertices->chances(from, d, length), about = vertices->about_chances(from, d, length);
-    for (size_t k = 0; k < state.knots.size(); ++k) {
+    for (size_t k = 0; k < lit.state.knots.size(); ++k) {
       worst = std::max(worst, std::fabs(about[k] / exact[k] - 1));
       largest = std::max(largest, exact[k]);
     }
@@ -235,12 +231,8 @@ TEST(ThinAir, ChancesOfBeingScatteredOnAWayAreAboutRight) {
 
 // A place moves on with the number that draws it, by what its density says.
 TEST(ThinAir, PlacesAreDrawnWithTheDensityTheyTell) {
-  AirSpec spec = diffuse_air();
-  spec.adjacency = true;
-  const SpectralState state = some_bins(spec);
-  const std::vector<float> sun(state.size(), 1);
-  const auto air = make_stratified_air(spec, state, {{dir_from_angles(40 * kDegree, 0.3), sun.data()}});
-  const AirVertices* const vertices = air->vertices();
+  const Diffuse lit(true);
+  const AirVertices* const vertices = lit.air->vertices();
   ASSERT_TRUE(vertices);
   constexpr int kSteps = 40000;
   struct Way {
@@ -251,7 +243,7 @@ TEST(ThinAir, PlacesAreDrawnWithTheDensityTheyTell) {
   for (const Way& way :
        {Way{{0, 0, 2}, 10, far}, Way{{0, 0, 2}, 77, far}, Way{{9e3, 0, 3100}, 60, far}, Way{{0, 0, 9000}, 140, 1.1e4},
         Way{{0, 0, 2}, 70, 800}, Way{{0, 0, 2}, 89, far}, Way{{0, 0, 500}, 95, 4000}, Way{{0, 0, 7e5}, 160, 7.4e5}})
-    for (size_t knot = 0; knot < state.knots.size(); ++knot) {
+    for (size_t knot = 0; knot < lit.state.knots.size(); ++knot) {
       const Dir d = dir_from_angles(way.zenith_deg * kDegree, 0.7);
       double before = 0, integral = 0, others = 0, skewed = 0;
       for (int i = 0; i < kSteps; ++i) {
@@ -259,11 +251,11 @@ TEST(ThinAir, PlacesAreDrawnWithTheDensityTheyTell) {
         ASSERT_TRUE(place);
         ASSERT_GE(place->distance, before);
         ASSERT_LE(place->distance, way.length);
-        const double height = air->shells().height(way.from + d * place->distance);
-        EXPECT_GE(height, air->shells().heights()[place->layer] - 1e-3);
-        EXPECT_LE(height, air->shells().heights()[place->layer + 1] + 1e-3);
+        const double height = lit.air->shells().height(way.from + d * place->distance);
+        EXPECT_GE(height, lit.air->shells().heights()[place->layer] - 1e-3);
+        EXPECT_LE(height, lit.air->shells().heights()[place->layer + 1] + 1e-3);
         // The integral over the places of the density with which others draw them is 1 for each of them.
-        const size_t other = (knot + 1) % state.knots.size();
+        const size_t other = (knot + 1) % lit.state.knots.size();
         others += place->density[other] / place->density[knot] / kSteps;
         if (i > 0) integral += place->density[knot] * (place->distance - before);
         if (i > 0) skewed += place->density[knot] * (place->distance - before) * (1 + 0.02 * i / kSteps);
