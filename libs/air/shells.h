@@ -48,6 +48,10 @@ class Shells {
   }
   // A point at this height: the one on the vertical of the point of height zero above the centre.
   Vec3 above_zero(double height) const { return zero_ + Vec3{0, 0, height}; }
+  // Cosine of a direction with the local vertical of a point, whose height is known.
+  double cosine(Vec3 p, double height, Dir d) const {
+    return (d.z + curvature_ * dot(p - zero_, d)) / (1 + curvature_ * height);
+  }
   // Least height on a straight segment; distance may be infinite (minus infinity where a flat world is left downwards).
   double lowest_height(Vec3 from, Dir d, double distance) const;
   // How far it is from a point in the air down to a height below it, m; infinite when a ray does not come there.

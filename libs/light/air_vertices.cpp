@@ -43,9 +43,14 @@ AirVertices::AirVertices(std::shared_ptr<const AirColumn> column, const Spectral
       over_[l][k] = over_[l + 1][k] + scattering_[l][k] * (heights[l + 1] - heights[l]);
 }
 
+// Where a way that leaves the scene ends, m: what lies past its edge is the even ground.
+double AirVertices::end_of(Vec3 from, Dir d, double length) const {
+  return length == kInfinity ? to_ground(from, d) : length;
+}
+
 AirVertices::PerKnot AirVertices::chances(Vec3 from, Dir d, double length) const {
   PerKnot sums{};
-  column_->shells.walk(from, d, length, [&](const Shells::Piece& p) {
+  column_->shells.walk(from, d, end_of(from, d, length), [&](const Shells::Piece& p) {
     for (size_t k = 0; k < knots_; ++k) sums[k] += scattering_[p.layer][k] * p.length;
   });
   for (size_t k = 0; k < knots_; ++k) sums[k] = scattered(sums[k]);
@@ -62,17 +67,47 @@ void AirVertices::depth_over(double height, double sign, PerKnot& sums) const {
 std::optional<AirVertices::Steep> AirVertices::steep(Vec3 from, Dir d, double length) const {
   constexpr double kSteep = 0.12, kShort = 3e4;  // m
   const Shells& shells = column_->shells;
-  const double cosine = dot(d, shells.up(from));
+  const double height = shells.height(from), cosine = shells.cosine(from, height, d);
   const bool out = length == kInfinity;
   if (std::fabs(cosine) < kSteep || (out ? cosine < 0 : length > kShort)) return std::nullopt;
-  Steep way{
-      std::fabs(cosine), shells.height(from), out ? shells.heights().back() : shells.height(from + d * length), {}, {}};
+  Steep way{std::fabs(cosine), height, out ? shells.heights().back() : shells.height(from + d * length), {}, {}};
   depth_over(way.near_height, 1, way.near);
   depth_over(way.far_height, 1, way.far);
   return way;
 }
 
+// Height along a straight line has no maximum between its ends, and in a round world lies less than the sagitta below
+// the line between them.
+std::optional<size_t> AirVertices::one_layer(Vec3 from, Dir d, double length) const {
+  constexpr double kShort = 3e4;  // m: beyond, few ways stay in a layer
+  if (!(length < kShort)) return std::nullopt;
+  const Shells& shells = column_->shells;
+  const double near = shells.height(from), far = shells.height(from + d * length), high = std::max(near, far),
+               low = std::min(near, far) - 0.125 * shells.curvature() * length * length;
+  const size_t l = shells.layer_of(high);
+  if (l == media_.size() || (l > 0 && low < shells.heights()[l])) return std::nullopt;
+  return l;
+}
+
+AirVertices::PerKnot AirVertices::chances_in(size_t layer, double length) const {
+  PerKnot all{};
+  for (size_t k = 0; k < knots_; ++k) all[k] = scattered(scattering_[layer][k] * length);
+  return all;
+}
+
+std::optional<AirVertices::Place> AirVertices::draw_in(size_t layer, double length, double u, size_t knot) const {
+  const PerKnot &rates = scattering_[layer], all = chances_in(layer, length);
+  if (!(all[knot] > 0)) return std::nullopt;
+  Place place{std::min(-std::log1p(-u * all[knot]) / rates[knot], length), layer, {}};
+  for (size_t k = 0; k < knots_; ++k)
+    if (all[k] > 0)
+      place.density[k] = rates[k] * double{exp_falling(static_cast<float>(rates[k] * place.distance))} / all[k];
+  return place;
+}
+
 AirVertices::PerKnot AirVertices::about_chances(Vec3 from, Dir d, double length) const {
+  length = end_of(from, d, length);
+  if (const auto layer = one_layer(from, d, length)) return chances_in(*layer, length);
   const auto way = steep(from, d, length);
   if (!way) return chances(from, d, length);
   PerKnot all{};
@@ -104,7 +139,7 @@ std::optional<AirVertices::Place> AirVertices::draw_steep(const Steep& way, Vec3
   const double distance = up ? shells.way_up_to(from, d, height) : shells.way_down_to(from, d, height);
   if (!(distance < kInfinity)) return std::nullopt;
   Place place{std::clamp(distance, 0.0, length), l, {}};
-  const double rise = std::fabs(dot(d, shells.up(from + d * place.distance))) / way.cosine;
+  const double rise = std::fabs(shells.cosine(from + d * place.distance, height, d)) / way.cosine;
   for (size_t k = 0; k < knots_; ++k) {
     if (!(all[k] > 0)) continue;
     const double here = over_[l][k] + (shells.heights()[l] - height) * rates[k],
@@ -115,6 +150,8 @@ std::optional<AirVertices::Place> AirVertices::draw_steep(const Steep& way, Vec3
 }
 
 std::optional<AirVertices::Place> AirVertices::draw(Vec3 from, Dir d, double length, double u, size_t knot) const {
+  length = end_of(from, d, length);
+  if (const auto layer = one_layer(from, d, length)) return draw_in(*layer, length, u, knot);
   if (const auto way = steep(from, d, length)) return draw_steep(*way, from, d, length, u, knot);
   const PerKnot all = chances(from, d, length);
   if (!(all[knot] > 0)) return std::nullopt;

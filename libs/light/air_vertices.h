@@ -36,13 +36,13 @@ class AirVertices {
   bool any() const { return depth_ > kLeastDepth; }
 
   // The probabilities, one a knot, with which light is scattered on a way if nothing is absorbed, within 1e-6. length:
-  // m, infinity allowed.
+  // m, infinity allowed: then the way leaves the scene and ends at the even ground, if it comes there.
   using PerKnot = std::array<double, kMaxKnots>;
   PerKnot chances(Vec3 from, Dir d, double length) const;
   // The same in a fraction of the time, within 10 %: where a weight is wanted that need not be exact.
   PerKnot about_chances(Vec3 from, Dir d, double length) const;
-  // A place on the way, drawn as light of a knot would be scattered there (on a steep way: if layers were flat). u: in
-  // [0, 1). Nothing where nothing scatters.
+  // A place on such a way, drawn as light of a knot would be scattered there (on a steep way: if layers were flat). u:
+  // in [0, 1). Nothing where nothing scatters.
   struct Place {
     double distance;  // m
     size_t layer;
@@ -59,8 +59,13 @@ class AirVertices {
 
  private:
   double to_ground(Vec3 from, Dir d) const;
+  double end_of(Vec3 from, Dir d, double length) const;
   // Scattering depth over a height, vertically.
   void depth_over(double height, double sign, PerKnot& sums) const;
+  // The layer that a way does not leave; nothing: it may, or is long.
+  std::optional<size_t> one_layer(Vec3 from, Dir d, double length) const;
+  PerKnot chances_in(size_t layer, double length) const;
+  std::optional<Place> draw_in(size_t layer, double length, double u, size_t knot) const;
   // A way all along which height rises or falls with nearly the same slope.
   struct Steep {
     double cosine, near_height, far_height;  // the cosine is positive

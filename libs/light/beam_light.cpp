@@ -59,7 +59,7 @@ const std::vector<float>& BeamLight::phase_of(size_t b, size_t kind, AirScratch&
   return p;
 }
 bool BeamLight::depth(size_t b, Vec3 p, double height, std::span<float> to) const {
-  const bool lit = tables_[b].spread_depth(height, dot(column_.shells.up(p), beams_[b].direction), to);
+  const bool lit = tables_[b].spread_depth(height, column_.shells.cosine(p, height, beams_[b].direction), to);
   if (!lit) std::fill(to.begin(), to.end(), kShadow);
   return lit;
 }
@@ -91,8 +91,8 @@ std::optional<BeamLight::Growth> BeamLight::growth(size_t b, const Shells::Piece
   constexpr double kLow = 0.2, kTurn = 0.01;
   if (!column_.refractivity.empty()) return std::nullopt;
   const Dir beam = beams_[b].direction;
-  const double near = dot(column_.shells.up(from + d * piece.near), beam),
-               far = dot(column_.shells.up(from + d * piece.far), beam);
+  const double near = column_.shells.cosine(from + d * piece.near, piece.near_height, beam),
+               far = column_.shells.cosine(from + d * piece.far, piece.far_height, beam);
   if (near < kLow || far < kLow) return std::nullopt;
   const double rise = piece.far_height - piece.near_height,
                share = near / far - 1 + rise * column_.shells.curvature() / (far * far);
@@ -153,8 +153,8 @@ void BeamLight::scatter_lit(size_t b, const Shells::Piece& piece, Vec3 from, Dir
   for (int i = 0; i < 30; ++i) {
     const double middle = 0.5 * (lit + dark);
     const Vec3 p = at(middle);
-    const double cosine = dot(column_.shells.up(p), beams_[b].direction);
-    (tables_[b].seen(column_.shells.height(p), cosine) ? lit : dark) = middle;
+    const double height = column_.shells.height(p), cosine = column_.shells.cosine(p, height, beams_[b].direction);
+    (tables_[b].seen(height, cosine) ? lit : dark) = middle;
   }
   look_up(b, at(lit), column_.shells.height(at(lit)), s.edge);
   const auto share = static_cast<float>(std::fabs(lit - (near_lit ? piece.near : piece.far)) / piece.length);

@@ -158,7 +158,7 @@ class StratifiedAir final : public Atmosphere {
   // Transmittance of a straight way out of the air that rises well, from the table of the beams. False: another way.
   bool outwards(Vec3 from, Dir d, std::span<float> T) const {
     constexpr double kLevel = 0.05;
-    const double cosine = dot(column_.shells.up(from), d), height = column_.shells.height(from);
+    const double height = column_.shells.height(from), cosine = column_.shells.cosine(from, height, d);
     if (!column_.refractivity.empty() || cosine < kLevel) return false;
     if (const auto depth = once_.local().depth(height, cosine)) {
       air_loops::fall_here(bins_, *depth, T.data());
@@ -170,8 +170,8 @@ class StratifiedAir final : public Atmosphere {
   }
   // What arrives of light whose source stands in a direction.
   void arrive(Vec3 at, Dir d, std::span<float> T) const {
-    if (!tables_[0].depth(column_.shells.height(at), dot(column_.shells.up(at), d), T))
-      return std::fill(T.begin(), T.end(), 0.0f);
+    const double height = column_.shells.height(at);
+    if (!tables_[0].depth(height, column_.shells.cosine(at, height, d), T)) return std::fill(T.begin(), T.end(), 0.0f);
     for (float& t : T) t = exp_falling(t);
   }
 

@@ -180,6 +180,25 @@ TEST(LitAir, AnEvenGroundAddsNothing) {
     EXPECT_NEAR(sky.radiance[i], known.radiance[i], 1e-5 * known.radiance[i]);
 }
 
+// Nor where the scene is a piece of the even ground: ways past its edge end at the ground that lies there, and no light
+// is scattered below.
+TEST(LitAir, APieceOfTheEvenGroundAddsNothing) {
+  View view;
+  view.scene = scene_of({quad(400, 0, 0)}, {material("ground", lambert(0.2))});
+  view.rays = {from_space({0, 0, 0}, 0, 0),
+               from_space({390, 390, 0}, 30, 2),
+               from_space({-390, 0, 0}, 0, 0),
+               {{0, 0, 300}, normalized(Vec3{1, 0.2, -0.3}), 0}};
+  const CaptureResult lit = see(view, haze(0.5), AirScattering::diffuse, true, 20000),
+                      even = see(view, haze(0.5), AirScattering::diffuse, false, 20000);
+  tell("piece", lit, even);
+  // The piece sends up what the field's ground does, within 3e-4 of what is seen.
+  for (size_t i = 0; i < lit.radiance.size(); ++i)
+    EXPECT_NEAR(lit.radiance[i], even.radiance[i],
+                kSigmas * std::hypot(lit.standard_error[i], even.standard_error[i]) + 3e-4 * even.radiance[i])
+        << i;
+}
+
 // The parts of the light add up to it, and those of the air to its path radiance.
 class Parts final : public RaySensor {
  public:
