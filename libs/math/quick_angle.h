@@ -12,10 +12,11 @@ namespace suite {
 inline double quick_atan2(double y, double x) {
   const double ax = std::fabs(x), ay = std::fabs(y), large = std::max(ax, ay);
   const double t = large > 0 ? std::min(ax, ay) / large : 0, s = t * t;
-  double p = 0.0028662257;
-  for (const double c :
-       {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944, 0.1999355085, -0.3333314528, 1.0})
-    p = p * s + c;
+  // In pairs, so that no step waits for all before it (G. Estrin, "Organization of computer systems", 1960).
+  const double s2 = s * s, s4 = s2 * s2;
+  const double low = (1 - 0.3333314528 * s) + (0.1999355085 - 0.1420889944 * s) * s2;
+  const double high = (0.1065626393 - 0.0752896400 * s) + (0.0429096138 - 0.0161657367 * s) * s2;
+  const double p = low + (high + 0.0028662257 * s4) * s4;
   double angle = p * t;
   if (ay > ax) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;
