@@ -41,9 +41,9 @@ struct Capture {
   bool neighbours = true;        // problems beside each other look at things beside each other
   // A problem's radiance may be split into bins, each with a mean of its own. time: the window is cut into equal parts,
   // and each bin is the radiance during its part. escape: bins are cells of the upper hemisphere, `escape_rings` rings
-  // of equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths from east; each is the
-  // part of the radiance that came in from there along paths that left the scene (the bins add up to the radiance from
-  // above).
+  // of equal solid angle from the horizon to the zenith times bins / escape_rings equal azimuths, the first about east;
+  // each is the part of the radiance that came in from there along paths that left the scene (the bins add up to the
+  // radiance from above).
   // sun: bin i is the radiance under a collimated sun of unit spectral irradiance towards suns[i] and nothing else; all
   // bins share their paths (only for scenes without media, air and period-breaking sources; see
   // transport/sinks/radiance.h).

@@ -30,7 +30,7 @@ size_t bin_of(const Capture& capture, const PathRecord& path) {
   const uint32_t columns = capture.bins / capture.escape_rings;
   const double turn = std::atan2(path.escape.y, path.escape.x) / (2 * kPi);
   const uint32_t ring = std::min(static_cast<uint32_t>(path.escape.z * capture.escape_rings), capture.escape_rings - 1);
-  return size_t{ring} * columns + std::min(static_cast<uint32_t>((turn - std::floor(turn)) * columns), columns - 1);
+  return size_t{ring} * columns + static_cast<uint32_t>((turn + 1) * columns + 0.5) % columns;
 }
 
 }  // namespace suite

@@ -3,7 +3,8 @@
 //
 // Rays come in from a few view zeniths all over the patch; what they would carry back is binned by the direction in
 // which the paths leave the scene. Under a sky of radiance 1 everywhere and without a sun, a bin holds the integral of
-// f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there.
+// f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there. Cells
+// lie about the azimuth of the view, for reflectance has its extremes in its plane.
 // Assumes: a scene that repeats itself or that is wider than light travels sideways. The samples are isotropic: the
 // mean over the view azimuths from which the patch is seen, each with the light turned with it. Based on: Goodenough &
 // Brown, section V-B (multi-scale modelling).
@@ -48,8 +49,8 @@ class Goniometer final : public SimpleSensor {
   }
 
  private:
+  uint32_t azimuths() const { return capture_.bins / rings_; }
   void finish(Delivery& d) const override {
-    const uint32_t azimuths = capture_.bins / rings_;
     std::string text = "RAWBH10A " + name_ + "\n" + strf("%zu", bands_.size());
     for (const Band& b : bands_) text += strf(" %.9g", b.center_um);
     text += strf("\n%zu", zeniths_.size());
@@ -57,10 +58,10 @@ class Goniometer final : public SimpleSensor {
     text += "\n";
     for (size_t v = 0; v < zeniths_.size(); ++v)
       for (uint32_t ring = 0; ring < rings_; ++ring)
-        for (uint32_t a = 0; a < azimuths; ++a) {
+        for (uint32_t a = 0; a < azimuths(); ++a) {
           // Rings are equal in z; the cosine's integral over a cell is its solid angle times its mean z.
           const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins,
-                       phi = 2 * kPi * (a + 0.5) / azimuths, s = std::sqrt(1 - z * z);
+                       phi = 2 * kPi * a / azimuths(), s = std::sqrt(1 - z * z);
           text += strf("%zu %.9g %.9g %.9g", v, s * std::cos(phi), s * std::sin(phi), z);
           for (size_t b = 0; b < bands_.size(); ++b) text += strf(" %.7g", value(d, v, ring, a, b) / cell);
           text += "\n";
@@ -73,11 +74,10 @@ class Goniometer final : public SimpleSensor {
   }
   // Over the sides; the format has the view at azimuth 0.
   double mean(const Delivery& d, size_t view, uint32_t ring, uint32_t azimuth, size_t band) const {
-    const uint32_t azimuths = capture_.bins / rings_;
     double sum = 0;
     for (uint32_t side = 0; side < sides_; ++side) {
       const size_t problem = view + size_t{side} * zeniths_.size(),
-                   bin = size_t{ring} * azimuths + (azimuth + side * (azimuths / sides_)) % azimuths;
+                   bin = size_t{ring} * azimuths() + (azimuth + side * (azimuths() / sides_)) % azimuths();
       sum += d.result.radiance[(problem * capture_.bins + bin) * bands_.size() + band];
     }
     return sum / sides_;
@@ -85,11 +85,11 @@ class Goniometer final : public SimpleSensor {
   double value(const Delivery& d, size_t view, uint32_t ring, uint32_t azimuth, size_t band) const {
     if (zeniths_[view] == 0) {  // all azimuths are alike for what is isotropic
       double sum = 0;
-      for (uint32_t a = 0; a < capture_.bins / rings_; ++a) sum += mean(d, view, ring, a, band);
+      for (uint32_t a = 0; a < azimuths(); ++a) sum += mean(d, view, ring, a, band);
       return sum * rings_ / capture_.bins;
     }
     const double one = mean(d, view, ring, azimuth, band);
-    return bilateral_ ? 0.5 * (one + mean(d, view, ring, capture_.bins / rings_ - 1 - azimuth, band)) : one;
+    return bilateral_ ? 0.5 * (one + mean(d, view, ring, (azimuths() - azimuth) % azimuths(), band)) : one;
   }
   Patch patch_;
   double height_ = 0, back_ = 0;
