@@ -90,7 +90,7 @@ Curve read_table(const std::string& path, const CurveOptions& options) {
   Header header;
   std::vector<double> x, y, row;
   const size_t column = options.column > 0 ? static_cast<size_t>(options.column) : 1;
-  size_t start = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // a byte order mark
+  size_t start = 0;
   for (int line_no = 1; start < text.size(); ++line_no) {
     size_t end = text.find_first_of("\n\r", start);
     if (end == std::string::npos) end = text.size();
