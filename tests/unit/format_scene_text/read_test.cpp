@@ -360,29 +360,6 @@ TEST_F(SceneText, MapsMayBeEnviImages) {
   EXPECT_THAT(findings(text), HasSubstr("shares.img"));
 }
 
-// What a class map does not cover is as its first material, which was as cold as space there.
-TEST_F(SceneText, BesideAClassMapItsFirstMaterialHoldsAndIsAsWarm) {
-  write_file(folder_ / "one.pgm", std::string_view("P2\n1 1\n255\n7\n"));
-  const auto baked = [&](const std::string& first, const std::string& own) {
-    const Scene s =
-        bake("scene: 1\nmaterials:\n  first: {model: lambert, reflectance: 0.2, " + first + "}\n  chosen: {" + own +
-             "map: which}\nmaps:\n  which: {type: class, file: one.pgm, materials: {7: first}, projection: drape, "
-             "drape: {origin: [0, 0], gsd: 1, extend: none}}\nobjects:\n  tri: {obj: tri.obj, materials: {grey: "
-             "chosen}}\nworld:\n  - {place: tri}\n");
-    EXPECT_TRUE(report_.ok()) << report_.text();
-    return s;
-  };
-  const Scene warm = baked("temperature_k: 300", "");
-  EXPECT_EQ(warm.materials.at(1).surface.model, "lambert");
-  EXPECT_EQ(warm.materials.at(1).temperature_k, 300);
-  EXPECT_EQ(baked("temperature_k: 300", "temperature_k: 280, ").materials.at(1).temperature_k, 280);
-  EXPECT_EQ(baked("temperature_k: 300", "model: lambert, reflectance: 0.1, ").materials.at(1).temperature_k, 0);
-  const Scene heated = baked("temperature: {table: [[0, 280], [9, 290]]}", "");
-  ASSERT_EQ(heated.temperatures.size(), 2u);
-  EXPECT_EQ(heated.temperatures[1].material, 1u);
-  EXPECT_EQ(heated.temperatures[1].spec.times, heated.temperatures[0].spec.times);
-}
-
 TEST_F(SceneText, PartsOfMixturesAreWholeMaterials) {
   // A 1 x 1 pixel RGB image in the plain PPM format, which every reader of images knows.
   write_file(folder_ / "one.ppm", std::string_view("P3\n1 1\n255\n100 100 55\n"));
