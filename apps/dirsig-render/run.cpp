@@ -228,6 +228,8 @@ void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
   check_import_usage(o);
   if (cli.given("--more") && (o.more < 0 || o.more > (1LL << 30)))
     throw UsageError("--more wants a number from 0 to 2^30");
+  if (cli.given("--seed") && (o.seed < 0 || o.seed > (1LL << 53)))
+    throw UsageError("--seed wants a whole number from 0 to 2^53");
   if (o.study.empty() && (cli.given("--study-budgets") || cli.given("--study-seeds") || cli.given("--reference")))
     throw UsageError("--study-budgets, --study-seeds and --reference belong to --study");
   check_parts_usage(cli, o);

@@ -256,11 +256,14 @@ int inspect(const ScenePrepOptions& o) {
   const auto scene = std::make_shared<const Scene>(read_scene(o.input, {}, {}, &stored));
   make_folders_of({o.export_obj, o.quick_look});
   if (o.summary) print_summary(o, *scene, stored);
-  if (!o.export_obj.empty())
-    if (const size_t left = write_obj(*scene, o.export_obj)) warn(strf("%zu exact primitives were left out", left));
+  const double time = time_of_all(*scene);
+  if (!o.export_obj.empty()) {
+    if (const size_t left = write_obj(*scene, time, o.export_obj))
+      warn(strf("%zu exact primitives were left out", left));
+    if (changes_in_time(*scene)) note(strf("the OBJ holds what is there at %.9g s, where it is then", time));
+  }
   if (!o.view.empty()) write_scene_view(*scene, {}, o.view);
   if (o.raycast.empty() && o.quick_look.empty()) return 0;
-  const double time = time_of_all(*scene);
   const Tracer tracer(scene, std::nullopt, {time, time});
   if (!o.raycast.empty()) std::fputs(printable_lines(describe_hit(tracer, parse_ray(o.raycast))).c_str(), stdout);
   if (!o.quick_look.empty()) {

@@ -23,6 +23,22 @@ std::string lower(std::string_view text) {
 
 bool separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; }
 
+// A comma between two digits of a row whose columns are parted by something else: "400;0,2", "400 0,2".
+bool has_decimal_comma(std::string_view line) {
+  const auto digit = [&](size_t i) { return i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])); };
+  bool comma = false, parted = false;
+  for (size_t i = 1; i < line.size(); ++i) {
+    comma = comma || (line[i] == ',' && digit(i - 1) && digit(i + 1));
+    if (!separator(line[i]) || line[i] == ',' || line[i] == '\r') continue;
+    const size_t first = i;  // of the gap between two columns
+    while (i < line.size() && separator(line[i])) ++i;
+    const std::string_view gap = line.substr(first, i - first);
+    parted = parted || (i < line.size() && line[first - 1] != ',' && gap.find(',') == gap.npos);
+    --i;
+  }
+  return comma && parted;
+}
+
 // Numbers of a row; false when something else stands in it. An empty row has none.
 bool numbers(std::string_view line, std::vector<double>& out) {
   out.clear();
@@ -84,11 +100,17 @@ Curve read_table(const std::string& path, const CurveOptions& options) {
     while (!line.empty() && separator(line.front())) line.remove_prefix(1);
     if (line.empty()) continue;
     const bool comment = std::string_view("#;!%").find(line.front()) != std::string_view::npos;
+    if (const size_t mark = line.find_first_of("#!"); mark != line.npos && !comment) line = line.substr(0, mark);
     if (comment || !numbers(line, row)) {
-      if (!x.empty() && !comment) throw Error(where, "a row that is not numbers", "rows are 'wavelength value'");
+      if (!comment && (!x.empty() || !row.empty()))
+        throw Error(where, "a row that is not numbers",
+                    "rows are 'wavelength value'; a '#' begins what is none and begins with a number");
       header.note(line);
       continue;
     }
+    if (has_decimal_comma(line))
+      throw Error(where, "a comma within a number, or columns parted in two ways",
+                  "decimals have points; columns are parted by blanks, tabs, semicolons or commas");
     if (row.size() <= column)
       throw Error(where, strf("a row of %zu numbers, column %zu was asked for", row.size(), column),
                   "rows are 'wavelength value'");

@@ -189,6 +189,21 @@ Tree orientation_keys(const Item& engine, const MotionPlace& place, bool quatern
   return held(std::move(keys), engine.where);
 }
 
+// The direction that a pointed body keeps as nearly up as it can: a fixed vector, here always the zenith.
+void read_up(const Item& up) {
+  const Item* vector = up.find("@vector");
+  const Item* frame = up.find("@frame");
+  const Item* type = up.find("@type");
+  const bool fixed = vector && type && (lower_case(type->value) == "constant" || lower_case(type->value) == "fixed");
+  if (!fixed || !frame || lower_case(frame->value) != "scene")
+    return up.mark_all(Fate::approximated, "up is the zenith");
+  const std::vector<double> v = vector->numbers();
+  if (v.size() != 3) throw vector->error("a direction is three numbers", "\"0,0,1\"");
+  const bool zenith = v[0] == 0 && v[1] == 0 && v[2] > 0;
+  for (const Item* item : {vector, frame, type})
+    item->mark(zenith ? Fate::exact : Fate::approximated, zenith ? "" : "up is the zenith");
+}
+
 }  // namespace
 
 Tree flexible_track(const Item& motion, const MotionPlace& place) {
@@ -199,7 +214,7 @@ Tree flexible_track(const Item& motion, const MotionPlace& place) {
   if (!orientation) return track;
   const size_t kind = orientation->at("@type").choice({"euler", "lookat", "spin", "velocity", "quaternions"});
   if (kind == 1 || kind == 3) {
-    if (const Item* up = orientation->find("up")) up->mark_all(Fate::approximated, "up is the zenith");
+    if (const Item* up = orientation->any({"up", "constraint"})) read_up(*up);
     Tree& pointing =
         track.set("pointing", kind == 3 ? Tree::word("velocity", orientation->where) : Tree::map(orientation->where));
     if (kind == 3) return track;

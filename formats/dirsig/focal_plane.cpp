@@ -48,7 +48,9 @@ void SimulationWriter::read_focal_plane(const Item& plane, const Tree& lens, con
   for (const auto& [key, value] : lens.entries) made.set(key, value);
   array.set("name", Tree::word(file_name(name ? name->value : "", "array"), plane.where));
   read_array(plane.at("detectorarray"), made, array);
-  read_capture(plane.at("capturemethod"), array);
+  const Item& capture = plane.at("capturemethod");
+  if (const Item* label = capture.find("@name")) label->mark(Fate::ignored, "for people");
+  read_capture(capture, array);
   if (const Item* readout = array.find("readout") ? plane.find("detectorarray")->find("@rollingreadout") : nullptr)
     readout->mark(Fate::converted, "seconds from line to line");
   // Lines of one row that follow a clock are a strip.

@@ -38,6 +38,8 @@ void Ledger::close() {
       if (item.seen() && item.value.empty()) return item.mark(Fate::exact);
       if (parent && parent->fate() == Fate::unsupported) return item.mark(Fate::unsupported, kPart);
       if (item.seen()) return item.mark(Fate::unsupported, "its value was not used");
+      if (item.value.empty() && item.children.empty() && (item.name == "clocktable" || item.name == "rotationdeviates"))
+        return item.mark(Fate::ignored, "DIRSIG's own editors write it, empty");
       std::string near;
       if (parent) {
         const std::vector<std::string> asked(parent->asked().begin(), parent->asked().end());

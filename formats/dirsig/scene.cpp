@@ -1,5 +1,7 @@
 // The scene itself (.scene): its head, its folders, its lists of geometry.
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "base/files.h"
 #include "formats/dirsig/gdb.h"
@@ -165,6 +167,27 @@ void SceneWriter::read_lists(const Item& list, const Scope& scope) {
   }
 }
 
+namespace {
+
+// Entries that nobody asked for: of materials that nothing has, or of an ID that an entry above them has, too.
+void mark_unused_materials(const Item& base) {
+  std::map<std::string, int, std::less<>> lines;
+  for (const Item& entry : base.children) {
+    if (entry.name != "MATERIAL_ENTRY") continue;
+    const auto id = std::find_if(entry.children.begin(), entry.children.end(),
+                                 [](const Item& key) { return key.name == "ID" || key.name == "MATERIAL_ID"; });
+    const auto before = id == entry.children.end() ? lines.end() : lines.find(id->value);
+    if (before != lines.end())
+      entry.mark_all(Fate::unsupported,
+                     strf("'%s' is given in line %d, too, which holds", before->first.c_str(), before->second));
+    else if (!entry.seen())
+      entry.mark_all(Fate::ignored, "no geometry and no map has this material");
+    if (id != entry.children.end() && entry.seen()) lines.emplace(id->value, entry.where.line);
+  }
+}
+
+}  // namespace
+
 void SceneWriter::finish_materials() {
   // Writing one may ask for others.
   while (!open_.empty()) {
@@ -175,10 +198,7 @@ void SceneWriter::finish_materials() {
     read_entry_maps(uses_.at(id), id, tree);
     root_.map_at("materials", where_).set(id, std::move(tree));
   }
-  for (const Item* base : databases_)
-    for (const Item& entry : base->children)
-      if (entry.name == "MATERIAL_ENTRY" && !entry.seen())
-        entry.mark_all(Fate::ignored, "no geometry and no map has this material");
+  for (const Item* base : databases_) mark_unused_materials(*base);
 }
 
 }  // namespace suite::dirsig

@@ -106,8 +106,17 @@ void SimulationWriter::read_job(const Item& job) {
     if (plugin->has("name") && plugin->at("name").value == "BasicPlatform" && plugin->has("inputs"))
       if (const Item* tasks = plugin->at("inputs").find("tasks_filename"))
         find_epoch(import_.xml(import_.file_of(*tasks, folders_), "tasks"));
-  for (const Item* plugin : plugins) read_plugin(*plugin);
-  if (const Item* media = job.find("medium_list"))
+  const Item* fixed = nullptr;
+  for (const Item* plugin : plugins) {
+    read_plugin(*plugin);
+    const std::string& name = plugin->at("name").value;
+    if (name == "FixedEphemeris") fixed = plugin->find("inputs");
+    if (fixed && (name == "BasicAtmosphere" || name == "SpiceEphemeris"))
+      fixed->at("solar_zenith")
+          .mark(Fate::approximated, "the fixed Sun holds here wherever it stands; in DIRSIG the last ephemeris does, " +
+                                        name + " behind it brings that of the date");
+  }
+  if (const Item* media = job.find("medium_list"); media && !media->children.empty())
     media->mark_all(Fate::unsupported, "media of plugins are not read: give the scene volumes");
 }
 

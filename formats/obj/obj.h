@@ -13,8 +13,9 @@ namespace suite {
 SourceMesh read_obj(const std::string& path, Report& report);
 SourceMesh parse_obj(std::string_view text, const std::string& file, Report& report);
 
-// Writes every placed mesh, flattened into scene ENU, m; placements of exact primitives are left out and counted in the
-// result. Written whole or not at all. The hierarchy must be one that check_scene accepts.
-size_t write_obj(const Scene& scene, const std::string& path);
+// Writes every placed mesh that is there at `time` (s), where it is then, flattened into scene ENU, m; placements of
+// exact primitives are left out and counted in the result. Written whole or not at all. The hierarchy must be one that
+// check_scene accepts. Error: a track does not cover the time.
+size_t write_obj(const Scene& scene, double time, const std::string& path);
 
 }  // namespace suite

@@ -1,6 +1,7 @@
 // Every placed mesh, flattened, in scene ENU.
 #include "base/files.h"
 #include "formats/obj/obj.h"
+#include "scene/leaves.h"
 
 namespace suite {
 
@@ -10,9 +11,17 @@ class ObjWriter {
  public:
   ObjWriter(const Scene& scene, const std::string& path) : scene_(scene), file_(path) {}
 
-  void run() {
+  void run(double time) {
     text_ = "# " + scene_.name + ", scene coordinates east, north, up in metres\n";
-    group(0, Affine3{}, kNone);
+    const Leaves leaves(scene_);
+    for (uint64_t k = 0; k < leaves.count(); ++k) {
+      const std::optional<Leaf> leaf = leaves.at(k, time);
+      if (!leaf) continue;
+      if (leaf->kind == TargetKind::mesh)
+        mesh(scene_.meshes[leaf->target], leaf->place, leaf->material_override);
+      else
+        ++left_out_;
+    }
     flush();
     file_.commit();
   }
@@ -22,19 +31,6 @@ class ObjWriter {
   void flush() {
     file_.write(text_);
     text_.clear();
-  }
-  void group(uint32_t g, const Affine3& to_world, uint32_t material) {
-    for (const Placement& p : scene_.groups[g].placements) {
-      const Affine3 t = to_world * p.to_parent;
-      // The override nearest to the root counts.
-      const uint32_t over = material != kNone ? material : p.material_override;
-      if (p.kind == TargetKind::group)
-        group(p.target, t, over);
-      else if (p.kind == TargetKind::mesh)
-        mesh(scene_.meshes[p.target], t, over);
-      else
-        ++left_out_;
-    }
   }
   void mesh(const Mesh& m, const Affine3& to_world, uint32_t over) {
     const bool mirrored = to_world.determinant() < 0;
@@ -78,9 +74,9 @@ class ObjWriter {
 
 }  // namespace
 
-size_t write_obj(const Scene& scene, const std::string& path) {
+size_t write_obj(const Scene& scene, double time, const std::string& path) {
   ObjWriter writer(scene, path);
-  writer.run();
+  writer.run(time);
   return writer.left_out();
 }
 

@@ -64,6 +64,21 @@ void add_gdal_tags(TIFF* tiff) {
   if (!TIFFFindField(tiff, kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, no_data, 1);
 }
 
+// EPSG: units of length (9002 foot, 9003 US survey foot), heights in feet (NAVD88 8228, 6360; NGVD29 5702).
+double height_unit(GTIF* keys) {
+  constexpr double foot = 0.3048, us_survey_foot = 1200.0 / 3937;
+  unsigned short code = 0;
+  if (GTIFKeyGetSHORT(keys, VerticalUnitsGeoKey, &code, 0, 1)) {
+    if (code == 9002) return foot;
+    if (code == 9003) return us_survey_foot;
+  }
+  if (GTIFKeyGetSHORT(keys, VerticalCSTypeGeoKey, &code, 0, 1)) {
+    if (code == 8228) return foot;
+    if (code == 6360 || code == 5702) return us_survey_foot;
+  }
+  return 1;
+}
+
 GeoReference read_georeference(const std::string& path) {
   const Where where{path, 0, 0, {}, -1};
   file_size(path);
@@ -86,6 +101,7 @@ GeoReference read_georeference(const std::string& path) {
   } else {
     throw Error(where, "names no EPSG code in its GeoTIFF keys", "ProjectedCSType or GeographicType is needed");
   }
+  ref.height_unit_m = height_unit(keys.get());
   char* text = nullptr;
   uint16_t count = 0;
   add_gdal_tags(tiff.get());

@@ -18,6 +18,10 @@ double scale_of(const OIIO::TypeDesc& stored) {
       return 65535;
     case OIIO::TypeDesc::INT16:
       return 32767;
+    case OIIO::TypeDesc::UINT32:
+      return 4294967295.0;
+    case OIIO::TypeDesc::INT32:
+      return 2147483647.0;
     case OIIO::TypeDesc::HALF:
     case OIIO::TypeDesc::FLOAT:
     case OIIO::TypeDesc::DOUBLE:

@@ -24,6 +24,7 @@ struct GeoReference {
   double to_map[6];  // x = m[0] + m[1] column + m[2] row, y = m[3] + m[4] column + m[5] row
                      // of pixel corners: (0, 0) = outer corner of the first pixel
   std::optional<double> no_data;
+  double height_unit_m = 1;  // of the pixels where they are heights, as the vertical keys say; 1 when they say nothing
 };
 
 // Error when the file is no GeoTIFF, has no or a user-defined CRS, or is neither scaled nor tied to the ground.

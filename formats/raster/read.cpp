@@ -40,7 +40,7 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   if (!read.opened) throw Error(where, "cannot be read as an image: " + read.problem, "PNG and TIFF are expected");
   if (!read.problem.empty()) throw Error(where, "cannot be read: " + read.problem, "the file is damaged");
   if (image.scale == 0)
-    throw Error(where, "pixels of type " + image.type, "8 or 16 bit integers, or floats, are expected");
+    throw Error(where, "pixels of type " + image.type, "integers of up to 32 bits, or floats, are expected");
   raster.integer = image.integer;
   // The library maps unsigned integers to 0..1 and signed ones to -1..1; undo that.
   if (image.integer)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "base/files.h"
 #include "formats/envi/envi.h"
@@ -115,6 +116,15 @@ double mark_of(const Params& p) {
 
 }  // namespace
 
+// Heights that are marks of missing ones in many rasters, and no land on Earth.
+void Reader::tell_marks(const Params& file, const SourceTerrain& terrain) {
+  for (const float mark : {-9999.0f, -32768.0f, -32767.0f, std::numeric_limits<float>::lowest()})
+    if (const auto n = std::count(terrain.heights.begin(), terrain.heights.end(), mark))
+      report_.add("SP506", file.as_text(),
+                  {file.where(), strf("%td pixels have the height %g, and no 'no_data' says that they are gaps", n,
+                                      static_cast<double>(mark))});
+}
+
 void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   g.kind = DraftGeometry::Kind::terrain;
   if (!g.material.given()) throw p.error("terrain '" + g.name + "' needs a 'material'");
@@ -131,6 +141,9 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
     const GeoReference ref = read_georeference(path);
     if (!no_data) no_data = ref.no_data;
+    if (ref.height_unit_m != 1 && !p.has("height_scale"))
+      throw Error(Where{path, 0, 0, {}, -1}, strf("its heights are in feet of %.7g m", ref.height_unit_m),
+                  strf("'height_scale: %.7g' makes metres of them", ref.height_unit_m), "SP504");
     g.terrain.georeferenced = true;
     const auto system = map_system_of_epsg(ref.epsg);
     if (!system || system->zone.has_value() == ref.geographic)
@@ -139,6 +152,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
     g.terrain.place = georeferenced_grid(ref, on_earth(*system, rule));
   }
   read_heights(path, no_data, g.terrain);
+  tell_marks(p.at("terrain"), g.terrain);
   const double scale = p.number("height_scale", 1), offset = p.number("height_offset", 0);
   for (float& h : g.terrain.heights) h = static_cast<float>(h * scale + offset);
 }

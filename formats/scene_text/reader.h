@@ -73,6 +73,7 @@ class Reader {
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_terrain(const Params& p, DraftGeometry& g);
+  void tell_marks(const Params& file, const SourceTerrain& terrain);
   void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // meshes.cpp

@@ -2,7 +2,9 @@
 // Fabrication", 1993, section 6.5).
 #include "formats/stl/stl.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
 
 #include "base/files.h"
@@ -61,8 +63,14 @@ SourceMesh parse_binary(std::span<const std::byte> bytes, const std::string& fil
 class Words {
  public:
   Words(std::string_view text, const std::string& file) : text_(text), file_(file) {}
-  // Empty at the end.
-  std::string_view next() {
+  // In lower case, for keywords come in either; empty at the end.
+  std::string next() {
+    std::string word(as_written());
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return word;
+  }
+  std::string_view as_written() {
     while (at_ < text_.size() && std::strchr(" \t\r\n", text_[at_])) step();
     const size_t first = at_;
     while (at_ < text_.size() && !std::strchr(" \t\r\n", text_[at_])) ++at_;
@@ -76,7 +84,7 @@ class Words {
     return first == rest.npos ? "" : rest.substr(first, last - first + 1);
   }
   void expect(const char* word) {
-    const std::string_view found = next();
+    const std::string found = next();
     if (found != word)
       throw fault("'" + std::string(word) + "' is expected, found " +
                   (found.empty() ? "the end" : "'" + printable(found.substr(0, 40)) + "'"));
@@ -84,7 +92,7 @@ class Words {
   Vec3 point() {
     Vec3 v;
     for (int c = 0; c < 3; ++c) {
-      const std::string_view word = next();
+      const std::string_view word = as_written();
       const std::optional<double> value = number_of(word);
       if (!value) throw fault("'" + printable(word.substr(0, 40)) + "' is no number");
       v[c] = *value;
@@ -108,10 +116,17 @@ class Words {
   int line_ = 1;
 };
 
+bool begins_with_solid(std::string_view text) {
+  const std::string_view word = "solid";
+  return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(), [](char a, char b) {
+           return a == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
 SourceMesh parse_ascii(std::string_view text, const std::string& file, Report& report) {
   Words words(text, file);
   Collector collector(file, report);
-  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+  for (std::string word = words.next(); !word.empty(); word = words.next()) {
     if (word != "solid") throw words.fault("'solid' is expected, found '" + printable(word.substr(0, 40)) + "'");
     collector.solid(printable(words.rest_of_line().substr(0, 200)), words.line());
     for (word = words.next(); word == "facet"; word = words.next()) {
@@ -148,7 +163,7 @@ SourceMesh parse_stl(std::span<const std::byte> bytes, const std::string& file, 
     if (bytes.size() == kHeader + kFacet * size_t{count}) return parse_binary(bytes, file, report);
   }
   const size_t first = text.find_first_not_of(" \t\r\n");
-  if (first != text.npos && text.substr(first, 5) == "solid" && text.find('\0') == text.npos)
+  if (first != text.npos && begins_with_solid(text.substr(first)) && text.find('\0') == text.npos)
     return parse_ascii(text, file, report);
   if (bytes.size() < kHeader)
     throw Error(Where{file, 0, 0, {}, static_cast<long long>(bytes.size())}, "ends within the header of an STL file");

@@ -109,7 +109,11 @@ class Deck {
     if (r.haze == 7) throw at(3, "haze 7 is the user's own, which is not read");
     if (integer(21, 5) != 0) throw at(21, "clouds of card 2 (ICLD) are not read");
     if (integer(26, 5) != 0) throw at(26, "the army's vertical structure (IVSA) is not read");
-    if (const double v = number_in(31, 10, -1e3, 1e3); v > 0) r.visibility = v * 1e3;
+    // A visibility below 0 is an optical depth to later versions, and as none to earlier ones.
+    if (const double v = number_in(31, 10, -1e3, 1e3); v > 0)
+      r.visibility = v * 1e3;
+    else if (v < 0)
+      throw at(31, strf("a visibility of %g km; above 0, or 0 for that of the haze", v));
     r.ground_height = number_in(71, 10, -1, 100) * 1e3;
   }
 

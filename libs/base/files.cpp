@@ -71,7 +71,11 @@ Container read_all(const std::string& path, size_t max_bytes) {
 std::vector<std::byte> read_bytes(const std::string& path, size_t max_bytes) {
   return read_all<std::vector<std::byte>>(path, max_bytes);
 }
-std::string read_text(const std::string& path, size_t max_bytes) { return read_all<std::string>(path, max_bytes); }
+std::string read_text(const std::string& path, size_t max_bytes) {
+  std::string text = read_all<std::string>(path, max_bytes);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  return text;
+}
 
 size_t file_size(const std::string& path) {
   const Descriptor d{open_checked(path)};

@@ -13,6 +13,7 @@ class Temporary;
 
 // Bytes of a regular file. Error: missing, a directory, unreadable, or larger than max_bytes.
 std::vector<std::byte> read_bytes(const std::string& path, size_t max_bytes = size_t{8} << 30);
+// The same as text, without the byte order mark of UTF-8 that some editors and spreadsheets begin a file with.
 std::string read_text(const std::string& path, size_t max_bytes = size_t{1} << 30);
 size_t file_size(const std::string& path);  // same Errors
 bool file_exists(const std::string& path);

@@ -105,6 +105,16 @@ void Baker::materials() {
   }
 }
 
+// Where a map says nothing, a material without a model of its own is as the map's first, and as warm unless it says
+// otherwise.
+void Baker::take_surface(size_t m, const DraftMaterial& first) {
+  const DraftMaterial& own = draft_.materials[m];
+  scene_.materials[m].surface = first.material.surface;
+  if (own.temperature || own.material.temperature_k > 0) return;
+  scene_.materials[m].temperature_k = first.material.temperature_k;
+  if (first.temperature) scene_.temperatures.push_back({static_cast<uint32_t>(m), *first.temperature});
+}
+
 void Baker::class_maps() {
   for (const DraftClassMap& d : draft_.class_maps) {
     ClassMap map = d.map;
@@ -146,7 +156,7 @@ void Baker::class_maps() {
             "map '" + d.map.name + "' leads to material '" + draft_.materials[id].material.id +
                 "', which a map decides again");
     if (!d.has_model && !map.materials.empty() && map.materials.front() != kNone)
-      scene_.materials[m].surface = draft_.materials[map.materials.front()].material.surface;
+      take_surface(m, draft_.materials[map.materials.front()]);
   }
 }
 

@@ -45,6 +45,7 @@ class Baker {
   void check_map_energy(const DraftMaterial& m, const PropertyMap& map, const Where& where);
   void check_times(const DraftMaterial& m);
   void class_maps();
+  void take_surface(size_t m, const DraftMaterial& first);
   void property_maps();
   void check_parts(const PropertyMap& map, const Where& where);
   void geometry();

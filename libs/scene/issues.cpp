@@ -100,6 +100,7 @@ constexpr Row kRows[] = {
     {"SP503", warning, "a map is not used", "name it by 'map:' in a material"},
     {"SP504", error, "a terrain cannot be put in place", ""},
     {"SP505", warning, "the scene's origin is far from its terrain", "correct 'origin'"},
+    {"SP506", warning, "a terrain may hold marks of missing heights", "say 'no_data: MARK', or --mute SP506"},
     {"SP701", warning, "an imported file says what is lost here", "--account FILE.json tells every line of the import"},
     {"SP702", info, "an imported file says what has no effect here", ""},
     {"SP703", info, "an imported file says what is approximated here",

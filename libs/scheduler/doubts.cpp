@@ -5,6 +5,7 @@
 
 #include "motion/time.h"
 #include "optics/models.h"
+#include "scene/primitives.h"
 #include "surface/material_lookup.h"
 
 namespace suite {
@@ -52,6 +53,26 @@ std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const
                strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
                     -std::asin(std::max(-1.0, highest)) / kDegree, when(written.sun()->date(), moment).c_str()),
                "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
+}
+
+// A flat plane without end is under the air of a round Earth, too: it shades all of it from a Sun that has set.
+std::optional<Doubt> shaded_twilight(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+  const auto endless = std::find_if(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& p) {
+    return p.kind == PrimitiveKind::plane && primitive_box(p).empty();
+  });
+  if (endless == scene.primitives.end() || !written.air || !written.sun()) return std::nullopt;
+  SourcesInTime sources(written, scene);
+  for (const Capture* c : some_captures(sensor, 64)) {
+    const FarDisk* sun = sources.at(moment_of(*c)).sun()->disk();
+    if (!set(*sun)) continue;
+    return Doubt{sensor.name(),
+                 strf("the sun is %.1f degrees below the horizon%s, and the endless plane '%s' shades all air from it: "
+                      "there is no twilight",
+                      -std::asin(sun->direction.z) / kDegree, when(written.sun()->date(), moment_of(*c)).c_str(),
+                      endless->name.c_str()),
+                 "give the plane a size; `earth` goes on around it"};
+  }
+  return std::nullopt;
 }
 
 // The first few of many names.
@@ -129,6 +150,7 @@ std::vector<Doubt> doubts_of_light(const SourceSpecs& written, const Scene& scen
   const SourceSpecs first = first_sources(written, scene, sensors);
   for (const auto& sensor : sensors) {
     std::optional<Doubt> found = night(written, scene, *sensor);
+    if (!found) found = shaded_twilight(written, scene, *sensor);
     if (!found) found = dark_bands(first, scene, *sensor);
     if (!found) found = unknown_bands(scene, *sensor);
     if (found) all.push_back(*found);

@@ -156,18 +156,28 @@ class Scene(Keys):
 
     def add(self, name: str, thing: Object | None = None, *, material: Material | None = None, **placement: Any) -> Placement:
         """Places an object or group of this name in the world, and returns the placement. thing: the object, if it is new;
-        material: a new one of the object's name, which the object gets. The rest are keys of Placement.
+        material: a new one of the object's name, which the object gets; `thing` itself stays as it is. The rest are keys of
+        Placement. ValueError for a name that something else has already.
         """
-        if thing is not None:
-            self.objects[name] = thing
         if material is not None:
-            self.materials[name] = material
             if thing is None:
                 raise ValueError(f"the material of '{name}' needs its object beside it")
-            thing.__dict__["material"] = name
+            if isinstance(material, str):
+                raise TypeError(f"material of '{name}': a Material; an object names one that is there itself, as "
+                                f"plane(material={material!r})")
+            thing = type(thing)(**{**thing.__dict__, "material": name})
+            self._put(self.materials, "materials", name, material)
+        if thing is not None:
+            self._put(self.objects, "objects", name, thing)
         placed = Placement(place=name, **placement)
         self.world.append(placed)
         return placed
+
+    @staticmethod
+    def _put(table: dict[str, Any], kind: str, name: str, thing: Any) -> None:
+        if name in table and plain(table[name]) != plain(thing):
+            raise ValueError(f"{kind} has another '{name}' already; give this one a name of its own, or set {kind}['{name}']")
+        table[name] = thing
 
     def write(self, path: FileName) -> Path:
         """Writes the scene text. Texts that were not written by this package are not replaced (FileExistsError)."""

@@ -173,5 +173,11 @@ TEST_F(CalibrationRange, FaultsAreOneLocatedMessageAndLeaveNothingBehind) {
   r = run("dirsig-render sim.yaml -o bad --pahts 4");
   EXPECT_EQ(r.code, 2);
   EXPECT_THAT(r.err, HasSubstr("did you mean '--paths'?"));
+  // These used to be the simulation's own seed, and the largest that there is.
+  for (const char* seed : {"-1", "9007199254740993", "99999999999999999999999"}) {
+    r = run(std::string("dirsig-render sim.yaml -o bad --seed ") + seed);
+    EXPECT_EQ(r.code, 2) << seed;
+    EXPECT_THAT(r.err, HasSubstr("--seed wants a whole number from 0 to 2^53")) << seed;
+  }
   EXPECT_FALSE(std::filesystem::exists(path("bad")));
 }

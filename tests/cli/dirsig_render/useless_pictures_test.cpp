@@ -116,6 +116,20 @@ TEST_F(UselessPictures, NightWithoutASky) {
              {"degrees below the horizon at 2026-06-21T05:00:00Z"}, true);
 }
 
+// With air the Sun lights it from below the horizon, unless an endless plane is in between: that was noise about 0.
+TEST_F(UselessPictures, TwilightOverAnEndlessPlane) {
+  std::string endless = kScene;
+  endless.replace(endless.find("width: 400, depth: 400"), 22, "width: 0, depth: 0");
+  prepare(endless, "endless");
+  const std::string dusk =
+      "sun: {direction: {zenith_deg: 93, azimuth_deg: 90}}\natmosphere: {profile: us_standard, gases: none}\n" +
+      camera("[0, -20, 30]", "[0, 0, 0]");
+  expect_one(dusk,
+             {"3.0 degrees below the horizon", "the endless plane 'plane' shades all air", "give the plane a size"},
+             true, "endless");
+  EXPECT_EQ(warnings(said(dusk)), 0u);
+}
+
 TEST_F(UselessPictures, DegreesForMetres) {
   expect_one(kDay + kSky + camera("[43.101, -77.602, 300]", "[0, 0, 0]"),
              {"(43.101, -77.602, 300) m", "latitude and longitude (43.1000, -77.6000 degrees)", "latitude_deg"}, true);

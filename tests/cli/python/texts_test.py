@@ -48,6 +48,24 @@ class Texts(Case):
         self.assertEqual((text.parent / tree["objects"]["a"]["obj"]).resolve(), Path("a.obj").resolve())
         self.assertEqual(tree["objects"]["b"]["obj"], "b.obj")
 
+    def test_names_are_of_one_thing(self):
+        scene = rs.Scene()
+        shape, grey = rs.box([0, 0, 0], [1, 1, 1]), rs.Material("lambert", reflectance=np.array([0.3]).item())
+        scene.add("a", shape, material=grey)
+        scene.add("b", shape, material=rs.Material("lambert", reflectance=rs.Curve(np.array([0.4, 0.7]), np.array([0.2, 0.5]))))
+        scene.add("a", shape, material=grey, translate=[5, 0, 0])  # the same once more
+        scene.add("a", translate=[9, 0, 0])
+        self.assertEqual([scene.objects[name].material for name in "ab"], ["a", "b"])
+        self.assertIsNone(shape.material)
+        self.assertEqual([p.place for p in scene.world], ["a", "b", "a", "a"])
+        for thing, material, said in ((rs.sphere(1), None, "objects has another 'a'"), (shape, None, "objects has another 'a'"),
+                                      (shape, rs.Material("lambert", reflectance=0.9), "materials has another 'a'")):
+            with self.assertRaisesRegex(ValueError, said):
+                scene.add("a", thing, material=material)
+        with self.assertRaisesRegex(TypeError, "plane.material='grey'"):
+            scene.add("c", rs.plane(), material="grey")
+        self.assertEqual(len(scene.world), 4)
+
     def test_what_has_no_place_in_a_text_is_refused_with_its_key(self):
         for value, said in ((object(), "world.0.tag: a object has no place"), (datetime.datetime(2026, 1, 1), "no time zone"),
                             (xr.DataArray([1.0, 2.0], dims="band"), "wavelength_um")):

@@ -216,6 +216,70 @@ def las(path, points, kinds):
             f.write(struct.pack("<iiiHBBbBH", *(int(c) for c in whole), 0, 0x09, kind, 0, 0, 0))
 
 
+def geotiff(path, rows, keys=(), kind=(3, 32, "f")):
+    """Heights in UTM 33N, pixels of 10 m whose middle one is at (500000, 5000000). kind: sample format, bits, struct's letter."""
+    data = b"".join(struct.pack("<" + kind[2], v) for row in rows for v in row)
+    flat = [k for key in [(1024, 0, 1, 1), (1025, 0, 1, 1), (3072, 0, 1, 32633), *keys] for k in key]
+    west, north = 500000 - 5 * len(rows[0]), 5000000 + 5 * len(rows)
+    blobs = {33550: ("d", (10, 10, 0)), 33922: ("d", (0, 0, 0, west, north, 0)), 34735: ("H", (1, 1, 0, len(flat) // 4, *flat))}
+    tags = {256: len(rows[0]), 257: len(rows), 258: kind[1], 259: 1, 262: 1, 273: 8, 277: 1, 278: len(rows), 279: len(data),
+            339: kind[0]}
+    body, entries = data + b"\0" * (-len(data) % 8), []
+    for tag in sorted([*tags, *blobs]):
+        if tag in tags:
+            entries.append(struct.pack("<HHII", tag, 4, 1, tags[tag]))
+        else:
+            letter, values = blobs[tag]
+            entries.append(struct.pack("<HHII", tag, 12 if letter == "d" else 3, len(values), 8 + len(body)))
+            body += struct.pack("<%d%s" % (len(values), letter), *values)
+            body += b"\0" * (-len(body) % 8)
+    with open(path, "wb") as f:
+        f.write(b"II*\0" + struct.pack("<I", 8 + len(body)) + body + struct.pack("<H", len(entries)) + b"".join(entries) + bytes(4))
+
+
+class Terrains(unittest.TestCase):
+    ROWS = [[100 + 10 * c + 20 * r for c in range(3)] for r in range(3)]
+
+    def heights(self, more="", **how):
+        geotiff(WORK + "/dem.tif", how.pop("rows", self.ROWS), **how)
+        latitude, longitude = geodetic_of_utm(33, 500000, 5000000)
+        with open(WORK + "/dem.yaml", "w", encoding="utf-8") as f:
+            f.write(f"scene: 1\norigin: {{latitude_deg: {latitude}, longitude_deg: {longitude}, height_m: 0}}\nmaterials: {{soil: "
+                    "{model: lambert, reflectance: 0.2}}\nobjects: {ground: {terrain: dem.tif, height: ellipsoid, material: soil"
+                    f"{more}}}}}\nworld: [{{place: ground}}]\n")
+        code, said = prepare(WORK + "/dem.yaml")
+        return code, said, exported()[0].reshape(-1, 3) if code == 0 else None
+
+    def test_pixels_of_any_type(self):
+        for kind in ((3, 32, "f"), (3, 64, "d"), (2, 16, "h"), (1, 16, "H"), (1, 8, "B"), (2, 32, "i"), (1, 32, "I")):
+            code, said, places = self.heights(kind=kind)
+            self.assertEqual(code, 0, said)
+            for x, y, height in ((0, 0, 120 + 10), (10, 10, 120), (-10, -10, 140)):
+                near = places[np.argmin(np.hypot(places[:, 0] - x, places[:, 1] - y))]
+                self.assertAlmostEqual(near[2], height, delta=1e-3)
+
+    def test_heights_in_feet_are_not_metres(self):
+        for key, metres in (((4099, 0, 1, 9002), 0.3048), ((4099, 0, 1, 9003), 1200 / 3937), ((4096, 0, 1, 6360), 1200 / 3937)):
+            code, said, _ = self.heights(keys=[key])
+            self.assertEqual(code, 1)
+            self.assertIn(f"its heights are in feet of {metres:.7g} m; 'height_scale: {metres:.7g}'", said)
+            code, said, places = self.heights(f", height_scale: {metres:.7g}", keys=[key])
+            self.assertEqual(code, 0, said)
+            self.assertAlmostEqual(max(places[:, 2]), 160 * metres, delta=1e-3)
+        self.assertEqual(self.heights(keys=[(4099, 0, 1, 9001), (4096, 0, 1, 5703)])[0], 0)
+
+    def test_marks_of_gaps_are_told(self):
+        rows = [[-9999, 110, 120], *self.ROWS[1:]]
+        code, said, _ = self.heights(rows=rows)
+        self.assertEqual(code, 0)
+        self.assertIn("[SP506]", said)
+        self.assertIn("1 pixels have the height -9999", said)
+        code, said, places = self.heights(", no_data: -9999", rows=rows)
+        self.assertEqual(code, 0)
+        self.assertNotIn("[SP506]", said)
+        self.assertGreater(min(places[:, 2]), 100)
+
+
 class Clouds(unittest.TestCase):
     def test_ground_within_the_error(self):
         random = np.random.default_rng(4)

@@ -107,6 +107,32 @@ TEST_F(ScenePrep, SkippedWorkLooksAtEveryFile) {
   EXPECT_THAT(refused.err, HasSubstr("all.h5 is left as it was: it does not hold this scene"));
 }
 
+TEST_F(ScenePrep, ExportsThingsWhereAndWhenTheyAre) {
+  write_file(folder_ / "moves.yaml",
+             "scene: 1\norigin: {latitude_deg: 39, longitude_deg: -120, height_m: 0}\n"
+             "materials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {tri: {obj: tri.obj, material: grey}}\n"
+             "groups: {cart: [{place: tri, translate: [0, 0, 3]}]}\n"
+             "world:\n"
+             "  - {place: tri, motion: {kind: static, latitude_deg: 39.001, longitude_deg: -120, height_m: 10}}\n"
+             "  - {place: cart, motion: {kind: static, position_m: [50, 0, 0]}}\n"
+             "  - {place: tri, translate: [900, 0, 0], appears: 5}\n");
+  ASSERT_EQ(run("moves.yaml -o moves.h5").code, 0);
+  const CommandResult exported = run("moves.h5 --export-obj moves.obj");
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_THAT(exported.err, HasSubstr("what is there at 0 s, where it is then"));
+  write_file(
+      folder_ / "back.yaml",
+      "scene: 1\nmaterials: {grey: {model: lambert, reflectance: 0.2}}\nobjects: {all: {obj: moves.obj}}\nworld: "
+      "[{place: all}]\n");
+  ASSERT_EQ(run("back.yaml -o back.h5").code, 0);
+  const Scene back = read_scene(folder_ / "back.h5");
+  EXPECT_EQ(back.meshes.at(0).triangle_count(), 2u);
+  EXPECT_NEAR(back.bounds.high.x, 51, 1e-3);
+  EXPECT_NEAR(back.bounds.low.z, 3, 1e-6);
+  EXPECT_NEAR(back.bounds.high.z, 10, 0.01);
+  EXPECT_NEAR(back.bounds.high.y, 111.016 + 1, 0.01);  // a thousandth of a degree of the meridian at 39 degrees
+}
+
 TEST_F(ScenePrep, AnswersQuestionsAboutAPreparedScene) {
   write_file(
       folder_ / "q.yaml",

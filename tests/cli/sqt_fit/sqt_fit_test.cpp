@@ -177,6 +177,21 @@ TEST(SqtFitCli, TablesAsUsersHaveThem) {
   }
 }
 
+// Samples that leave directions out say how far they reach; the errors of the fit are those where the function is
+// known.
+TEST(SqtFitCli, SamplesSayHowFarTheyReach) {
+  const TempFolder folder;
+  const std::string head = "theta_o_deg,phi_o_deg,theta_i_deg,phi_i_deg,wavelength_um,value\n0,0,0,0,0.55,0.1\n";
+  for (const auto& [row, told] : {std::pair{"20,0,80,90,0.55,0.1\n", true}, {"80,0,80,90,0.55,0.1\n", false}}) {
+    write_file(folder / "t.csv", head + row);
+    const CommandResult r = run_command(kFit + (folder / "t.csv") + " --views 3 --order 3 -o " + (folder / "t.sqt"));
+    EXPECT_EQ(r.code, 0) << r.err;
+    const std::string words = "t.csv: samples reach 20 degrees from the normal in the outgoing and 80 in the incident";
+    EXPECT_EQ(r.err.find(words) != std::string::npos, told) << r.err;
+    EXPECT_EQ(r.err.find("samples reach") != std::string::npos, told) << r.err;
+  }
+}
+
 TEST(SqtFitCli, ModelsAndTheirFaults) {
   const TempFolder folder;
   const std::string out = " -q --views 3 --order 4 -o " + (folder / "m.sqt");

@@ -24,6 +24,10 @@ TEST(Files, WhatIsWrittenIsRead) {
   EXPECT_TRUE(file_exists(folder / "x"));
   write_file(folder / "empty", std::string_view());
   EXPECT_EQ(read_text(folder / "empty"), "");
+  // Spreadsheets begin their "CSV UTF-8" with a byte order mark, which is no part of the first column's name.
+  write_file(folder / "marked", std::string_view("\xEF\xBB\xBFx,y\n"));
+  EXPECT_EQ(read_text(folder / "marked"), "x,y\n");
+  EXPECT_EQ(read_bytes(folder / "marked").size(), 7u);
 }
 
 TEST(Files, MissingDirectoriesAndPipesAreRefusedAtOnce) {

@@ -45,6 +45,23 @@ TEST_F(CurveFile, EcostressHeaderPercentAndDescending) {
   EXPECT_DOUBLE_EQ(c.at(14), 0.01);
 }
 
+// Rows that used to be dropped as headers, and numbers that were read as two.
+TEST_F(CurveFile, NoRowIsLostOrMisread) {
+  const Curve marked = read(
+      "\xEF\xBB\xBF"
+      "0.4 0.1\n0.6 0.5\n0.8 0.3\n");
+  EXPECT_DOUBLE_EQ(marked.low_um(), 0.4);
+  const Curve noted = read("0.4 0.1 # first\n0.8 0.3 ! last\n");
+  EXPECT_DOUBLE_EQ(noted.low_um(), 0.4);
+  EXPECT_DOUBLE_EQ(noted.high_um(), 0.8);
+  EXPECT_THAT(fault("0.4 n/a\n0.6 0.1\n0.8 0.3\n"), HasSubstr("c.txt:1:1: error: a row that is not numbers"));
+  for (const char* commas : {"nm\n400;0,2\n700;0,5\n", "nm\n400 0,2\n700 0,5\n", "nm\n400\t0,2\n", "400,5; 0.2\n"})
+    EXPECT_THAT(fault(commas), HasSubstr("a comma within a number")) << commas;
+  for (const char* points :
+       {"0.4, 0.2\n0.7, 0.5\n", "0.4,0.2,0.3\n", " 0.4,0.2 ,0.3 \r\n", "0.4\t,0.2\n", "0.4 ; 0.2\n"})
+    EXPECT_DOUBLE_EQ(read(points).at(0.4), 0.2) << points;
+}
+
 TEST_F(CurveFile, FaultsAreLocated) {
   EXPECT_THAT(fault("0.4 0.1\n0.5 x\n"), HasSubstr("c.txt:2:1: error: a row that is not numbers"));
   EXPECT_THAT(fault("0.4 0.1\n0.5\n"), HasSubstr(":2:1: error: a row of 1 numbers"));

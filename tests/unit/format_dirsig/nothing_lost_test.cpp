@@ -268,6 +268,59 @@ TEST_F(DirsigOddFiles, HaveEmissivitiesJustBeyondOne) {
   EXPECT_EQ(fate("ems/curve"), "exact");
 }
 
+// A second entry of an ID that is used is lost, which is not harmless; that of one that is not used is.
+TEST_F(DirsigOddFiles, HaveMaterialsTwice) {
+  const std::string first = text_of("materials/range.mat"), once = read("range.scene");
+  write("materials/range.mat", first + "\nMATERIAL_ENTRY {\n ID = grey\n NAME = again\n}\n");
+  EXPECT_EQ(read("range.scene"), once);
+  std::map<std::string, std::string> fates;
+  for (const dirsig::Entry& e : import_->ledger().entries())
+    if (e.path.ends_with("MATERIAL_ENTRY/NAME")) fates[e.value] = dirsig::to_text(e.fate) + std::string(": ") + e.note;
+  EXPECT_EQ(fates.at("grey"), "exact: ");
+  EXPECT_EQ(fates.at("again").substr(0, 34), "unsupported: 'grey' is given in li");
+  EXPECT_EQ(fates.at("nobody"), "ignored-harmless: no geometry and no map has this material");
+}
+
+// What DIRSIG's own editors and public files write around what counts.
+TEST_F(DirsigOddFiles, HaveEmptyElementsAndConstraints) {
+  change("camera.platform", "<attachment", "<clocktable/><attachment");
+  change("camera.platform", "</mount>", "<rotationdeviates/></mount>");
+  change("camera.platform", "<capturemethod ", "<capturemethod name=\"Simple\" ");
+  change("plane.jsim", "\"scene_list\"", "\"medium_list\": [], \"scene_list\"");
+  read("plane.jsim");
+  for (const dirsig::Entry& e : import_->ledger().entries()) EXPECT_NE(e.fate, Fate::unsupported) << e.path;
+  change("camera.platform", "<rotationdeviates/>", "<rotationdeviates><x>1</x></rotationdeviates>");
+  read("plane.jsim");
+  EXPECT_EQ(fate("rotationdeviates/x"), "unsupported");
+
+  const std::string list = text_of("geometry/range.glist");
+  const size_t begin = list.find("<orientationengine"), end = list.find("</orientationengine>");
+  for (const auto& [vector, kept] : {std::pair{"0,0,1", "exact"}, {"0, 0.6, 0.8", "approximated"}}) {
+    write("geometry/range.glist",
+          list.substr(0, begin) +
+              "<orientationengine type=\"velocity\"><constraint type=\"constant\" frame=\"scene\" "
+              "vector=\"" +
+              vector + "\"/>" + list.substr(end));
+    EXPECT_NE(read("range.scene").find("pointing: velocity"), std::string::npos);
+    EXPECT_EQ(fate("constraint/@vector"), kept);
+  }
+}
+
+// The Sun that is fixed holds wherever it is listed, which is not what DIRSIG does.
+TEST_F(DirsigOddFiles, HaveEphemeridesInAnyOrder) {
+  const std::string made = read("plane.jsim");
+  EXPECT_EQ(fate("inputs/solar_zenith"), "exact");
+  const std::string text = text_of("plane.jsim");
+  const size_t at = text.find("{ \"name\": \"BasicAtmosphere\""), next = text.find("{ \"name\": \"FixedEphemeris\""),
+               third = text.find("{ \"name\": \"BasicPlatform\"");
+  write("plane.jsim",
+        text.substr(0, at) + text.substr(next, third - next) + text.substr(at, next - at) + text.substr(third));
+  const std::string turned = read("plane.jsim");
+  for (const std::string& text_made : {made, turned})
+    EXPECT_NE(text_made.find("zenith_deg: 60\n    azimuth_deg: 0\n"), std::string::npos) << text_made;
+  EXPECT_EQ(fate("inputs/solar_zenith"), "approximated");
+}
+
 TEST_F(DirsigOddFiles, HavePopulations) {
   std::string list = "<geometrylist enabled=\"true\"><object>";
   for (const auto& [radius, weight] : {std::pair{1, " weight=\"3\""}, {2, ""}, {3, " weight=\"0\""}})

@@ -20,8 +20,11 @@ class HeatInScenes : public testing::Test {
   HeatInScenes() { write_file(folder_ / "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 2 3\n"); }
   // A material with more keys, which begin on line 4.
   Scene bake(const std::string& more) {
-    write_file(folder_ / "s.yaml", "scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2,\n    " + more +
-                                       "}\nobjects:\n  tri: {obj: tri.obj}\nworld:\n  - {place: tri}\n");
+    return bake_text("scene: 1\nmaterials:\n  grey: {model: lambert, reflectance: 0.2,\n    " + more +
+                     "}\nobjects:\n  tri: {obj: tri.obj}\nworld:\n  - {place: tri}\n");
+  }
+  Scene bake_text(const std::string& text) {
+    write_file(folder_ / "s.yaml", text);
     report_ = Report(scene_issues());
     return bake_scene(read_scene_text(folder_ / "s.yaml", {}, report_), report_);
   }
@@ -75,6 +78,29 @@ TEST_F(HeatInScenes, Messages) {
        "thickness_m"}};
   for (const auto& [text, says] : table)
     EXPECT_THAT(told(text), AllOf(HasSubstr("s.yaml:4:"), HasSubstr(says))) << text;
+}
+
+// What a class map does not cover is as its first material, which was as cold as space there.
+TEST_F(HeatInScenes, BesideAClassMapItsFirstMaterialHoldsAndIsAsWarm) {
+  write_file(folder_ / "one.pgm", std::string_view("P2\n1 1\n255\n7\n"));
+  const auto baked = [&](const std::string& first, const std::string& own) {
+    const Scene s = bake_text(
+        "scene: 1\nmaterials:\n  first: {model: lambert, reflectance: 0.2, " + first + "}\n  chosen: {" + own +
+        "map: which}\nmaps:\n  which: {type: class, file: one.pgm, materials: {7: first}, projection: drape, "
+        "drape: {origin: [0, 0], gsd: 1, extend: none}}\nobjects:\n  tri: {obj: tri.obj, materials: {grey: "
+        "chosen}}\nworld:\n  - {place: tri}\n");
+    EXPECT_TRUE(report_.ok()) << report_.text();
+    return s;
+  };
+  const Scene warm = baked("temperature_k: 300", "");
+  EXPECT_EQ(warm.materials.at(1).surface.model, "lambert");
+  EXPECT_EQ(warm.materials.at(1).temperature_k, 300);
+  EXPECT_EQ(baked("temperature_k: 300", "temperature_k: 280, ").materials.at(1).temperature_k, 280);
+  EXPECT_EQ(baked("temperature_k: 300", "model: lambert, reflectance: 0.1, ").materials.at(1).temperature_k, 0);
+  const Scene heated = baked("temperature: {table: [[0, 280], [9, 290]]}", "");
+  ASSERT_EQ(heated.temperatures.size(), 2u);
+  EXPECT_EQ(heated.temperatures[1].material, 1u);
+  EXPECT_EQ(heated.temperatures[1].spec.times, heated.temperatures[0].spec.times);
 }
 
 }  // namespace

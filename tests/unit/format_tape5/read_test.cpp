@@ -105,6 +105,9 @@ TEST(Tape5, Faults) {
   EXPECT_THAT(with("    2    2  172", "    2    1  172"),
               HasSubstr("deck:4:6: error: phase functions of the user's own"));
   EXPECT_THAT(with("     5.000\n", "     0.000\n"), HasSubstr("card 4 gives no band"));
+  EXPECT_THAT(
+      with("    10.000     0.000     0.000     0.000     0.500", "    -0.300     0.000     0.000     0.000     0.500"),
+      HasSubstr("deck:2:31: error: a visibility of -0.3 km"));
   EXPECT_THAT(with("\n    3\n", "\n    2\n"), HasSubstr("repetition of kind 2"));
   EXPECT_THAT(with("          M", "          Q"), HasSubstr("the unit of card 4 is 'Q'"));
   EXPECT_THAT(with("    1    0    0    0    0    0", "    1    0    0    0    1    0"), HasSubstr("clouds of card 2"));
