@@ -14,6 +14,7 @@
 #include "continued.h"
 #include "deck_told.h"
 #include "dirsig_import.h"
+#include "flags_told.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
 #include "formats/sqt/sqt.h"
@@ -136,22 +137,6 @@ void check_memory(const Simulation& sim, const JobOptions& options) {
                 strf("the largest capture takes %s, and this machine has %s", human_bytes(needed).c_str(),
                      human_bytes(there).c_str()),
                 "fewer columns or rows, or fewer lines_per_capture");
-}
-
-// How many pixels of each sensor are flagged, and what the flags that occur mean.
-void tell_quality(std::span<const SensorQuality> sensors) {
-  QualityCounts all;
-  for (const auto& [sensor, counts] : sensors) {
-    note(counts.flagged
-             ? strf("sensor '%s': %llu of %llu pixels are flagged (%.2g %%): ", sensor.c_str(),
-                    static_cast<unsigned long long>(counts.flagged), static_cast<unsigned long long>(counts.problems),
-                    100 * static_cast<double>(counts.flagged) / static_cast<double>(counts.problems)) +
-                   text_of(counts)
-             : strf("sensor '%s': no pixel is flagged", sensor.c_str()));
-    for (size_t i = 0; i < all.of.size(); ++i) all.of[i] += counts.of[i];
-  }
-  for (const QualityBit& b : quality_bits())
-    if (all.with(b.bit)) note(b.name + ": " + b.meaning);
 }
 
 void tell(const JobReport& r) {
@@ -333,10 +318,12 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   SimulationCallbacks callbacks;
   size_t delivered = 0;         // captures whose results were handed over
   StudyImage* study = nullptr;  // where captures go while a study runs
+  DetectorFlags flags;
   callbacks.deliver = [&](const Delivery& delivery) {
     if (study) return append(*study, delivery);
     if (!writer) return;  // only the speed is measured
     writer->take(delivery);
+    flags.take(delivery);
     ++delivered;
   };
   // The first scene gives a simulation its frame.
@@ -373,7 +360,8 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   options.warn = warn;
   start_sensors(sim, options, part ? "" : o.output);
-  const JobReport report = run_safely(scene, sim, options, o.output, delivered);
+  JobReport report = run_safely(scene, sim, options, o.output, delivered);
+  flags.add_to(report);
   tell(report, options, o.output);
   for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(o.output, "render.json"), report, options);

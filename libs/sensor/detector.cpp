@@ -72,17 +72,19 @@ Detector::Character Detector::character(uint64_t detector) const {
   return c;
 }
 
-uint16_t Detector::counts(double electrons, double exposure, const Character& of, uint64_t read_out,
-                          double more) const {
+Detector::Reading Detector::read(double electrons, double exposure, const Character& of, uint64_t read_out,
+                                 double more) const {
   const double most = std::ldexp(1.0, spec_.bits) - 1;
-  if (of.dead) return 0;
-  if (of.hot) return static_cast<uint16_t>(most);
+  if (of.dead) return {};
+  if (of.hot) return {static_cast<uint16_t>(most)};
   Pcg32 random(hash_of(spec_.seed, 0x6e6f697365ull), read_out);
   const double mean = std::max(0.0, electrons) * of.response + spec_.dark_current * of.dark * exposure;
   double charge = spec_.shot_noise ? poisson(mean, random) : mean;
-  if (spec_.full_well > 0) charge = std::min(charge, spec_.full_well);
+  const bool full = spec_.full_well > 0 && charge > spec_.full_well;
+  if (full) charge = spec_.full_well;
   if (spec_.read_noise > 0 || more > 0) charge += std::hypot(spec_.read_noise, more) * normal(random);
-  return static_cast<uint16_t>(std::clamp(std::round(charge / spec_.gain + spec_.bias), 0.0, most));
+  const double counts = std::round(charge / spec_.gain + spec_.bias);
+  return {static_cast<uint16_t>(std::clamp(counts, 0.0, most)), full || counts < 0 || counts > most};
 }
 
 NoiseAtBackground noise_at_background(const DetectorSpec& d, double signal, double slope, double exposure) {

@@ -72,9 +72,13 @@ class Detector {
     bool dead = false, hot = false;
   };
   Character character(uint64_t detector) const;
-  // Counts of one read-out: signal electrons (before the detector's own response), exposure time (s) and a number that
+  struct Reading {
+    uint16_t counts = 0;
+    bool clipped = false;  // by the full well or an end of the converter; what always gives 0 or full scale is not
+  };
+  // One read-out: signal electrons (before the detector's own response), exposure time (s) and a number that
   // tells this read-out from all others. more: electrons, standard deviation of noise beside that of the spec.
-  uint16_t counts(double electrons, double exposure, const Character& of, uint64_t read_out, double more = 0) const;
+  Reading read(double electrons, double exposure, const Character& of, uint64_t read_out, double more = 0) const;
   // Signal electrons as they are told from counts: bias and mean dark current taken off.
   double signal_of(double counts, double exposure) const {
     return (counts - spec_.bias) * spec_.gain - spec_.dark_current * exposure;

@@ -32,7 +32,10 @@ struct QualityCounts {
   uint64_t problems = 0, flagged = 0;  // flagged: any bit
   std::array<uint64_t, 8> of{};        // of bit 1 << i
   void add(std::span<const uint8_t> quality);
-  uint64_t with(QualityFlag bit) const { return of[static_cast<size_t>(std::countr_zero(unsigned{bit}))]; }
+  // Problems that were counted before carry one more bit; alone: those that carried none.
+  void add(QualityFlag bit, uint64_t carrying, uint64_t alone) { of[index_of(bit)] += carrying, flagged += alone; }
+  uint64_t with(QualityFlag bit) const { return of[index_of(bit)]; }
+  static size_t index_of(QualityFlag bit) { return static_cast<size_t>(std::countr_zero(unsigned{bit})); }
 };
 
 // The same, of one sensor.

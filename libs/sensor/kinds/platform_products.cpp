@@ -111,12 +111,13 @@ std::vector<Product> detect(const PlatformSpec& spec, const Segment& segment, Ca
       const uint64_t own = hash_of(segment.array, b, uint64_t{from.row} * 0x100000000ull + from.column);
       Detector::Character character = detector.character(own);
       character.dead = character.dead || bad;
-      const uint16_t read = detector.counts(signal, exposure, character, hash_of(own, read_out, i), more[b]);
+      const Detector::Reading read = detector.read(signal, exposure, character, hash_of(own, read_out, i), more[b]);
+      if (read.clipped) result.quality[i] |= quality_clipped;
       electrons.values[i * bands + b] = signal;
-      counts.values[i * bands + b] = read;
+      counts.values[i * bands + b] = read.counts;
       if (!thermometers.empty())
         kelvin.values[i * bands + b] =
-            thermometers[b].read(detector.signal_of(read, exposure) / (factor * segment.electrons[b])).kelvin;
+            thermometers[b].read(detector.signal_of(read.counts, exposure) / (factor * segment.electrons[b])).kelvin;
     }
   }
   drop_truth_of(result, segment.bands, bands);

@@ -87,7 +87,7 @@ TEST_F(SensorOutput, FlagsAreAnImageAndAreCounted) {
     EXPECT_EQ(quality.header().lines, radiance.header().lines) << out;
     EXPECT_THAT(quality.header().description, HasSubstr("1 = heavy_tail: rare events"));
     const std::pair<std::string, std::string> bits{"quality bits",
-                                                   "{1 heavy_tail, 2 failures, 4 truncated, 8 unresolved}"};
+                                                   "{1 heavy_tail, 2 failures, 4 truncated, 8 unresolved, 16 clipped}"};
     EXPECT_THAT(quality.header().extra, testing::Contains(bits));
     const std::vector<double> pixels = quality.read_all();
     EXPECT_GT(std::count(pixels.begin(), pixels.end(), 4), 0) << "cut at the first node";
@@ -120,6 +120,37 @@ TEST_F(SensorOutput, PushBroomLinesAndLogsAndCounts) {
   const std::string log = read_text(*folder_ / "broom/uas_imu.csv");
   EXPECT_THAT(log, HasSubstr("# second 0 is 2026-06-21T10:30:00.000000Z"));
   EXPECT_THAT(log, HasSubstr(",5,100,1.000000000000,0.0000"));
+}
+
+// Counts at the end of the converter, or of a well that is full, looked like any others.
+TEST_F(SensorOutput, ClippedCountsAreFlaggedAndTold) {
+  const auto run = [](const std::string& detector, const std::string& out) {
+    const CommandResult r =
+        ProgramsTest::render(kLight + "sensors:\n" + kFlight +
+                                 "    tasks: [{start: 1}]\n    instruments:\n      - {focal_length_mm: 50, f_number: "
+                                 "4, arrays: [{columns: 8, "
+                                 "rows: 8, pitch_um: 50, integration_time_s: 0.01, paths: 4, " +
+                                 kBand + ", detector: {quantum_efficiency: 0.5, " + detector + "}}]}\n",
+                             out);
+    EXPECT_EQ(r.code, 0) << r.err;
+    const std::vector<double> flags = EnviImage(*folder_ / (out + "/uas_quality.img")).read_all();
+    return std::pair{r.err, std::count_if(flags.begin(), flags.end(), [](double q) { return int(q) & 16; })};
+  };
+  for (const auto& [detector, name] : {std::pair{"gain_e_per_dn: 1, bits: 8", "full_scale"},
+                                       {"gain_e_per_dn: 1e5, full_well_e: 50", "full_well"},
+                                       {"gain_e_per_dn: 1e-9", "fine_steps"}}) {
+    const auto [said, clipped] = run(detector, name);
+    EXPECT_EQ(clipped, 64) << name;
+    EXPECT_THAT(said, HasSubstr("sensor 'uas': 64 of 64 pixels are clipped (100 %)"));
+    EXPECT_THAT(read_text(*folder_ / (std::string(name) + "/render.json")), HasSubstr("\"clipped\": 64"));
+  }
+  // Room for all of it, and detectors that always give an end of the scale: nothing is clipped.
+  for (const auto& [detector, name] : {std::pair{"gain_e_per_dn: 1e5, full_well_e: 1e12", "room"},
+                                       {"gain_e_per_dn: 1e5, dead_fraction: 0.5, hot_fraction: 0.5", "bad"}}) {
+    const auto [said, clipped] = run(detector, name);
+    EXPECT_EQ(clipped, 0) << name;
+    EXPECT_THAT(said, testing::Not(HasSubstr("clipped")));
+  }
 }
 
 TEST_F(SensorOutput, TruthIsWhatIsThere) {

@@ -1,0 +1,29 @@
+// Flags of pixels: those that detectors set when they are read, and what is said of all.
+#pragma once
+#include <map>
+#include <string>
+
+#include "scheduler/scheduler.h"
+#include "sensor/delivery.h"
+
+namespace suite {
+
+// Counts what detectors add to the flags of what is delivered: the job has judged its results before they are read.
+class DetectorFlags {
+ public:
+  void take(const Delivery& delivery);
+  // Their share of the report.
+  void add_to(JobReport& report) const;
+
+ private:
+  struct Count {
+    uint64_t clipped = 0, alone = 0;  // pixels; alone: that carry no other flag
+  };
+  std::map<std::string, Count> of_;  // by sensor
+};
+
+// How many pixels of each sensor are flagged, and what the flags that occur mean. Warns of a sensor whose counts are
+// clipped in more than a hundredth of its pixels.
+void tell_quality(std::span<const SensorQuality> sensors);
+
+}  // namespace suite
