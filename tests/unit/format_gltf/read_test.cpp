@@ -152,6 +152,26 @@ TEST(Gltf, TellsWhatItLeavesOut) {
   EXPECT_DOUBLE_EQ(r.model.materials[0].rgb[1], 0.25);
 }
 
+// `inverseBindMatrices` is optional; a file without it was refused.
+TEST(Gltf, SkinsNeedNoMatrices) {
+  test::GltfFile f;
+  const int p = f.places(kSquare);
+  const Read r(f.text(one_node(strf(R"({"attributes":{"POSITION":%d},"mode":6})", p), R"(,"skin":1)",
+                               R"(,"skins":[{"joints":[0]},{"joints":[0]}])")));
+  EXPECT_EQ(r.corners().size(), 6u);
+  EXPECT_THAT(r.report.text(), HasSubstr("2 skins: bodies stand as their meshes are stored"));
+}
+
+// A media type that glTF does not know was taken for the name of a file, and shown whole.
+TEST(Gltf, DataOfAnotherTypeIsNamed) {
+  const std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":999,"uri":"data:;base64,)" +
+                           std::string(1332, 'A') + R"("}]})";
+  const std::string said = message_of([&] { Read r(text); });
+  EXPECT_THAT(said, HasSubstr("t.gltf: error: a buffer's data URI begins 'data:;base64,AAA"));
+  EXPECT_THAT(said, HasSubstr("data:application/octet-stream;base64,"));
+  EXPECT_LT(said.size(), 300u);
+}
+
 TEST(Gltf, FaultsHaveTheirPlace) {
   const auto fault = [](const std::string& primitive, const std::string& node = "", const std::string& more = "") {
     test::GltfFile f;
