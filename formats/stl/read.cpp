@@ -30,6 +30,10 @@ class Collector {
     const uint32_t a = builder_.vertex(corner[0], where), b = builder_.vertex(corner[1], where);
     builder_.triangle(a, b, builder_.vertex(corner[2], where));
   }
+  void unread(size_t bytes, size_t offset) {
+    builder_.add("SP705", Where{whole_.file, 0, 0, {}, static_cast<long long>(offset)},
+                 strf("%zu bytes behind the last facet are not read", bytes));
+  }
   SourceMesh take() {
     if (builder_.empty()) builder_.add("SP204", whole_, "no facet");
     if (turned_)
@@ -56,6 +60,8 @@ SourceMesh parse_binary(std::span<const std::byte> bytes, const std::string& fil
     const auto point = [&](size_t i) { return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]}; };
     collector.facet(point(0), {point(1), point(2), point(3)}, Where{file, 0, 0, {}, static_cast<long long>(at)});
   }
+  if (const size_t end = kHeader + kFacet * size_t{count}; bytes.size() > end)
+    collector.unread(bytes.size() - end, end);
   return collector.take();
 }
 
@@ -165,6 +171,8 @@ SourceMesh parse_stl(std::span<const std::byte> bytes, const std::string& file, 
   const size_t first = text.find_first_not_of(" \t\r\n");
   if (first != text.npos && begins_with_solid(text.substr(first)) && text.find('\0') == text.npos)
     return parse_ascii(text, file, report);
+  // Some programs append colours or padding.
+  if (count > 0 && bytes.size() > kHeader + kFacet * size_t{count}) return parse_binary(bytes, file, report);
   if (bytes.size() < kHeader)
     throw Error(Where{file, 0, 0, {}, static_cast<long long>(bytes.size())}, "ends within the header of an STL file");
   throw Error(Where{file, 0, 0, {}, 80}, strf("declares %u facets, which are %zu bytes, and has %zu", count,
