@@ -24,7 +24,7 @@ uint32_t paths_of(const std::string& text) {
   std::string rest;
   const double n = leading_number(text, "--paths", rest);
   if (rest.empty() && n == 0)
-    throw Error("--paths 0: a budget of nothing gives nothing", "whole numbers from 1 to 2^30");
+    throw UsageError("--paths 0: a budget of nothing gives nothing; whole numbers from 1 to 2^30");
   if (!rest.empty() || n < 1 || n > kMostPaths || n != std::floor(n))
     throw UsageError("--paths wants whole numbers from 1 to 2^30, N or MIN,MAX; found '" + text + "'");
   return static_cast<uint32_t>(n);
@@ -47,7 +47,7 @@ double seconds_of(const std::string& text) {
   const double value = leading_number(text, "--time", unit);
   const double scale = unit == "s" ? 1 : unit == "min" ? 60 : unit == "h" ? 3600 : 0;
   if (scale == 0) throw UsageError("--time wants a unit, s, min or h, as in 90s or 10min; found '" + text + "'");
-  if (value == 0) throw Error("--time " + text + ": a budget of nothing gives nothing", "as in 90s or 10min");
+  if (value == 0) throw UsageError("--time " + text + ": a budget of nothing gives nothing; as in 90s or 10min");
   if (!(value > 0)) throw UsageError("--time wants more than nothing; found '" + text + "'");
   return value * scale;
 }

@@ -180,7 +180,10 @@ class Reader {
       }
       if (!(*value > 0)) throw lines_.error(word, "a wavenumber is positive");
       if (row > 0 && !(*value > b.wavenumber.back()))
-        throw lines_.error(word, "wavenumbers do not ascend", strf("the line before has %g", b.wavenumber.back()));
+        throw lines_.error(
+            word, "wavenumbers do not ascend",
+            strf("the line before has %g", b.wavenumber.back()) +
+                (b.find("LOS") ? "; a file of several lines of sight is read when it is cut into one each" : ""));
       b.wavenumber.push_back(*value);
     }
     if (b.wavenumber.size() != static_cast<size_t>(row) + 1) throw lines_.error(0, "a row without its wavenumber");

@@ -14,12 +14,12 @@ constexpr double kDay = 86400;
 bool leap(int year) { return std::chrono::year{year}.is_leap(); }
 bool leap_day(const LocalStamp& s) { return s.month == 2 && s.day == 29; }
 
-// Of months and days only.
-bool ascend_in_one_year(const std::vector<LocalStamp>& stamps) {
+// The first row that is not later than the one before, of months and days only; 0 = none.
+size_t first_not_ascending(const std::vector<LocalStamp>& stamps) {
   const auto key = [](const LocalStamp& s) { return std::tuple(s.month, s.day, s.seconds); };
   for (size_t i = 1; i < stamps.size(); ++i)
-    if (!(key(stamps[i - 1]) < key(stamps[i]))) return false;
-  return true;
+    if (!(key(stamps[i - 1]) < key(stamps[i]))) return i;
+  return 0;
 }
 
 std::string years_of(const std::vector<LocalStamp>& stamps) {
@@ -37,8 +37,11 @@ std::string years_of(const std::vector<LocalStamp>& stamps) {
 bool replace_years(WeatherTable& table, std::vector<LocalStamp>& stamps, std::optional<int> wanted) {
   const bool mixed =
       std::any_of(stamps.begin(), stamps.end(), [&](const LocalStamp& s) { return s.year != stamps.front().year; });
-  const bool one_year = ascend_in_one_year(stamps);
+  const size_t back = first_not_ascending(stamps);
+  const bool one_year = back == 0;
   if (!wanted && !(mixed && one_year)) return false;
+  if (!one_year && stamps[back].year == stamps[back - 1].year)
+    throw Error(table.where(back), "the row is not later than the one before", "rows in the order of time, each once");
   if (!one_year)
     throw Error(table.where(0), "the rows run through more than a year, which cannot be placed in one",
                 "leave out the year");

@@ -46,8 +46,11 @@ class Evidence : public testing::Test {
 };
 
 TEST_F(Evidence, BudgetsOfNothing) {
-  refused("dirsig-render sim.yaml --paths 0", "a budget of nothing gives nothing");
-  refused("dirsig-render sim.yaml --time 0s", "a budget of nothing gives nothing");
+  for (const char* option : {"--paths 0", "--time 0s"}) {
+    const CommandResult r = run(std::string("dirsig-render sim.yaml ") + option);
+    EXPECT_EQ(r.code, 2) << "bad usage, as other budgets that cannot be";
+    EXPECT_THAT(r.err, HasSubstr("a budget of nothing gives nothing"));
+  }
   refused("dirsig-render sim.yaml --study s --study-budgets 0", "gives nothing to study");
   refused("dirsig-render sim.yaml --study s --study-budgets 0s", "gives nothing to study");
   EXPECT_FALSE(file_exists(folder_ / "out/map.img"));

@@ -188,6 +188,10 @@ TEST(Tape7, FaultsAreTold) {
     return told(t);
   };
   EXPECT_THAT(with(" 2052.00 ", " 2050.50 "), HasSubstr("f.tp7:14:2: error: wavenumbers do not ascend"));
+  EXPECT_THAT(
+      told("    FREQ  LOS  TOT_TRANS  PTH_THRML\n  900.00    1  0.5  1.0000E-06\n  900.00    2  0.5  1.0000E-06\n"
+           " -9999.\n"),
+      HasSubstr("several lines of sight"));
   EXPECT_THAT(with("0.88372636", "0.883x2636"), HasSubstr("'0.883x2636' is not a number"));
   EXPECT_THAT(with("0.88372636", "0.88372636 0.1"), HasSubstr("more numbers (17) than columns (16)"));
   EXPECT_THAT(with("T F 6    2    2", "T F 6    2    0"), HasSubstr("not the columns of mode 0"));

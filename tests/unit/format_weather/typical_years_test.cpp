@@ -166,6 +166,11 @@ TEST(Epw, RefusesWithThePlace) {
   rows = night();
   rows[2].hour = 2;
   EXPECT_THAT(refused(rows), HasSubstr("d.epw:6: error: this row is 0 s after the one before"));
+  // The same under a year that is asked for: it was taken for a second year.
+  EXPECT_THAT(message_of([&] { parse_weather(epw(rows), "d.epw", {.year = 2001}); }),
+              HasSubstr("d.epw:6: error: the row is not later than the one before"));
+  rows[2].hour = 3, rows[3].year = 2004, rows[3].hour = 1;
+  EXPECT_THAT(message_of([&] { parse_weather(epw(rows), "d.epw", {.year = 2001}); }), HasSubstr("more than a year"));
   rows = night();
   rows[0].month = 4, rows[0].day = 31;
   EXPECT_THAT(refused(rows), HasSubstr("month 4 has no day 31"));
