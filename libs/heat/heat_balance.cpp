@@ -98,7 +98,8 @@ std::vector<SurfaceGroup> surface_groups(const Elements& elements, const HeatFac
     const HeatedMaterial& m = optics.heated[elements[e].material];
     SurfaceGroup& group = by_material[elements[e].material];
     if (group.front_rows.empty())
-      group.layers = m.layers, group.front = m.front, group.back = m.back, group.behind = m.behind;
+      group.name = optics.materials->materials[elements[e].material].id, group.layers = m.layers, group.front = m.front,
+      group.back = m.back, group.behind = m.behind;
     group.front_rows.push_back(e);
     group.cosine_up.push_back(std::clamp(elements[e].normal.z, -1.0, 1.0));
     group.front_emissivity.push_back(emissivity[e]);

@@ -261,6 +261,20 @@ void CoupledSurfaces::answer(Part& part, const Through& through, const PutEmitte
   batch.rest();
 }
 
+namespace {
+
+// The temperature of an element without heat capacity; an error names its material.
+double massless_of(const SurfaceGroup& group, std::span<const MasslessFace> faces) {
+  try {
+    return massless_kelvin(faces);
+  } catch (const Error& e) {
+    if (group.name.empty()) throw;
+    throw Error("material '" + group.name + "': " + e.message(), e.hint());
+  }
+}
+
+}  // namespace
+
 void CoupledSurfaces::answer_massless(const Part& part, const Through& through, const PutEmitted& put) const {
   const SurfaceGroup& group = group_of(part, 0);
   const Received received(*this, part, through);
@@ -276,7 +290,7 @@ void CoupledSurfaces::answer_massless(const Part& part, const Through& through, 
     for (size_t moment = 0; moment < through.moments; ++moment) {
       for (size_t f = 0; f < faces.size(); ++f)
         faces[f].weather = through.weather_at(sides[f], f == 0 ? front : back, moment);
-      emits[moment] = emitted_by(massless_kelvin(faces));
+      emits[moment] = emitted_by(massless_of(group, faces));
     }
     for (const Through::Face& side : sides) put(static_cast<uint32_t>(side.row), emits);
   }

@@ -17,6 +17,7 @@ namespace suite {
 
 // Elements of one construction. A face is a row of the exchange.
 struct SurfaceGroup {
+  std::string name;               // of its material, for messages; may be empty
   std::vector<SlabLayer> layers;  // from the front down; empty: no heat capacity, as leaves
   FaceTraits front, back;         // back: of faces in back_rows
   std::vector<double> cosine_up;  // of each front's outward normal, a back's is the opposite; empty = the traits'

@@ -185,5 +185,17 @@ TEST(Surfaces, RefuseWhatDoesNotFit) {
   EXPECT_NE(message_of([&] { surfaces.solve(grove.loads); }).find("8 faces and 1 outsides"), std::string::npos);
 }
 
+// The message did not say which of many materials it was about.
+TEST(Surfaces, LeavesWithoutABalanceAreNamed) {
+  Grove grove;
+  for (FaceTraits* face : {&grove.groups[1].front, &grove.groups[1].back}) set_face(*face, 0, Law(), 1, 0);
+  grove.groups[1].front_emissivity = grove.groups[1].back_emissivity = {0, 0};
+  grove.groups[1].name = "leaf";
+  CoupledSurfaces surfaces(grove.groups, grove.exchange);
+  surfaces.start(285);
+  EXPECT_NE(message_of([&] { surfaces.solve(grove.loads); }).find("material 'leaf': a leaf or sheet without heat"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace suite
