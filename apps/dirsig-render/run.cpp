@@ -194,6 +194,15 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
     for (const TextFile& log : sensor->logs()) writer.write_text(log);
 }
 
+// What is told and written of a whole run.
+void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
+              const LoadedScene& loaded, OutputWriter& writer) {
+  tell(report, options, folder);
+  for (const auto& reads : loaded.later) note(reads->text());
+  write_log(in_folder(folder, "render.json"), report, options);
+  if (!report.captures_waiting) write_sensor_logs(sim, writer);
+}
+
 // What was asked instead of a picture; nothing when one is wanted.
 std::optional<int> answer(const RenderOptions& o) {
   if (o.list_sensors) return print(sensor_kinds().list());
@@ -362,10 +371,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   start_sensors(sim, options, part ? "" : o.output);
   JobReport report = run_safely(scene, sim, options, o.output, delivered);
   flags.add_to(report);
-  tell(report, options, o.output);
-  for (const auto& reads : loaded.later) note(reads->text());
-  write_log(in_folder(o.output, "render.json"), report, options);
-  if (!report.captures_waiting) write_sensor_logs(sim, *writer);
+  conclude(report, options, o.output, sim, loaded, *writer);
   if (!report.stopped) return show_own(o);
   warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options));
   return 128 + stop_signal();
