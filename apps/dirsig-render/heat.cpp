@@ -37,7 +37,7 @@ bool waits_for_heat(const Scene& scene) {
 // Sunlight of the elements that are left, with the exchange that is there.
 HeatOperator operator_of_left(const PreparedHeat& p, LeftOut& left, const SunCourse& course,
                               const HeatProgress& progress) {
-  progress.begin("sunlight", static_cast<double>(p.faces->size()));
+  progress.begin("sunlight", 2 * static_cast<double>(p.faces->size()));
   return {left.take_exchange(),
           find_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, course, path_options(p.spec), nullptr,
                         [&](size_t more) { progress.done(static_cast<double>(more)); })};
@@ -287,7 +287,9 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
     trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange);
   });
   return infrared + seconds(Sunlight::kTogether, [&](FaceRange r) {
-           trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
+           for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+             trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, stage, r,
+                            sun);
          });
 }
 

@@ -144,7 +144,7 @@ HeatOperator operator_of(const PreparedHeat& p, const SunCourse& course, const S
     found.exchange = find_exchange(scene, paths, pieces.get(), done);
   }
   if (!sunlight) {
-    progress.begin("sunlight", count);
+    progress.begin("sunlight", 2 * count);
     found.sun = find_sunlight(scene, course, paths, pieces.get(), done);
   }
   if (!keeps) return found;

@@ -382,7 +382,7 @@ HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const Heat
   HeatOperator found;
   begin(progress, "exchange of infrared", static_cast<double>(faces.size()));
   found.exchange = find_exchange(scene, path_options(spec), nullptr, done);
-  begin(progress, "sunlight", static_cast<double>(faces.size()));
+  begin(progress, "sunlight", 2 * static_cast<double>(faces.size()));
   found.sun = find_sunlight(scene, weather.course, path_options(spec), nullptr, done);
   return solve_heat(scene, std::move(found), weather, spec, progress);
 }

@@ -23,6 +23,13 @@ constexpr double kUnfinishedUnit = 1e6;
 
 }  // namespace
 
+std::vector<uint32_t> SunCourse::sunny() const {
+  std::vector<uint32_t> out;
+  for (uint32_t k = 0; k < moments.size(); ++k)
+    if (up(moments[k])) out.push_back(k);
+  return out;
+}
+
 double Sunlight::unfinished(uint32_t paths) const {
   return static_cast<double>(count.unfinished) / kUnfinishedUnit / (1.0 * static_cast<double>(faces()) * paths);
 }
@@ -33,6 +40,7 @@ Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, cons
   out.moments = course.moments.size(), out.blocks = options.blocks;
   out.beam.assign(n * out.moments, 0.0f);
   out.sky.assign(n * kSkyPatches, 0.0f);
+  out.lit.assign(n * course.sunny().size(), 0);
   out.beam_of_block.assign(n * out.blocks * Sunlight::kParts, 0.0f);
   out.beam_spread.assign(n * Sunlight::kContrasts * Sunlight::kParts, 0.0f);
   for (auto* each : {&out.below, &out.sun_hours, &out.absorptance}) each->assign(n, 0.0f);
@@ -41,8 +49,8 @@ Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, cons
 }
 
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
-                    const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
-                    const std::function<void(size_t)>& progress) {
+                    const SunCourse& course, const PathOptions& options, uint32_t joins, SunStage stage,
+                    FaceRange range, Sunlight& out, const std::function<void(size_t)>& progress) {
   constexpr size_t kWave = Sunlight::kTogether;
   const size_t n = faces.size();
   SUITE_CHECK(range.begin % kWave == 0 && (range.end % kWave == 0 || range.end == n));
@@ -54,8 +62,7 @@ void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFa
     SunlightWave wave(tracer, elements, faces, optics, course, options, joins, out);
     for (size_t w = first; w < last; ++w) {
       const size_t begin = w * kWave, end = std::min(n, begin + kWave);
-      wave.beam(begin, end);
-      wave.scattered(begin, end);
+      stage == SunStage::straight ? wave.beam(begin, end) : wave.scattered(begin, end);
     }
     rays += wave.rays();
     unfinished += static_cast<uint64_t>(wave.unfinished() * kUnfinishedUnit);
@@ -88,7 +95,8 @@ Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const He
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
                         const std::function<void(size_t)>& progress) {
   Sunlight out = untraced_sunlight(faces, course, options);
-  trace_sunlight(tracer, elements, faces, optics, course, options, joins, {0, faces.size()}, out, progress);
+  for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+    trace_sunlight(tracer, elements, faces, optics, course, options, joins, stage, {0, faces.size()}, out, progress);
   add_mirrored_sunlight(tracer, elements, faces, optics, course, options, out);
   return out;
 }

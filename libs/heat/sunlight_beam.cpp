@@ -13,6 +13,12 @@ constexpr uint32_t kToldPoints = 128;   // of a block
 constexpr double kFinest = 1;           // s, to which edges of shadows are found
 constexpr size_t kWatches = 4096;       // at once
 
+std::vector<Frame> suns_of(const SunCourse& course) {
+  std::vector<Frame> out;
+  for (const double t : course.moments) out.push_back(Frame::around(course.towards(t)));
+  return out;
+}
+
 }  // namespace
 
 SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
@@ -29,15 +35,14 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       bins_(optics.sun->state().size()),
       knots_(optics.sun->state().knots.size()),
       step_(course.moments.size() > 1 ? course.moments[1] - course.moments[0] : 1),
+      sunny_(course.sunny()),
+      suns_(suns_of(course)),
+      told_sun_(course, suns_, sunny_, options.blocks * points_of_beam(options)),
+      told_(sunny_.size()),
       W_(bins_),
       w_(bins_),
       p_(knots_),
-      lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
-  for (uint32_t k = 0; k < course.moments.size(); ++k) {
-    suns_.push_back(Frame::around(course.towards(course.moments[k])));
-    if (suns_.back().z.z > 0) sunny_.push_back(k);
-  }
-}
+      lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {}
 
 SampleStream SunlightWave::stream(uint32_t slot, uint64_t purpose) const {
   const uint32_t each = options_.blocks * options_.paths;
@@ -109,8 +114,8 @@ void SunlightWave::look(std::vector<Watch>& watches) {
     w.lit.assign(suns_.size(), 0), w.takes.assign(suns_.size(), 0.0f);
     for (const uint32_t m : sunny_) {
       const Dir d = towards_sun(w, m);
+      if (!(dot(d, w.normal) > 0)) continue;
       w.takes[m] = taken(w, m, d);
-      if (w.takes[m] == 0) continue;
       sights_.push_back({tracer_.leave(w.hit, d), d, course_.moments[m], static_cast<uint32_t>(k)});
       asked.push_back({k, m});
     }
@@ -189,17 +194,26 @@ void SunlightWave::add_face(std::span<const Watch> watches, std::span<const Poin
   }
   for (uint32_t b = 0; b < options_.blocks; ++b) add_untold(watches, days, b);
   add_spread(watches, days);
-  // The difference of two means may be less than no light; it is taken from the moments beside it.
-  const std::span<float> row{&out_.beam[watches.front().face * suns_.size()], suns_.size()};
-  const auto lift = [&](size_t moment, size_t beside) {
+  const uint32_t face = watches.front().face;
+  for (size_t k = 0; k < sunny_.size(); ++k) {
+    size_t lit = 0;
+    for (const Watch& w : watches) lit += w.lit[sunny_[k]];
+    out_.lit[face * sunny_.size() + k] = static_cast<uint8_t>((lit * 255 + watches.size() / 2) / watches.size());
+  }
+  lift(face);
+  out_.sun_hours[face] = std::max(out_.sun_hours[face], 0.0f);
+}
+
+// The difference of two means may be less than no light; it is taken from the moments beside it.
+void SunlightWave::lift(uint32_t face) {
+  const std::span<float> row{&out_.beam[face * suns_.size()], suns_.size()};
+  const auto move = [&](size_t moment, size_t beside) {
     if (row[moment] >= 0) return;
     row[beside] += row[moment], row[moment] = 0;
   };
-  for (size_t m = 0; m + 1 < row.size(); ++m) lift(m, m + 1);
-  for (size_t m = row.size(); m-- > 1;) lift(m, m - 1);
+  for (size_t m = 0; m + 1 < row.size(); ++m) move(m, m + 1);
+  for (size_t m = row.size(); m-- > 1;) move(m, m - 1);
   row[0] = std::max(row[0], 0.0f);
-  float& hours = out_.sun_hours[watches.front().face];
-  hours = std::max(hours, 0.0f);
 }
 
 // How much points differ, as a few sums of them with random signs: whatever is linear in them has the mean square of
