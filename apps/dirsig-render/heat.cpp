@@ -63,7 +63,7 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
     const TargetPaths t =
         paths_for(p.spec.target, *p.tracer, *p.elements, *p.faces, p.optics, found.weather, p.spec, progress);
     p.spec.paths = t.paths;
-    note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", kPilotPaths, t.pilot_error,
+    note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", t.pilot_paths, t.pilot_error,
               t.paths, p.spec.target));
     if (!t.enough)
       warn(strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target));

@@ -1,6 +1,7 @@
 #include "heat/sunlight.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -15,6 +16,15 @@ uint32_t sky_patch(Dir d) {
   const double turn = std::atan2(d.y, d.x) / (2 * kPi);
   const auto column = std::min(kSkyTurns - 1, static_cast<uint32_t>(kSkyTurns * (turn < 0 ? turn + 1 : turn)));
   return ring * kSkyTurns + column;
+}
+
+std::array<float, kSkyShapes> sky_shapes(uint32_t patch) {
+  const double z = (patch / kSkyTurns + 0.5) / kSkyRings, turn = 2 * kPi * (patch % kSkyTurns + 0.5) / kSkyTurns;
+  const double across = std::sqrt(1 - z * z), x = across * std::cos(turn), y = across * std::sin(turn);
+  const double shapes[kSkyShapes] = {1, x, y, z, x * y, x * z, y * z, z * z, x * x - y * y};
+  std::array<float, kSkyShapes> out;
+  for (size_t k = 0; k < kSkyShapes; ++k) out[k] = static_cast<float>(shapes[k]);
+  return out;
 }
 
 namespace {
@@ -38,13 +48,14 @@ Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, cons
   Sunlight out;
   const size_t n = faces.size();
   out.moments = course.moments.size(), out.blocks = options.blocks;
-  out.beam.assign(n * out.moments, 0.0f);
-  out.sky.assign(n * kSkyPatches, 0.0f);
+  out.beam = CompactRows(n, out.moments);
+  out.sky = CompactRows(n, kSkyPatches);
   out.lit.assign(n * course.sunny().size(), 0);
-  out.beam_of_block.assign(n * out.blocks * Sunlight::kParts, 0.0f);
-  out.beam_spread.assign(n * Sunlight::kContrasts * Sunlight::kParts, 0.0f);
+  out.beam_of_block = CompactRows(n * out.blocks, Sunlight::kParts);
+  out.beam_spread = CompactRows(n * Sunlight::kContrasts, Sunlight::kParts);
+  out.sky_of_block = CompactRows(n * out.blocks, kSkyShapes);
   for (auto* each : {&out.below, &out.sun_hours, &out.absorptance}) each->assign(n, 0.0f);
-  for (auto* each : {&out.diffuse_of_block, &out.below_of_block}) each->assign(n * out.blocks, 0.0f);
+  out.below_of_block.assign(n * out.blocks, 0.0f);
   return out;
 }
 
@@ -88,7 +99,7 @@ std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements
       if (any) wave.beam(begin, end);
     }
   });
-  return std::move(out.beam);
+  return out.beam.floats();
 }
 
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,

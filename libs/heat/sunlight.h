@@ -13,8 +13,10 @@
 // Assumes: one direction of the sun a moment for the whole scene; media are passed by.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <functional>
 
+#include "heat/compact_rows.h"
 #include "heat/exchange_paths.h"
 
 namespace suite {
@@ -35,7 +37,11 @@ inline uint32_t points_of_beam(const PathOptions& options) { return std::max(1u,
 
 // Parts of the sky: kSkyRings of equal solid angle, each in kSkyTurns.
 inline constexpr uint32_t kSkyRings = 8, kSkyTurns = 16, kSkyPatches = kSkyRings * kSkyTurns;
-uint32_t sky_patch(Dir d);                                                     // above the horizon
+uint32_t sky_patch(Dir d);  // above the horizon
+// Even and linear in the middle of a patch, and quadratic: what blocks of paths find of the sky is kept for skies made
+// of these, which is most of what skies are.
+inline constexpr uint32_t kSkyShapes = 9;
+std::array<float, kSkyShapes> sky_shapes(uint32_t patch);
 inline constexpr double kSkyPatch = 2 * 3.14159265358979323846 / kSkyPatches;  // sr
 
 struct Sunlight {
@@ -43,22 +49,22 @@ struct Sunlight {
   static constexpr uint32_t kParts = 24;   // of the time, for errors
   size_t moments = 0;
   uint32_t blocks = 0;
-  std::vector<float> beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
-  std::vector<float> sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
-  std::vector<float> below;          // [face]: for 1 W/(m2 sr) of all below the horizon
-  std::vector<float> beam_of_block;  // [face][block][part]: as beam, means over a part of the time
-  // [face][contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
+  CompactRows beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
+  CompactRows sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
+  std::vector<float> below;   // [face]: for 1 W/(m2 sr) of all below the horizon
+  CompactRows beam_of_block;  // [face, block][part]: as beam, sums over a part of the time
+  // [face, contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
   // in steps of moments and scaled so that the mean square over the contrasts is the variance over the face.
   static constexpr uint32_t kContrasts = 3;
-  std::vector<float> beam_spread;
-  std::vector<float> diffuse_of_block;  // [face][block]: for 1 W/(m2 sr) of the whole sky
-  std::vector<float> below_of_block;    // [face][block]
-  std::vector<float> sun_hours;         // [face]: hours with the sun on it, mean over its points
-  std::vector<uint8_t> lit;  // [face][moment with the sun up]: share of its points that the sun is on, of 255
-  std::vector<float> absorptance;       // [face]: of even light of the sky's spectrum
+  CompactRows beam_spread;
+  CompactRows sky_of_block;           // [face, block][shape]: of a sky of that shape
+  std::vector<float> below_of_block;  // [face][block]
+  std::vector<float> sun_hours;       // [face]: hours with the sun on it, mean over its points
+  std::vector<uint8_t> lit;           // [face][moment with the sun up]: share of its points that the sun is on, of 255
+  std::vector<float> absorptance;     // [face]: of even light of the sky's spectrum
   PathCount count;
   // [face][moment]: the part of beam that came first to what sends light on without scattering it; empty without such.
-  std::vector<float> beam_by_mirrors;
+  CompactRows beam_by_mirrors;
   // Of these: places of surfaces at rest, surfaces without end, instances that move and are left out.
   struct Mirrored {
     size_t places = 0, endless = 0, moving = 0;

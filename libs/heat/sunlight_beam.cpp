@@ -42,7 +42,8 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       W_(bins_),
       w_(bins_),
       p_(knots_),
-      lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {}
+      lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
+}
 
 SampleStream SunlightWave::stream(uint32_t slot, uint64_t purpose) const {
   const uint32_t each = options_.blocks * options_.paths;
@@ -174,18 +175,18 @@ PointDay SunlightWave::day_of(const Watch& watch, std::span<const Edge> edges) c
 // Puts the integral of what is taken onto the moments, by the hats of straight lines between them.
 void SunlightWave::add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight) {
   const size_t moments = suns_.size();
-  float* to = &out_.beam[face * moments];
-  float* parts = &out_.beam_of_block[(size_t{face} * options_.blocks + block) * Sunlight::kParts];
+  float* parts = &parts_[block * Sunlight::kParts];
   lit_.spread(takes, [&](size_t moment, double value) {
     // A hat's integral is a step, of the first and last moment half a one.
     const double hats = moment == 0 || moment + 1 == moments ? 2 : 1;
-    to[moment] += static_cast<float>(weight * hats * value / options_.blocks);
+    beam_[moment] += static_cast<float>(weight * hats * value / options_.blocks);
     parts[moment * Sunlight::kParts / moments] += static_cast<float>(weight * value);
   });
   out_.sun_hours[face] += static_cast<float>(weight * lit_.total() * step_ / 3600 / options_.blocks);
 }
 
 void SunlightWave::add_face(std::span<const Watch> watches, std::span<const PointDay> days) {
+  clear_rows();
   for (size_t k = 0; k < watches.size(); ++k) {
     if (!days[k].lit_first && days[k].changes.empty()) continue;
     lit_.clear();
@@ -200,13 +201,24 @@ void SunlightWave::add_face(std::span<const Watch> watches, std::span<const Poin
     for (const Watch& w : watches) lit += w.lit[sunny_[k]];
     out_.lit[face * sunny_.size() + k] = static_cast<uint8_t>((lit * 255 + watches.size() / 2) / watches.size());
   }
-  lift(face);
+  lift_beam();
+  keep_rows(face);
   out_.sun_hours[face] = std::max(out_.sun_hours[face], 0.0f);
 }
 
+void SunlightWave::clear_rows() {
+  beam_.assign(suns_.size(), 0.0f), parts_.assign(size_t{options_.blocks} * Sunlight::kParts, 0.0f);
+}
+
+void SunlightWave::keep_rows(uint32_t face) {
+  out_.beam.set(face, beam_);
+  for (uint32_t b = 0; b < options_.blocks; ++b)
+    out_.beam_of_block.set(size_t{face} * options_.blocks + b, {&parts_[b * Sunlight::kParts], Sunlight::kParts});
+}
+
 // The difference of two means may be less than no light; it is taken from the moments beside it.
-void SunlightWave::lift(uint32_t face) {
-  const std::span<float> row{&out_.beam[face * suns_.size()], suns_.size()};
+void SunlightWave::lift_beam() {
+  const std::span<float> row = beam_;
   const auto move = [&](size_t moment, size_t beside) {
     if (row[moment] >= 0) return;
     row[beside] += row[moment], row[moment] = 0;
@@ -243,9 +255,11 @@ void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const Po
   for (const auto& contrast : sums)
     for (const double v : contrast) met += v * v / kContrasts;
   if (!(met > 0)) return;
-  float* to = &out_.beam_spread[size_t{watches.front().face} * kContrasts * kParts];
-  for (const auto& contrast : sums)
-    for (const double v : contrast) *to++ = static_cast<float>(v * std::sqrt(variance / met));
+  for (uint32_t c = 0; c < kContrasts; ++c) {
+    std::array<float, kParts> row;
+    for (uint32_t p = 0; p < kParts; ++p) row[p] = static_cast<float>(sums[c][p] * std::sqrt(variance / met));
+    out_.beam_spread.set(size_t{watches.front().face} * kContrasts + c, row);
+  }
 }
 
 void SunlightWave::of_point(const Hit& hit, bool back, Vec2 disk, std::span<float> takes) {

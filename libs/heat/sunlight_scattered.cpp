@@ -19,11 +19,14 @@ void SunlightWave::scattered(size_t begin, size_t end) {
   for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
   sights_.clear(), asked_.clear();
   first_ = begin, rows_.assign((end - begin) * options_.blocks * sunny_.size(), 0.0f);
+  sky_.assign((end - begin) * kSkyPatches, 0.0f);
+  sky_of_block_.assign((end - begin) * options_.blocks * kSkyShapes, 0.0f);
   fly(
       tracer_, going_, rays_, hits_, trace_,
       [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); },
       [this] { answer_sun(); });
-  add_rows(begin, end);
+  add_scattered(begin, end);
+  add_sky(begin, end);
 }
 
 // The throughput holds what the face keeps of each bin, times pi: the density of a cosine is 1/pi.
@@ -67,27 +70,39 @@ void SunlightWave::leave(const Going& path, Dir d) {
   const size_t block = path.slot % each / options_.paths;
   const auto of_block = static_cast<float>(value * options_.blocks);
   if (d.z > 0) {
-    out_.sky[size_t{face} * kSkyPatches + sky_patch(d)] += static_cast<float>(value);
-    out_.diffuse_of_block[size_t{face} * options_.blocks + block] += of_block;
+    const uint32_t patch = sky_patch(d);
+    sky_[(face - first_) * kSkyPatches + patch] += static_cast<float>(value);
+    float* shapes = &sky_of_block_[((face - first_) * options_.blocks + block) * kSkyShapes];
+    for (const float shape : sky_shapes(patch)) *shapes++ += of_block * shape;
   } else {
     out_.below[face] += static_cast<float>(value);
     out_.below_of_block[size_t{face} * options_.blocks + block] += of_block;
   }
 }
 
-void SunlightWave::add_rows(size_t begin, size_t end) {
+void SunlightWave::add_scattered(size_t begin, size_t end) {
   const size_t n = sunny_.size(), moments = suns_.size();
   for (size_t f = begin; f < end && n > 0; ++f) {
+    clear_rows();
+    out_.beam.get(f, beam_);
     for (size_t b = 0; b < options_.blocks; ++b) {
       const float* row = &rows_[((f - begin) * options_.blocks + b) * n];
-      float* parts = &out_.beam_of_block[(f * options_.blocks + b) * Sunlight::kParts];
+      float* parts = &parts_[b * Sunlight::kParts];
+      out_.beam_of_block.get(f * options_.blocks + b, {parts, Sunlight::kParts});
       for (size_t k = 0; k < n; ++k) {
-        out_.beam[f * moments + sunny_[k]] += row[k] / static_cast<float>(options_.blocks);
+        beam_[sunny_[k]] += row[k] / static_cast<float>(options_.blocks);
         parts[sunny_[k] * Sunlight::kParts / moments] += row[k];
       }
     }
-    lift(static_cast<uint32_t>(f));
+    lift_beam();
+    keep_rows(static_cast<uint32_t>(f));
   }
+}
+
+void SunlightWave::add_sky(size_t begin, size_t end) {
+  for (size_t f = begin; f < end; ++f) out_.sky.set(f, {&sky_[(f - begin) * kSkyPatches], kSkyPatches});
+  for (size_t b = begin * options_.blocks; b < end * options_.blocks; ++b)
+    out_.sky_of_block.set(b, {&sky_of_block_[(b - begin * options_.blocks) * kSkyShapes], kSkyShapes});
 }
 
 bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {

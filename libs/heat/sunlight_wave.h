@@ -74,8 +74,11 @@ class SunlightWave {
   void ask_sun(const Going& path, const Hit& hit, Dir direction, uint32_t n);
   void join_sun(const Going& path, const Hit& hit, Dir out, uint32_t n, const uint8_t* lit, const uint8_t* beyond);
   void answer_sun();
-  void add_rows(size_t begin, size_t end);
-  void lift(uint32_t face);
+  void clear_rows();
+  void keep_rows(uint32_t face);
+  void lift_beam();
+  void add_scattered(size_t begin, size_t end);
+  void add_sky(size_t begin, size_t end);
   double mean_ratio(const Going& path) const { return suite::mean_ratio(path.ratios, knots_); }
   void leave(const Going& path, Dir d);
   std::span<float> throughput(const Going& path) { return {&spectra_[size_t{path.spectrum} * bins_], bins_}; }
@@ -96,6 +99,8 @@ class SunlightWave {
   size_t first_ = 0;         // of the faces that go together
   std::vector<float> rows_;  // [face][block][sunny moment] of those: what is scattered to them, for each block's paths
   std::vector<float> told_;  // by sunny moment
+  std::vector<float> beam_, parts_;        // of one face, as Sunlight::beam and beam_of_block
+  std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them
   Interaction at_;
   std::vector<float> W_, w_, p_;
   LitTime lit_;

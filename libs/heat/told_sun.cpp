@@ -7,7 +7,7 @@ namespace suite {
 
 namespace {
 
-constexpr uint32_t kStride = 8;         // moments from knot to knot
+constexpr uint32_t kStride = 8;        // moments from knot to knot
 constexpr double kLeastCosine = 0.02;  // of a knot: what is over the cosine is no number at none
 
 }  // namespace
