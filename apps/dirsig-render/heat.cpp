@@ -30,6 +30,15 @@ namespace {
 constexpr double kHottest = 450;   // K, what weather may make of a surface
 constexpr double kGlowing = 1e-3;  // W/(m2 sr um): light below that is nothing beside that of the day
 
+// Truth that is more than temperatures and their errors.
+bool asks_fluxes(const Simulation& sim) {
+  return std::ranges::any_of(sim.sensors, [](const auto& sensor) {
+    return std::ranges::any_of(sensor->truth(), [](const std::string& truth) {
+      return truth == "sun_hours" || truth == "absorbed_sun" || truth == "longwave_received";
+    });
+  });
+}
+
 bool waits_for_heat(const Scene& scene) {
   return std::ranges::any_of(scene.temperatures, [](const TemperatureBinding& t) { return t.spec.model == "heat"; });
 }
@@ -122,7 +131,7 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
     if (!folder.empty()) keep(found.result, found.weather, p, scene, sim, sentences, folder);
     return std::move(found.result);
   }
-  HeatResult result = read_heat(options.heat, *p.elements, *p.faces);
+  HeatResult result = read_heat(options.heat, *p.elements, *p.faces, asks_fluxes(sim));
   if (sim.heat->final_gather && result.straight.empty())
     throw Error(options.heat + ": holds temperatures of elements alone, and `final_gather` asks for points",
                 "find them anew with it, or drop it");
@@ -187,11 +196,9 @@ bool sees_heat(const Simulation& sim, const RenderOptions& options) {
     for (const SpectralState& s : sensor->states())
       if (planck_radiance(s.high_um, kHottest) > kGlowing) return true;
     for (const std::string& truth : sensor->truth())
-      if (truth.starts_with("temperature") || truth == "sun_hours" || truth == "absorbed_sun" ||
-          truth == "longwave_received")
-        return true;
+      if (truth.starts_with("temperature")) return true;
   }
-  return false;
+  return asks_fluxes(sim);
 }
 
 std::vector<std::array<double, 2>> heat_windows_um() {
@@ -236,7 +243,8 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     cut->kept.clear();  // what is left out is found again
     if (cut->elements != sim.heat->spec.elements || cut->by_sun != sim.heat->spec.cut_by_sun) cut.reset();
   }
-  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut));
+  const bool rays = options.heat.empty() || sim.heat->final_gather;
+  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut, rays));
   const auto result = std::make_shared<HeatResult>();
   if (!ranks || ranks->leads()) *result = found_or_read(*p, *scene, sim, options, folder);
   if (ranks) {
