@@ -368,10 +368,12 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
                    spec.audit, {}, [&](size_t more) { tell_done(progress, static_cast<double>(more)); });
   }
   found = {};
+  give_back_freed();
   // Who touches whom takes room, in large meshes much: last.
   if (!spec.lateral)
     for (const std::string& note : lateral_notes(scene.tracer.scene(), scene.elements, scene.optics, h))
       result.notes.push_back(note);
+  give_back_freed();
   result.absorbed = loads.absorbed.floats();
   loads.absorbed = {};
   result.received = h.received.floats();
