@@ -100,8 +100,9 @@ double bytes_of(const PreparedHeat& p) {
   constexpr double kNodes = 4 * 30 * 8;
   const double moments = moments_of(p), paths = p.spec.paths;
   const double rows = HeatSpec::kBlocks + Sunlight::kContrasts;  // of parts, for errors
-  const double tracing = 4 * (moments + kSkyPatches + rows * kHeatParts + 2 * HeatSpec::kBlocks);
-  // Then what acts on a face and its errors are kept in two bytes each (compact_rows.h).
+  // In two bytes a number, with two floats a row (compact_rows.h); a byte for every moment with the sun up.
+  const double tracing =
+      3 * moments + 2 * kSkyPatches + rows * (2 * kHeatParts + 8) + HeatSpec::kBlocks * (2 * kSkyShapes + 8 + 4) + 28;
   const double kept = 2 * moments + rows * (2 * kHeatParts + 8), making = kept + paths * 8 * 3;
   const double balance = kept + paths * 8 * 2 + 4 * moments + kNodes;
   // Elements that conduct to each other are followed at once: what they receive and emit, and the vectors of nodes of

@@ -32,7 +32,7 @@ void check_finite(h5::Reader& r, const std::vector<float>& values, const char* n
 void write_heat(const std::string& path, const HeatResult& h, const Elements& elements, const HeatFaces& faces,
                 const std::vector<std::string>& materials, const HeatCut& cut, const std::string& made_by) {
   AtomicFile file(path);
-  h5::Writer w(file.temporary(), path, [](const std::string&) { return 4; });
+  h5::Writer w(file.temporary(), path, [](const std::string&) { return 1; });
   w.attribute("format", kFormat);
   w.attribute("version", kVersion);
   w.attribute("arguments", made_by);

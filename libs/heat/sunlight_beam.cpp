@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint64_t kPurpose = 0x6265616d;
 constexpr uint64_t kTold = 0x746f6c64;  // purpose of points whose days are told from others'
-constexpr uint32_t kToldPoints = 128;   // of a block
+constexpr uint32_t kToldPoints = 64;    // of a block
 constexpr double kFinest = 1;           // s, to which edges of shadows are found
 constexpr size_t kWatches = 4096;       // at once
 
@@ -92,9 +92,21 @@ void SunlightWave::beam_of(size_t begin, size_t end) {
   for (size_t k = 0; k < watches.size(); k += each) add_face({&watches[k], each}, {&days[k], each});
 }
 
+// What even, opaque surfaces keep of the beam depends on nothing but the moment; empty for others.
+std::span<const float> SunlightWave::kept_by(const Watch& watch) {
+  surface_.interact(watch.hit, watch.normal, at_, watch.hit.time);
+  const bool of_a_map = at_.own && at_.baked == &at_.own->made;
+  const float* diffuse = at_.baked && at_.baked->model && !of_a_map ? at_.baked->model->diffuse() : nullptr;
+  if (!diffuse) return {};
+  if (diffuse == kept_of_) return kept_;
+  kept_of_ = diffuse, kept_.assign(suns_.size(), 0.0f);
+  for (size_t m = 0; m < kept_.size(); ++m)
+    for (size_t i = 0; i < bins_; ++i) kept_[m] += course_.beam[m][i] * (1 - std::min(1.0f, diffuse[i]));
+  return kept_;
+}
+
 float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
   const double cosine = dot(d, watch.normal);
-  if (!(cosine > 0)) return 0;
   surface_.interact(watch.hit, d, at_, course_.moments[moment]);
   if (!at_.baked || !at_.baked->model) return 0;
   at_.baked->model->total(at_.frame.to_local(d), W_);
@@ -113,10 +125,12 @@ void SunlightWave::look(std::vector<Watch>& watches) {
   for (size_t k = 0; k < watches.size(); ++k) {
     Watch& w = watches[k];
     w.lit.assign(suns_.size(), 0), w.takes.assign(suns_.size(), 0.0f);
+    const std::span<const float> kept = kept_by(w);
     for (const uint32_t m : sunny_) {
       const Dir d = towards_sun(w, m);
-      if (!(dot(d, w.normal) > 0)) continue;
-      w.takes[m] = taken(w, m, d);
+      const double cosine = dot(d, w.normal);
+      if (!(cosine > 0)) continue;
+      w.takes[m] = kept.empty() ? taken(w, m, d) : static_cast<float>(cosine) * kept[m];
       sights_.push_back({tracer_.leave(w.hit, d), d, course_.moments[m], static_cast<uint32_t>(k)});
       asked.push_back({k, m});
     }

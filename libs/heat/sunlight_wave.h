@@ -64,6 +64,7 @@ class SunlightWave {
   void add_spread(std::span<const Watch> watches, std::span<const PointDay> days);
   void add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block);
   void add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight);
+  std::span<const float> kept_by(const Watch& watch);
   float taken(const Watch& watch, uint32_t moment, Dir d);
   void start(uint32_t face);
   bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n);
@@ -103,6 +104,8 @@ class SunlightWave {
   std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them
   Interaction at_;
   std::vector<float> W_, w_, p_;
+  const float* kept_of_ = nullptr;  // reflectance of which kept_ is told
+  std::vector<float> kept_;         // by moment
   LitTime lit_;
   TraceStatistics trace_;
   std::vector<Going> going_;
