@@ -251,6 +251,7 @@ SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoad
     loads.source.push_back(
         scene.faces.is_back(f) ? 0 : scene.optics.heated[scene.elements[scene.faces.element(f)].material].source);
   loads.outside = outsides(scene.tracer, scene.faces, weather, spec);
+  give_back_freed();
   return loads;
 }
 
