@@ -215,6 +215,24 @@ TEST(Elements, LeftOutOfACellOfAMap) {
     EXPECT_EQ(elements.at(places[e], whole[e].material).has_value(), static_cast<bool>(kept[e])) << e;
 }
 
+// What was cut by a sun is cut again without asking it: a sun that shines nowhere leads elsewhere.
+TEST(Elements, CutsThatAreKnownNeedNoSun) {
+  const HeatKit kit(mixed(), 10);
+  const auto& heated = kit.optics.has_heat;
+  const DaySun sun = day_sun(*kit.tracer, {{0, 900, normalized(Vec3{1, 0.3, 0.5})}}), night = day_sun(*kit.tracer, {});
+  const Elements cut(*kit.tracer, heated, 300, 0, &sun), again(*kit.tracer, heated, 300, 0, &night, cut.splits()),
+      dark(*kit.tracer, heated, 300, 0, &night);
+  ASSERT_GT(cut.splits().size(), 50u);
+  EXPECT_EQ(cut.fingerprint(), again.fingerprint());
+  EXPECT_EQ(cut.splits(), again.splits());
+  EXPECT_NE(cut.fingerprint(), dark.fingerprint());  // negative control
+  for (const CellSplit wrong : {CellSplit{1000, 0}, CellSplit{0, 1u << 30}}) {
+    const std::vector<CellSplit> splits{wrong};
+    EXPECT_NE(message_of([&] { Elements(*kit.tracer, heated, 300, 0, &night, splits); }).find("another scene"),
+              std::string::npos);
+  }
+}
+
 TEST(Elements, RefuseScenesWithoutAny) {
   HeatedScene s;
   s.plane(1, 1, s.given(1, 300));
