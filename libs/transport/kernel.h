@@ -92,7 +92,7 @@ class PathKernel final : public PathTracing {
   }
 
  private:
-  enum class Stage : uint8_t { leave, arrive, look } stage_ = Stage::leave;
+  enum class Stage : uint8_t { leave, arrive, look, fly_sides, look_aside, go_on } stage_ = Stage::leave;
   struct Question {
     uint32_t node;  // in nodes_
     uint16_t light;
@@ -121,6 +121,7 @@ class PathKernel final : public PathTracing {
   void request_hits(TraceRequest& request);
   void fly();
   void fly_one(size_t slot);
+  double way_to(const Hit& hit, const Path& path) const;
   bool meets_outside(const Path& path) const;
   void arrive();
   SUITE_INLINE bool meet(uint32_t p, uint32_t slot);
@@ -140,6 +141,34 @@ class PathKernel final : public PathTracing {
   void answer();
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
   void lack(const Question& q, size_t ray, bool blocked);
+  bool is_behind_earth(const Ray& ray, double length) const {
+    return environment_.earth && environment_.earth->meet(ray.origin, ray.direction, length);
+  }
+  // kernel_side.h: flights aside of paths, from where media scatter forwards.
+  struct Side {
+    uint32_t node;        // in nodes_
+    Path path;            // that takes the way aside
+    Flight flight;        // of it
+    double scale = 0;     // times spectrum: what the event makes of light from there, over its density
+    LightSample sample;   // of the light
+    uint32_t hit = 0;     // in side_hits_
+  };
+  void choose_side_light();
+  bool has_side(const NodeAt& node) const;
+  bool share_with_side(const NodeAt& node, Continuation& on) const;
+  // The share of what a path finds of a light at a node that side flights leave to it.
+  double beside_sides(const NodeAt& node, uint16_t light) const {
+    if constexpr (kGuides)
+      if (node.event && paths_[node.path].sided && light == side_light_->index) return alone(paths_[node.path]);
+    return 1;
+  }
+  double alone(const Path& path) const;
+  bool begin_sides();
+  bool begin_side(const NodeAt& node, Side& side, std::span<float> spectrum);
+  void fly_sides();
+  bool fly_side(Side& side, std::span<float> spectrum);
+  void answer_sides();
+  void shine_aside(const Side& side, size_t ray, std::span<float> spectrum);
   // kernel_refract.h: lights behind smooth interfaces.
   void want_refracted(const NodeAt& node, const Asked& light, const LightSample& sample);
   void want_places();
@@ -271,6 +300,8 @@ class PathKernel final : public PathTracing {
   // Of a path that enters a medium. Two against one take 0.87 of the work to an error in the bay of sample_scenes, four
   // as much as one or two.
   static constexpr uint32_t kParts = 2;
+  const Asked* side_light_ = nullptr;  // towards which there are side flights; null: there are none
+  Dir side_toward_;                    // its middle
   // Of the stage.
   bool first_stage_ = true;
   std::vector<uint32_t> active_, received_;  // paths; those that start at receivers
@@ -284,6 +315,10 @@ class PathKernel final : public PathTracing {
   std::vector<Question> questions_;
   std::vector<RefractedQuestion> refracted_questions_;
   std::vector<Guide> guides_;  // of nodes; where nothing refracts none
+  std::vector<Side> sides_;
+  std::vector<Ray> side_rays_;
+  std::vector<Hit> side_hits_;
+  std::vector<float> side_spectra_;  // [side][bin]
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;

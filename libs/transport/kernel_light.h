@@ -94,8 +94,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
   for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
     const Ray& ray = sight_rays_.rays()[i];
-    const bool behind_earth =
-        environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance()[i]);
+    const bool behind_earth = is_behind_earth(ray, sight_rays_.distance()[i]);
     if constexpr (Space::kGoesBack)
       if (nodes_[q.node].event && q.beam && space_.in_air(nodes_[q.node].path)) {
         lack(q, i, blocked[i] || behind_earth);  // it shines in the even field already
@@ -207,7 +206,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
     if (c.water == WaterSeen::mirrored && distance < std::numeric_limits<double>::infinity())
       c.water = WaterSeen::other;
   }
-  c.scale = static_cast<float>(passes * q.scale / denominator);
+  c.scale = static_cast<float>(passes * q.scale / denominator * beside_sides(node, q.light));
   c.factor = factor;
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);
