@@ -26,9 +26,9 @@ inline constexpr Blocks kSecond{128, kNodes};  // lobe (the first), second light
 inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than four numbers
 inline constexpr Blocks kLight{512, kNodes* kOwnLights};
 inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
-inline constexpr Blocks kPlace{1120, kFlights};  // places in the air that paths go back to
-inline constexpr Blocks kGuided{1136, kNodes};   // guided continuations beside the first ones
-inline constexpr uint32_t kPerSide = 2;          // whether and where to, and the flight with a light
+inline constexpr Blocks kPlace{1120, kFlights};           // places in the air that paths go back to
+inline constexpr Blocks kGuided{1136, kNodes};            // guided continuations beside the first ones
+inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
 inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
 constexpr bool disjoint() {
@@ -57,6 +57,9 @@ static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed 
 // Of Hashed::choices.
 inline constexpr uint32_t kKnot = 1;
 constexpr uint32_t roulette(uint32_t event) { return 2 + 16 * (event % (kStride / 16)); }
+// Whether the event asks a light, and whether it tries a side flight.
+constexpr uint32_t roulette_of_light(uint32_t event) { return roulette(event) + 1; }
+constexpr uint32_t roulette_of_side(uint32_t event) { return roulette(event) + 2; }
 static_assert(roulette(0) != kKnot && roulette(1) - roulette(0) == 16 && roulette(kStride / 16 - 1) < kStride);
 
 inline std::array<double, 4> hashed(const SampleStream& stream, uint32_t sample, Hashed kind, uint32_t more,

@@ -139,9 +139,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& req
         answer();
         hand_over();
         stage_ = Stage::go_on;
-        if (!begin_sides()) break;
+        if (!begin_sides(request)) break;
         stage_ = Stage::fly_sides;
-        request = {TraceRequest::Kind::nearest, {side_rays_.data(), sides_.size()}, false, {side_hits_.data(), sides_.size()}, {}, {}};
         return true;
       case Stage::fly_sides:
         fly_sides();
@@ -181,15 +180,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
     for (size_t i = 0; i < active_.size(); ++i) pass(i);
   for (size_t i = 0; i < active_.size(); ++i)
     if (flights_[i].weakened) throughputs_.attenuate(active_[i], flights_[i].through);
-}
-
-// From where a path stands to what its ray has met, m.
-template <class Surfaces, class Space, class Throughputs, class Estimator>
-double PathKernel<Surfaces, Space, Throughputs, Estimator>::way_to(const Hit& hit, const Path& path) const {
-  constexpr double kForever = std::numeric_limits<double>::infinity();
-  if (hit.hit() || !environment_.earth) return hit.hit() ? hit.distance : kForever;
-  const auto met = environment_.earth->meet(path.origin, path.direction, kForever);
-  return met ? met->distance : kForever;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

@@ -46,7 +46,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& node, const Asked& light,
-                                                                  const LightSample& sample, int draws) {
+                                                                  const LightSample& sample, int draws, double asks) {
   const uint32_t p = node.path;
   const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
@@ -82,7 +82,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
                                     light.beam,
                                     sample.direction,
                                     delta ? 0 : sample.density * draws,
-                                    static_cast<float>(delta ? sample.scale / draws : sample.scale),
+                                    static_cast<float>((delta ? sample.scale / draws : sample.scale) / asks),
                                     sample.spectrum};
   sight_rays_.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }

@@ -15,6 +15,7 @@
 // zero-variance-based sampling scheme for Monte Carlo subsurface scattering", SIGGRAPH 2014 talks.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "transport/kernel.h"
@@ -32,7 +33,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::choose_side_light() {
     }
     if (!side_light_) return;
     side_toward_ = side_light_->light->beam()->direction;
-    side_rays_.resize(paths_.size()), side_hits_.resize(paths_.size());
+    sides_.resize(paths_.size()), side_rays_.resize(paths_.size()), side_hits_.resize(paths_.size());
     side_spectra_.resize(paths_.size() * bins_);
   }
 }
@@ -65,31 +66,58 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::alone(const Path& pa
   return 1 / other;
 }
 
+// What a path's light would come to towards a direction, over even scattering of all of it.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::brings(const NodeAt& node, Dir in) const {
+  if constexpr (kGuides) {
+    const Path& path = paths_[node.path];
+    float p[kMaxKnots];
+    space_.densities(node.path, -path.direction, in, {p, knots()});
+    double sum = 0;
+    for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * p[k];
+    return 4 * kPi * *std::max_element(path.throughput, path.throughput + knots()) * sum;
+  }
+  return 0;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::asks(const NodeAt& node, const Asked& light) const {
+  const Path& path = paths_[node.path];
+  if (!kGuides || !node.event || !path.sided || &light != side_light_) return 1;
+  const double asks = std::clamp(brings(node, side_toward_) * alone(path) / kSideCarries, kSideLeast, 1.0);
+  if (asks == 1) return 1;
+  return path.stream.hashed(path.sample, dimensions::roulette_of_light(path.order() - 1)) < asks ? asks : 0;
+}
+
 // Draws side flights of the stage; false when there are none.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_sides() {
-  sides_.clear();
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_sides(TraceRequest& request) {
+  side_count_ = 0;
   if constexpr (kGuides) {
     if (!side_light_) return false;
-    sides_.resize(nodes_.size());
-    size_t n = 0;
-    for (const NodeAt& node : nodes_)
-      if (has_side(node) && begin_side(node, sides_[n], {&side_spectra_[n * bins_], bins_})) {
-        const Path& path = sides_[n].path;
-        side_rays_[n++].set(path.origin, path.direction, path.time, path.draw);
-      }
-    sides_.resize(n);
+    for (const NodeAt& node : nodes_) {
+      Side& side = sides_[side_count_];
+      if (!has_side(node) || !begin_side(node, side, side_spectrum(side_count_))) continue;
+      side_rays_[side_count_++].set(side.path.origin, side.path.direction, side.path.time, side.path.draw);
+    }
   }
-  return !sides_.empty();
+  request = {
+      TraceRequest::Kind::nearest, {side_rays_.data(), side_count_}, false, {side_hits_.data(), side_count_}, {}, {}};
+  return side_count_ > 0;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_side(const NodeAt& node, Side& side,
                                                                      std::span<float> spectrum) {
   if constexpr (kGuides) {
-    // Side flights that would bring less than even scattering of all the path's light are left to chance.
-    constexpr double kCarries = 1, kLeast = 0.05;
     const Path& from = paths_[node.path];
+    // Half way between both directions a phase function that falls with the angle brings most: a bound known
+    // beforehand.
+    const Vec3 half = from.direction + side_toward_;
+    const double length2 = dot(half, half);
+    const double most = length2 > 1e-6 ? brings(node, half / std::sqrt(length2)) / 2 : 0;
+    const double tried = std::clamp(most / kSideCarries, kSideLeast, 1.0);
+    if (from.stream.hashed(from.sample, dimensions::roulette_of_side(from.order() - 1)) >= tried) return false;
     const std::array<double, 4> u = dimensions::of_side(from.stream, from.sample, from.flights, 0);
     Path& path = side.path;
     path = from;
@@ -106,8 +134,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_side(const NodeA
       brightest = std::max(brightest, from.throughput[k]);
     }
     const double brings = 4 * kPi * brightest * own * shares * others / (shares + others);
-    const double survives = std::clamp(brings / kCarries, kLeast, 1.0);
-    if (!(brings > 0) || u[3] >= survives) return false;
+    const double survives = std::min(tried, std::clamp(brings / kSideCarries, kSideLeast, 1.0));
+    if (!(brings > 0) || u[3] * tried >= survives) return false;
     for (size_t k = 0; k < knots(); ++k) path.relative[k] /= shares, path.other[k] /= shares;
     path.origin = space_.place(node.path);
     path.branch = Branch::none, path.sided = true;
@@ -126,10 +154,10 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_sides() {
   if constexpr (kGuides) {
     sight_rays_.clear(), space_.clear_sight();
     sight_rays_.first = false;
-    sight_rays_.expect(sides_.size());
+    sight_rays_.expect(side_count_);
     size_t n = 0;
-    for (size_t i = 0; i < sides_.size(); ++i) {
-      const std::span<float> spectrum{&side_spectra_[i * bins_], bins_};
+    for (size_t i = 0; i < side_count_; ++i) {
+      const std::span<float> spectrum = side_spectrum(i);
       sides_[i].hit = static_cast<uint32_t>(i);
       if (!fly_side(sides_[i], spectrum)) continue;
       const uint32_t p = nodes_[sides_[i].node].path;
@@ -140,7 +168,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_sides() {
       if (n < i) sides_[n] = sides_[i], std::copy_n(spectrum.data(), bins_, &side_spectra_[n * bins_]);
       ++n;
     }
-    sides_.resize(n);
+    side_count_ = n;
     sight_rays_.parallel = n;
     nodes_met_ += n;
     space_.sight().begin(sight_rays_);
@@ -159,8 +187,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_side(Side& side, s
     side.scale *= double{side.flight.through.scale};
     if (side.flight.through.spectrum)
       for (size_t i = 0; i < bins_; ++i) spectrum[i] *= through[i];
-    const auto sample = side_light_->only ? side_light_->only
-                                          : side_light_->light->sample({}, {u[2], u[3], 0, 0}, path.time);
+    const auto sample =
+        side_light_->only ? side_light_->only : side_light_->light->sample({}, {u[2], u[3], 0, 0}, path.time);
     if (!sample || !(sample->scale > 0)) return false;
     side.sample = *sample;
     return true;
@@ -171,9 +199,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_side(Side& side, s
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer_sides() {
   const std::span<const uint8_t> blocked = sight_rays_.blocked();
-  for (size_t i = 0; i < sides_.size(); ++i)
+  for (size_t i = 0; i < side_count_; ++i)
     if (!blocked[i] && !is_behind_earth(sight_rays_.rays()[i], sight_rays_.distance()[i]))
-      shine_aside(sides_[i], i, {&side_spectra_[i * bins_], bins_});
+      shine_aside(sides_[i], i, side_spectrum(i));
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
