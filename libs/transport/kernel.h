@@ -165,7 +165,7 @@ class PathKernel final : public PathTracing {
   };
   // Of the light that may come to pass, over even scattering of all of a path's light: less than kSideCarries is left
   // to chance, with kSideLeast at least.
-  static constexpr double kSideCarries = 3, kSideLeast = 0.05;
+  static constexpr double kSideCarries = 4, kSideLeast = 0.05;
   double brings(const NodeAt& node, Dir in) const;
   void choose_side_light();
   std::span<float> side_spectrum(size_t i) { return {&side_spectra_[i * bins_], bins_}; }

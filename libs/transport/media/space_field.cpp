@@ -157,6 +157,12 @@ void FieldSpace::densities(uint32_t p, Dir out, Dir in, std::span<float> density
   const double cosine = scattering_cosine(out, in);
   const ScatterPlace& e = events_[p];
   const std::vector<size_t>& bins = optics_.state().knots;
+  if (e.contents.size() == 1 && optics_.media()[e.contents[0].medium].scatters()) {  // it alone is the mean
+    optics_.media()[e.contents[0].medium].phase->pdf(cosine, density);
+    for (size_t k = 0; k < density.size(); ++k)
+      if (!(e.rate[k] > 0)) density[k] = 0;
+    return;
+  }
   double q[kMaxKnots] = {};
   for (const Constituent& c : e.contents) {
     const BakedMedium& m = optics_.media()[c.medium];
