@@ -30,6 +30,15 @@ namespace {
 constexpr double kHottest = 450;   // K, what weather may make of a surface
 constexpr double kGlowing = 1e-3;  // W/(m2 sr um): light below that is nothing beside that of the day
 
+// Truth that is more than temperatures and their errors.
+bool asks_fluxes(const Simulation& sim) {
+  return std::ranges::any_of(sim.sensors, [](const auto& sensor) {
+    return std::ranges::any_of(sensor->truth(), [](const std::string& truth) {
+      return truth == "sun_hours" || truth == "absorbed_sun" || truth == "longwave_received";
+    });
+  });
+}
+
 bool waits_for_heat(const Scene& scene) {
   return std::ranges::any_of(scene.temperatures, [](const TemperatureBinding& t) { return t.spec.model == "heat"; });
 }
@@ -37,7 +46,7 @@ bool waits_for_heat(const Scene& scene) {
 // Sunlight of the elements that are left, with the exchange that is there.
 HeatOperator operator_of_left(const PreparedHeat& p, LeftOut& left, const SunCourse& course,
                               const HeatProgress& progress) {
-  progress.begin("sunlight", static_cast<double>(p.faces->size()));
+  progress.begin("sunlight", 2 * static_cast<double>(p.faces->size()));
   return {left.take_exchange(),
           find_sunlight({*p.tracer, *p.elements, *p.faces, p.optics}, course, path_options(p.spec), nullptr,
                         [&](size_t more) { progress.done(static_cast<double>(more)); })};
@@ -63,7 +72,7 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
     const TargetPaths t =
         paths_for(p.spec.target, *p.tracer, *p.elements, *p.faces, p.optics, found.weather, p.spec, progress);
     p.spec.paths = t.paths;
-    note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", kPilotPaths, t.pilot_error,
+    note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", t.pilot_paths, t.pilot_error,
               t.paths, p.spec.target));
     if (!t.enough)
       warn(strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target));
@@ -122,7 +131,7 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
     if (!folder.empty()) keep(found.result, found.weather, p, scene, sim, sentences, folder);
     return std::move(found.result);
   }
-  HeatResult result = read_heat(options.heat, *p.elements, *p.faces);
+  HeatResult result = read_heat(options.heat, *p.elements, *p.faces, asks_fluxes(sim));
   if (sim.heat->final_gather && result.straight.empty())
     throw Error(options.heat + ": holds temperatures of elements alone, and `final_gather` asks for points",
                 "find them anew with it, or drop it");
@@ -187,11 +196,9 @@ bool sees_heat(const Simulation& sim, const RenderOptions& options) {
     for (const SpectralState& s : sensor->states())
       if (planck_radiance(s.high_um, kHottest) > kGlowing) return true;
     for (const std::string& truth : sensor->truth())
-      if (truth.starts_with("temperature") || truth == "sun_hours" || truth == "absorbed_sun" ||
-          truth == "longwave_received")
-        return true;
+      if (truth.starts_with("temperature")) return true;
   }
-  return false;
+  return asks_fluxes(sim);
 }
 
 std::vector<std::array<double, 2>> heat_windows_um() {
@@ -236,7 +243,8 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     cut->kept.clear();  // what is left out is found again
     if (cut->elements != sim.heat->spec.elements || cut->by_sun != sim.heat->spec.cut_by_sun) cut.reset();
   }
-  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut));
+  const bool rays = options.heat.empty() || sim.heat->final_gather;
+  auto p = std::make_shared<PreparedHeat>(prepare(scene, sim, job, cut, rays));
   const auto result = std::make_shared<HeatResult>();
   if (!ranks || ranks->leads()) *result = found_or_read(*p, *scene, sim, options, folder);
   if (ranks) {
@@ -287,7 +295,9 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
     trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange);
   });
   return infrared + seconds(Sunlight::kTogether, [&](FaceRange r) {
-           trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, r, sun);
+           for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+             trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, stage, r,
+                            sun);
          });
 }
 

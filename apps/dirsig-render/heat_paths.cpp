@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/memory.h"
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "base/run_app.h"
@@ -139,12 +140,13 @@ HeatOperator operator_of(const PreparedHeat& p, const SunCourse& course, const S
     stored.read(found.exchange);
     found.sun = untraced_sunlight(*p.faces, course, paths);
     sunlight = take_stored(stored, from, identity, found.sun);
+    if (sunlight) give_up(found.sun.lit);
   } else {
     progress.begin("exchange of infrared", count);
     found.exchange = find_exchange(scene, paths, pieces.get(), done);
   }
   if (!sunlight) {
-    progress.begin("sunlight", count);
+    progress.begin("sunlight", 2 * count);
     found.sun = find_sunlight(scene, course, paths, pieces.get(), done);
   }
   if (!keeps) return found;

@@ -16,6 +16,9 @@ namespace suite {
 
 namespace {
 
+// Tiles are built when a ray comes to them.
+const TileLimit kNoTiles{uint64_t{1} << 62, {}};
+
 // From the first capture's begin to the last one's end.
 TimeSpan captured(const Simulation& sim) {
   TimeSpan span{INFINITY, -INFINITY};
@@ -67,19 +70,21 @@ HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
 }
 
 PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
-                     const std::optional<HeatCut>& cut) {
+                     const std::optional<HeatCut>& cut, bool rays) {
   PreparedHeat p;
   p.spec = sim.heat->spec;
   const Geodetic site = sim.heat->weather->site();
   p.spec.span = span_of(sim, scene->origin.given ? scene->origin.longitude_deg : site.longitude_deg);
-  p.tracer = std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), job.tiles);
+  p.tracer =
+      std::make_unique<const Tracer>(scene, std::nullopt, p.spec.span, cut_out(*scene), rays ? job.tiles : kNoTiles);
   p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
   const HeatWeather weather = weather_of(sim, *scene);
-  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}});
+  p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}, {}});
   if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
   const DaySun sun = day_sun(*p.tracer, p.cut.sun);
   p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
-                                          p.cut.by_sun ? &sun : nullptr);
+                                          p.cut.by_sun ? &sun : nullptr, p.cut.splits);
+  p.cut.splits = p.elements->splits();
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
   check_surroundings({*p.tracer, *p.elements, *p.faces, p.optics}, p.spec);
   if (const std::vector<uint32_t> kept = p.cut.kept; !kept.empty()) {
@@ -95,8 +100,9 @@ double bytes_of(const PreparedHeat& p) {
   constexpr double kNodes = 4 * 30 * 8;
   const double moments = moments_of(p), paths = p.spec.paths;
   const double rows = HeatSpec::kBlocks + Sunlight::kContrasts;  // of parts, for errors
-  const double tracing = 4 * (moments + kSkyPatches + rows * kHeatParts + 2 * HeatSpec::kBlocks);
-  // Then what acts on a face and its errors are kept in two bytes each (compact_rows.h).
+  // In two bytes a number, with two floats a row (compact_rows.h); a byte for every moment with the sun up.
+  const double tracing =
+      3 * moments + 2 * kSkyPatches + rows * (2 * kHeatParts + 8) + HeatSpec::kBlocks * (2 * kSkyShapes + 8 + 4) + 28;
   const double kept = 2 * moments + rows * (2 * kHeatParts + 8), making = kept + paths * 8 * 3;
   const double balance = kept + paths * 8 * 2 + 4 * moments + kNodes;
   // Elements that conduct to each other are followed at once: what they receive and emit, and the vectors of nodes of

@@ -15,6 +15,11 @@ void put_cut(h5::Writer& w, const HeatCut& cut) {
   const double numbers[2] = {static_cast<double>(cut.elements), static_cast<double>(cut.sun.size())};
   w.attribute("elements_asked_and_moments_of_the_sun", numbers);
   if (!cut.kept.empty()) w.put("/cut/kept", cut.kept, "1");
+  if (!cut.splits.empty()) {
+    std::vector<uint32_t> splits;
+    for (const CellSplit& s : cut.splits) splits.insert(splits.end(), {s.unit, s.cell});
+    w.put("/cut/splits", splits, "1", 2);
+  }
   if (cut.sun.empty()) return;
   std::vector<double> time, direct, towards;
   for (const SunMoment& m : cut.sun) {
@@ -32,8 +37,12 @@ HeatCut take_cut(h5::Reader& r) {
   const std::vector<double> v = r.numbers("elements_asked_and_moments_of_the_sun", 2);
   if (!(v[0] >= 1 && v[0] <= kMostElements)) r.fail(strf("was made for %g elements", v[0]));
   if (!(v[1] >= 0 && v[1] <= kMostMoments)) r.fail(strf("has elements cut by %g places of the sun", v[1]));
-  HeatCut cut{static_cast<size_t>(v[0]), by == "sun", {}, {}};
+  HeatCut cut{static_cast<size_t>(v[0]), by == "sun", {}, {}, {}};
   if (r.has("/cut/kept")) cut.kept = r.get<uint32_t>("/cut/kept", "1");
+  if (r.has("/cut/splits")) {
+    const std::vector<uint32_t> splits = r.get<uint32_t>("/cut/splits", "1", 2);
+    for (size_t k = 0; k < splits.size(); k += 2) cut.splits.push_back({splits[k], splits[k + 1]});
+  }
   const auto n = static_cast<long long>(v[1]);
   if (n == 0) return cut;
   const std::vector<double> time = r.get<double>("/cut/time", "s", 1, n),

@@ -10,7 +10,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat", *kVersion = "3";
+constexpr const char *kFormat = "suite heat", *kVersion = "4";
 
 // A number of 64 bits as two of 32, exactly.
 std::vector<uint32_t> halves(uint64_t v) { return {static_cast<uint32_t>(v >> 32), static_cast<uint32_t>(v)}; }
@@ -32,7 +32,7 @@ void check_finite(h5::Reader& r, const std::vector<float>& values, const char* n
 void write_heat(const std::string& path, const HeatResult& h, const Elements& elements, const HeatFaces& faces,
                 const std::vector<std::string>& materials, const HeatCut& cut, const std::string& made_by) {
   AtomicFile file(path);
-  h5::Writer w(file.temporary(), path, [](const std::string&) { return 4; });
+  h5::Writer w(file.temporary(), path, [](const std::string&) { return 1; });
   w.attribute("format", kFormat);
   w.attribute("version", kVersion);
   w.attribute("arguments", made_by);
@@ -83,7 +83,7 @@ HeatCut heat_cut(const std::string& path) {
   return take_cut(r);
 }
 
-HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces) {
+HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces, bool fluxes) {
   h5::Reader r(path, "find the temperatures again");
   check_kind(r);
   if (r.get<uint32_t>("/fingerprint", "1", 1, 2) != halves(elements.fingerprint()))
@@ -109,8 +109,10 @@ HeatResult read_heat(const std::string& path, const Elements& elements, const He
   h.emissivity = r.get<float>("/faces/emissivity", "1", 1, n);
   h.absorptance = r.get<float>("/faces/absorptance", "1", 1, n);
   h.sun_hours = r.get<float>("/faces/sun_hours", "h", 1, n);
-  h.absorbed = r.get<float>("/faces/absorbed_sunlight", "W/m2", h.moments, n);
-  h.received = r.get<float>("/faces/received_infrared", "W/m2", h.moments, n);
+  if (fluxes) {
+    h.absorbed = r.get<float>("/faces/absorbed_sunlight", "W/m2", h.moments, n);
+    h.received = r.get<float>("/faces/received_infrared", "W/m2", h.moments, n);
+  }
   if (r.has("/faces/straight_sunlight")) h.straight = r.get<float>("/faces/straight_sunlight", "W/m2", h.moments, n);
   check_finite(r, h.straight, "/faces/straight_sunlight", -1e5f, 1e5f);
   check_finite(r, h.emissivity, "/faces/emissivity", 0, 1);

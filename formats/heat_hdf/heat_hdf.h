@@ -11,8 +11,9 @@ namespace suite {
 void write_heat(const std::string& path, const HeatResult& result, const Elements& elements, const HeatFaces& faces,
                 const std::vector<std::string>& materials, const HeatCut& cut, const std::string& made_by);
 
-// Error: no such file, damaged, or of another scene, other materials or another number of elements.
-HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces);
+// fluxes: what faces absorb and receive, too; else these are left empty. Error: no such file, damaged, or of another
+// scene, other materials or another number of elements.
+HeatResult read_heat(const std::string& path, const Elements& elements, const HeatFaces& faces, bool fluxes = true);
 // What the elements have to be made with.
 HeatCut heat_cut(const std::string& path);
 

@@ -13,8 +13,8 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "2";
-constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight";
+constexpr const char *kFormat = "suite heat operator", *kVersion = "3";
+constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight", *kStraight = "straight_sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
                      *kByMirrors = "/sunlight/beam_by_mirrors";
@@ -26,27 +26,63 @@ template <class Exchange, class Visit>
 requires std::is_same_v<std::remove_const_t<Exchange>, ExchangePaths>
 void visit_all(Exchange& e, const Visit& visit) {
   const size_t each = size_t{e.blocks} * e.paths;
-  visit("/infrared/end", "1", each, e.ends, 0.0f);
-  visit("/infrared/weight", "1", each, e.weights, 0.0f);
-  visit("/infrared/emissivity", "1", size_t{1}, e.emissivity, 0.0f);
+  visit("/infrared/end", "1", each, std::span(e.ends), 0.0f);
+  visit("/infrared/weight", "1", each, std::span(e.weights), 0.0f);
+  visit("/infrared/emissivity", "1", size_t{1}, std::span(e.emissivity), 0.0f);
+}
+// Rows in two bytes a number, so many a face.
+template <class Rows, class Visit>
+void visit_rows(const Visit& visit, const std::string& name, const char* units, size_t each, Rows& rows, float least) {
+  visit(name, "1", each * rows.width(), rows.above(), 0.0f);
+  visit(name + "_step", units, each, rows.steps(), 0.0f);
+  visit(name + "_least", units, each, rows.least(), least);
+}
+// What is straight from the sun, to which what is scattered is added.
+template <class Sun, class Visit>
+void visit_straight(Sun& s, const Visit& visit) {
+  visit_rows(visit, "/sunlight/beam", "1", 1, s.beam, -kMost);
+  visit_rows(visit, "/sunlight/beam_of_block", "1", s.blocks, s.beam_of_block, -kMost);
+  visit_rows(visit, "/sunlight/beam_spread", "1", Sunlight::kContrasts, s.beam_spread, -kMost);
+  visit("/sunlight/sun_hours", "h", size_t{1}, std::span(s.sun_hours), 0.0f);
 }
 template <class Sun, class Visit>
 requires std::is_same_v<std::remove_const_t<Sun>, Sunlight>
 void visit_all(Sun& s, const Visit& visit) {
-  const size_t blocks = s.blocks;
-  visit("/sunlight/beam", "1", s.moments, s.beam, -kMost);
-  visit("/sunlight/sky", "sr", size_t{kSkyPatches}, s.sky, 0.0f);
-  visit("/sunlight/below", "sr", size_t{1}, s.below, 0.0f);
-  visit("/sunlight/beam_of_block", "1", blocks * Sunlight::kParts, s.beam_of_block, -kMost);
-  visit("/sunlight/beam_spread", "1", size_t{Sunlight::kContrasts * Sunlight::kParts}, s.beam_spread, -kMost);
-  visit("/sunlight/diffuse_of_block", "sr", blocks, s.diffuse_of_block, 0.0f);
-  visit("/sunlight/below_of_block", "sr", blocks, s.below_of_block, 0.0f);
-  visit("/sunlight/sun_hours", "h", size_t{1}, s.sun_hours, 0.0f);
-  visit("/sunlight/absorptance", "1", size_t{1}, s.absorptance, 0.0f);
+  visit_straight(s, visit);
+  visit_rows(visit, "/sunlight/sky", "sr", 1, s.sky, 0.0f);
+  visit("/sunlight/below", "sr", size_t{1}, std::span(s.below), 0.0f);
+  visit_rows(visit, "/sunlight/sky_of_block", "sr", s.blocks, s.sky_of_block, -kMost);
+  visit("/sunlight/below_of_block", "sr", size_t{s.blocks}, std::span(s.below_of_block), 0.0f);
+  visit("/sunlight/absorptance", "1", size_t{1}, std::span(s.absorptance), 0.0f);
+}
+
+template <class Sun, class Visit>
+void visit_mirrored(Sun& s, const Visit& visit) {
+  if (s.beam_by_mirrors.rows() > 0) visit_rows(visit, kByMirrors, "1", 1, s.beam_by_mirrors, 0.0f);
+}
+
+// Of sunlight, what is found first, with what the rest is found by.
+template <class Sun>
+struct Straight {
+  static constexpr size_t kTogether = Sunlight::kTogether;
+  Sun& of;
+};
+PathCount& count_of(ExchangePaths& found) { return found.count; }
+PathCount& count_of(Sunlight& found) { return found.count; }
+PathCount& count_of(const Straight<Sunlight>& straight) { return straight.of.count; }
+template <class Sun, class Visit>
+void visit_all(const Straight<Sun>& straight, const Visit& visit) {
+  auto& s = straight.of;
+  visit_straight(s, visit);
+  visit("/sunlight/lit", "1", s.faces() > 0 ? s.lit.size() / s.faces() : 0, std::span(s.lit), 0.0f);
 }
 
 const char* name_of(const ExchangePaths&) { return kInfrared; }
 const char* name_of(const Sunlight&) { return kSunlight; }
+template <class Sun>
+const char* name_of(const Straight<Sun>&) {
+  return kStraight;
+}
 
 void put_identity(h5::Writer& w, const OperatorIdentity& identity) {
   w.attribute("format", kFormat);
@@ -58,15 +94,16 @@ void put_identity(h5::Writer& w, const OperatorIdentity& identity) {
 template <class Found>
 void put(h5::Writer& w, const Found& found, FaceRange range, PathCount count, const std::string& sun) {
   const std::string name = name_of(found);
-  if (name == kSunlight) w.attribute("of_sun", sun);
+  if (name != kInfrared) w.attribute("of_sun", sun);
   const auto high = [](uint64_t v) { return static_cast<double>(v >> 32); };
   const auto low = [](uint64_t v) { return static_cast<double>(v & 0xffffffff); };
   const double numbers[6] = {
       static_cast<double>(range.begin), static_cast<double>(range.end), high(count.rays), low(count.rays),
       high(count.unfinished),           low(count.unfinished)};
   w.attribute(name + "_begin_end_rays_unfinished", numbers);
-  visit_all(found, [&](const char* dataset, const char* units, size_t width, const auto& values, float) {
-    w.put(dataset, std::span(values).subspan(range.begin * width, range.size() * width), units, width);
+  visit_all(found, [&](const std::string& dataset, const char* units, size_t width, auto values, float) {
+    using Value = typename decltype(values)::value_type;
+    w.put(dataset, std::span<const Value>(values).subspan(range.begin * width, range.size() * width), units, width);
   });
 }
 
@@ -76,7 +113,10 @@ void put_mirrored(h5::Writer& w, const Sunlight& s) {
   const double numbers[4] = {static_cast<double>(m.places), static_cast<double>(m.endless),
                              static_cast<double>(m.moving), m.unfinished};
   w.attribute(kMirrored, numbers);
-  if (!s.beam_by_mirrors.empty()) w.put(kByMirrors, s.beam_by_mirrors, "1", s.moments);
+  visit_mirrored(s, [&](const std::string& dataset, const char* units, size_t width, auto values, float) {
+    using Value = typename decltype(values)::value_type;
+    w.put(dataset, std::span<const Value>(values), units, width);
+  });
 }
 
 // Of a whole one: for which days it serves.
@@ -141,23 +181,24 @@ class Stored {
 
   // Of a file with faces in all. Adds to the counts.
   template <class Found>
-  FaceRange read(Found& into, size_t faces) {
+  FaceRange read(Found&& into, size_t faces) {
+    using Kind = std::remove_cvref_t<Found>;
     const std::string name = name_of(into);
     ends_ = identity_.ends;
     const std::vector<double> v = reader_.numbers(name + "_begin_end_rays_unfinished", 6);
     for (const double n : v)
       if (!(n >= 0 && n <= 4294967295.0 && n == std::floor(n))) reader_.fail("counts what cannot be");
     const FaceRange range{static_cast<size_t>(v[0]), static_cast<size_t>(v[1])};
-    if (!(range.begin < range.end && range.end <= faces) || range.begin % Found::kTogether != 0 ||
-        (range.end % Found::kTogether != 0 && range.end != faces))
+    if (!(range.begin < range.end && range.end <= faces) || range.begin % Kind::kTogether != 0 ||
+        (range.end % Kind::kTogether != 0 && range.end != faces))
       reader_.fail(strf("has faces %zu to %zu of %zu", range.begin, range.end, faces));
-    visit_all(into, [&](const char* dataset, const char* units, size_t width, auto& values, float least) {
+    visit_all(into, [&](const std::string& dataset, const char* units, size_t width, auto values, float least) {
       take(dataset, units, width, range, values, least);
     });
     const auto whole = [](double high, double low) {
       return static_cast<uint64_t>(high) << 32 | static_cast<uint64_t>(low);
     };
-    into.count += {whole(v[2], v[3]), whole(v[4], v[5])};
+    count_of(into) += {whole(v[2], v[3]), whole(v[4], v[5])};
     return range;
   }
   void read_mirrored(Sunlight& into) {
@@ -165,23 +206,27 @@ class Stored {
     for (const double n : v)
       if (!(n >= 0 && n <= 4294967295.0)) reader_.fail("counts what cannot be");
     into.mirrored = {static_cast<size_t>(v[0]), static_cast<size_t>(v[1]), static_cast<size_t>(v[2]), v[3]};
-    if (into.mirrored.places == 0) return;
-    into.beam_by_mirrors.resize(into.faces() * into.moments);
-    take(kByMirrors, "1", into.moments, {0, into.faces()}, into.beam_by_mirrors, 0.0f);
+    if (!reader_.has(kByMirrors)) return;
+    into.beam_by_mirrors = CompactRows(into.faces(), into.moments);
+    visit_mirrored(into, [&](const std::string& dataset, const char* units, size_t width, auto values, float least) {
+      take(dataset, units, width, {0, into.faces()}, values, least);
+    });
   }
   [[noreturn]] void fail(const std::string& what) const { reader_.fail(what); }
 
  private:
   template <class Value>
-  void take(const char* dataset, const char* units, size_t width, FaceRange range, std::vector<Value>& values,
+  void take(const std::string& dataset, const char* units, size_t width, FaceRange range, std::span<Value> values,
             float least) {
     const auto opened = reader_.open(dataset, h5::native<Value>(), units, width, static_cast<long long>(range.size()));
     Value* to = &values[range.begin * width];
     reader_.read(dataset, opened, h5::native<Value>(), to, 0, opened.count);
     for (size_t k = 0; k < opened.count; ++k)
-      if (!can_be(to[k], least)) reader_.fail(strf("%s holds %g", dataset, static_cast<double>(to[k])));
+      if (!can_be(to[k], least)) reader_.fail(strf("%s holds %g", dataset.c_str(), static_cast<double>(to[k])));
   }
   bool can_be(uint32_t end, float) const { return end < ends_; }
+  static bool can_be(uint8_t, float) { return true; }
+  static bool can_be(uint16_t, float) { return true; }
   static bool can_be(float v, float least) { return v >= least && v <= kMost; }
   static bool can_be(double emissivity, float) { return emissivity >= 0 && emissivity <= 1; }
 
@@ -194,10 +239,14 @@ class Folder final : public HeatPieces {
  public:
   Folder(std::string folder, OperatorIdentity identity, double seconds)
       : folder_(std::move(folder)), identity_(std::move(identity)), seconds_(seconds) {}
-  std::vector<FaceRange> take(ExchangePaths& out) override { return take_all(out); }
-  std::vector<FaceRange> take(Sunlight& out) override { return take_all(out); }
+  std::vector<FaceRange> take(ExchangePaths& out) override { return take_all(out, out.faces()); }
+  std::vector<FaceRange> take(Sunlight& out, SunStage stage) override {
+    return stage == SunStage::straight ? take_all(Straight<Sunlight>{out}, out.faces()) : take_all(out, out.faces());
+  }
   void keep(const ExchangePaths& found, FaceRange range, PathCount count) override { put_one(found, range, count); }
-  void keep(const Sunlight& found, FaceRange range, PathCount count) override { put_one(found, range, count); }
+  void keep(const Sunlight& found, SunStage stage, FaceRange range, PathCount count) override {
+    stage == SunStage::straight ? put_one(Straight<const Sunlight>{found}, range, count) : put_one(found, range, count);
+  }
   double seconds() const override { return seconds_; }
 
  private:
@@ -205,7 +254,7 @@ class Folder final : public HeatPieces {
     return folder_ + strf("/%s_%010zu.h5", part, range.begin);
   }
   template <class Found>
-  std::vector<FaceRange> take_all(Found& out) {
+  std::vector<FaceRange> take_all(Found&& out, size_t faces) {
     std::vector<std::string> files;
     const std::string prefix = std::string(name_of(out)) + "_";
     std::error_code none;
@@ -216,8 +265,8 @@ class Folder final : public HeatPieces {
     std::vector<FaceRange> there;
     for (const std::string& path : files) {
       Stored stored(path, identity_);
-      if (prefix == std::string(kSunlight) + "_") stored.check_sun();
-      const FaceRange range = stored.read(out, out.faces());
+      if (prefix != std::string(kInfrared) + "_") stored.check_sun();
+      const FaceRange range = stored.read(out, faces);
       if (!there.empty() && range.begin < there.back().end) stored.fail("has faces that another piece has, too");
       there.push_back(range);
     }
@@ -292,7 +341,8 @@ void remove_pieces(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename();
     // With what a killed one was writing: NAME.h5.part-...
-    if (name.find(".h5") != std::string::npos && (name.starts_with(kInfrared) || name.starts_with(kSunlight)))
+    if (name.find(".h5") != std::string::npos &&
+        (name.starts_with(kInfrared) || name.starts_with(kSunlight) || name.starts_with(kStraight)))
       pieces.push_back(entry.path());
   }
   for (const auto& piece : pieces) std::filesystem::remove(piece, ignored);

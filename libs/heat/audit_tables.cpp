@@ -74,7 +74,7 @@ double AuditTables::position(double t) const {
 }
 
 double AuditTables::mirrored(uint32_t face, double t) const {
-  if (solved_.sun.beam_by_mirrors.empty()) return 0;
+  if (solved_.sun.beam_by_mirrors.rows() == 0) return 0;
   return at(solved_.sun.beam_by_mirrors, face, t) * at(solved_.weather.direct, 0, t);
 }
 

@@ -26,6 +26,14 @@ class CompactRows {
   void get(size_t row, std::span<float> values) const;
   std::vector<float> floats() const;  // of all rows, one after the other
 
+  // As they are kept, for files: by row; by number.
+  std::span<float> least() { return least_; }
+  std::span<const float> least() const { return least_; }
+  std::span<float> steps() { return step_; }
+  std::span<const float> steps() const { return step_; }
+  std::span<uint16_t> above() { return above_; }
+  std::span<const uint16_t> above() const { return above_; }
+
  private:
   size_t width_ = 0;
   std::vector<float> least_, step_;

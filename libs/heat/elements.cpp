@@ -78,7 +78,8 @@ struct Elements::Seen {
   double area = 0;
 };
 
-Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time, const DaySun* sun)
+Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time, const DaySun* sun,
+                   std::span<const CellSplit> known)
     : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()) {
   SUITE_CHECK(budget > 0 && heated.size() == tracer.scene().materials.size());
   Seen seen;
@@ -92,7 +93,7 @@ Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t
   group_meshes(seen, even, target, planned);
   for (const auto& [slot, primitive] : seen.exact)
     planned.push_back({{slot}, nullptr, make_grid(slot, tracer.scene().primitives[primitive], target)});
-  if (sun) refine(planned, *sun);
+  if (sun) refine(planned, *sun, known);
   for (Planned& p : planned) add_group(std::move(p));
   make_elements(heated);
 }

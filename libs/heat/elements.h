@@ -47,15 +47,23 @@ struct DaySun {
   std::function<void(std::span<const Hit> places, std::span<float> sun)> at;  // [place][number]
 };
 
+// A cell that was cut in two: of which mesh or exact surface, in the order in which cells were cut.
+struct CellSplit {
+  uint32_t unit, cell;
+  bool operator==(const CellSplit&) const = default;
+};
+
 class Elements {
  public:
   // heated: by material, whether it has elements. budget: about how many there will be, at least one an instance group.
   // Surfaces without end are cut off half the scene's size around it; beyond they are as warm as at the edge. Keeps a
   // reference to the tracer. time: s, within its window. sun: where it differs most within a cell, area counting, cells
-  // are cut in two until there are as many as the budget (elements_split.cpp); none = all of about equal areas. Error:
-  // nothing of these materials is at rest.
+  // are cut in two until there are as many as the budget (elements_split.cpp); none = all of about equal areas. known:
+  // what was cut then, instead of asking the sun again. Error: nothing of these materials is at rest; what was cut is
+  // not there.
   Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time,
-           const DaySun* sun = nullptr);
+           const DaySun* sun = nullptr, std::span<const CellSplit> known = {});
+  const std::vector<CellSplit>& splits() const { return splits_; }
 
   size_t size() const { return elements_.size(); }
   const HeatElement& operator[](size_t i) const { return elements_[i]; }
@@ -145,7 +153,7 @@ class Elements {
   // together: m2 below whose half instances are put together. target: m2 of a cell.
   void group_meshes(Seen& seen, double together, double target, std::vector<Planned>& planned);
   static double size_of(const Affine3& m);  // what areas grow by, as a mean over directions
-  void refine(const std::vector<Planned>& planned, const DaySun& sun);
+  void refine(const std::vector<Planned>& planned, const DaySun& sun, std::span<const CellSplit> known);
   void add_group(Planned planned);
   uint32_t make_grid(const Slot& slot, const Primitive& primitive, double target);
   void make_elements(const std::vector<bool>& heated);
@@ -167,6 +175,7 @@ class Elements {
   std::vector<HeatElement> elements_;
   std::vector<uint32_t> numbers_;  // among all, where some were left out
   std::vector<LeftOut> left_out_;
+  std::vector<CellSplit> splits_;
   double total_area_ = 0;
   size_t moving_ = 0, shared_cells_ = 0;
 };

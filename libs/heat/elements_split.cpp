@@ -56,6 +56,15 @@ class Elements::Refinement {
     }
   }
 
+  void replay(std::span<const CellSplit> known) {
+    for (const CellSplit& s : known) {
+      if (s.unit >= units_.size() || s.cell >= size(units_[s.unit]) ||
+          made_ + units_[s.unit].groups.size() > e_.budget_)
+        throw Error("elements of another scene: they were cut where there is nothing", "find the temperatures again");
+      split(s);
+    }
+  }
+
   void run() {
     for (uint32_t turn = 0;; ++turn) {
       judge(turn);
@@ -64,12 +73,10 @@ class Elements::Refinement {
       while (cut < most && !worst_.empty()) {
         const Judged next = worst_.top();
         worst_.pop();
-        Unit& unit = units_[next.unit];
+        const Unit& unit = units_[next.unit];
         if (made_ + unit.groups.size() > budget || !(next.score > 0)) continue;
-        const auto other = static_cast<uint32_t>(size(unit));
-        unit.mesh ? unit.mesh->split(next.cell) : e_.grids_[unit.grid].split(next.cell);
-        fresh_.push_back({next.unit, next.cell}), fresh_.push_back({next.unit, other});
-        made_ += unit.groups.size(), ++cut;
+        fresh_.push_back({next.unit, next.cell}), fresh_.push_back({next.unit, static_cast<uint32_t>(size(unit))});
+        split({next.unit, next.cell}), ++cut;
       }
       if (fresh_.empty()) return;
     }
@@ -90,6 +97,13 @@ class Elements::Refinement {
     }
   };
   size_t size(const Unit& u) const { return u.mesh ? u.mesh->size() : e_.grids_[u.grid].cells.size(); }
+
+  void split(CellSplit which) {
+    Unit& unit = units_[which.unit];
+    unit.mesh ? unit.mesh->split(which.cell) : e_.grids_[unit.grid].split(which.cell);
+    made_ += unit.groups.size();
+    e_.splits_.push_back(which);
+  }
 
   void judge(uint32_t turn) {
     parallel_for(0, fresh_.size(), 64, [&](size_t begin, size_t end) {
@@ -152,6 +166,9 @@ class Elements::Refinement {
   size_t made_ = 0;
 };
 
-void Elements::refine(const std::vector<Planned>& planned, const DaySun& sun) { Refinement(*this, planned, sun).run(); }
+void Elements::refine(const std::vector<Planned>& planned, const DaySun& sun, std::span<const CellSplit> known) {
+  Refinement refinement(*this, planned, sun);
+  known.empty() ? refinement.run() : refinement.replay(known);
+}
 
 }  // namespace suite

@@ -1,6 +1,7 @@
 #include "heat/heat_balance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -71,21 +72,27 @@ std::vector<double> outsides(const Tracer& tracer, const HeatFaces& faces, const
   return out;
 }
 
-// W/m2 by face and moment, in the place of what faces take of the beam.
+// W/m2 by face and moment, in the place of what faces take of the beam. Light of patches in eights, which go at once.
 void absorb(Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
   const size_t moments = loads.moments.size();
   parallel_for(0, sun.faces(), 64, [&](size_t begin, size_t end) {
-    for (size_t f = begin; f < end; ++f)
+    std::vector<float> row(moments), takes(kSkyPatches);
+    for (size_t f = begin; f < end; ++f) {
+      sun.beam.get(f, row), sun.sky.get(f, takes);
       for (size_t k = 0; k < moments; ++k) {
-        double sum = double{sun.beam[f * moments + k]} * loads.direct[k];
+        double sum = double{row[k]} * loads.direct[k];
         if (loads.global[k] > 0) {
-          const float *takes = &sun.sky[f * kSkyPatches], *sky = loads.sky[k].data();
-          double diffuse = 0;
-          for (uint32_t p = 0; p < kSkyPatches; ++p) diffuse += double{takes[p] * sky[p]};
-          sum += diffuse + double{sun.below[f]} * spec.ground_albedo * loads.global[k] / kPi;
+          const float* sky = loads.sky[k].data();
+          std::array<float, 8> diffuse{};
+          for (uint32_t p = 0; p < kSkyPatches; p += 8)
+            for (uint32_t i = 0; i < 8; ++i) diffuse[i] += takes[p + i] * sky[p + i];
+          for (const float v : diffuse) sum += double{v};
+          sum += double{sun.below[f]} * spec.ground_albedo * loads.global[k] / kPi;
         }
-        sun.beam[f * moments + k] = static_cast<float>(sum);
+        row[k] = static_cast<float>(sum);
       }
+      sun.beam.set(f, row);
+    }
   });
 }
 
@@ -238,14 +245,14 @@ SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoad
   loads.air = weather.air;
   absorb(sun, weather, spec);
   const std::vector<float> uneven = uneven_sky(sun, weather, spec.paths / HeatSpec::kBlocks);
-  give_up(sun.sky);
-  loads.absorbed = CompactRows(sun.beam, weather.moments.size());
-  give_up(sun.beam);
+  sun.sky = {};
+  loads.absorbed = std::move(sun.beam);
   errors = load_errors(sun, uneven, weather, spec.ground_albedo);
   for (size_t f = 0; f < scene.faces.size(); ++f)
     loads.source.push_back(
         scene.faces.is_back(f) ? 0 : scene.optics.heated[scene.elements[scene.faces.element(f)].material].source);
   loads.outside = outsides(scene.tracer, scene.faces, weather, spec);
+  give_back_freed();
   return loads;
 }
 
@@ -363,10 +370,12 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
                    spec.audit, {}, [&](size_t more) { tell_done(progress, static_cast<double>(more)); });
   }
   found = {};
+  give_back_freed();
   // Who touches whom takes room, in large meshes much: last.
   if (!spec.lateral)
     for (const std::string& note : lateral_notes(scene.tracer.scene(), scene.elements, scene.optics, h))
       result.notes.push_back(note);
+  give_back_freed();
   result.absorbed = loads.absorbed.floats();
   loads.absorbed = {};
   result.received = h.received.floats();
@@ -383,7 +392,7 @@ HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const Heat
   HeatOperator found;
   begin(progress, "exchange of infrared", static_cast<double>(faces.size()));
   found.exchange = find_exchange(scene, path_options(spec), nullptr, done);
-  begin(progress, "sunlight", static_cast<double>(faces.size()));
+  begin(progress, "sunlight", 2 * static_cast<double>(faces.size()));
   found.sun = find_sunlight(scene, weather.course, path_options(spec), nullptr, done);
   return solve_heat(scene, std::move(found), weather, spec, progress);
 }

@@ -45,6 +45,7 @@ ExplainedField::Cause HeatField::cause(const HeatedPlace& place, double time) co
   const std::optional<uint32_t> element = elements_->at(place, place.material);
   if (!element) return {};
   const auto at = [&](const std::vector<float>& rows) {
+    if (rows.empty()) return double{NAN};
     return result_->between_moments({&rows[*element * result_->moments], result_->moments}, time);
   };
   return {double{result_->sun_hours[*element]}, at(result_->absorbed), at(result_->received)};
@@ -54,7 +55,7 @@ namespace {
 
 struct Head {
   double begin, end, step, sweep_error, past_error;
-  uint64_t periodic, moments, faces, points;
+  uint64_t periodic, moments, faces, points, fluxes;
 };
 
 template <class Value>
@@ -72,7 +73,7 @@ constexpr std::vector<float> HeatResult::*kRows[] = {
 
 std::vector<std::byte> packed_field(const HeatResult& r) {
   const std::vector<Head> head{{r.span.begin, r.span.end, r.step, r.sweep_error, r.past_error, r.periodic, r.moments,
-                                r.kelvin.size() / r.moments, !r.straight.empty()}};
+                                r.kelvin.size() / r.moments, !r.straight.empty(), !r.absorbed.empty()}};
   size_t size = bytes_of(head).size(), at = 0;
   for (const auto rows : kRows) size += bytes_of(r.*rows).size();
   std::vector<std::byte> out(size);
@@ -96,7 +97,8 @@ HeatResult unpacked_field(std::span<const std::byte> bytes) {
   HeatResult r;
   r.span = {head.begin, head.end}, r.step = head.step, r.periodic = head.periodic != 0, r.moments = head.moments;
   r.sweep_error = head.sweep_error, r.past_error = head.past_error;
-  for (auto* values : {&r.kelvin, &r.absorbed, &r.received}) values->resize(head.faces * r.moments);
+  r.kelvin.resize(head.faces * r.moments);
+  for (auto* values : {&r.absorbed, &r.received}) values->resize(head.fluxes ? r.kelvin.size() : 0);
   for (auto* values : {&r.path_error, &r.size_error, &r.step_error}) values->resize(head.faces * kHeatParts);
   for (auto* values : {&r.emissivity, &r.sun_hours}) values->resize(head.faces);
   r.straight.resize(head.points ? r.kelvin.size() : 0), r.air_kelvin.resize(r.moments);

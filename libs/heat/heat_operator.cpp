@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "heat/sunlight_mirrored.h"
@@ -13,11 +14,11 @@ namespace suite {
 
 namespace {
 
-// trace(range) for all that is not there.
-template <class Found, class Trace>
+// trace(range) for all that is not there. of: the stage, if there are several.
+template <class Found, class Trace, class... Of>
 void find_missing(size_t faces, Found& found, HeatPieces* pieces, const std::function<void(size_t)>& progress,
-                  const Trace& trace) {
-  const std::vector<FaceRange> there = pieces ? pieces->take(found) : std::vector<FaceRange>{};
+                  const Trace& trace, Of... of) {
+  const std::vector<FaceRange> there = pieces ? pieces->take(found, of...) : std::vector<FaceRange>{};
   auto next = there.begin();
   // Pieces grow until one takes about as long as may be lost.
   size_t waves = pieces ? 2 * static_cast<size_t>(threads()) : faces;
@@ -34,7 +35,7 @@ void find_missing(size_t faces, Found& found, HeatPieces* pieces, const std::fun
     trace(range);
     const double took = seconds_since(begun);
     if (pieces) {
-      pieces->keep(found, range, found.count - before);
+      pieces->keep(found, of..., range, found.count - before);
       if (took < pieces->seconds() / 2) waves *= 2;
       if (took > pieces->seconds() && waves > 2 * static_cast<size_t>(threads())) waves /= 2;
     }
@@ -56,9 +57,15 @@ ExchangePaths find_exchange(const HeatScene& s, const PathOptions& options, Heat
 Sunlight find_sunlight(const HeatScene& s, const SunCourse& course, const PathOptions& options, HeatPieces* pieces,
                        const std::function<void(size_t)>& progress) {
   Sunlight out = untraced_sunlight(s.faces, course, options);
-  find_missing(s.faces.size(), out, pieces, progress, [&](FaceRange range) {
-    trace_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, kSunJoins, range, out, progress);
-  });
+  for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+    find_missing(
+        s.faces.size(), out, pieces, progress,
+        [&](FaceRange range) {
+          trace_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, kSunJoins, stage, range, out,
+                         progress);
+        },
+        stage);
+  give_up(out.lit);
   add_mirrored_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, out);
   return out;
 }

@@ -30,16 +30,16 @@ class HeatPieces {
   // Puts what is there in its place, counts included. The ranges of it, ascending and apart, each as the tracing
   // functions take them.
   virtual std::vector<FaceRange> take(ExchangePaths& out) = 0;
-  virtual std::vector<FaceRange> take(Sunlight& out) = 0;
-  // count: of this piece.
+  virtual std::vector<FaceRange> take(Sunlight& out, SunStage stage) = 0;
+  // count: of this piece. A piece of scattered sunlight has the straight one with it.
   virtual void keep(const ExchangePaths& found, FaceRange range, PathCount count) = 0;
-  virtual void keep(const Sunlight& found, FaceRange range, PathCount count) = 0;
+  virtual void keep(const Sunlight& found, SunStage stage, FaceRange range, PathCount count) = 0;
   // s: about how long finding a piece may take, which is lost at most; 0 = the smallest pieces.
   virtual double seconds() const = 0;
 };
 
 // Bits do not depend on pieces: each face's paths are its own. pieces: may be null. progress: is told faces that are
-// done, those that were there among them.
+// done, those that were there among them; of sunlight each twice.
 ExchangePaths find_exchange(const HeatScene& scene, const PathOptions& options, HeatPieces* pieces = nullptr,
                             const std::function<void(size_t)>& progress = {});
 Sunlight find_sunlight(const HeatScene& scene, const SunCourse& course, const PathOptions& options,

@@ -1,6 +1,8 @@
 // What paths of sunlight and points of elements are off by, as loads.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -12,14 +14,51 @@ namespace suite {
 
 namespace {
 
-// By part, W/m2 or W/(m2 sr): the beam, an even sky, the ground beyond the scene.
+// By part, W/m2 or W/(m2 sr): the beam, the ground beyond the scene.
 struct WeatherParts {
-  std::vector<double> direct, diffuse, below;
+  std::vector<double> direct, below;
   WeatherParts(const WeatherLoads& w, double ground_albedo) {
     const PartMeans parts(w.moments.size());
     direct = parts.means([&](size_t k) { return w.direct[k]; });
-    diffuse = parts.means([&](size_t k) { return w.diffuse[k] / kPi; });
     below = parts.means([&](size_t k) { return ground_albedo * w.global[k] / kPi; });
+  }
+};
+
+// The sky of each part as shapes (sky_shapes) by least squares, and what is left, W/(m2 sr).
+struct SkyParts {
+  std::vector<double> shapes;  // [shape][part]
+  std::vector<double> left;    // [patch][part]
+  explicit SkyParts(const WeatherLoads& weather) : shapes(kSkyShapes * kHeatParts), left(kSkyPatches * kHeatParts) {
+    const PartMeans parts(weather.moments.size());
+    for (size_t patch = 0; patch < kSkyPatches; ++patch) {
+      const std::vector<double> L = parts.means([&](size_t k) { return double{weather.sky[k][patch]}; });
+      std::ranges::copy(L, &left[patch * kHeatParts]);
+    }
+    // One direction after the other, each made orthogonal to those before, as sums of the shapes.
+    std::array<std::array<double, kSkyPatches>, kSkyShapes> q;
+    std::array<std::array<double, kSkyShapes>, kSkyShapes> made{};
+    for (size_t s = 0; s < kSkyShapes; ++s) {
+      for (uint32_t patch = 0; patch < kSkyPatches; ++patch) q[s][patch] = double{sky_shapes(patch)[s]};
+      made[s][s] = 1;
+      for (size_t before = 0; before < s; ++before) take_off(q[s], made[s], q[before], made[before]);
+      const double size = std::sqrt(std::inner_product(q[s].begin(), q[s].end(), q[s].begin(), 0.0));
+      for (double& v : q[s]) v /= size;
+      for (double& v : made[s]) v /= size;
+      for (size_t p = 0; p < kHeatParts; ++p) {
+        double along = 0;
+        for (size_t patch = 0; patch < kSkyPatches; ++patch) along += q[s][patch] * left[patch * kHeatParts + p];
+        for (size_t patch = 0; patch < kSkyPatches; ++patch) left[patch * kHeatParts + p] -= q[s][patch] * along;
+        for (size_t k = 0; k < kSkyShapes; ++k) shapes[k * kHeatParts + p] += made[s][k] * along;
+      }
+    }
+  }
+
+ private:
+  template <class Values, class Made>
+  static void take_off(Values& from, Made& made, const Values& direction, const Made& made_direction) {
+    const double along = std::inner_product(from.begin(), from.end(), direction.begin(), 0.0);
+    for (size_t k = 0; k < from.size(); ++k) from[k] -= along * direction[k];
+    for (size_t k = 0; k < made.size(); ++k) made[k] -= along * made_direction[k];
   }
 };
 
@@ -31,21 +70,17 @@ void for_faces(size_t faces, const std::function<void(size_t)>& body) {
 
 }  // namespace
 
-// Blocks are kept for an even sky; where it is brighter or darker than that, paths count by where they met it. Each
-// of n paths brings y = pi a (L - even) with the probability w / (pi a) of the patch, w its weight: the variance of
-// their mean is (sum w y - (sum w (L - even))^2) / n, as if paths were independent, which they are less than that.
+// Blocks are kept for skies of a few shapes; where the sky is brighter or darker than these, paths count by where they
+// met it. Each of n paths brings y = pi a (L - shapes) with the probability w / (pi a) of the patch, w its weight: the
+// variance of their mean is (sum w y - (sum w (L - shapes))^2) / n, as if paths were independent, which they are less
+// than that.
 std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather, uint32_t paths) {
-  const PartMeans parts(weather.moments.size());
-  const std::vector<double> even = WeatherParts(weather, 0).diffuse;
-  std::vector<double> uneven(kSkyPatches * kHeatParts);  // W/(m2 sr), [patch][part]
-  for (size_t patch = 0; patch < kSkyPatches; ++patch) {
-    const std::vector<double> L = parts.means([&](size_t k) { return double{weather.sky[k][patch]}; });
-    for (size_t p = 0; p < kHeatParts; ++p) uneven[patch * kHeatParts + p] = L[p] - even[p];
-  }
+  const std::vector<double> uneven = SkyParts(weather).left;
   std::vector<float> out(sun.faces() * kHeatParts);
   for_faces(sun.faces(), [&](size_t f) {
     const double most = kPi * double{sun.absorptance[f]};
-    const float* w = &sun.sky[f * kSkyPatches];
+    std::array<float, kSkyPatches> w;
+    sun.sky.get(f, w);
     std::array<double, kHeatParts> square{}, mean{};
     for (size_t k = 0; k < kSkyPatches; ++k) {
       if (w[k] == 0) continue;
@@ -66,6 +101,7 @@ LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const We
                        double ground_albedo) {
   constexpr uint64_t kPurpose = 0x736b79;
   const WeatherParts by(weather, ground_albedo);
+  const std::vector<double> shapes = SkyParts(weather).shapes;
   const double per_part = static_cast<double>(weather.moments.size() - 1) / kHeatParts;
   const size_t faces = sun.faces(), blocks = sun.blocks;
   LoadErrors out;
@@ -73,34 +109,36 @@ LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const We
   for_faces(faces, [&](size_t f) {
     std::vector<float> rows(blocks * kHeatParts);
     std::array<double, kHeatParts> mean{};
-    for (size_t b = 0; b < blocks; ++b)
+    for (size_t b = 0; b < blocks; ++b) {
+      const size_t block = f * blocks + b;
+      const bool plus = hash_of(kPurpose, f, b) & 1;
       for (size_t p = 0; p < kHeatParts; ++p) {
-        const size_t block = f * blocks + b;
         const double off = double{uneven[f * kHeatParts + p]};
-        const double brings = double{sun.beam_of_block[block * kHeatParts + p]} / per_part * by.direct[p] +
-                              double{sun.diffuse_of_block[block]} * by.diffuse[p] +
-                              double{sun.below_of_block[block]} * by.below[p] +
-                              (hash_of(kPurpose, f, b) & 1 ? off : -off);
+        double brings = sun.beam_of_block.at(block, p) / per_part * by.direct[p] +
+                        double{sun.below_of_block[block]} * by.below[p] + (plus ? off : -off);
+        for (size_t s = 0; s < kSkyShapes; ++s) brings += sun.sky_of_block.at(block, s) * shapes[s * kHeatParts + p];
         rows[b * kHeatParts + p] = static_cast<float>(brings);
         mean[p] += brings / static_cast<double>(blocks);
       }
+    }
     for (size_t b = 0; b < blocks; ++b) {
       float* row = &rows[b * kHeatParts];
       for (size_t p = 0; p < kHeatParts; ++p) row[p] = static_cast<float>(double{row[p]} - mean[p]);
       out.of_block.set(f * blocks + b, {row, kHeatParts});
     }
   });
-  give_up(sun.beam_of_block), give_up(sun.diffuse_of_block), give_up(sun.below_of_block);
+  sun.beam_of_block = {}, sun.sky_of_block = {};
+  give_up(sun.below_of_block);
   out.spread = CompactRows(faces * Sunlight::kContrasts, kHeatParts);
   for_faces(faces, [&](size_t f) {
     std::array<float, kHeatParts> row{};
     for (size_t c = f * Sunlight::kContrasts; c < (f + 1) * Sunlight::kContrasts; ++c) {
       for (size_t p = 0; p < kHeatParts; ++p)
-        row[p] = static_cast<float>(double{sun.beam_spread[c * kHeatParts + p]} / per_part * by.direct[p]);
+        row[p] = static_cast<float>(sun.beam_spread.at(c, p) / per_part * by.direct[p]);
       out.spread.set(c, row);
     }
   });
-  give_up(sun.beam_spread);
+  sun.beam_spread = {};
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <tuple>
 #include <unordered_map>
 
 #include "heat/mesh_cells.h"
@@ -60,13 +61,16 @@ class MeshCells::Touching {
  public:
   Touching(const MeshCells& cells, const Affine3& to_world) : m_(cells), to_world_(to_world) {
     const Corners corner(m_.mesh_);
+    SUITE_CHECK(m_.order_.size() < (1u << 29));
+    edges_.reserve(3 * m_.order_.size());
     for (uint32_t c = 0; c < m_.size(); ++c)
-      for (uint32_t k = m_.first_[c]; k < m_.end_[c]; ++k) add_piece(c, m_.order_[k], corner);
+      for (uint32_t k = m_.first_[c]; k < m_.end_[c]; ++k) add_piece(c, k, corner);
     std::stable_sort(inside_.begin(), inside_.end(), [](const Inside& a, const Inside& b) {
       return a.triangle != b.triangle ? a.triangle < b.triangle : a.line < b.line;
     });
-    std::stable_sort(edges_.begin(), edges_.end(),
-                     [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+    std::ranges::sort(edges_, [](const Edge& a, const Edge& b) {
+      return std::tie(a.low, a.high, a.cell, a.at) < std::tie(b.low, b.high, b.cell, b.at);
+    });
     lines(inside_, [](const Inside& a, const Inside& b) { return a.triangle == b.triangle && a.line == b.line; });
     lines(edges_, [](const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; });
   }
@@ -83,10 +87,10 @@ class MeshCells::Touching {
     std::array<int64_t, 3> line;
     Vec2 p, q, tip;
   };
-  struct Edge {  // a side on an edge of the mesh
-    uint32_t low, high, cell, triangle;
-    Vec2 p, q, tip;
-    double from, to;
+  // A side on an edge of the mesh: many, so kept short. at: 8 x the place of its triangle in the order of cells + 4 if
+  // the edge's lower corner is its second + its number in the piece.
+  struct Edge {
+    uint32_t low, high, cell, at;
   };
 
   Vec3 world(uint32_t triangle, Vec2 p) const {
@@ -94,9 +98,14 @@ class MeshCells::Touching {
     return to_world_.point(a + (b - a) * p.x + (c - a) * p.y);
   }
 
-  void add_piece(uint32_t cell, uint32_t triangle, const Corners& corner) {
+  Piece piece_at(uint32_t cell, uint32_t triangle) const {
     const bool whole = m_.end_[cell] - m_.first_[cell] > 1 || (m_.split_[triangle] <= 1 && m_.piece_[cell] == kNone);
-    const Piece piece = whole ? Piece{Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}} : m_.piece_of(cell);
+    return whole ? Piece{Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}} : m_.piece_of(cell);
+  }
+
+  void add_piece(uint32_t cell, uint32_t place, const Corners& corner) {
+    const uint32_t triangle = m_.order_[place];
+    const Piece piece = piece_at(cell, triangle);
     for (size_t k = 0; k < 3; ++k) {
       const Vec2 p = piece[k], q = piece[(k + 1) % 3], tip = piece[(k + 2) % 3];
       const std::optional<size_t> edge = edge_of(p, q);
@@ -105,11 +114,9 @@ class MeshCells::Touching {
         continue;
       }
       const auto number = [&](size_t at) { return corner.number[m_.mesh_.indices[3 * size_t{triangle} + at % 3]]; };
-      uint32_t low = number(*edge), high = number(*edge + 1);
-      const auto along = [&](Vec2 x) { return *edge == 0 ? x.x : *edge == 1 ? x.y : 1 - x.y; };
-      double from = along(p), to = along(q);
-      if (low > high) std::swap(low, high), from = 1 - from, to = 1 - to;
-      edges_.push_back({low, high, cell, triangle, p, q, tip, from, to});
+      const uint32_t low = number(*edge), high = number(*edge + 1);
+      const uint32_t turned = low > high ? 4 : 0;
+      edges_.push_back({std::min(low, high), std::max(low, high), cell, 8 * place + turned + static_cast<uint32_t>(k)});
     }
   }
 
@@ -121,7 +128,15 @@ class MeshCells::Touching {
     s.out = normalized(along * dot(in, along) - in);
     return s;
   }
-  CellSide side(const Edge& e) const { return side(e.cell, e.triangle, e.p, e.q, e.tip, e.from, e.to); }
+  CellSide side(const Edge& e) const {
+    const uint32_t triangle = m_.order_[e.at / 8], k = e.at % 4;
+    const Piece piece = piece_at(e.cell, triangle);
+    const Vec2 p = piece[k], q = piece[(k + 1) % 3], tip = piece[(k + 2) % 3];
+    const size_t edge = *edge_of(p, q);
+    const auto along = [&](Vec2 x) { return edge == 0 ? x.x : edge == 1 ? x.y : 1 - x.y; };
+    const bool turned = e.at & 4;
+    return side(e.cell, triangle, p, q, tip, turned ? 1 - along(p) : along(p), turned ? 1 - along(q) : along(q));
+  }
   CellSide side(const Inside& i) const {
     // The longer of both coordinates of the line's direction.
     const bool by_x = std::llabs(i.line[0]) >= std::llabs(i.line[1]);

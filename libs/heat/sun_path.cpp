@@ -67,18 +67,17 @@ SunNear near_path(const SunPath& found, const SunPath& wanted) {
 void move_along(Sunlight& sun, const SunNear& near) {
   const size_t n = sun.moments;
   SUITE_CHECK_EQ(near.at.size(), n);
-  for (std::vector<float>* values : {&sun.beam, &sun.beam_by_mirrors}) {
-    if (values->empty()) continue;
-    parallel_for(0, sun.faces(), 64, [&](size_t begin, size_t end) {
-      std::vector<float> row(n);
+  for (CompactRows* values : {&sun.beam, &sun.beam_by_mirrors}) {
+    parallel_for(0, values->rows(), 64, [&](size_t begin, size_t end) {
+      std::vector<float> row(n), of(n);
       for (size_t f = begin; f < end; ++f) {
-        float* of = &(*values)[f * n];
+        values->get(f, of);
         for (size_t k = 0; k < n; ++k) {
           const size_t s = std::min(static_cast<size_t>(near.at[k]), n - 2);
           const auto x = static_cast<float>(near.at[k] - static_cast<double>(s));
           row[k] = of[s] + (of[s + 1] - of[s]) * x;
         }
-        std::copy(row.begin(), row.end(), of);
+        values->set(f, row);
       }
     });
   }

@@ -1,6 +1,7 @@
 #include "heat/sunlight.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -17,11 +18,27 @@ uint32_t sky_patch(Dir d) {
   return ring * kSkyTurns + column;
 }
 
+std::array<float, kSkyShapes> sky_shapes(uint32_t patch) {
+  const double z = (patch / kSkyTurns + 0.5) / kSkyRings, turn = 2 * kPi * (patch % kSkyTurns + 0.5) / kSkyTurns;
+  const double across = std::sqrt(1 - z * z), x = across * std::cos(turn), y = across * std::sin(turn);
+  const double shapes[kSkyShapes] = {1, x, y, z, x * y, x * z, y * z, z * z, x * x - y * y};
+  std::array<float, kSkyShapes> out;
+  for (size_t k = 0; k < kSkyShapes; ++k) out[k] = static_cast<float>(shapes[k]);
+  return out;
+}
+
 namespace {
 
 constexpr double kUnfinishedUnit = 1e6;
 
 }  // namespace
+
+std::vector<uint32_t> SunCourse::sunny() const {
+  std::vector<uint32_t> out;
+  for (uint32_t k = 0; k < moments.size(); ++k)
+    if (up(moments[k])) out.push_back(k);
+  return out;
+}
 
 double Sunlight::unfinished(uint32_t paths) const {
   return static_cast<double>(count.unfinished) / kUnfinishedUnit / (1.0 * static_cast<double>(faces()) * paths);
@@ -31,18 +48,20 @@ Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, cons
   Sunlight out;
   const size_t n = faces.size();
   out.moments = course.moments.size(), out.blocks = options.blocks;
-  out.beam.assign(n * out.moments, 0.0f);
-  out.sky.assign(n * kSkyPatches, 0.0f);
-  out.beam_of_block.assign(n * out.blocks * Sunlight::kParts, 0.0f);
-  out.beam_spread.assign(n * Sunlight::kContrasts * Sunlight::kParts, 0.0f);
+  out.beam = CompactRows(n, out.moments);
+  out.sky = CompactRows(n, kSkyPatches);
+  out.lit.assign(n * course.sunny().size(), 0);
+  out.beam_of_block = CompactRows(n * out.blocks, Sunlight::kParts);
+  out.beam_spread = CompactRows(n * Sunlight::kContrasts, Sunlight::kParts);
+  out.sky_of_block = CompactRows(n * out.blocks, kSkyShapes);
   for (auto* each : {&out.below, &out.sun_hours, &out.absorptance}) each->assign(n, 0.0f);
-  for (auto* each : {&out.diffuse_of_block, &out.below_of_block}) each->assign(n * out.blocks, 0.0f);
+  out.below_of_block.assign(n * out.blocks, 0.0f);
   return out;
 }
 
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
-                    const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
-                    const std::function<void(size_t)>& progress) {
+                    const SunCourse& course, const PathOptions& options, uint32_t joins, SunStage stage,
+                    FaceRange range, Sunlight& out, const std::function<void(size_t)>& progress) {
   constexpr size_t kWave = Sunlight::kTogether;
   const size_t n = faces.size();
   SUITE_CHECK(range.begin % kWave == 0 && (range.end % kWave == 0 || range.end == n));
@@ -54,8 +73,7 @@ void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFa
     SunlightWave wave(tracer, elements, faces, optics, course, options, joins, out);
     for (size_t w = first; w < last; ++w) {
       const size_t begin = w * kWave, end = std::min(n, begin + kWave);
-      wave.beam(begin, end);
-      wave.scattered(begin, end);
+      stage == SunStage::straight ? wave.beam(begin, end) : wave.scattered(begin, end);
     }
     rays += wave.rays();
     unfinished += static_cast<uint64_t>(wave.unfinished() * kUnfinishedUnit);
@@ -81,14 +99,15 @@ std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements
       if (any) wave.beam(begin, end);
     }
   });
-  return std::move(out.beam);
+  return out.beam.floats();
 }
 
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
                         const std::function<void(size_t)>& progress) {
   Sunlight out = untraced_sunlight(faces, course, options);
-  trace_sunlight(tracer, elements, faces, optics, course, options, joins, {0, faces.size()}, out, progress);
+  for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+    trace_sunlight(tracer, elements, faces, optics, course, options, joins, stage, {0, faces.size()}, out, progress);
   add_mirrored_sunlight(tracer, elements, faces, optics, course, options, out);
   return out;
 }

@@ -3,17 +3,20 @@
 //
 // Method: the beam itself is followed by rays from points of the face (one for four paths, one a block at least)
 // towards the sun's disk at every moment, and where the answer changes to 10 s; what reaches the face by reflection
-// comes along paths, each traced once, which are joined at every surface they meet to the sun at moments of the day in
-// turn, and to the part of the sky where they leave. Between moments all is taken as straight lines with the same
-// integrals.
+// comes along paths, each traced once. At every surface they meet they take what its element sends on through the whole
+// day, told from when the sun is on that (told_sun.h), and are joined to the sun at moments of the day in turn to find
+// what that lacks; where they leave, to the part of the sky. Between moments all is taken as straight lines with the
+// same integrals. So the straight sun of all faces is found first.
 //
 // Beams that mirrors and smooth glass send on are followed from the sun (sunlight_mirrored.h).
 //
 // Assumes: one direction of the sun a moment for the whole scene; media are passed by.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <functional>
 
+#include "heat/compact_rows.h"
 #include "heat/exchange_paths.h"
 
 namespace suite {
@@ -26,6 +29,7 @@ struct SunCourse {
   std::vector<std::vector<float>> beam;  // by moment; sums to 1
   std::vector<float> sky;                // sums to 1
   bool up(double t) const { return towards(t).z > 0; }
+  std::vector<uint32_t> sunny() const;  // moments with the sun up
 };
 
 // Every fourth path of a block has a point that looks at the sun through the whole day, and one there is at least.
@@ -33,7 +37,11 @@ inline uint32_t points_of_beam(const PathOptions& options) { return std::max(1u,
 
 // Parts of the sky: kSkyRings of equal solid angle, each in kSkyTurns.
 inline constexpr uint32_t kSkyRings = 8, kSkyTurns = 16, kSkyPatches = kSkyRings * kSkyTurns;
-uint32_t sky_patch(Dir d);                                                     // above the horizon
+uint32_t sky_patch(Dir d);  // above the horizon
+// Even and linear in the middle of a patch, and quadratic: what blocks of paths find of the sky is kept for skies made
+// of these, which is most of what skies are.
+inline constexpr uint32_t kSkyShapes = 9;
+std::array<float, kSkyShapes> sky_shapes(uint32_t patch);
 inline constexpr double kSkyPatch = 2 * 3.14159265358979323846 / kSkyPatches;  // sr
 
 struct Sunlight {
@@ -41,21 +49,22 @@ struct Sunlight {
   static constexpr uint32_t kParts = 24;   // of the time, for errors
   size_t moments = 0;
   uint32_t blocks = 0;
-  std::vector<float> beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
-  std::vector<float> sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
-  std::vector<float> below;          // [face]: for 1 W/(m2 sr) of all below the horizon
-  std::vector<float> beam_of_block;  // [face][block][part]: as beam, means over a part of the time
-  // [face][contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
+  CompactRows beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
+  CompactRows sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
+  std::vector<float> below;   // [face]: for 1 W/(m2 sr) of all below the horizon
+  CompactRows beam_of_block;  // [face, block][part]: as beam, sums over a part of the time
+  // [face, contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
   // in steps of moments and scaled so that the mean square over the contrasts is the variance over the face.
   static constexpr uint32_t kContrasts = 3;
-  std::vector<float> beam_spread;
-  std::vector<float> diffuse_of_block;  // [face][block]: for 1 W/(m2 sr) of the whole sky
-  std::vector<float> below_of_block;    // [face][block]
-  std::vector<float> sun_hours;         // [face]: hours with the sun on it, mean over its points
-  std::vector<float> absorptance;       // [face]: of even light of the sky's spectrum
+  CompactRows beam_spread;
+  CompactRows sky_of_block;           // [face, block][shape]: of a sky of that shape
+  std::vector<float> below_of_block;  // [face][block]
+  std::vector<float> sun_hours;       // [face]: hours with the sun on it, mean over its points
+  std::vector<uint8_t> lit;           // [face][moment with the sun up]: share of its points that the sun is on, of 255
+  std::vector<float> absorptance;     // [face]: of even light of the sky's spectrum
   PathCount count;
   // [face][moment]: the part of beam that came first to what sends light on without scattering it; empty without such.
-  std::vector<float> beam_by_mirrors;
+  CompactRows beam_by_mirrors;
   // Of these: places of surfaces at rest, surfaces without end, instances that move and are left out.
   struct Mirrored {
     size_t places = 0, endless = 0, moving = 0;
@@ -70,19 +79,21 @@ struct Sunlight {
 // Room for the sunlight of all faces, of which none is traced.
 Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options);
 
+// The straight sun of all faces comes first, then what is scattered.
+enum class SunStage { straight, scattered };
 // joins: moments that a path is joined to at each surface.
 inline constexpr uint32_t kSunJoins = 4;
 // Traces that of some faces; the range begins at a multiple of kTogether, and ends at one or with the faces. In
 // parallel over faces, the same on any number of threads and in ranges of any size.
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
-                    const SunCourse& course, const PathOptions& options, uint32_t joins, FaceRange range, Sunlight& out,
-                    const std::function<void(size_t)>& progress = {});
+                    const SunCourse& course, const PathOptions& options, uint32_t joins, SunStage stage,
+                    FaceRange range, Sunlight& out, const std::function<void(size_t)>& progress = {});
 // Straight from the sun alone, without reflections: what the tracing functions find of it, from the same points. As
 // Sunlight::beam; of faces that wanted() says, else 0.
 std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                                   const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
                                   const std::function<bool(size_t face)>& wanted);
-// Of all faces.
+// Of all faces. progress: is told each of them twice.
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
                         uint32_t joins = kSunJoins, const std::function<void(size_t)>& progress = {});

@@ -9,9 +9,15 @@ namespace {
 
 constexpr uint64_t kPurpose = 0x6265616d;
 constexpr uint64_t kTold = 0x746f6c64;  // purpose of points whose days are told from others'
-constexpr uint32_t kToldPoints = 128;   // of a block
+constexpr uint32_t kToldPoints = 64;    // of a block
 constexpr double kFinest = 1;           // s, to which edges of shadows are found
 constexpr size_t kWatches = 4096;       // at once
+
+std::vector<Frame> suns_of(const SunCourse& course) {
+  std::vector<Frame> out;
+  for (const double t : course.moments) out.push_back(Frame::around(course.towards(t)));
+  return out;
+}
 
 }  // namespace
 
@@ -29,14 +35,14 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       bins_(optics.sun->state().size()),
       knots_(optics.sun->state().knots.size()),
       step_(course.moments.size() > 1 ? course.moments[1] - course.moments[0] : 1),
+      sunny_(course.sunny()),
+      suns_(suns_of(course)),
+      told_sun_(course, suns_, sunny_, options.blocks * points_of_beam(options)),
+      told_(sunny_.size()),
       W_(bins_),
       w_(bins_),
       p_(knots_),
       lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
-  for (uint32_t k = 0; k < course.moments.size(); ++k) {
-    suns_.push_back(Frame::around(course.towards(course.moments[k])));
-    if (suns_.back().z.z > 0) sunny_.push_back(k);
-  }
 }
 
 SampleStream SunlightWave::stream(uint32_t slot, uint64_t purpose) const {
@@ -86,9 +92,21 @@ void SunlightWave::beam_of(size_t begin, size_t end) {
   for (size_t k = 0; k < watches.size(); k += each) add_face({&watches[k], each}, {&days[k], each});
 }
 
+// What even, opaque surfaces keep of the beam depends on nothing but the moment; empty for others.
+std::span<const float> SunlightWave::kept_by(const Watch& watch) {
+  surface_.interact(watch.hit, watch.normal, at_, watch.hit.time);
+  const bool of_a_map = at_.own && at_.baked == &at_.own->made;
+  const float* diffuse = at_.baked && at_.baked->model && !of_a_map ? at_.baked->model->diffuse() : nullptr;
+  if (!diffuse) return {};
+  if (diffuse == kept_of_) return kept_;
+  kept_of_ = diffuse, kept_.assign(suns_.size(), 0.0f);
+  for (size_t m = 0; m < kept_.size(); ++m)
+    for (size_t i = 0; i < bins_; ++i) kept_[m] += course_.beam[m][i] * (1 - std::min(1.0f, diffuse[i]));
+  return kept_;
+}
+
 float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
   const double cosine = dot(d, watch.normal);
-  if (!(cosine > 0)) return 0;
   surface_.interact(watch.hit, d, at_, course_.moments[moment]);
   if (!at_.baked || !at_.baked->model) return 0;
   at_.baked->model->total(at_.frame.to_local(d), W_);
@@ -107,10 +125,12 @@ void SunlightWave::look(std::vector<Watch>& watches) {
   for (size_t k = 0; k < watches.size(); ++k) {
     Watch& w = watches[k];
     w.lit.assign(suns_.size(), 0), w.takes.assign(suns_.size(), 0.0f);
+    const std::span<const float> kept = kept_by(w);
     for (const uint32_t m : sunny_) {
       const Dir d = towards_sun(w, m);
-      w.takes[m] = taken(w, m, d);
-      if (w.takes[m] == 0) continue;
+      const double cosine = dot(d, w.normal);
+      if (!(cosine > 0)) continue;
+      w.takes[m] = kept.empty() ? taken(w, m, d) : static_cast<float>(cosine) * kept[m];
       sights_.push_back({tracer_.leave(w.hit, d), d, course_.moments[m], static_cast<uint32_t>(k)});
       asked.push_back({k, m});
     }
@@ -169,18 +189,18 @@ PointDay SunlightWave::day_of(const Watch& watch, std::span<const Edge> edges) c
 // Puts the integral of what is taken onto the moments, by the hats of straight lines between them.
 void SunlightWave::add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight) {
   const size_t moments = suns_.size();
-  float* to = &out_.beam[face * moments];
-  float* parts = &out_.beam_of_block[(size_t{face} * options_.blocks + block) * Sunlight::kParts];
+  float* parts = &parts_[block * Sunlight::kParts];
   lit_.spread(takes, [&](size_t moment, double value) {
     // A hat's integral is a step, of the first and last moment half a one.
     const double hats = moment == 0 || moment + 1 == moments ? 2 : 1;
-    to[moment] += static_cast<float>(weight * hats * value / options_.blocks);
+    beam_[moment] += static_cast<float>(weight * hats * value / options_.blocks);
     parts[moment * Sunlight::kParts / moments] += static_cast<float>(weight * value);
   });
   out_.sun_hours[face] += static_cast<float>(weight * lit_.total() * step_ / 3600 / options_.blocks);
 }
 
 void SunlightWave::add_face(std::span<const Watch> watches, std::span<const PointDay> days) {
+  clear_rows();
   for (size_t k = 0; k < watches.size(); ++k) {
     if (!days[k].lit_first && days[k].changes.empty()) continue;
     lit_.clear();
@@ -189,17 +209,37 @@ void SunlightWave::add_face(std::span<const Watch> watches, std::span<const Poin
   }
   for (uint32_t b = 0; b < options_.blocks; ++b) add_untold(watches, days, b);
   add_spread(watches, days);
-  // The difference of two means may be less than no light; it is taken from the moments beside it.
-  const std::span<float> row{&out_.beam[watches.front().face * suns_.size()], suns_.size()};
-  const auto lift = [&](size_t moment, size_t beside) {
+  const uint32_t face = watches.front().face;
+  for (size_t k = 0; k < sunny_.size(); ++k) {
+    size_t lit = 0;
+    for (const Watch& w : watches) lit += w.lit[sunny_[k]];
+    out_.lit[face * sunny_.size() + k] = static_cast<uint8_t>((lit * 255 + watches.size() / 2) / watches.size());
+  }
+  lift_beam();
+  keep_rows(face);
+  out_.sun_hours[face] = std::max(out_.sun_hours[face], 0.0f);
+}
+
+void SunlightWave::clear_rows() {
+  beam_.assign(suns_.size(), 0.0f), parts_.assign(size_t{options_.blocks} * Sunlight::kParts, 0.0f);
+}
+
+void SunlightWave::keep_rows(uint32_t face) {
+  out_.beam.set(face, beam_);
+  for (uint32_t b = 0; b < options_.blocks; ++b)
+    out_.beam_of_block.set(size_t{face} * options_.blocks + b, {&parts_[b * Sunlight::kParts], Sunlight::kParts});
+}
+
+// The difference of two means may be less than no light; it is taken from the moments beside it.
+void SunlightWave::lift_beam() {
+  const std::span<float> row = beam_;
+  const auto move = [&](size_t moment, size_t beside) {
     if (row[moment] >= 0) return;
     row[beside] += row[moment], row[moment] = 0;
   };
-  for (size_t m = 0; m + 1 < row.size(); ++m) lift(m, m + 1);
-  for (size_t m = row.size(); m-- > 1;) lift(m, m - 1);
+  for (size_t m = 0; m + 1 < row.size(); ++m) move(m, m + 1);
+  for (size_t m = row.size(); m-- > 1;) move(m, m - 1);
   row[0] = std::max(row[0], 0.0f);
-  float& hours = out_.sun_hours[watches.front().face];
-  hours = std::max(hours, 0.0f);
 }
 
 // How much points differ, as a few sums of them with random signs: whatever is linear in them has the mean square of
@@ -229,9 +269,11 @@ void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const Po
   for (const auto& contrast : sums)
     for (const double v : contrast) met += v * v / kContrasts;
   if (!(met > 0)) return;
-  float* to = &out_.beam_spread[size_t{watches.front().face} * kContrasts * kParts];
-  for (const auto& contrast : sums)
-    for (const double v : contrast) *to++ = static_cast<float>(v * std::sqrt(variance / met));
+  for (uint32_t c = 0; c < kContrasts; ++c) {
+    std::array<float, kParts> row;
+    for (uint32_t p = 0; p < kParts; ++p) row[p] = static_cast<float>(sums[c][p] * std::sqrt(variance / met));
+    out_.beam_spread.set(size_t{watches.front().face} * kContrasts + c, row);
+  }
 }
 
 void SunlightWave::of_point(const Hit& hit, bool back, Vec2 disk, std::span<float> takes) {

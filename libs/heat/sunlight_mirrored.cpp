@@ -244,14 +244,30 @@ std::vector<Task> tasks_of(const MirrorPlaces& places, const std::vector<uint32_
   return tasks;
 }
 
-void add(const std::vector<Deposit>& deposits, const Elements& elements, const HeatFaces& faces, Sunlight& out) {
+// What is found, with room to add: of all faces and moments, and what they have of blocks.
+struct Sums {
+  std::vector<float> beam, of_block;
+};
+
+void add(const std::vector<Deposit>& deposits, const Elements& elements, const HeatFaces& faces, const Sunlight& light,
+         Sums& out) {
   for (const Deposit& d : deposits) {
     const double value = d.watts / elements[faces.element(d.face)].area;
-    out.beam[size_t{d.face} * out.moments + d.moment] += static_cast<float>(value);
-    out.beam_by_mirrors[size_t{d.face} * out.moments + d.moment] += static_cast<float>(value);
-    out.beam_of_block[(size_t{d.face} * out.blocks + d.block) * Sunlight::kParts +
-                      d.moment * Sunlight::kParts / out.moments] += static_cast<float>(value * out.blocks);
+    out.beam[size_t{d.face} * light.moments + d.moment] += static_cast<float>(value);
+    out.of_block[(size_t{d.face} * light.blocks + d.block) * Sunlight::kParts +
+                 d.moment * Sunlight::kParts / light.moments] += static_cast<float>(value * light.blocks);
   }
+}
+
+void put(const Sums& sums, Sunlight& out) {
+  out.beam_of_block = CompactRows(sums.of_block, Sunlight::kParts);
+  std::vector<float> row(out.moments);
+  for (size_t f = 0; f < out.faces(); ++f) {
+    out.beam.get(f, row);
+    for (size_t k = 0; k < row.size(); ++k) row[k] += sums.beam[f * row.size() + k];
+    out.beam.set(f, row);
+  }
+  out.beam_by_mirrors = CompactRows(sums.beam, out.moments);
 }
 
 }  // namespace
@@ -266,7 +282,8 @@ void add_mirrored_sunlight(const Tracer& tracer, const Elements& elements, const
   const MirrorPlaces places(tracer, elements, mirrors, course.moments.front());
   const Suns suns(course);
   out.mirrored = {places.size() - places.endless(), places.endless(), places.moving()};
-  if (places.size() > 0) out.beam_by_mirrors.assign(faces.size() * out.moments, 0.0f);
+  if (places.size() == 0) return;
+  Sums sums{std::vector<float>(faces.size() * out.moments), out.beam_of_block.floats()};
   const std::vector<Task> tasks = tasks_of(places, suns.up());
   const double density = points_of_beam(options) * static_cast<double>(elements.size()) / elements.total_area();
   // What is found is added up in the order of the tasks, a batch of them at a time.
@@ -286,10 +303,11 @@ void add_mirrored_sunlight(const Tracer& tracer, const Elements& elements, const
       }
     });
     for (size_t t = 0; t < found.size(); ++t) {
-      add(found[t], elements, faces, out);
+      add(found[t], elements, faces, out, sums);
       out.count.rays += static_cast<uint64_t>(told[t][0]), sent += told[t][1], unfinished += told[t][2];
     }
   }
+  put(sums, out);
   if (sent > 0) out.mirrored.unfinished = unfinished / sent;
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr uint64_t kPurpose = 0x73636174;
 constexpr uint32_t kRouletteFrom = 2;  // reflections
+constexpr uint32_t kToldJoins = 2;     // where what is sent on is told
 
 }  // namespace
 
@@ -17,10 +18,15 @@ void SunlightWave::scattered(size_t begin, size_t end) {
   going_.clear(), rays_.clear(), spectra_.clear();
   for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
   sights_.clear(), asked_.clear();
+  first_ = begin, rows_.assign((end - begin) * options_.blocks * sunny_.size(), 0.0f);
+  sky_.assign((end - begin) * kSkyPatches, 0.0f);
+  sky_of_block_.assign((end - begin) * options_.blocks * kSkyShapes, 0.0f);
   fly(
       tracer_, going_, rays_, hits_, trace_,
       [this](Going& path, Ray& ray, const Hit& hit, uint32_t n) { return go_on(path, ray, hit, n); },
       [this] { answer_sun(); });
+  add_scattered(begin, end);
+  add_sky(begin, end);
 }
 
 // The throughput holds what the face keeps of each bin, times pi: the density of a cosine is 1/pi.
@@ -64,18 +70,39 @@ void SunlightWave::leave(const Going& path, Dir d) {
   const size_t block = path.slot % each / options_.paths;
   const auto of_block = static_cast<float>(value * options_.blocks);
   if (d.z > 0) {
-    out_.sky[size_t{face} * kSkyPatches + sky_patch(d)] += static_cast<float>(value);
-    out_.diffuse_of_block[size_t{face} * options_.blocks + block] += of_block;
+    const uint32_t patch = sky_patch(d);
+    sky_[(face - first_) * kSkyPatches + patch] += static_cast<float>(value);
+    float* shapes = &sky_of_block_[((face - first_) * options_.blocks + block) * kSkyShapes];
+    for (const float shape : sky_shapes(patch)) *shapes++ += of_block * shape;
   } else {
     out_.below[face] += static_cast<float>(value);
     out_.below_of_block[size_t{face} * options_.blocks + block] += of_block;
   }
 }
 
-void SunlightWave::add_to_beam(uint32_t face, uint32_t block, uint32_t moment, double value) {
-  out_.beam[size_t{face} * suns_.size() + moment] += static_cast<float>(value);
-  out_.beam_of_block[(size_t{face} * options_.blocks + block) * Sunlight::kParts +
-                     moment * Sunlight::kParts / suns_.size()] += static_cast<float>(value * options_.blocks);
+void SunlightWave::add_scattered(size_t begin, size_t end) {
+  const size_t n = sunny_.size(), moments = suns_.size();
+  for (size_t f = begin; f < end && n > 0; ++f) {
+    clear_rows();
+    out_.beam.get(f, beam_);
+    for (size_t b = 0; b < options_.blocks; ++b) {
+      const float* row = &rows_[((f - begin) * options_.blocks + b) * n];
+      float* parts = &parts_[b * Sunlight::kParts];
+      out_.beam_of_block.get(f * options_.blocks + b, {parts, Sunlight::kParts});
+      for (size_t k = 0; k < n; ++k) {
+        beam_[sunny_[k]] += row[k] / static_cast<float>(options_.blocks);
+        parts[sunny_[k] * Sunlight::kParts / moments] += row[k];
+      }
+    }
+    lift_beam();
+    keep_rows(static_cast<uint32_t>(f));
+  }
+}
+
+void SunlightWave::add_sky(size_t begin, size_t end) {
+  for (size_t f = begin; f < end; ++f) out_.sky.set(f, {&sky_[(f - begin) * kSkyPatches], kSkyPatches});
+  for (size_t b = begin * options_.blocks; b < end * options_.blocks; ++b)
+    out_.sky_of_block.set(b, {&sky_of_block_[(b - begin * options_.blocks) * kSkyShapes], kSkyShapes});
 }
 
 bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
@@ -90,7 +117,7 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   }
   const ScatterModel& model = *at_.baked->model;
   const Dir out = at_.frame.to_local(-ray.direction);
-  ask_sun(path, hit, out, n);
+  ask_sun(path, hit, ray.direction, n);
   const SampleStream numbers = stream(path.slot, kPurpose);
   const std::array<double, 4> u = numbers.draw(sample(path.slot), 1 + n);
   const auto drawn = draw_reflection(model, out, u, path.knot, w_, p_);
@@ -118,33 +145,58 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   return true;
 }
 
-// Joins the surface to the sun at some moments: those of a block's paths go through the day in turn.
-void SunlightWave::ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t n) {
+// What the surface sends on of the sun through the day.
+void SunlightWave::ask_sun(const Going& path, const Hit& hit, Dir direction, uint32_t n) {
   if (sunny_.empty()) return;
+  const uint32_t each = options_.blocks * options_.paths;
+  const Dir out = at_.frame.to_local(-direction);
+  const uint32_t end = faces_.end_at(hit, direction, at_.material);
+  const uint8_t *lit = lit_on(end), *beyond = nullptr;
+  if (lit) beyond = faces_.is_back(end) ? lit_on(faces_.element(end)) : lit_on(faces_.back_of(end));
+  // What mirrors send on besides is neither told nor found here.
+  if (lit) {
+    told_sun_.tell(at_, out, throughput(path), lit, beyond, told_);
+    const auto weight = static_cast<float>(mean_ratio(path) * options_.blocks / each);
+    float* row = &rows_[(path.slot / options_.paths - first_ * options_.blocks) * sunny_.size()];
+    for (size_t k = 0; k < sunny_.size(); ++k) row[k] += told_[k] * weight;
+  }
+  join_sun(path, hit, out, n, lit, beyond);
+}
+
+// Joins the surface to the sun at some moments, for what was not told: those of a block's paths go through the day in
+// turn.
+void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t n, const uint8_t* lit,
+                            const uint8_t* beyond) {
   const ScatterModel& model = *at_.baked->model;
   const uint32_t each = options_.blocks * options_.paths, face = path.slot / each, within = path.slot % each;
+  const uint32_t joins = lit ? std::min(kToldJoins, joins_) : joins_;
   const SampleStream numbers = stream(path.slot, kPurpose);
   const auto number = [&](uint32_t what, uint32_t j) {
-    return numbers.hashed(sample(path.slot), 64 + 64 * n + 3 * j + what);
+    return numbers.hashed(sample(path.slot), 64 + 64 * n + 4 * j + what);
   };
   const auto count = static_cast<double>(sunny_.size());
-  const double weight = mean_ratio(path) * count / (1.0 * joins_ * each);
+  const double weight = mean_ratio(path) * count * options_.blocks / (1.0 * joins * each);
   const std::span<const float> T = throughput(path);
-  for (uint32_t j = 0; j < joins_; ++j) {
+  for (uint32_t j = 0; j < joins; ++j) {
     // Even over the joins of a block's paths, so that each has the whole day, shifted at random for each surface on the
     // way.
     const uint32_t of_block = faces_.number(face) * options_.blocks + within / options_.paths;
     const double shift = unit_double(hash_of(options_.seed, of_block, n));
-    double at = (sample(path.slot) * joins_ + j + number(0, j)) / (1.0 * options_.paths * joins_) + shift;
+    double at = (sample(path.slot) * joins + j + number(0, j)) / (1.0 * options_.paths * joins) + shift;
     at -= std::floor(at);
-    const uint32_t moment = sunny_[std::min(sunny_.size() - 1, static_cast<size_t>(at * count))];
+    const auto k = static_cast<uint32_t>(std::min(count - 1, at * count));
+    const uint32_t moment = sunny_[k];
     const Vec2 disk = disk_from_square({number(1, j), number(2, j)});
-    const Dir d = on_disk(suns_[moment], disk.x, disk.y, course_.angular_radius);
-    model.eval(out, at_.frame.to_local(d), w_);
+    const Dir d = on_disk(suns_[moment], disk.x, disk.y, course_.angular_radius), in = at_.frame.to_local(d);
+    const uint8_t* side = in.z * out.z > 0 ? lit : beyond;
+    const double asked = side ? told_sun_.asked(side[k]) : 1, told = lit ? double{told_[k]} : 0;
+    if (!(number(3, j) < asked)) continue;
+    model.eval(out, in, w_);
     double value = 0;
     for (size_t i = 0; i < bins_; ++i) value += double{T[i]} * double{w_[i]} * double{course_.beam[moment][i]};
-    if (!(value > 0)) continue;
-    asked_.push_back({face, within / options_.paths, moment, value * weight});
+    if (!(value > 0) && told == 0) continue;
+    const auto row = static_cast<uint32_t>(path.slot / options_.paths - first_ * options_.blocks);
+    asked_.push_back({row, k, value * weight / asked, told * weight / asked});
     sights_.push_back({tracer_.leave(hit, d), d, course_.moments[moment], path.slot});
   }
 }
@@ -153,9 +205,8 @@ void SunlightWave::answer_sun() {
   reach_.assign(sights_.size(), INFINITY), blocked_.assign(sights_.size(), 0);
   if (!sights_.empty()) tracer_.occluded(sights_, reach_, blocked_, false, trace_);
   for (size_t i = 0; i < asked_.size(); ++i) {
-    if (blocked_[i]) continue;
     const Join& j = asked_[i];
-    add_to_beam(j.face, j.block, j.moment, j.value);
+    rows_[size_t{j.row} * sunny_.size() + j.sunny] += static_cast<float>((blocked_[i] ? 0 : j.value) - j.told);
   }
   sights_.clear(), asked_.clear();
 }

@@ -6,6 +6,7 @@
 #include "heat/heat_walk.h"
 #include "heat/lit_time.h"
 #include "heat/sunlight.h"
+#include "heat/told_sun.h"
 
 namespace suite {
 
@@ -43,8 +44,9 @@ class SunlightWave {
     std::array<double, kMaxKnots> ratios;  // density at each knot over that at its own, of the path so far
   };
   struct Join {
-    uint32_t face, block, moment;
-    double value;
+    uint32_t row;    // of the face and its block, of those that go together
+    uint32_t sunny;  // number of the moment
+    double value, told;
   };
   SampleStream stream(uint32_t slot, uint64_t purpose) const;
   uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
@@ -62,12 +64,22 @@ class SunlightWave {
   void add_spread(std::span<const Watch> watches, std::span<const PointDay> days);
   void add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block);
   void add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight);
+  std::span<const float> kept_by(const Watch& watch);
   float taken(const Watch& watch, uint32_t moment, Dir d);
   void start(uint32_t face);
   bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n);
-  void ask_sun(const Going& path, const Hit& hit, Dir out, uint32_t n);
+  // By sunny moment, whether points of the face were lit; null: it is none of an element.
+  const uint8_t* lit_on(uint32_t face) const {
+    return face < faces_.size() ? &out_.lit[size_t{face} * sunny_.size()] : nullptr;
+  }
+  void ask_sun(const Going& path, const Hit& hit, Dir direction, uint32_t n);
+  void join_sun(const Going& path, const Hit& hit, Dir out, uint32_t n, const uint8_t* lit, const uint8_t* beyond);
   void answer_sun();
-  void add_to_beam(uint32_t face, uint32_t block, uint32_t moment, double value);
+  void clear_rows();
+  void keep_rows(uint32_t face);
+  void lift_beam();
+  void add_scattered(size_t begin, size_t end);
+  void add_sky(size_t begin, size_t end);
   double mean_ratio(const Going& path) const { return suite::mean_ratio(path.ratios, knots_); }
   void leave(const Going& path, Dir d);
   std::span<float> throughput(const Going& path) { return {&spectra_[size_t{path.spectrum} * bins_], bins_}; }
@@ -84,8 +96,16 @@ class SunlightWave {
   double step_;                  // s, between moments
   std::vector<uint32_t> sunny_;  // moments with the sun up
   std::vector<Frame> suns_;      // by moment: z to the middle of the sun
+  ToldSun told_sun_;
+  size_t first_ = 0;         // of the faces that go together
+  std::vector<float> rows_;  // [face][block][sunny moment] of those: what is scattered to them, for each block's paths
+  std::vector<float> told_;  // by sunny moment
+  std::vector<float> beam_, parts_;        // of one face, as Sunlight::beam and beam_of_block
+  std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them
   Interaction at_;
   std::vector<float> W_, w_, p_;
+  const float* kept_of_ = nullptr;  // reflectance of which kept_ is told
+  std::vector<float> kept_;         // by moment
   LitTime lit_;
   TraceStatistics trace_;
   std::vector<Going> going_;

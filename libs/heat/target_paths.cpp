@@ -7,6 +7,12 @@
 
 namespace suite {
 
+namespace {
+
+constexpr uint32_t kStep = 4;  // from pilot to pilot
+
+}  // namespace
+
 double mean_path_error(const HeatResult& result, const Elements& elements, const HeatFaces& faces) {
   double sum = 0, area = 0;
   for (size_t f = 0; f < faces.size(); ++f) {
@@ -23,12 +29,18 @@ TargetPaths paths_for(double target, const Tracer& tracer, const Elements& eleme
                       const HeatProgress& progress) {
   if (!(target > 0)) throw Error(strf("temperatures are to be known within %g K", target), "above 0");
   HeatSpec pilot = spec;
-  pilot.paths = kPilotPaths;
   pilot.seed = mix64(spec.seed ^ 0x70696c6f74);
   TargetPaths out;
-  out.pilot_error =
-      mean_path_error(solve_heat(tracer, elements, faces, optics, loads, pilot, progress), elements, faces);
-  const double wanted = kPilotPaths * std::pow(out.pilot_error / target, 2);
+  double wanted = 0;
+  for (pilot.paths = kPilotPaths;; pilot.paths *= kStep) {
+    out.pilot_paths = pilot.paths;
+    out.pilot_error =
+        mean_path_error(solve_heat(tracer, elements, faces, optics, loads, pilot, progress), elements, faces);
+    wanted = pilot.paths * std::pow(out.pilot_error / target, 2);
+    if (wanted <= kStep * pilot.paths || pilot.paths >= kMostPaths / kStep) break;
+  }
+  // The pilot before asked for more than this one has, which is known to do.
+  if (pilot.paths > kPilotPaths) wanted = std::max(wanted, 1.0 * pilot.paths);
   out.enough = wanted <= kMostPaths;
   const double blocks = std::ceil(std::clamp(wanted, 1.0, double{kMostPaths}) / HeatSpec::kBlocks);
   out.paths = static_cast<uint32_t>(blocks) * HeatSpec::kBlocks;

@@ -140,8 +140,8 @@ const float* SkyTable::drawn(double height, Dir d) const {
     constexpr uint64_t kMost = (1u << 21) - 1;
     return static_cast<float>(by_chance >> (21 * number) & kMost) < share * static_cast<float>(kMost + 1);
   };
-  const float* const row = floor(below(0, rise) ? low + 1 : low) +
-                           ((below(1, v) ? r + 1 : r) * columns_ + (below(2, u) ? next : c)) * bins_;
+  const float* const row =
+      floor(below(0, rise) ? low + 1 : low) + ((below(1, v) ? r + 1 : r) * columns_ + (below(2, u) ? next : c)) * bins_;
   // Read when the light is known to arrive, somewhere in megabytes.
   constexpr size_t kLine = 64 / sizeof(float), kAhead = 16;
   for (size_t i = 0; i < std::min(bins_, kAhead * kLine); i += kLine) __builtin_prefetch(row + i);

@@ -26,11 +26,13 @@ inline constexpr Blocks kSecond{128, kNodes};  // lobe (the first), second light
 inline constexpr Blocks kSensorMore{250, 1};   // sensors that need more than four numbers
 inline constexpr Blocks kLight{512, kNodes* kOwnLights};
 inline constexpr Blocks kFlight{1024, kPerFlight* kFlights};
-inline constexpr Blocks kPlace{1120, kFlights};  // places in the air that paths go back to
-inline constexpr Blocks kGuided{1136, kNodes};   // guided continuations beside the first ones
+inline constexpr Blocks kPlace{1120, kFlights};           // places in the air that paths go back to
+inline constexpr Blocks kGuided{1136, kNodes};            // guided continuations beside the first ones
+inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
+inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -48,12 +50,16 @@ enum class Hashed : uint32_t {
   flight = light + 256,
   place = flight + kPerFlight,
   guided,
-  end
+  side,
+  end = side + kPerSide
 };
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
 // Of Hashed::choices.
 inline constexpr uint32_t kKnot = 1;
 constexpr uint32_t roulette(uint32_t event) { return 2 + 16 * (event % (kStride / 16)); }
+// Whether the event asks a light, and whether it tries a side flight.
+constexpr uint32_t roulette_of_light(uint32_t event) { return roulette(event) + 1; }
+constexpr uint32_t roulette_of_side(uint32_t event) { return roulette(event) + 2; }
 static_assert(roulette(0) != kKnot && roulette(1) - roulette(0) == 16 && roulette(kStride / 16 - 1) < kStride);
 
 inline std::array<double, 4> hashed(const SampleStream& stream, uint32_t sample, Hashed kind, uint32_t more,
@@ -104,6 +110,12 @@ inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sampl
 inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kNodes) return stream.draw(sample, kGuided.first + n);
   return hashed(stream, sample, Hashed::guided, 0, n);
+}
+// Numbers of the side flight from the scattering that ends the n-th flight. First: where to (two), by which scatterer,
+// whether at all; second: the flight (two), a light's direction (two).
+inline std::array<double, 4> of_side(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t second) {
+  if (n < kFlights) return stream.draw(sample, kSide.first + kPerSide * n + second);
+  return hashed(stream, sample, Hashed::side, second, n);
 }
 inline std::array<double, 4> at_scattering(const SampleStream& stream, uint32_t sample, uint32_t n, Use use) {
   if (const uint32_t block = block_at_scattering(n, use); block != kHashed) return stream.draw(sample, block);

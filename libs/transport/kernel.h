@@ -11,6 +11,7 @@
 // made for each combination that occurs in kernels.cpp. Definitions: kernel_*.h. Based on: Goodenough & Brown, section
 // IV; Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
 #pragma once
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -78,12 +79,15 @@ class PathKernel final : public PathTracing {
   bool is_first(const NodeAt& node) const { return paths_[node.path].order() == 1; }
   LightReceiver receiver(const NodeAt& node) const;
   double time(const NodeAt& node) const { return paths_[node.path].time; }
+  // The probability with which the node is to ask the light: less than 1 where side flights leave little of it.
+  double asks(const NodeAt& node, const Asked& light) const;
   // How many samples of the light share its density there, whatever becomes of them: 1 unless said before propose().
   void set_draws(const NodeAt& node, const Asked& light, int draws) {
     if (!light.nature.far && !glowing_.empty()) last_[node.path].draws = draws;
   }
   // Puts a question: is this sample visible? draws: samples of the light that share its density.
-  void propose(const NodeAt& node, const Asked& light, const LightSample& sample, int draws);
+  // asks: as above.
+  void propose(const NodeAt& node, const Asked& light, const LightSample& sample, int draws, double asks = 1);
   void set_parallel() { sight_rays_.parallel = sight_rays_.size(); }
   // At most n more questions follow.
   void expect(size_t n) {
@@ -92,7 +96,7 @@ class PathKernel final : public PathTracing {
   }
 
  private:
-  enum class Stage : uint8_t { leave, arrive, look } stage_ = Stage::leave;
+  enum class Stage : uint8_t { leave, arrive, look, fly_sides, look_aside, go_on } stage_ = Stage::leave;
   struct Question {
     uint32_t node;  // in nodes_
     uint16_t light;
@@ -140,6 +144,46 @@ class PathKernel final : public PathTracing {
   void answer();
   SUITE_INLINE void shine(const Question& q, size_t ray, double passes);
   void lack(const Question& q, size_t ray, bool blocked);
+  bool is_behind_earth(const Ray& ray, double length) const {
+    return environment_.earth && environment_.earth->meet(ray.origin, ray.direction, length);
+  }
+  // From where a path stands to what its ray has met, m.
+  double way_to(const Hit& hit, const Path& path) const {
+    constexpr double kForever = std::numeric_limits<double>::infinity();
+    if (hit.hit() || !environment_.earth) return hit.hit() ? hit.distance : kForever;
+    const auto met = environment_.earth->meet(path.origin, path.direction, kForever);
+    return met ? met->distance : kForever;
+  }
+  // kernel_side.h: flights aside of paths, from where media scatter forwards.
+  struct Side {
+    uint32_t node;       // in nodes_
+    Path path;           // that takes the way aside
+    Flight flight;       // of it
+    double scale = 0;    // times spectrum: what the event makes of light from there, over its density
+    LightSample sample;  // of the light
+    uint32_t hit = 0;    // in side_hits_
+  };
+  // Of the light that may come to pass, over even scattering of all of a path's light: less than kSideCarries is left
+  // to chance, with kSideLeast at least.
+  static constexpr double kSideCarries = 4, kSideLeast = 0.05;
+  double brings(const NodeAt& node, Dir in) const;
+  void choose_side_light();
+  std::span<float> side_spectrum(size_t i) { return {&side_spectra_[i * bins_], bins_}; }
+  bool has_side(const NodeAt& node) const;
+  bool share_with_side(const NodeAt& node, Continuation& on) const;
+  // The share of what a path finds of a light at a node that side flights leave to it.
+  double beside_sides(const NodeAt& node, uint16_t light) const {
+    if constexpr (kGuides)
+      if (node.event && paths_[node.path].sided && light == side_light_->index) return alone(paths_[node.path]);
+    return 1;
+  }
+  double alone(const Path& path) const;
+  bool begin_sides(TraceRequest& request);
+  bool begin_side(const NodeAt& node, Side& side, std::span<float> spectrum);
+  void fly_sides();
+  bool fly_side(Side& side, std::span<float> spectrum);
+  void answer_sides();
+  void shine_aside(const Side& side, size_t ray, std::span<float> spectrum);
   // kernel_refract.h: lights behind smooth interfaces.
   void want_refracted(const NodeAt& node, const Asked& light, const LightSample& sample);
   void want_places();
@@ -271,6 +315,8 @@ class PathKernel final : public PathTracing {
   // Of a path that enters a medium. Two against one take 0.87 of the work to an error in the bay of sample_scenes, four
   // as much as one or two.
   static constexpr uint32_t kParts = 2;
+  const Asked* side_light_ = nullptr;  // towards which there are side flights; null: there are none
+  Dir side_toward_;                    // its middle
   // Of the stage.
   bool first_stage_ = true;
   std::vector<uint32_t> active_, received_;  // paths; those that start at receivers
@@ -284,6 +330,11 @@ class PathKernel final : public PathTracing {
   std::vector<Question> questions_;
   std::vector<RefractedQuestion> refracted_questions_;
   std::vector<Guide> guides_;  // of nodes; where nothing refracts none
+  std::vector<Side> sides_;    // the first side_count_ of them
+  size_t side_count_ = 0;
+  std::vector<Ray> side_rays_;
+  std::vector<Hit> side_hits_;
+  std::vector<float> side_spectra_;  // [side][bin]
   std::vector<Contribution> contributions_;
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;

@@ -42,6 +42,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       contributions_(std::max<size_t>(256, 4 * width)),
       transmission_(bins_) {
   list_lights();
+  if (c.branches) choose_side_light();
   if (!glowing_.empty()) last_.resize(width);
   for (auto* list : {&active_, &received_, &onward_}) list->reserve(width);
   nodes_.reserve(width), points_.reserve(width);
@@ -94,7 +95,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.surfaces = path.scatterings = path.flights = 0;
   path.events = 0;
   path.bends = Path::kUnasked;
-  path.branch = Branch::none;
+  path.branch = Branch::none, path.sided = false;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
   path.knot = 0;
@@ -137,6 +138,21 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::next(TraceRequest& req
         if (space_.sight().next(request)) return true;
         answer();
         hand_over();
+        stage_ = Stage::go_on;
+        if (!begin_sides(request)) break;
+        stage_ = Stage::fly_sides;
+        return true;
+      case Stage::fly_sides:
+        fly_sides();
+        stage_ = Stage::look_aside;
+        break;
+      case Stage::look_aside:
+        if (space_.sight().next(request)) return true;
+        answer_sides();
+        hand_over();
+        stage_ = Stage::go_on;
+        break;
+      case Stage::go_on:
         go_on();
         first_stage_ = false;
         stage_ = Stage::leave;
@@ -171,11 +187,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   const uint32_t p = active_[slot];
   Path& path = paths_[p];
   Hit& hit = hits_[slot];
-  double length = hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
-  if (!hit.hit() && environment_.earth) {
-    const auto met = environment_.earth->meet(path.origin, path.direction, length);
-    if (met) length = met->distance;
-  }
+  const double length = way_to(hit, path);
   if (!throughputs_.has_room(p, Space::kDense)) throughputs_.make_room(p);
   const std::span<float> through = throughputs_.take(p), emitted = throughputs_.take(p);
   Contribution& c = contribution(p, Space::kEmitter);

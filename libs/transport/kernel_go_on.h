@@ -69,13 +69,13 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::weigh(uint32_t p, co
       brightest = path.throughput[0];
       return 1;
     }
-    if (kGuides && on.branch != Branch::none) path.other[k] = path.relative[k] * on.other[k] / own;
+    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] = path.relative[k] * on.other[k] / own;
     path.relative[k] *= on.density[k] / own;
     shares += probability_[k] * path.relative[k];
   }
   for (size_t k = 0; k < knots(); ++k) {
     path.relative[k] /= shares, path.throughput[k] /= shares;
-    if (kGuides && on.branch != Branch::none) path.other[k] /= shares;
+    if (kGuides && (on.branch != Branch::none || on.sided)) path.other[k] /= shares;
     if (!(path.throughput[k] <= brightest)) brightest = path.throughput[k];
     if (std::isnan(brightest)) return shares;
   }
@@ -115,7 +115,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
       share_with_guide(node, true, on);
       return true;
     }
-    if (node.event) return space_.sample(node.path, path, u, more[2], memory, on);
+    if (node.event) return space_.sample(node.path, path, u, more[2], memory, on) && share_with_side(node, on);
   }
   const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
   if constexpr (Surfaces::kDense > 0)
@@ -164,7 +164,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const NodeAt& node = nodes_[i];
   const uint32_t p = node.path;
   Path& path = paths_[p];
-  path.branch = on.branch;
+  path.branch = on.branch, path.sided = on.sided;
   if (refracted_) path.bends = bends_behind(node, on);
   if (waters_.any()) path.water = water_behind(node, on.in);
   if constexpr (Space::kScatters) {

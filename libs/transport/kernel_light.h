@@ -46,7 +46,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& node, const Asked& light,
-                                                                  const LightSample& sample, int draws) {
+                                                                  const LightSample& sample, int draws, double asks) {
   const uint32_t p = node.path;
   const Path& path = paths_[p];
   const Hit& hit = hits_[node.slot];
@@ -82,7 +82,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::propose(const NodeAt& 
                                     light.beam,
                                     sample.direction,
                                     delta ? 0 : sample.density * draws,
-                                    static_cast<float>(delta ? sample.scale / draws : sample.scale),
+                                    static_cast<float>((delta ? sample.scale / draws : sample.scale) / asks),
                                     sample.spectrum};
   sight_rays_.add(distance, !light.nature.wide).set(origin, direction, path.time, path.draw);
 }
@@ -94,8 +94,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
   for (size_t i = 0; i < blocked.size(); ++i) {
     const Question& q = questions_[i];
     const Ray& ray = sight_rays_.rays()[i];
-    const bool behind_earth =
-        environment_.earth && environment_.earth->meet(ray.origin, ray.direction, sight_rays_.distance()[i]);
+    const bool behind_earth = is_behind_earth(ray, sight_rays_.distance()[i]);
     if constexpr (Space::kGoesBack)
       if (nodes_[q.node].event && q.beam && space_.in_air(nodes_[q.node].path)) {
         lack(q, i, blocked[i] || behind_earth);  // it shines in the even field already
@@ -207,7 +206,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine(const Question& 
     if (c.water == WaterSeen::mirrored && distance < std::numeric_limits<double>::infinity())
       c.water = WaterSeen::other;
   }
-  c.scale = static_cast<float>(passes * q.scale / denominator);
+  c.scale = static_cast<float>(passes * q.scale / denominator * beside_sides(node, q.light));
   c.factor = factor;
   c.radiance = radiance;
   c.missed = static_cast<float>(missed);

@@ -116,7 +116,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& n
     ray.origin = surface_.tracer().leave(at.hit, at.in);
     ray.direction = at.in;
   }
-  if (environment_.earth && environment_.earth->meet(ray.origin, ray.direction, way.length)) return false;
+  if (is_behind_earth(ray, way.length)) return false;
   const double index = space_.follow_way(ray, way.length, through, transmission_);
   if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });

@@ -8,6 +8,7 @@
 #include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
 #include "transport/kernel_refract.h"
+#include "transport/kernel_side.h"
 #include "transport/media/space_field.h"
 #include "transport/space_lit_air.h"
 #include "transport/surfaces_matte.h"

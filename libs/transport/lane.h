@@ -35,8 +35,10 @@ struct Lane {
   double throughput[K];     // at the knots, for roulette
   double before = 1;        // A before the last event over A after it
   // r_k, with the density of the other way in which the last event's branches draw a scattering (kernel_branch.h).
+  // Or that of a side flight having come from the last event to here (kernel_side.h), where `sided`.
   double other[K];
   Branch branch = Branch::none;
+  bool sided = false;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   uint32_t surfaces = 0;     // met so far, the receiver included

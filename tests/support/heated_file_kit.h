@@ -8,7 +8,7 @@ namespace suite::test {
 struct HeatedFile {
   HeatKit kit;
   HeatResult result;
-  HeatCut cut{6, true, {{3600, 500, {0, 0, 1}}, {7200, 600, {0.6, 0, 0.8}}}, {}};
+  HeatCut cut{6, true, {{3600, 500, {0, 0, 1}}, {7200, 600, {0.6, 0, 0.8}}}, {}, {{0, 0}, {0, 1}}};
 
   explicit HeatedFile(size_t budget = 6) : kit(scene(), budget) {
     HeatSpec run;

@@ -173,7 +173,7 @@ inline WeatherLoads still_loads(const StillWeather& w, TimeSpan span, size_t ste
 // What faces absorb of the sun's beam, W/m2 at normal incidence.
 inline CompactRows absorbed_of(const Sunlight& sun, double beam) {
   std::vector<float> all;
-  for (const float takes : sun.beam) all.push_back(static_cast<float>(beam * double{takes}));
+  for (const float takes : sun.beam.floats()) all.push_back(static_cast<float>(beam * double{takes}));
   return {all, sun.moments};
 }
 

@@ -24,7 +24,7 @@ struct SearchedScene {
             sun,
             kit.faces->ends(),
             path_of(course),
-            {1500, true, {{3600, 500, {0, 0, 1}}}, {}}};
+            {1500, true, {{3600, 500, {0, 0, 1}}}, {}, {}}};
   }
   HeatOperator found(HeatPieces* pieces = nullptr, const std::function<void(size_t)>& progress = {}) const {
     HeatOperator out;

@@ -23,10 +23,12 @@ places() {
 places "roulette"            1 'std::clamp\(brightness / kCarries, kLeast, 1\.0\)' libs
 places "roulette's number"   1 'dimensions::roulette\(' libs
 places "shared density"      1 'other \* \(other / own\)' libs
-places "questions to lights" 1 '(light|light->)(\.light)?->sample\(' libs/transport
+# The second one: side flights, which end where they ask (kernel_side.h).
+places "questions to lights" 2 '(light|light->)(\.light)?->sample\(' libs/transport
 places "lights met outside"  2 '(\.|->)met_outside\(' libs/transport
 places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
-places "explicit light"      1 'Estimator::asked\(' libs/transport
+# The second one: side flights, which end where they ask (kernel_side.h).
+places "explicit light"      2 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 # Beside a stage's own rays: which media a place lies in, and ways through interfaces, whose rays follow from each other.

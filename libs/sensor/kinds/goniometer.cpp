@@ -3,11 +3,11 @@
 //
 // Rays come in from a few view zeniths all over the patch; what they would carry back is binned by the direction in
 // which the paths leave the scene. Under a sky of radiance 1 everywhere and without a sun, a bin holds the integral of
-// f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there. Cells
-// lie about the azimuth of the view, for reflectance has its extremes in its plane.
-// Assumes: a scene that repeats itself or that is wider than light travels sideways. The samples are isotropic: the
-// mean over the view azimuths from which the patch is seen, each with the light turned with it. Based on: Goodenough &
-// Brown, section V-B (multi-scale modelling).
+// f(out, in) |cos in| over its cell, and divided by the cell's integral of the cosine it is the BRDF's mean there.
+// Cells lie about the azimuth of the view, for reflectance has its extremes in its plane. Assumes: a scene that repeats
+// itself or that is wider than light travels sideways. The samples are isotropic: the mean over the view azimuths from
+// which the patch is seen, each with the light turned with it. Based on: Goodenough & Brown, section V-B (multi-scale
+// modelling).
 #include <cmath>
 
 #include "sensor/kinds/simple.h"
@@ -60,8 +60,8 @@ class Goniometer final : public SimpleSensor {
       for (uint32_t ring = 0; ring < rings_; ++ring)
         for (uint32_t a = 0; a < azimuths(); ++a) {
           // Rings are equal in z; the cosine's integral over a cell is its solid angle times its mean z.
-          const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins,
-                       phi = 2 * kPi * a / azimuths(), s = std::sqrt(1 - z * z);
+          const double z = (ring + 0.5) / rings_, cell = z * 2 * kPi / capture_.bins, phi = 2 * kPi * a / azimuths(),
+                       s = std::sqrt(1 - z * z);
           text += strf("%zu %.9g %.9g %.9g", v, s * std::cos(phi), s * std::sin(phi), z);
           for (size_t b = 0; b < bands_.size(); ++b) text += strf(" %.7g", value(d, v, ring, a, b) / cell);
           text += "\n";

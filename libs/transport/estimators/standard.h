@@ -37,11 +37,14 @@ struct StandardEstimator {
     for (const auto& light : kernel.lights()) {
       if (parallel && !StandardEstimator::parallel(light.nature)) kernel.set_parallel(), parallel = false;
       kernel.expect(kernel.nodes().size() * static_cast<size_t>(light.nature.draws));
-      for (const auto& node : kernel.nodes())
+      for (const auto& node : kernel.nodes()) {
+        const double asks = kernel.asks(node, light);
+        if (!(asks > 0)) continue;
         if (light.only)
-          kernel.propose(node, light, *light.only, 1);
+          kernel.propose(node, light, *light.only, 1, asks);
         else
-          ask_one(kernel, node, light, options);
+          ask_one(kernel, node, light, options, asks);
+      }
     }
     if (parallel) kernel.set_parallel();
   }
@@ -49,7 +52,7 @@ struct StandardEstimator {
  private:
   template <class Kernel>
   static void ask_one(Kernel& kernel, const typename Kernel::NodeAt& node, const typename Kernel::Asked& light,
-                      const PipelineOptions& options) {
+                      const PipelineOptions& options, double asks) {
     std::array<double, 4> u = kernel.numbers(node, light.use);
     if (light.first_number == 2) u = {u[2], u[3], 0, 0};
     const LightReceiver at = light.nature.far ? LightReceiver{} : kernel.receiver(node);
@@ -61,7 +64,8 @@ struct StandardEstimator {
       return y >= 1 ? y - 1 : y;
     };
     if (draws == 1) {
-      if (const auto sample = light.light->sample(at, u, kernel.time(node))) kernel.propose(node, light, *sample, 1);
+      if (const auto sample = light.light->sample(at, u, kernel.time(node)))
+        kernel.propose(node, light, *sample, 1, asks);
       return;
     }
     std::array<std::array<double, 4>, LightNature::kMostDraws> v;

@@ -282,11 +282,13 @@ double Flights::join_knots(LivePath& live, bool scattered, double own_rate) {
       for (const Constituent& c : walk_.contents())
         rate += c.density * double{media_[c.medium].scattering[bins_of_knots_[k]]};
     }
-    live.relative[k] =
-        combined(live, k, scattered) * std::exp(own - scattering_depth(bins_of_knots_[k])) * (rate / own_rate);
+    const double way = std::exp(own - scattering_depth(bins_of_knots_[k])) * (rate / own_rate);
+    live.relative[k] = combined(live, k, scattered) * way;
+    if (live.sided) live.other[k] *= way;
     shares += probability_[k] * live.relative[k];
   }
   for (size_t k = 0; k < knots; ++k) live.relative[k] /= shares;
+  for (size_t k = 0; live.sided && k < knots; ++k) live.other[k] /= shares;
   live.before /= shares;
   return shares;
 }

@@ -26,7 +26,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
       stacks_(c.width),
       ways_(c.width),
-      events_(c.width),
+      events_(2 * c.width),
       phase_(c.optics.state().size()) {
   for (const BakedMedium& m : c.optics.media()) {
     const size_t reference = c.optics.state().knots[0];
@@ -61,6 +61,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
                 flown.dense || flown.scale != 1,
                 flown.emits ? emitted.data() : nullptr};
   live.branch = Branch::none;
+  live.sided = live.sided && flown.scattered;
   const double gap = std::exchange(way.gap, 0);
   const auto advance = [&](double distance) {
     live.length += distance;
@@ -95,11 +96,30 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   return flight;
 }
 
-void FieldSpace::remember(uint32_t p, Vec3 place) {
-  ScatterPlace& e = events_[p];
+void FieldSpace::remember(uint32_t event, Vec3 place) {
+  ScatterPlace& e = events_[event];
   e.place = place;
   e.contents = flights_.contents();
   set_rates(e);
+}
+
+bool FieldSpace::fly_aside(uint32_t p, LivePath& live, const Hit& hit, double length, Vec2 u, Flight& flight,
+                           std::span<float> through) {
+  way_ = stacks_[p];
+  if (!hit.hit()) bodies_.leave_scene(way_);
+  const uint32_t medium = way_.medium(ambient_);
+  // What shines on the way is met by the path's own flights.
+  const Flights::Result flown = flights_.fly(live, length, medium, true, u, through, phase_);
+  if (!flown.scattered) return false;
+  flight.length = flown.distance;
+  flight.through = {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr};
+  if (air_ && !is_airless(medium)) {
+    air_->transmittance(live.origin, live.direction, flown.distance, phase_);
+    for (size_t i = 0; i < through.size(); ++i) through[i] = flown.dense ? through[i] * phase_[i] : phase_[i];
+    flight.through.spectrum = through.data();
+  }
+  remember(side(p), live.origin + live.direction * flown.distance);
+  return true;
 }
 
 void FieldSpace::emit_within(uint32_t p, std::span<float> emission) const {
@@ -137,6 +157,12 @@ void FieldSpace::densities(uint32_t p, Dir out, Dir in, std::span<float> density
   const double cosine = scattering_cosine(out, in);
   const ScatterPlace& e = events_[p];
   const std::vector<size_t>& bins = optics_.state().knots;
+  if (e.contents.size() == 1 && optics_.media()[e.contents[0].medium].scatters()) {  // it alone is the mean
+    optics_.media()[e.contents[0].medium].phase->pdf(cosine, density);
+    for (size_t k = 0; k < density.size(); ++k)
+      if (!(e.rate[k] > 0)) density[k] = 0;
+    return;
+  }
   double q[kMaxKnots] = {};
   for (const Constituent& c : e.contents) {
     const BakedMedium& m = optics_.media()[c.medium];

@@ -68,9 +68,19 @@ class FieldSpace {
   // Its direction alone, when seen from `out`; the density is that of densities().
   bool scatter(uint32_t p, Dir out, int knot, Vec2 u, double who, Dir& in) const;
 
+  // A side flight from the event where path p stands, along `live`: whether it is scattered on the way to `hit`, or of
+  // `length` m. through: receives what the way does to every bin, times scale. What it comes to is the event side(p).
+  bool fly_aside(uint32_t p, LivePath& live, const Hit& hit, double length, Vec2 u, Flight& flight,
+                 std::span<float> through);
+  uint32_t side(uint32_t p) const { return p + static_cast<uint32_t>(stacks_.size()); }
+
   void clear_sight() { sight_.clear(); }
   // Names a ray from path p, at the event that ended its flight or else at a surface.
   void see_from_event(uint32_t p) { sight_.add(stacks_[p]); }
+  void see_from_side(uint32_t p, const Hit& hit) {
+    MediumStack& stack = sight_.add(stacks_[p]);
+    if (!hit.hit()) bodies_.leave_scene(stack);
+  }
   void see_from_surface(uint32_t p, const Hit& hit, uint32_t material, Dir out, Dir in);
   Sight& sight() { return sight_; }
   bool dims(const Ray& ray, double distance, size_t i, std::span<float> transmission, std::span<double> reach);
@@ -91,7 +101,7 @@ class FieldSpace {
     std::vector<Constituent> contents;
     double rate[kMaxKnots];  // scattering coefficient
   };
-  void remember(uint32_t p, Vec3 place);
+  void remember(uint32_t event, Vec3 place);
   void set_rates(ScatterPlace& e) const;
   // Matter that is denser than the air, such as water, holds none of it.
   bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
@@ -111,7 +121,7 @@ class FieldSpace {
   std::vector<uint8_t> one_phase_;  // the same phase function at all wavelengths, per medium
   std::vector<MediumStack> stacks_;
   std::vector<Way> ways_;
-  std::vector<ScatterPlace> events_;
+  std::vector<ScatterPlace> events_;  // of paths, and of their side flights
   std::vector<float> phase_;
   MediumStack way_;  // that interfaces bend, as it stands
   std::vector<double> depths_;

@@ -105,14 +105,14 @@ Box traced_box(const HeatWeather& weather, double noon) {
       const HeatElement& element = (*scene.elements)[e];
       if (dot(element.normal, kFaces[n].second) < 0.9) continue;
       area += element.area;
-      for (size_t p = 0; p < kSkyPatches; ++p) out.sky[n][p] += element.area * double{sun.sky[e * kSkyPatches + p]};
+      for (size_t p = 0; p < kSkyPatches; ++p) out.sky[n][p] += element.area * sun.sky.at(e, p);
       out.below[n] += element.area * double{sun.below[e]};
       for (size_t k = 0; k < loads.moments.size(); ++k) {
         const Dir towards = loads.course.towards(loads.moments[k]);
         // Around sunrise and where the sun passes into the face's plane a step's mean is not the cosine of its middle.
         if (towards.z < 0.2 || std::fabs(dot(towards, kFaces[n].second)) < 0.2) continue;
         const double cosine = std::fmax(0.0, dot(towards, kFaces[n].second));
-        out.worst_beam = std::fmax(out.worst_beam, std::fabs(double{sun.beam[e * sun.moments + k]} - cosine));
+        out.worst_beam = std::fmax(out.worst_beam, std::fabs(sun.beam.at(e, k) - cosine));
       }
     }
     for (double& v : out.sky[n]) v /= area;

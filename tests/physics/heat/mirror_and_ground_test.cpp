@@ -128,10 +128,10 @@ Taken found(double alpha, Faces faces, const PathOptions& options) {
     for (size_t f = 0; f < light.faces(); ++f) {
       if (kit.faces->is_back(f) != back) continue;
       const double area = (*kit.elements)[kit.faces->element(f)].area;
-      for (size_t k = 0; k < 3; ++k) side->mean += area * double{light.beam[f * 3 + k]} / 3;
+      for (size_t k = 0; k < 3; ++k) side->mean += area * light.beam.at(f, k) / 3;
       for (size_t k = 0; k < blocks.size() * Sunlight::kParts; ++k)
         blocks[k / Sunlight::kParts] +=
-            area * double{light.beam_of_block[f * blocks.size() * Sunlight::kParts + k]} / 3;
+            area * light.beam_of_block.at(f * blocks.size() + k / Sunlight::kParts, k % Sunlight::kParts) / 3;
     }
     RunningStats spread;
     for (const double each : blocks) spread.add(each);

@@ -32,10 +32,10 @@ Watts watts(const HeatKit& kit, uint32_t material, Dir sun, const PathOptions& o
   for (size_t f = 0; f < light.faces(); ++f) {
     const HeatElement& e = (*kit.elements)[kit.faces->element(f)];
     if (e.material != material) continue;
-    for (size_t k = 0; k < 3; ++k) out.mean += e.area * double{light.beam[f * 3 + k]} / 3;
+    for (size_t k = 0; k < 3; ++k) out.mean += e.area * light.beam.at(f, k) / 3;
     for (size_t k = 0; k < blocks.size() * Sunlight::kParts; ++k)
       blocks[k / Sunlight::kParts] +=
-          e.area * double{light.beam_of_block[f * blocks.size() * Sunlight::kParts + k]} / 3;
+          e.area * light.beam_of_block.at(f * blocks.size() + k / Sunlight::kParts, k % Sunlight::kParts) / 3;
   }
   RunningStats spread;
   for (const double each : blocks) spread.add(each);

@@ -29,7 +29,7 @@ TEST(Sunlit, BlackWallOverWhiteGround) {
     double sum = 0, area = 0;
     for (size_t e = 0; e < kit.elements->size(); ++e) {
       area += (*kit.elements)[e].area;
-      for (size_t k = 0; k < 3; ++k) sum += (*kit.elements)[e].area * double{sun.beam[e * 3 + k]} / 3;
+      for (size_t k = 0; k < 3; ++k) sum += (*kit.elements)[e].area * sun.beam.at(e, k) / 3;
     }
     return sum / area;
   };

@@ -10,6 +10,7 @@
 #include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
 #include "transport/kernel_refract.h"
+#include "transport/kernel_side.h"
 #include "transport/serve.h"
 
 namespace suite {

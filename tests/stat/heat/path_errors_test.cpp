@@ -126,7 +126,7 @@ TEST(PathErrors, PathsForATarget) {
   for (const double target : {0.2, 0.1}) {
     const TargetPaths t = paths_for(target, *kit.tracer, *kit.elements, *kit.faces, kit.optics, loads, spec_of(64, 1));
     const double told = mean_path_error(kit.solve(loads, spec_of(t.paths, 1)), *kit.elements, *kit.faces);
-    std::printf("target %.2g K: %.3f K with %u paths, so %u, which tell %.4f K\n", target, t.pilot_error, kPilotPaths,
+    std::printf("target %.2g K: %.3f K with %u paths, so %u, which tell %.4f K\n", target, t.pilot_error, t.pilot_paths,
                 t.paths, told);
     EXPECT_TRUE(t.enough);
     EXPECT_LT(told, 1.1 * target);

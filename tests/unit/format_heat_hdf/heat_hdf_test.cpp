@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "base/files.h"
+#include "heat/heat_field.h"
 #include "support/heated_file_kit.h"
 #include "support/message_of.h"
 #include "support/temp_folder.h"
@@ -44,6 +45,18 @@ TEST(HeatHdf, ThereAndBack) {
   EXPECT_EQ(a.past_error, b.past_error);
   EXPECT_EQ(a.balance.residual(), b.balance.residual());
   EXPECT_EQ(a.kelvin_at(1, 12345), b.kelvin_at(1, 12345));
+}
+
+TEST(HeatHdf, FluxesAreReadWhereTheyAreAsked) {
+  const TempFolder folder;
+  const HeatedFile file;
+  file.write(folder / "heat.h5");
+  const HeatResult r = read_heat(folder / "heat.h5", *file.kit.elements, *file.kit.faces, false);
+  EXPECT_EQ(r.kelvin, file.result.kelvin);
+  EXPECT_TRUE(r.absorbed.empty() && r.received.empty());
+  const HeatResult travelled = unpacked_field(packed_field(r));
+  EXPECT_EQ(travelled.kelvin, r.kelvin);
+  EXPECT_TRUE(travelled.absorbed.empty());
 }
 
 TEST(HeatHdf, WhatIsLeftAndWhatPointsNeed) {
