@@ -15,8 +15,7 @@ std::span<const QualityBit> quality_bits() {
       {quality_unresolved, "unresolved", "light behind a smooth refracting surface was not found"},
       {quality_clipped, "clipped",
        "the detector's charge is beyond its full well or its counts beyond an end of the converter: the radiance "
-       "holds, "
-       "counts and apparent temperature are no measure of it"}};
+       "holds, counts and apparent temperature are no measure of it"}};
   return bits;
 }
 
