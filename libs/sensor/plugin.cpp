@@ -12,7 +12,8 @@ namespace suite {
 namespace {
 
 static_assert(SUITE_QUALITY_HEAVY_TAIL == int{quality_heavy_tail} && SUITE_QUALITY_FAILURES == int{quality_failures} &&
-              SUITE_QUALITY_TRUNCATED == int{quality_truncated} && SUITE_QUALITY_UNRESOLVED == int{quality_unresolved});
+              SUITE_QUALITY_TRUNCATED == int{quality_truncated} &&
+              SUITE_QUALITY_UNRESOLVED == int{quality_unresolved} && SUITE_QUALITY_CLIPPED == int{quality_clipped});
 
 // Element i of a plug-in's array, whose elements are as large as the plug-in knows them. Error: smaller than ours.
 template <class T>

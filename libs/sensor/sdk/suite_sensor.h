@@ -105,7 +105,8 @@ enum suite_quality {
   SUITE_QUALITY_HEAVY_TAIL = 1, /* rare events: the true error may be far beyond the reported one */
   SUITE_QUALITY_FAILURES = 2,   /* samples that were NaN or negative were rejected */
   SUITE_QUALITY_TRUNCATED = 4,  /* more than 1 % of the energy was cut at the maximum number of nodes */
-  SUITE_QUALITY_UNRESOLVED = 8  /* light behind smooth refracting surfaces was not found */
+  SUITE_QUALITY_UNRESOLVED = 8, /* light behind smooth refracting surfaces was not found */
+  SUITE_QUALITY_CLIPPED = 16    /* a detector's counts or charge are clipped */
 };
 
 typedef struct suite_result {
