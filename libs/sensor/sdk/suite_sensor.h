@@ -19,8 +19,7 @@ extern "C" {
 
 /* Raised when plug-ins of older headers cannot work any more. Those built without fields that say "since" go on. */
 #define SUITE_SENSOR_ABI 1u
-/* Counts what "since 1.x" says below; since 1.4. */
-#define SUITE_SENSOR_MINOR 4u
+#define SUITE_SENSOR_MINOR 4u /* counts what "since 1.x" says below; since 1.4 */
 
 enum suite_band_shape {
   SUITE_BAND_GAUSSIAN = 0,
