@@ -62,11 +62,12 @@ void materials_of(const aiScene& scene, AssimpModel& model) {
   }
 }
 
-AssimpModel read(const void* bytes, size_t size, const char* extension) {
+AssimpModel read(const void* bytes, size_t size, const char* extension, bool as_stored) {
   AssimpModel model;
   Assimp::Importer importer;
   // Helper nodes of FBX's pivots are folded into their nodes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, as_stored);
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes, size, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices, extension);
   if (!scene || !scene->mRootNode) {
@@ -79,7 +80,8 @@ AssimpModel read(const void* bytes, size_t size, const char* extension) {
   materials_of(*scene, model);
   model.animations = scene->mNumAnimations, model.cameras = scene->mNumCameras, model.lights = scene->mNumLights;
   if (scene->mMetaData) {
-    scene->mMetaData->Get("UpAxis", model.up_axis);
+    const char* const names[] = {"UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign", "CoordAxis", "CoordAxisSign"};
+    for (size_t k = 0; k < 6; ++k) scene->mMetaData->Get(names[k], model.axes[k]);
     float single = 0;
     if (!scene->mMetaData->Get("UnitScaleFactor", model.unit_cm) && scene->mMetaData->Get("UnitScaleFactor", single))
       model.unit_cm = single;

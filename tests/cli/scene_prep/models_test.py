@@ -5,6 +5,7 @@ made 1000 times larger, so that the six decimals of --export-obj stand for nanom
 the file's own metres.
 """
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -98,8 +99,12 @@ def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
     return path
 
 
-def fbx(path, places, polygon, unit_cm):
-    """A binary FBX 7.4 of one polygon; its bytes."""
+class Whole(int):
+    """A number of 32 bits."""
+
+
+def fbx(path, places, polygon, unit_cm, axes=None):
+    """A binary FBX 7.4 of one polygon; its bytes. axes: up, front, right, each with its sign."""
     def property_of(p):
         if isinstance(p, str):
             return b"S" + struct.pack("<I", len(p.encode())) + p.encode()
@@ -109,6 +114,8 @@ def fbx(path, places, polygon, unit_cm):
             return kind + struct.pack("<III", len(p), 0, len(data)) + data
         if isinstance(p, float):
             return b"D" + struct.pack("<d", p)
+        if isinstance(p, Whole):
+            return b"I" + struct.pack("<i", p)
         return b"I" + struct.pack("<i", p) if p > 2 else b"L" + struct.pack("<q", p)  # 0 to 2: ids
 
     def node(at, name, properties=(), children=()):
@@ -122,9 +129,11 @@ def fbx(path, places, polygon, unit_cm):
         return struct.pack("<IIIB", where + len(inner), len(properties), len(data), len(name)) + name.encode() + data + inner
 
     name = "\x00\x01"
+    names = ("UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign", "CoordAxis", "CoordAxisSign")
+    said = [("P", (key, "int", "Integer", "", Whole(value))) for key, value in zip(names, axes or ())]
     all_nodes = [
         ("FBXHeaderExtension", (), [("FBXVersion", (7400,))]),
-        ("GlobalSettings", (), [("Properties70", (), [("P", ("UnitScaleFactor", "double", "Number", "", unit_cm))])]),
+        ("GlobalSettings", (), [("Properties70", (), [("P", ("UnitScaleFactor", "double", "Number", "", unit_cm))] + said)]),
         ("Objects", (), [("Geometry", (1, "tri" + name + "Geometry", "Mesh"),
                           [("Vertices", ([float(c) for p in places for c in p],)),
                            ("PolygonVertexIndex", (polygon[:-1] + [~polygon[-1]],))]),
@@ -199,6 +208,42 @@ class Models(unittest.TestCase):
             code, said = prepare(WORK + "/bad.fbx")
             self.assertEqual(code, 1, said)
             self.assertIn("bad.fbx: error: ", said)
+
+    def test_axes(self):
+        """`up` stands in place of what a file says: with Collada it was applied on top of it, and models lay on their sides."""
+        subprocess.run(["assimp", "export", DATA + "/gltf/Box.glb", WORK + "/axes.dae", "-fcollada"], check=True, stdout=subprocess.DEVNULL)
+        with open(WORK + "/axes.dae", encoding="utf-8") as f:
+            text = f.read()
+        self.assertEqual(text.count("_UP</up_axis>"), 1)
+        text = re.sub(r"(<float_array[^>]*>)([^<]*)", lambda m: m[1] + " ".join(repr(float(v) * (1 + 0.5 * (i % 3)))
+                                                                              for i, v in enumerate(m[2].split())), text)
+
+        def stands(up_axis, *options):
+            with open(WORK + "/axes.dae", "w", encoding="utf-8") as f:
+                f.write(re.sub("._UP", up_axis, text))
+            code, said = prepare(WORK + "/axes.dae", *options)
+            self.assertEqual(code, 0, said)
+            places = exported()[0].reshape(-1, 3)
+            return [round(float(v), 4) for v in places.max(0) - places.min(0)]
+        y, z = stands("Y_UP"), stands("Z_UP")
+        self.assertEqual(sorted(y), sorted(z))
+        self.assertNotEqual(y, z)
+        for up_axis in ("Y_UP", "Z_UP", "X_UP"):
+            self.assertEqual(stands(up_axis, "--set", "objects.axes.up=y"), y)
+            self.assertEqual(stands(up_axis, "--set", "objects.axes.up=z"), z)
+        # FBX: a wall of 2 m x 3 m x 5 m with the axes that its heading names; it was taken for y up unless z was.
+        places = [(0.0, 0, 0), (2.0, 3, 0), (0, 3.0, 5)]
+        for axes, wanted in ((None, lambda x, y, z: (x, -z, y)), ((2, 1, 1, -1, 0, 1), lambda x, y, z: (x, y, z)),
+                             ((0, 1, 2, 1, 1, -1), lambda x, y, z: (-y, -z, x)), ((2, 1, 0, -1, 1, -1), lambda x, y, z: (-y, x, z)),
+                             ((1, -1, 2, 1, 0, -1), lambda x, y, z: (-x, -z, -y)), ((2, 1, 1, 1, 0, 1), lambda x, y, z: (x, -y, z)),
+                             ((0, 1, 0, 1, 0, 1), lambda x, y, z: (-y, -z, x))):
+            fbx(WORK + "/axes.fbx", places, [0, 1, 2], 100.0, axes)
+            code, said = prepare(WORK + "/axes.fbx", "--set", f"objects.axes.unit_m={SCALE:g}")
+            self.assertEqual(code, 0, said)
+            self.assertEqual({tuple(np.round(p, 5) + 0.0) for p in exported()[0].reshape(-1, 3)},
+                             {tuple(np.round(wanted(*p), 5) + 0.0) for p in places}, axes)
+            self.assertEqual("left-handed" in said, axes == (2, 1, 1, 1, 0, 1), said)
+            self.assertEqual("x is up" in said, axes == (0, 1, 0, 1, 0, 1), said)
 
     def test_more_models(self):
         for path in os.environ.get("SUITE_MORE_MODELS", "").split():
