@@ -1,5 +1,7 @@
 """The programs' messages as exceptions and warnings, with their places."""
+import json
 import os
+import shlex
 import signal
 import stat
 import threading
@@ -86,6 +88,13 @@ class Programs(Case):
             with self.assertRaisesRegex(rs.ProgramMissing, "REMOTE_SCENES_BIN"):
                 rs.run_program("scene-prep", ["--version"])
         self.assertEqual(rs.version(), rs.__version__)
+
+    def test_commands_in_results_can_be_given_again(self):
+        camera = rs.Orthographic(columns=2, rows=2, gsd_m=1, bands=BANDS, paths=1)
+        out = self.folder / "it's \"a\" 'view'"
+        by_day(self.prepared(), [camera]).render(out)
+        command = json.loads((out / "render.json").read_text())["command"]
+        self.assertIn(str(out), shlex.split(command))
 
     def stand_in(self, script):
         """A program of ours in the place of scene-prep."""
