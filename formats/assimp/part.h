@@ -23,6 +23,8 @@ struct AssimpNode {
   int32_t parent = -1;  // before it in the list; -1: the root
   Affine3 to_parent;
   std::vector<uint32_t> meshes;
+  int32_t inherits =
+      0;  // of FBX, InheritType: 0 the parent's scale comes after the rotation, 1 before it, 2 not at all
 };
 
 struct AssimpMaterial {
@@ -35,6 +37,7 @@ struct AssimpModel {
   std::vector<AssimpMesh> meshes;
   std::vector<AssimpNode> nodes;
   std::vector<AssimpMaterial> materials;
+  bool fbx = false;    // set by the reader
   double unit_cm = 0;  // of a file of FBX; 0: it does not say
   // Of FBX: which of x, y, z (0, 1, 2; -1: it does not say) is up, to the front and to the right, each with its sign.
   std::array<int32_t, 6> axes{-1, 1, -1, 1, -1, 1};

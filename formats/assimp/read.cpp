@@ -44,6 +44,53 @@ void check(const AssimpModel& model, const Where& where) {
   }
 }
 
+// The library gives pivots of FBX nodes of their own, which are folded into those that they belong to. (Where it folds
+// them itself, transforms of a node's geometry move the node's children, and PostRotation is not undone as it is to be:
+// FBX SDK, "Computing transformation matrices".)
+void fold_pivots(AssimpModel& model) {
+  constexpr std::string_view helper = "_$AssimpFbx$_";
+  std::vector<AssimpNode> kept;
+  std::vector<int32_t> number(model.nodes.size(), -1);  // of kept ones, or of the one that a folded one leads to
+  std::vector<Affine3> before(model.nodes.size());      // from below a folded node to that one
+  for (size_t n = 0; n < model.nodes.size(); ++n) {
+    AssimpNode& node = model.nodes[n];
+    if (n) {
+      const auto parent = static_cast<size_t>(node.parent);
+      node.to_parent = before[parent] * node.to_parent;
+      node.parent = number[parent];
+    }
+    if (n && node.meshes.empty() && node.name.find(helper) != node.name.npos) {
+      number[n] = node.parent, before[n] = node.to_parent;
+    } else {
+      number[n] = static_cast<int32_t>(kept.size());
+      kept.push_back(std::move(node));
+    }
+  }
+  model.nodes = std::move(kept);
+}
+
+// Nodes of FBX whose parent's scale is not to act as it does in a product of their matrices.
+size_t scaled_otherwise(const AssimpModel& model) {
+  size_t found = 0;
+  for (const AssimpNode& node : model.nodes) {
+    if (node.parent < 0 || node.inherits == 1) continue;
+    const auto scales = [](const Affine3& m) {
+      return std::array<double, 3>{length(m.vector({1, 0, 0})), length(m.vector({0, 1, 0})),
+                                   length(m.vector({0, 0, 1}))};
+    };
+    const std::array<double, 3> parent = scales(model.nodes[static_cast<size_t>(node.parent)].to_parent),
+                                mine = scales(node.to_parent);
+    double off = 0;
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 3; ++j) {
+        const double turn = mine[j] > 0 ? node.to_parent.a[3 * i + j] / mine[j] : 0;
+        off = std::max(off, node.inherits == 2 ? std::abs(parent[i] - 1) : std::abs(turn * (parent[i] - parent[j])));
+      }
+    found += off > 1e-4;
+  }
+  return found;
+}
+
 class Builder {
  public:
   Builder(AssimpModel model, const std::string& file, const SourceModelOptions& options, Report& report)
@@ -119,6 +166,9 @@ void Builder::tell() const {
   say("SP705", model_.morphs, "meshes with morph targets: they keep their basic shape");
   say("SP705", model_.textures, "textures: display colours are no spectra, maps are");
   say("SP705", model_.lights, "lights: lights belong to the simulation");
+  if (model_.fbx)
+    say("SP705", scaled_otherwise(model_),
+        "nodes inherit their parents' scale in another way than matrices do (InheritType): they are bent or too large");
   say("SP706", model_.cameras, "cameras: cameras belong to the simulation");
   say("SP706", model_.colours, "meshes with colours of vertices: display colours are no spectra");
   say("SP205", model_.lines, "points or lines");
@@ -191,6 +241,7 @@ SourceModel parse_assimp(std::span<const std::byte> bytes, const std::string& fi
   if (!unpack(made, model)) throw Error(whole, "the library that reads it (assimp) broke down", "the file is damaged");
   if (!model.fault.empty()) throw Error(whole, "cannot be read: " + printable(model.fault).substr(0, 300));
   check(model, whole);
+  if ((model.fbx = extension == "fbx")) fold_pivots(model);
   // Files of FBX say how their axes lie; the library turns those of Collada y up unless the caller knows better.
   const Affine3 turn = y_up                 ? (*y_up ? kFromYUp : Affine3{})
                        : extension == "3ds" ? Affine3{}
