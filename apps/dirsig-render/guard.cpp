@@ -110,10 +110,12 @@ std::string what_is_left(const std::string& folder, size_t finished, size_t capt
   std::string text =
       part ? options.share->text() + " is not finished" : strf("%zu of %zu captures are complete", finished, captures);
   if (finished) text += " in " + folder;
-  return text + (options.store ? "; " + in_folder(folder, "result.state.h5") +
-                                     " holds the finished captures and blocks of 8 x 8 pixels: the same command with "
-                                     "--resume in place of --state and its budget goes on from there"
-                               : "; without --state the rest is lost");
+  if (!options.store) return text + "; without --state the rest is lost";
+  const std::string state = in_folder(folder, "result.state.h5");
+  if (!file_exists(state)) return text + "; no state could be kept";
+  return text + "; " + state +
+         " holds the finished captures and blocks of 8 x 8 pixels: the same command with --resume in place of --state "
+         "and its budget goes on from there";
 }
 
 Error located(const Error& fault, const Scene& scene, const Simulation& sim) {

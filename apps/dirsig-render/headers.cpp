@@ -99,6 +99,20 @@ void add_map(const MapGrid& map, const GeodeticOrigin& origin, EnviHeader& h) {
   if (origin.given) h.coordinate_system = tangent_wkt(origin);
 }
 
+std::string map_offset(const MapGrid& map, uint32_t columns, uint32_t rows, const GeodeticOrigin& origin) {
+  constexpr double kEarth = 6.378e6;  // m
+  double farthest = 0;
+  for (const double x : {map.origin.x, map.origin.x + columns * map.gsd_x})
+    for (const double y : {map.origin.y, map.origin.y - rows * map.gsd_y})
+      farthest = std::max(farthest, std::hypot(x, y));
+  const double h = origin.ellipsoid_height_m, off = std::fabs(h) / (kEarth + h) * farthest;
+  if (!origin.given || !(off > 0.5 * std::min(map.gsd_x, map.gsd_y))) return "";
+  return strf(
+      "other programs put the map's farthest corner %.2g m off: they take its coordinates for those of points on "
+      "the ellipsoid, which are counted at the origin's height of %g m; `geolocation: true` has every pixel's place",
+      off, h);
+}
+
 EnviHeader quality_header(EnviHeader header, const std::string& about) {
   EnviHeader h = bare(std::move(header));
   h.type = EnviType::uint8;

@@ -36,6 +36,10 @@ EnviHeader bare(EnviHeader header);
 // Puts the place of a map into a header.
 void add_map(const MapGrid& map, const GeodeticOrigin& origin, EnviHeader& header);
 
+// The projection that a map is told to be in is one of the ellipsoid's surface, and scene ENU lies at the height of its
+// origin: how far off the farthest corner is where that is more than half a pixel. Empty: it is not.
+std::string map_offset(const MapGrid& map, uint32_t columns, uint32_t rows, const GeodeticOrigin& origin);
+
 // The header of the flags beside an image: one byte a pixel, the sum of the bits that the header names.
 EnviHeader quality_header(EnviHeader header, const std::string& about);
 // How flags are shown: a colour a bit, mixed where several hold, and nothing where none does.

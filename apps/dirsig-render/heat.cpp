@@ -15,20 +15,17 @@
 #include "formats/heat_hdf/heat_hdf.h"
 #include "formats/heat_hdf/operator_hdf.h"
 #include "heat/heat_field.h"
+#include "heat/seen_warmth.h"
 #include "heat/target_paths.h"
 #include "heat_left_out.h"
 #include "heat_paths.h"
 #include "heat_prepared.h"
 #include "heat_told.h"
 #include "scheduler/prepass.h"
-#include "spectral/planck.h"
 
 namespace suite {
 
 namespace {
-
-constexpr double kHottest = 450;   // K, what weather may make of a surface
-constexpr double kGlowing = 1e-3;  // W/(m2 sr um): light below that is nothing beside that of the day
 
 // Truth that is more than temperatures and their errors.
 bool asks_fluxes(const Simulation& sim) {
@@ -37,10 +34,6 @@ bool asks_fluxes(const Simulation& sim) {
       return truth == "sun_hours" || truth == "absorbed_sun" || truth == "longwave_received";
     });
   });
-}
-
-bool waits_for_heat(const Scene& scene) {
-  return std::ranges::any_of(scene.temperatures, [](const TemperatureBinding& t) { return t.spec.model == "heat"; });
 }
 
 // Sunlight of the elements that are left, with the exchange that is there.
@@ -194,7 +187,7 @@ bool sees_heat(const Simulation& sim, const RenderOptions& options) {
   if (options.heat_only) return true;
   for (const auto& sensor : sim.sensors) {
     for (const SpectralState& s : sensor->states())
-      if (planck_radiance(s.high_um, kHottest) > kGlowing) return true;
+      if (sees_warmth(s)) return true;
     for (const std::string& truth : sensor->truth())
       if (truth.starts_with("temperature")) return true;
   }

@@ -150,6 +150,9 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   m.display = display_of(d.bands, preview);
   m.preview.emplace(d.bands, m.display.bands, preview, m.columns, m.rows);
   m.map = d.map;
+  if (m.map)
+    if (const std::string off = map_offset(*m.map, m.columns, m.rows, notes_.origin); !off.empty())
+      warn("sensor '" + d.sensor.name() + "': " + off);
   const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
   const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
   m.description = said.empty() ? "" : "; " + said;

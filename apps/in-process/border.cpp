@@ -20,6 +20,11 @@ std::string& message() {
   return text;
 }
 
+std::string& told_text() {
+  thread_local std::string text;
+  return text;
+}
+
 int refused(int code, const char* text) {
   try {
     message() = text;
@@ -45,6 +50,15 @@ int at_border(const std::function<void()>& work) {
   } catch (...) {
     return refused(RS_BUG, "error: something unknown was thrown");
   }
+}
+
+int at_border(const std::function<void(std::vector<std::string>& told)>& work) {
+  return at_border([&]() {
+    told_text().clear();
+    std::vector<std::string> told;
+    work(told);
+    for (const std::string& sentence : told) told_text() += (told_text().empty() ? "" : "\n") + sentence;
+  });
 }
 
 void need(const void* given, const char* name) {
@@ -76,6 +90,7 @@ void in_parallel(size_t n, const std::function<void(size_t, size_t)>& body) {
 int rs_interface(void) { return RS_INTERFACE; }
 const char* rs_version(void) { return suite::kVersion; }
 const char* rs_message(void) { return suite::message().c_str(); }
+const char* rs_told(void) { return suite::told_text().c_str(); }
 
 int rs_set_threads(int threads) {
   return suite::at_border([&] {

@@ -1,6 +1,8 @@
 // The border to C: no exception crosses it. What is thrown within becomes a code and a message of the thread.
 #pragma once
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "math/vec.h"
 
@@ -8,6 +10,9 @@ namespace suite {
 
 // Runs `work`; RS_OK, or what remote_scenes.h says of a fault.
 int at_border(const std::function<void()>& work);
+
+// The same, of calls that may warn: what `work` adds is rs_told() of the thread afterwards, one sentence a line.
+int at_border(const std::function<void(std::vector<std::string>& told)>& work);
 
 // Throws Error unless `given` is there: `name` is that of the parameter.
 void need(const void* given, const char* name);

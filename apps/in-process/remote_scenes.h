@@ -1,12 +1,12 @@
-/* The suite inside another process: fitted scattering functions (.sqt) and prepared scenes (.h5), asked for whole
- * arrays at once, on all cores. Plain C; libremote_scenes.so.1 keeps what stands here.
+/* The suite inside another process: fitted scattering functions (.sqt), prepared scenes (.h5) and the light of
+ * simulations, asked for whole arrays at once, on all cores. Plain C; libremote_scenes.so.1 keeps what stands here.
  *
  * Conventions: SI, wavelengths in um; angles in rad. Arrays lie one row after the other, n x 3 for places and
  * directions. Directions are unit vectors (within 1e-6) and point away from the surface; of a fitted function in the
  * surface's own frame, z its normal; of scenes ENU (x east, y north, z up). Functions return 0, or RS_INPUT when the
  * input is at fault, RS_BUG when the suite is; rs_message() then tells what is wrong and where, as the programs do.
- * Nothing is written to the arrays of a refused call but by rs_scene_trace. Objects may be asked by several threads at
- * once; they are closed once, when nobody asks them any more.
+ * Nothing is written to the arrays of a refused call but by rs_scene_trace and rs_simulation_radiance. Objects may be
+ * asked by several threads at once; they are closed once, when nobody asks them any more.
  */
 #ifndef REMOTE_SCENES_H
 #define REMOTE_SCENES_H
@@ -17,12 +17,14 @@
 extern "C" {
 #endif
 
-#define RS_INTERFACE 1 /* of this header; grows when functions are added */
+#define RS_INTERFACE 2 /* of this header; grows when functions are added */
 enum { RS_OK = 0, RS_INPUT = 1, RS_BUG = 3 };
 
 int rs_interface(void);       /* RS_INTERFACE of the library */
 const char* rs_version(void); /* of the suite, as "0.1.0" */
 const char* rs_message(void); /* of the last refused call of this thread, without a line's end; empty before */
+
+const char* rs_told(void); /* what the last rs_simulation_... of this thread has to warn of, a sentence a line */
 
 /* Threads for calls from now on, of the whole process; 0 = one a core. */
 int rs_set_threads(int threads);
@@ -99,6 +101,34 @@ int rs_scene_trace(const rs_scene* scene, size_t n, const double* origin, const 
  * count. Surfaces nearer to either place than gap (m, >= 0) do not stand between: of places on surfaces. */
 int rs_scene_visible(const rs_scene* scene, size_t n, const double* from, const double* to, double gap,
                      const double* time, uint8_t* visible);
+
+/* ---- radiance of rays ---- */
+
+typedef struct rs_simulation rs_simulation;
+
+/* A simulation's text, as dirsig-render reads it, with the scenes that it names: its lights, air, media and options
+ * light the rays. sensor: whose bands and numbers of paths they have, by name; NULL: the only one. RS_INPUT also for
+ * sensors of several spectral states, and for temperatures that follow from weather where a band sees them. */
+int rs_simulation_open(const char* path, const char* sensor, rs_simulation** simulation);
+void rs_simulation_close(rs_simulation* simulation); /* NULL is none */
+
+typedef struct rs_simulation_info {
+  size_t bands;
+  uint32_t paths;    /* at most, of a ray, as the sensor has it */
+  uint64_t seed;     /* of the text */
+  double begin, end; /* s, of the sensor's first capture */
+} rs_simulation_info;
+void rs_simulation_describe(const rs_simulation* simulation, rs_simulation_info* info);
+const char* rs_simulation_band(const rs_simulation* simulation, size_t number, double* center_um); /* NULL beyond */
+
+/* What comes along rays, W/(m2 sr um), with its standard error: n x bands each; quality (n, or NULL): flags of
+ * dirsig-render's quality image. time: s, n, or NULL for `begin`; rays of one time are rendered together, the sun where
+ * it is then. paths: of each ray; 0: as the sensor says, its target for errors included. seed: 0 to 2^53. The
+ * bits are those of a `point` sensor that looks along the rays in this order at this time, for any number of threads;
+ * random numbers go by a ray's place among those of its time. */
+int rs_simulation_radiance(const rs_simulation* simulation, size_t n, const double* origin, const double* direction,
+                           const double* time, uint32_t paths, uint64_t seed, double* radiance, double* standard_error,
+                           uint8_t* quality);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <tuple>
 
 #include "base/inputs.h"
 #include "base/outputs.h"
@@ -17,10 +18,19 @@ namespace {
 
 constexpr double kReach = 25;  // cm-1, of a line: air/lines.h
 
-// The lines of a gas in its files. lists: what has been read, by file.
+// The same transition of a list: its place and strength as they are written.
+using Transition = std::tuple<int, double, double, double>;
+Transition transition_of(const SpectralLine& l) {
+  return {l.isotopologue, l.wavenumber_cm, l.intensity, l.lower_energy_cm};
+}
+
+// The lines of a gas in its files. lists: what has been read, by file. Within one file lines may be alike (levels that
+// coincide); what two files have is told.
 std::vector<SpectralLine> lines_of(const GasRecipe::Source& source,
                                    std::map<std::string, std::vector<LineGas>>& lists) {
   std::vector<SpectralLine> lines;
+  std::set<Transition> known;
+  size_t twice = 0;
   for (const std::string& file : source.lines) {
     auto list = lists.find(file);
     if (list == lists.end()) list = lists.emplace(file, read_hitran(file)).first;
@@ -28,8 +38,14 @@ std::vector<SpectralLine> lines_of(const GasRecipe::Source& source,
         std::find_if(list->second.begin(), list->second.end(), [&](const LineGas& g) { return g.gas == source.gas; });
     if (mine == list->second.end())
       throw Error(source.where, file + " holds no line of " + std::string(gas_name(source.gas)));
+    for (const SpectralLine& line : mine->lines) twice += known.contains(transition_of(line));
     lines.insert(lines.end(), mine->lines.begin(), mine->lines.end());
+    if (&file != &source.lines.back())
+      for (const SpectralLine& line : mine->lines) known.insert(transition_of(line));
   }
+  if (twice)
+    warn(strf("%s: %zu lines stand in more than one of its files, and count as often: lists that overlap are to be cut",
+              std::string(gas_name(source.gas)).c_str(), twice));
   std::stable_sort(lines.begin(), lines.end(),
                    [](const SpectralLine& a, const SpectralLine& b) { return a.wavenumber_cm < b.wavenumber_cm; });
   return lines;

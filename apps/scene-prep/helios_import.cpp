@@ -1,5 +1,6 @@
 #include "helios_import.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/files.h"
@@ -7,6 +8,7 @@
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "formats/helios/helios.h"
+#include "formats/obj/obj.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/scene_text.h"
 #include "scene/issues.h"
@@ -15,12 +17,28 @@ namespace suite {
 
 namespace {
 
+HeliosGrid grid_of(const std::string& path) {
+  const GeoReference ref = read_georeference(path);
+  return {{ref.to_map[0], ref.to_map[3]}, {ref.to_map[1], -ref.to_map[5]}, ref.no_data};
+}
+
+HeliosHeights heights_of(const std::string& path) {
+  const Raster raster = read_raster(path);
+  HeliosHeights made{grid_of(path), raster.width, raster.height, {}};
+  made.heights.reserve(size_t{raster.width} * raster.height);
+  for (size_t i = 0; i < raster.values.size(); i += raster.channels) {
+    const float h = raster.values[i];
+    made.heights.push_back(made.no_data && h == static_cast<float>(*made.no_data) ? NAN : h);
+  }
+  return made;
+}
+
 HeliosText text_of(const std::string& path, TrackedInputs& inputs, Report& report) {
-  const HeliosFiles files{[&](const std::string& name) {
-                            const GeoReference ref = read_georeference(inputs.path_of(name));
-                            return std::array<double, 4>{ref.to_map[0], ref.to_map[3], ref.to_map[1], -ref.to_map[5]};
-                          },
-                          [&](const std::string& name) { return read_text(inputs.add(name).path, size_t{1} << 30); }};
+  Report again(scene_issues());  // what is found in meshes is told where they are read for the scene
+  const HeliosFiles files{[&](const std::string& name) { return grid_of(inputs.path_of(name)); },
+                          [&](const std::string& name) { return read_text(inputs.add(name).path, size_t{1} << 30); },
+                          [&](const std::string& name) { return heights_of(inputs.path_of(name)); },
+                          [&](const std::string& name) { return read_obj(inputs.path_of(name), again); }};
   return parse_helios(read_text(path), path, files, report);
 }
 

@@ -44,6 +44,7 @@ void add_node(const aiNode& from, int32_t parent, AssimpModel& model) {
   const aiMatrix4x4& m = from.mTransformation;
   made.to_parent = {{m.a1, m.a2, m.a3, m.b1, m.b2, m.b3, m.c1, m.c2, m.c3}, {m.a4, m.b4, m.c4}};
   made.meshes.assign(from.mMeshes, from.mMeshes + from.mNumMeshes);
+  if (from.mMetaData) from.mMetaData->Get("InheritType", made.inherits);
   const auto mine = static_cast<int32_t>(model.nodes.size());
   model.nodes.push_back(std::move(made));
   for (unsigned k = 0; k < from.mNumChildren; ++k) add_node(*from.mChildren[k], mine, model);
@@ -62,11 +63,12 @@ void materials_of(const aiScene& scene, AssimpModel& model) {
   }
 }
 
-AssimpModel read(const void* bytes, size_t size, const char* extension) {
+AssimpModel read(const void* bytes, size_t size, const char* extension, bool as_stored) {
   AssimpModel model;
   Assimp::Importer importer;
-  // Helper nodes of FBX's pivots are folded into their nodes.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  // The reader folds FBX's pivots, for the library does it wrongly.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, as_stored);
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes, size, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices, extension);
   if (!scene || !scene->mRootNode) {
@@ -79,7 +81,8 @@ AssimpModel read(const void* bytes, size_t size, const char* extension) {
   materials_of(*scene, model);
   model.animations = scene->mNumAnimations, model.cameras = scene->mNumCameras, model.lights = scene->mNumLights;
   if (scene->mMetaData) {
-    scene->mMetaData->Get("UpAxis", model.up_axis);
+    const char* const names[] = {"UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign", "CoordAxis", "CoordAxisSign"};
+    for (size_t k = 0; k < 6; ++k) scene->mMetaData->Get(names[k], model.axes[k]);
     float single = 0;
     if (!scene->mMetaData->Get("UnitScaleFactor", model.unit_cm) && scene->mMetaData->Get("UnitScaleFactor", single))
       model.unit_cm = single;

@@ -42,10 +42,10 @@ class Archive {
   void fields(AssimpMesh& m) {
     one(m.name), one(m.material), many(m.positions), many(m.normals), many(m.uvs), many(m.indices);
   }
-  void fields(AssimpNode& n) { one(n.name), one(n.parent), one(n.to_parent), many(n.meshes); }
+  void fields(AssimpNode& n) { one(n.name), one(n.parent), one(n.to_parent), many(n.meshes), one(n.inherits); }
   void fields(AssimpMaterial& m) { one(m.name), one(m.rgb); }
   void fields(AssimpModel& m) {
-    one(m.fault), many(m.meshes), many(m.nodes), many(m.materials), one(m.unit_cm), one(m.up_axis);
+    one(m.fault), many(m.meshes), many(m.nodes), many(m.materials), one(m.unit_cm), one(m.axes);
     for (uint64_t* count :
          {&m.animations, &m.cameras, &m.lights, &m.textures, &m.bones, &m.morphs, &m.colours, &m.lines})
       one(*count);

@@ -23,6 +23,8 @@ struct AssimpNode {
   int32_t parent = -1;  // before it in the list; -1: the root
   Affine3 to_parent;
   std::vector<uint32_t> meshes;
+  int32_t inherits =
+      0;  // of FBX, InheritType: 0 the parent's scale comes after the rotation, 1 before it, 2 not at all
 };
 
 struct AssimpMaterial {
@@ -35,15 +37,17 @@ struct AssimpModel {
   std::vector<AssimpMesh> meshes;
   std::vector<AssimpNode> nodes;
   std::vector<AssimpMaterial> materials;
-  double unit_cm = 0;    // of a file of FBX; 0: it does not say
-  int32_t up_axis = -1;  // of FBX: 1 y, 2 z
+  bool fbx = false;    // set by the reader
+  double unit_cm = 0;  // of a file of FBX; 0: it does not say
+  // Of FBX: which of x, y, z (0, 1, 2; -1: it does not say) is up, to the front and to the right, each with its sign.
+  std::array<int32_t, 6> axes{-1, 1, -1, 1, -1, 1};
   // What a scene has no place for.
   uint64_t animations = 0, cameras = 0, lights = 0, textures = 0, bones = 0, morphs = 0, colours = 0, lines = 0;
 };
 
-// extension: of the file's name, which says what it is.
+// extension: of the file's name, which says what it is. as_stored: axes of Collada are not turned to y up.
 struct AssimpCalls {
-  AssimpModel (*read)(const void* bytes, size_t size, const char* extension);
+  AssimpModel (*read)(const void* bytes, size_t size, const char* extension, bool as_stored);
 };
 
 }  // namespace suite

@@ -44,6 +44,53 @@ void check(const AssimpModel& model, const Where& where) {
   }
 }
 
+// The library gives pivots of FBX nodes of their own, which are folded into those that they belong to. (Where it folds
+// them itself, transforms of a node's geometry move the node's children, and PostRotation is not undone as it is to be:
+// FBX SDK, "Computing transformation matrices".)
+void fold_pivots(AssimpModel& model) {
+  constexpr std::string_view helper = "_$AssimpFbx$_";
+  std::vector<AssimpNode> kept;
+  std::vector<int32_t> number(model.nodes.size(), -1);  // of kept ones, or of the one that a folded one leads to
+  std::vector<Affine3> before(model.nodes.size());      // from below a folded node to that one
+  for (size_t n = 0; n < model.nodes.size(); ++n) {
+    AssimpNode& node = model.nodes[n];
+    if (n) {
+      const auto parent = static_cast<size_t>(node.parent);
+      node.to_parent = before[parent] * node.to_parent;
+      node.parent = number[parent];
+    }
+    if (n && node.meshes.empty() && node.name.find(helper) != node.name.npos) {
+      number[n] = node.parent, before[n] = node.to_parent;
+    } else {
+      number[n] = static_cast<int32_t>(kept.size());
+      kept.push_back(std::move(node));
+    }
+  }
+  model.nodes = std::move(kept);
+}
+
+// Nodes of FBX whose parent's scale is not to act as it does in a product of their matrices.
+size_t scaled_otherwise(const AssimpModel& model) {
+  size_t found = 0;
+  for (const AssimpNode& node : model.nodes) {
+    if (node.parent < 0 || node.inherits == 1) continue;
+    const auto scales = [](const Affine3& m) {
+      return std::array<double, 3>{length(m.vector({1, 0, 0})), length(m.vector({0, 1, 0})),
+                                   length(m.vector({0, 0, 1}))};
+    };
+    const std::array<double, 3> parent = scales(model.nodes[static_cast<size_t>(node.parent)].to_parent),
+                                mine = scales(node.to_parent);
+    double off = 0;
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 3; ++j) {
+        const double turn = mine[j] > 0 ? node.to_parent.a[3 * i + j] / mine[j] : 0;
+        off = std::max(off, node.inherits == 2 ? std::abs(parent[i] - 1) : std::abs(turn * (parent[i] - parent[j])));
+      }
+    found += off > 1e-4;
+  }
+  return found;
+}
+
 class Builder {
  public:
   Builder(AssimpModel model, const std::string& file, const SourceModelOptions& options, Report& report)
@@ -52,7 +99,7 @@ class Builder {
         options_(options),
         report_(report),
         names_(options.name) {}
-  SourceModel run(bool y_up);
+  SourceModel run(const Affine3& turn);
 
  private:
   DraftPlacement place(const std::string& target, const Affine3& to_parent) const {
@@ -119,13 +166,16 @@ void Builder::tell() const {
   say("SP705", model_.morphs, "meshes with morph targets: they keep their basic shape");
   say("SP705", model_.textures, "textures: display colours are no spectra, maps are");
   say("SP705", model_.lights, "lights: lights belong to the simulation");
+  if (model_.fbx)
+    say("SP705", scaled_otherwise(model_),
+        "nodes inherit their parents' scale in another way than matrices do (InheritType): they are bent or too large");
   say("SP706", model_.cameras, "cameras: cameras belong to the simulation");
   say("SP706", model_.colours, "meshes with colours of vertices: display colours are no spectra");
   say("SP205", model_.lines, "points or lines");
 }
 
 // Nodes become groups, children before their parents.
-SourceModel Builder::run(bool y_up) {
+SourceModel Builder::run(const Affine3& turn) {
   result_.groups.push_back({options_.name, options_.where, {}});
   for (size_t k = 0; k < model_.meshes.size(); ++k) mesh(k);
   std::vector<DraftGroup> groups(model_.nodes.size());
@@ -145,7 +195,7 @@ SourceModel Builder::run(bool y_up) {
     group.name = names_.make(printable(node.name), strf("node_%zu", n));
     group.where = options_.where;
     DraftGroup& parent = n ? groups[static_cast<size_t>(node.parent)] : result_.groups[0];
-    parent.placements.push_back(place(group.name, n || !y_up ? to_parent : kFromYUp * to_parent));
+    parent.placements.push_back(place(group.name, n ? to_parent : turn * to_parent));
   }
   if (result_.groups[0].placements.empty()) throw Error(whole_, "places no triangle", "it must hold a mesh", "SP204");
   for (DraftGroup& group : groups)
@@ -156,6 +206,27 @@ SourceModel Builder::run(bool y_up) {
   return std::move(result_);
 }
 
+// What brings the axes that a file of FBX names to ours: right is east, front south, up up.
+Affine3 turn_of_axes(const AssimpModel& model, const Where& where, Report& report) {
+  const auto& a = model.axes;
+  Affine3 turn;
+  turn.a = {};
+  bool named = true;
+  for (const size_t k : {0, 2, 4}) named = named && a[k] >= 0 && a[k] <= 2 && (a[k + 1] == 1 || a[k + 1] == -1);
+  if (named) {
+    turn.a[static_cast<size_t>(a[4])] = a[5];
+    turn.a[static_cast<size_t>(3 + a[2])] = -a[3];
+    turn.a[static_cast<size_t>(6 + a[0])] = a[1];
+  }
+  const double handed = turn.determinant();
+  if (handed < 0) report.add("SP707", where.file, {where, "its axes are left-handed: it is mirrored, as they say"});
+  if (handed != 0) return turn;
+  if (a[0] == 0)
+    report.add("SP705", where.file, {where, "x is up, and which axes point right and to the front is not said"});
+  if (a[0] == 0) return {{0, -1, 0, 0, 0, -1, 1, 0, 0}, {}};  // as Collada has it
+  return a[0] == 2 ? Affine3{} : kFromYUp;
+}
+
 }  // namespace
 
 SourceModel parse_assimp(std::span<const std::byte> bytes, const std::string& file, const SourceModelOptions& options,
@@ -163,15 +234,19 @@ SourceModel parse_assimp(std::span<const std::byte> bytes, const std::string& fi
   static const auto* const calls = static_cast<const AssimpCalls*>(late_symbol("assimp", "suite_assimp_calls"));
   const Where whole{file, 0, 0, {}, -1};
   const std::string extension = extension_of(file);
-  const std::string made =
-      apart(file, bytes.size(), [&] { return packed(calls->read(bytes.data(), bytes.size(), extension.c_str())); });
+  const std::string made = apart(file, bytes.size(), [&] {
+    return packed(calls->read(bytes.data(), bytes.size(), extension.c_str(), y_up != nullptr));
+  });
   AssimpModel model;
   if (!unpack(made, model)) throw Error(whole, "the library that reads it (assimp) broke down", "the file is damaged");
   if (!model.fault.empty()) throw Error(whole, "cannot be read: " + printable(model.fault).substr(0, 300));
   check(model, whole);
-  // Files of FBX say which way is up; the library turns those of Collada y up.
-  const bool up_is_y = y_up ? *y_up : extension == "3ds" ? false : model.up_axis != 2;
-  return Builder(std::move(model), file, options, report).run(up_is_y);
+  if ((model.fbx = extension == "fbx")) fold_pivots(model);
+  // Files of FBX say how their axes lie; the library turns those of Collada y up unless the caller knows better.
+  const Affine3 turn = y_up                 ? (*y_up ? kFromYUp : Affine3{})
+                       : extension == "3ds" ? Affine3{}
+                                            : turn_of_axes(model, whole, report);
+  return Builder(std::move(model), file, options, report).run(turn);
 }
 
 SourceModel read_assimp(const std::string& path, const SourceModelOptions& options, const bool* y_up, Report& report) {

@@ -11,6 +11,8 @@
 #include "base/number_text.h"
 #include "base/yaml_text.h"
 #include "formats/helios/helios.h"
+#include "formats/helios/on_ground.h"
+#include "formats/helios/part.h"
 #include "formats/helios/xyz.h"
 #include "formats/xml/xml.h"
 
@@ -56,13 +58,6 @@ class Reader {
   HeliosText run(const XmlElement& document);
 
  private:
-  // What a part is made of, and where it stands.
-  struct Part {
-    std::string object, grid;
-    double scale = 1;
-    std::vector<double> shift{0, 0, 0};
-    std::string turns;
-  };
   void part(const XmlElement& e);
   void filter(const XmlElement& e, Part& part);
   void load(const XmlElement& e, const std::string& kind, Part& part);
@@ -71,6 +66,7 @@ class Reader {
   void load_points(const XmlElement& e, const std::string& path, Part& part);
   void rotate(const XmlElement& e, Part& part);
   void translate(const XmlElement& e, Part& part);
+  void place_parts();
   // Whether it is new.
   bool name_for(const std::string& path, const std::string& how, std::map<std::string, std::string>& names,
                 std::string& name);
@@ -83,14 +79,16 @@ class Reader {
   const std::string& file_;
   Report& report_;
   Lines objects_, grids_, volumes_, world_;
+  std::vector<Part> parts_;
   std::map<std::string, std::string> object_of_, grid_of_;
   std::set<std::string> used_;
 };
 
+// As there the first of a name counts.
 std::optional<std::string> Reader::value_of(const XmlElement& e, std::string_view key) {
   std::optional<std::string> found;
   e.each_child("param", [&](const XmlElement& p) {
-    if (p.attribute("key").value_or("") == key) found = p.attribute("value").value_or("");
+    if (!found && p.attribute("key").value_or("") == key) found = p.attribute("value").value_or("");
   });
   return found;
 }
@@ -110,10 +108,11 @@ bool Reader::name_for(const std::string& path, const std::string& how, std::map<
 
 void Reader::load_terrain(const XmlElement& e, const std::string& path, Part& part) {
   if (!name_for(path, "", object_of_, part.object)) return;
-  const auto c = files_.corner_of(path);
+  const HeliosGrid grid = files_.grid_of(path);
   objects_.add("  " + yaml_quoted(part.object) + ": {terrain: " + yaml_quoted(path) +
-                   strf(", local: {origin: [%.17g, %.17g], gsd: [%.17g, %.17g]}, material: %s}", c[0], c[1], c[2], c[3],
-                        kSurface),
+                   (grid.no_data ? strf(", no_data: %.17g", *grid.no_data) : "") +
+                   strf(", local: {origin: [%.17g, %.17g], gsd: [%.17g, %.17g]}, material: %s}", grid.corner[0],
+                        grid.corner[1], grid.pixel[0], grid.pixel[1], kSurface),
                e.where());
 }
 
@@ -121,21 +120,21 @@ void Reader::load_voxels(const XmlElement& e, const std::string& path, Part& par
   if (const std::string mode = lower(value_of(e, "intersectionMode").value_or("transmittive")); mode != "transmittive")
     tell("SP707", e,
          "voxels of mode '" + printable(mode) + "' are solid cubes there; here their leaves fill their cells evenly");
-  if (name_for(path, "", grid_of_, part.grid))
-    grids_.add("  " + yaml_quoted(part.grid) + ": {voxels: " + yaml_quoted(path) + ", medium: " + kFoliage + "}",
+  if (name_for(path, "", grid_of_, part.object))
+    grids_.add("  " + yaml_quoted(part.object) + ": {voxels: " + yaml_quoted(path) + ", medium: " + kFoliage + "}",
                e.where());
 }
 
 // Cubes where points are, as there.
 void Reader::load_points(const XmlElement& e, const std::string& path, Part& part) {
-  const double said = number(e, value_of(e, "voxelSize").value_or("0")), edge = said == 0 ? 1 : said;
+  const double said = number(e, value_of(e, "voxelSize").value_or("0")), edge = part.edge_m = said == 0 ? 1 : said;
   if (!(edge > 0)) throw e.fault(strf("a voxelSize of %g", edge), "metres, above 0");
-  const std::string separators = value_of(e, "separator").value_or("");
-  if (!name_for(path, strf("%.17g %s", edge, separators.c_str()), object_of_, part.object)) return;
-  const Cubes cubes = cubes_of_xyz(files_.text_of(path), path, separators, edge);
+  part.separators = value_of(e, "separator").value_or("");
+  if (!name_for(path, strf("%.17g %s", edge, part.separators.c_str()), object_of_, part.object)) return;
+  const Cubes cubes = cubes_of_xyz(files_.text_of(path), path, part.separators, edge);
   tell("SP707", e,
        strf("%zu points are %zu solid cubes of %g m, as there; their colours and normals are left out", cubes.points,
-            cubes.count, edge));
+            cubes.centres.size(), edge));
   objects_.add(
       "  " + yaml_quoted(part.object) + ": {obj_text: " + yaml_quoted(cubes.obj) + ", material: " + kSurface + "}",
       e.where());
@@ -146,32 +145,43 @@ void Reader::load(const XmlElement& e, const std::string& kind, Part& part) {
   if (path.empty()) throw e.fault("there is no param 'filepath'");
   std::replace(path.begin(), path.end(), '\\', '/');
   if (path.find('*') != path.npos) return tell("SP705", e, "several files at once, '" + printable(path) + "'");
-  if (kind == "xyzloader") return load_points(e, path, part);
-  if (kind == "geotiffloader") return load_terrain(e, path, part);
-  if (kind == "detailedvoxels") return load_voxels(e, path, part);
-  const bool y_up = lower(value_of(e, "up").value_or("z")) == "y";
-  if (name_for(path, y_up ? "y" : "", object_of_, part.object))
-    objects_.add("  " + yaml_quoted(part.object) + ": {obj: " + yaml_quoted(path) + (y_up ? ", up: y" : "") +
+  part.path = path;
+  part.matfile = value_of(e, "matfile").value_or(""), part.material = value_of(e, "matname").value_or("");
+  std::replace(part.matfile.begin(), part.matfile.end(), '\\', '/');
+  if (kind == "xyzloader") return part.kind = Part::Kind::points, load_points(e, path, part);
+  if (kind == "geotiffloader") return part.kind = Part::Kind::terrain, load_terrain(e, path, part);
+  if (kind == "detailedvoxels") return part.kind = Part::Kind::voxels, load_voxels(e, path, part);
+  part.kind = Part::Kind::mesh;
+  part.y_up = lower(value_of(e, "up").value_or("z")) == "y";
+  if (name_for(path, part.y_up ? "y" : "", object_of_, part.object))
+    objects_.add("  " + yaml_quoted(part.object) + ": {obj: " + yaml_quoted(path) + (part.y_up ? ", up: y" : "") +
                      ", material: " + kSurface + "}",
                  e.where());
 }
 
-// Turns one after the other about the axes of the scene.
+// Turns one after the other about the axes of the scene; local ones, about axes that turn along, are the same in
+// reverse.
 void Reader::rotate(const XmlElement& e, Part& part) {
   e.each_child("param", [&](const XmlElement& p) {
+    std::vector<Turn> turns;
     p.each_child("rot", [&](const XmlElement& rot) {
       const std::string axis = lower(rot.attribute("axis").value_or(""));
       const double angle = number(rot, rot.attribute("angle_deg").value_or(""));
-      const char* about = nullptr;
-      if (axis == "x" || axis == "pitch") about = "[1, 0, 0]";
-      if (axis == "y" || axis == "roll") about = "[0, 1, 0]";
-      if (axis == "z" || axis == "yaw") about = "[0, 0, 1]";
-      if (!about) throw rot.fault("'" + printable(axis) + "' is no axis", "x, y, z; pitch, roll, yaw");
-      part.turns += strf("%s{axis: %s, angle_deg: %.17g}", part.turns.empty() ? "" : ", ", about, angle);
+      if (axis == "x" || axis == "pitch")
+        turns.push_back({{1, 0, 0}, angle});
+      else if (axis == "y" || axis == "roll")
+        turns.push_back({{0, 1, 0}, angle});
+      else if (axis == "z" || axis == "yaw")
+        turns.push_back({{0, 0, 1}, angle});
+      else
+        throw rot.fault("'" + printable(axis) + "' is no axis", "x, y, z; pitch, roll, yaw");
     });
+    if (p.attribute("rotations").value_or("") == "local") std::reverse(turns.begin(), turns.end());
+    part.turns.insert(part.turns.end(), turns.begin(), turns.end());
   });
 }
 
+// As there the last offset of a part counts.
 void Reader::translate(const XmlElement& e, Part& part) {
   std::string offset = value_of(e, "offset").value_or("");
   std::vector<double> values;
@@ -183,20 +193,24 @@ void Reader::translate(const XmlElement& e, Part& part) {
     at = stop + 1;
   }
   if (values.size() != 3) throw e.fault(strf("an offset of %zu numbers", values.size()), "x;y;z");
-  for (size_t c = 0; c < 3; ++c) part.shift[c] += values[c];
-  if (const auto ground = value_of(e, "onGround"); ground && number(e, *ground) != 0)
-    tell("SP705", e, "'onGround': it stands at its offset, not on the ground");
+  part.shift = {values[0], values[1], values[2]};
+  if (const auto ground = value_of(e, "onGround")) {
+    const double depth = lower(*ground) == "true" ? 1 : lower(*ground) == "false" ? 0 : number(e, *ground);
+    if (!(depth >= -1 && depth <= 2147483647 && depth == std::floor(depth)))
+      throw e.fault(strf("an onGround of %g", depth), "-1, 0 or how many vertices are tried");
+    part.on_ground = static_cast<long long>(depth);
+  }
 }
 
 void Reader::filter(const XmlElement& e, Part& part) {
   const std::string kind = lower(e.attribute("type").value_or(""));
   if (kind == "objloader" || kind == "geotiffloader" || kind == "xyzloader" || kind == "detailedvoxels") {
-    if (!part.object.empty() || !part.grid.empty()) throw e.fault("a part that is loaded twice");
+    if (part.kind != Part::Kind::none) throw e.fault("a part that is loaded twice");
     load(e, kind, part);
   } else if (kind == "scale") {
     const double factor = number(e, value_of(e, "scale").value_or(""));
     if (!(factor > 0)) throw e.fault(strf("a scale of %g", factor), "above 0");
-    part.scale *= factor;
+    part.scale = factor;  // as there the last one counts
   } else if (kind == "rotate") {
     rotate(e, part);
   } else if (kind == "translate") {
@@ -214,14 +228,30 @@ void Reader::part(const XmlElement& e) {
     else
       tell("SP705", child, "'" + printable(child.name()) + "': parts stay as and where they are loaded");
   });
-  if (part.object.empty() && part.grid.empty()) return;
-  const bool volume = !part.grid.empty();
-  std::string line = "  - {place: " + yaml_quoted(volume ? part.grid : part.object);
-  if (part.scale != 1) line += strf(", scale: %.17g", part.scale);
-  if (!part.turns.empty()) line += ", rotate: [" + part.turns + "]";
-  line += strf(", translate: [%.17g, %.17g, %.17g]", part.shift[0], part.shift[1], part.shift[2]);
-  if (const auto id = e.attribute("id"); id && !id->empty() && !volume) line += ", tag: " + yaml_quoted(*id);
-  (volume ? volumes_ : world_).add(line + "}", e.where());
+  if (part.object.empty()) return;
+  part.id = e.attribute("id").value_or("");
+  part.where = e.where();
+  parts_.push_back(std::move(part));
+}
+
+void Reader::place_parts() {
+  const auto stands = [](const Part& part) { return part.on_ground != 0; };
+  if (std::any_of(parts_.begin(), parts_.end(), stands))
+    put_on_ground(parts_, files_, [&](const char* code, const Part& part, const std::string& what) {
+      report_.add(code, file_, {part.where, what});
+    });
+  for (const Part& part : parts_) {
+    const bool volume = part.kind == Part::Kind::voxels;
+    std::string line = "  - {place: " + yaml_quoted(part.object), turns;
+    if (part.scale != 1) line += strf(", scale: %.17g", part.scale);
+    for (const Turn& t : part.turns)
+      turns += strf("%s{axis: [%g, %g, %g], angle_deg: %.17g}", turns.empty() ? "" : ", ", t.axis.x, t.axis.y, t.axis.z,
+                    t.angle_deg);
+    if (!turns.empty()) line += ", rotate: [" + turns + "]";
+    line += strf(", translate: [%.17g, %.17g, %.17g]", part.shift.x, part.shift.y, part.shift.z);
+    if (!part.id.empty() && !volume) line += ", tag: " + yaml_quoted(part.id);
+    (volume ? volumes_ : world_).add(line + "}", part.where);
+  }
 }
 
 HeliosText Reader::run(const XmlElement& document) {
@@ -238,6 +268,7 @@ HeliosText Reader::run(const XmlElement& document) {
     else
       tell("SP706", e, "'" + printable(e.name()) + "' belongs to the simulation");
   });
+  place_parts();
   const Where where = scene->where();
   Lines all;
   const std::string name = scene->attribute("name").value_or(scene->attribute("id").value_or("helios"));

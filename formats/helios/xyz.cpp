@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/text_lines.h"
 #include "scene/voxel_mesh.h"
@@ -58,9 +57,14 @@ Cubes cubes_of_xyz(std::string_view text, const std::string& file, const std::st
     size_t cell[3];
     for (size_t a = 0; a < 3; ++a) cell[a] = std::min<size_t>(static_cast<size_t>(off[a] / edge_m), cells[a] - 1);
     uint16_t& here = full[(cell[2] * cells[1] + cell[1]) * cells[0] + cell[0]];
-    made.count += here == 0;
     here = 1;
   }
+  for (size_t x = 0; x < cells[0]; ++x)
+    for (size_t y = 0; y < cells[1]; ++y)
+      for (size_t z = 0; z < cells[2]; ++z)
+        if (full[(z * cells[1] + y) * cells[0] + x])
+          made.centres.push_back(box.low + edge_m * Vec3{static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5,
+                                                         static_cast<double>(z) + 0.5});
   const Affine3 place{{edge_m, 0, 0, 0, edge_m, 0, 0, 0, edge_m}, box.low};
   const SourceMesh mesh = voxel_faces(cells, place, full, {1});
   if (mesh.indices.size() / 3 > kMostFaces)

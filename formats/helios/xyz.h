@@ -2,13 +2,16 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "math/vec.h"
 
 namespace suite::helios {
 
 struct Cubes {
   std::string
       obj;  // the faces between full and empty cells, outwards, as Wavefront OBJ in the points' own coordinates, m
-  size_t count = 0;  // of cubes
+  std::vector<Vec3> centres;  // of the cubes; columns of one x and y together
   size_t points = 0;
 };
 

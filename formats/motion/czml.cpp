@@ -1,9 +1,9 @@
 // CZML: the packets that have a position, as Cesium reads them.
 //
 // Assumes: geodetic samples are interpolated as places in space, as Cesium does; outside of its samples a thing is not
-// there (extrapolation NONE, the default). A body's axes there are x forward, y left, z up.
-// Based on: Analytical Graphics, "CZML Guide", packet, Position and Orientation,
-// https://github.com/AnalyticalGraphicsInc/czml-writer/wiki/CZML-Guide
+// there (extrapolation NONE, the default). HERMITE without velocities is LAGRANGE, and LINEAR has no degree, as in
+// Cesium. A body's axes there are x forward, y left, z up. Based on: Analytical Graphics, "CZML Guide", packet,
+// Position and Orientation, https://github.com/AnalyticalGraphicsInc/czml-writer/wiki/CZML-Guide
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -28,7 +28,7 @@ class CzmlReader {
  private:
   struct Sample {
     double time;
-    std::array<double, 4> value;
+    std::array<double, 6> value;
   };
 
   Error fault(const Params& at, const std::string& what, const std::string& hint = {}) const {
@@ -56,7 +56,15 @@ class CzmlReader {
           {date(one, std::string_view(text).substr(0, slash)), date(one, std::string_view(text).substr(slash + 1))});
       if (!(made.back().begin <= made.back().end)) throw fault(one, "an interval ends before it begins");
     }
-    return made;
+    // Those that touch or overlap are one.
+    std::sort(made.begin(), made.end(), [](const TimeSpan& a, const TimeSpan& b) { return a.begin < b.begin; });
+    std::vector<TimeSpan> apart;
+    for (const TimeSpan& one : made)
+      if (apart.empty() || one.begin > apart.back().end)
+        apart.push_back(one);
+      else
+        apart.back().end = std::max(apart.back().end, one.end);
+    return apart;
   }
 
   // One value without times, or samples of time and value.
@@ -85,8 +93,7 @@ class CzmlReader {
   }
 
   std::vector<Sample> places(const Params& position) const {
-    if (position.kind() != Params::Kind::map)
-      throw fault(position, "a position by intervals", "one 'position' with samples is understood");
+    if (position.kind() != Params::Kind::map) throw fault(position, "a position that is no map");
     const std::string axes = position.text("referenceFrame", "FIXED");
     if (axes != "FIXED")
       throw fault(position, "its axes are '" + axes + "'",
@@ -94,15 +101,17 @@ class CzmlReader {
     for (const char* key : {"forwardExtrapolationType", "backwardExtrapolationType"})
       if (position.text(key, "NONE") != "NONE") throw fault(position, std::string(key) + " is not NONE");
     if (const auto list = position.find("cartesian")) return samples(position, *list, 3);
+    if (const auto list = position.find("cartesianVelocity")) return samples(position, *list, 6);
     const auto degrees = position.find("cartographicDegrees"), radians = position.find("cartographicRadians");
     if (!degrees && !radians)
-      throw fault(position, "a position in another form", "cartesian, cartographicDegrees or cartographicRadians");
+      throw fault(position, "a position in another form",
+                  "cartesian, cartesianVelocity, cartographicDegrees or cartographicRadians");
     std::vector<Sample> made = samples(position, degrees ? *degrees : *radians, 3);
     const double unit = degrees ? 1 : 1 / kDegree;
     for (Sample& s : made) {
       try {
         const Vec3 place = ecef_from_geodetic({s.value[1] * unit, s.value[0] * unit, s.value[2]});
-        s.value = {place.x, place.y, place.z};
+        s.value = {place.x, place.y, place.z, 0, 0, 0};
       } catch (const Error& e) {
         throw fault(position, e.message(), e.hint());
       }
@@ -111,8 +120,8 @@ class CzmlReader {
   }
 
   // How the thing is turned at each of its places. along: it points along its velocity.
-  void turn(const Params& packet, const std::vector<Sample>& at, std::vector<PoseKey>& keys, bool& along) const {
-    const auto orientation = packet.find("orientation");
+  void turn(const std::optional<Params>& orientation, const std::vector<Sample>& at, std::vector<PoseKey>& keys,
+            bool& along) const {
     if (!orientation) return;
     if (const auto reference = orientation->find("velocityReference")) {
       if (reference->as_text() != "#position") throw fault(*reference, "a velocity that is not its own");
@@ -144,52 +153,95 @@ class CzmlReader {
     if (!position) return;
     if (id_.empty()) throw packet.error("a packet with a position and without an id");
     if (!known_.insert(id_).second) throw fault(packet, "there are two of this id");
-    std::vector<Sample> at = places(*position);
-    const bool rests = at.size() == 1;
-    const std::string how = position->text("interpolationAlgorithm", "LINEAR");
-    if (how != "LINEAR" && how != "LAGRANGE")
-      throw fault(*position, "'" + how + "' interpolation", "LINEAR or LAGRANGE");
+    const auto orientation = packet.find("orientation");
+    const bool by_intervals = orientation && orientation->kind() == Params::Kind::list;
+    std::vector<Piece> pieces;
+    for (const Params& one : position->items())
+      take(packet, one, by_intervals ? of_interval(*orientation, one) : orientation, pieces);
+    // Where one ends as the next begins it is the next that is there.
+    std::sort(pieces.begin(), pieces.end(),
+              [](const Piece& a, const Piece& b) { return a.there.begin < b.there.begin; });
+    for (size_t i = 0; i < pieces.size(); ++i) {
+      if (i + 1 < pieces.size() && !(pieces[i].there.end < pieces[i + 1].there.begin)) {
+        if (pieces[i].there.end > pieces[i + 1].there.begin)
+          throw fault(*position, "it has two places at one time", "intervals that do not overlap");
+        pieces[i].there.end = std::nextafter(pieces[i].there.end, -INFINITY);
+      }
+      add(packet, pieces[i]);
+    }
+  }
+
+  // The orientation whose interval is written as that of a position.
+  std::optional<Params> of_interval(const Params& orientation, const Params& position) const {
+    const std::string mine = position.text("interval", "");
+    for (const Params& one : orientation.items())
+      if (one.kind() == Params::Kind::map && one.text("interval", "") == mine) return one;
+    throw fault(orientation, "it is turned by other intervals than it has places", "the same intervals for both");
+  }
+
+  // One position with one orientation, and when they hold.
+  struct Piece {
     InterpolatedMotion motion;
-    motion.degree = static_cast<size_t>(position->integer("interpolationDegree", 1, 15, 1));
+    bool rests, along;
+    TimeSpan there;
+  };
+
+  void take(const Params& packet, const Params& position, const std::optional<Params>& orientation,
+            std::vector<Piece>& pieces) const {
+    std::vector<Sample> at = places(position);
+    const bool rests = at.size() == 1;
+    const std::string how = position.text("interpolationAlgorithm", "LINEAR");
+    if (how != "LINEAR" && how != "LAGRANGE" && how != "HERMITE")
+      throw fault(position, "'" + how + "' interpolation", "LINEAR, LAGRANGE or HERMITE");
+    InterpolatedMotion motion;
+    const long long degree = position.integer("interpolationDegree", 1, 15, 1);
+    motion.degree = how == "LINEAR" ? 1 : static_cast<size_t>(degree);
+    const bool turns = how == "HERMITE" && position.has("cartesianVelocity") && !rests;
     for (const Sample& s : at) {
       const Vec3 ecef{s.value[0], s.value[1], s.value[2]};
       try {
         motion.keys.push_back({s.time, track_file::northward(frame_, ecef)});
       } catch (const Error& e) {
-        throw fault(*position, e.message(), e.hint());
+        throw fault(position, e.message(), e.hint());
       }
+      if (turns) motion.velocities.push_back(frame_.enu_direction({s.value[3], s.value[4], s.value[5]}));
     }
     bool along = false;
-    turn(packet, at, motion.keys, along);
+    turn(orientation, at, motion.keys, along);
     for (size_t i = 0; along && i < at.size(); ++i)
       if (rests || (i > 0 && at[i].value == at[i - 1].value))
         throw fault(packet, "it points along its velocity and rests", "give it a unitQuaternion");
     for (const TimeSpan& there : intervals(packet, "availability"))
-      for (const TimeSpan& known : intervals(*position, "interval"))
-        add(packet, motion, rests, along, {std::max(there.begin, known.begin), std::min(there.end, known.end)});
+      for (const TimeSpan& known : intervals(position, "interval")) {
+        TimeSpan both{std::max(there.begin, known.begin), std::min(there.end, known.end)};
+        if (!rests) both = {std::max(both.begin, at.front().time), std::min(both.end, at.back().time)};
+        if (both.begin <= both.end) pieces.push_back({motion, rests, along, both});
+      }
   }
 
-  void add(const Params& packet, InterpolatedMotion& motion, bool rests, bool along, TimeSpan there) {
+  void add(const Params& packet, Piece& piece) {
+    InterpolatedMotion& motion = piece.motion;
+    const TimeSpan there = piece.there;
     TrackPtr track;
-    if (!(there.begin <= there.end)) return;
-    if (rests && std::isinf(there.begin)) {
+    if (piece.rests && std::isinf(there.begin)) {
       track = static_track(motion.keys.front().pose);
     } else {
-      if (rests) {
+      if (piece.rests) {
         const Pose pose = motion.keys.front().pose;
         motion.keys = {{there.begin, pose}};
         if (there.end > there.begin) motion.keys.push_back({there.end, pose});
       }
-      motion.covered = {std::max(there.begin, motion.keys.front().time), std::min(there.end, motion.keys.back().time)};
-      if (!(motion.covered.begin <= motion.covered.end)) return;  // it has no samples while it is available
+      motion.covered = there;
       // Only the keys that have a part in it: there may be many intervals.
       const auto margin = static_cast<std::ptrdiff_t>(motion.degree) + 1;
       const auto time = [](const PoseKey& k, double t) { return k.time < t; };
       const auto first = motion.keys.begin(), last = motion.keys.end();
-      const auto from = std::lower_bound(first, last, motion.covered.begin, time),
-                 to = std::lower_bound(first, last, motion.covered.end, time);
-      InterpolatedMotion part{
-          {from - std::min(margin, from - first), to + std::min(margin, last - to)}, motion.degree, motion.covered};
+      const auto from = std::lower_bound(first, last, there.begin, time),
+                 to = std::lower_bound(first, last, there.end, time);
+      const auto low = from - first - std::min(margin, from - first), high = to - first + std::min(margin, last - to);
+      InterpolatedMotion part{{first + low, first + high}, motion.degree, there, {}};
+      if (!motion.velocities.empty())
+        part.velocities = {motion.velocities.begin() + low, motion.velocities.begin() + high};
       try {
         track = interpolated_track(std::move(part));
       } catch (const Error& e) {
@@ -198,7 +250,7 @@ class CzmlReader {
     }
     PointingRule rule;
     rule.kind = Pointing::velocity, rule.frame = &frame_;
-    if (along) track = pointed_track(track, rule);
+    if (piece.along) track = pointed_track(track, rule);
     things_.push_back({id_, "", packet.where(), std::move(track)});
   }
 

@@ -1,9 +1,10 @@
 // SUMO's floating car data: all vehicles and persons at every step, as XML.
 //
 // Assumes: an angle is a compass heading, a place is that of the middle of the front bumper; a slope is that of the
-// nose. What misses a step is not there until its next record: it comes back as another thing of the same id.
-// Based on: SUMO user documentation, "FCDOutput" (Eclipse SUMO 1.20),
-// https://sumo.dlr.de/docs/Simulation/Output/FCDOutput.html
+// nose; times are seconds or, with --human-readable-time, [days:]hours:minutes:seconds. What misses a step is not there
+// until its next record: it comes back as another thing of the same id. Based on: SUMO user documentation, "FCDOutput"
+// (Eclipse SUMO 1.20), https://sumo.dlr.de/docs/Simulation/Output/FCDOutput.html
+#include <cmath>
 #include <unordered_map>
 
 #include "formats/motion/fields.h"
@@ -23,7 +24,7 @@ class FcdReader {
     const XmlElement root = XmlElement::parse(text_, name_);
     if (root.name() != "fcd-export") throw Error({name_, 0, 0, {}, -1}, "there is no element 'fcd-export'");
     root.each_child("timestep", [&](const XmlElement& step) {
-      const double time = options_.begins + number(step, "time");
+      const double time = options_.begins + time_of(step);
       if (step_ && !(time > time_))
         throw step.fault("the times do not ascend", "each timestep later than the one before");
       time_ = time;
@@ -49,6 +50,29 @@ class FcdReader {
       throw node.fault(a ? std::string(key) + "=\"" + *a + "\" is no number" : std::string("no ") + key,
                        std::string(node.name()) + " needs a number " + key);
     return *value;
+  }
+
+  // Seconds, or [-][days:]hours:minutes:seconds[.part].
+  double time_of(const XmlElement& step) const {
+    const std::string text = step.attribute("time").value_or("");
+    if (text.find(':') == text.npos) return number(step, "time");
+    const bool before = text.starts_with('-');
+    double parts[4] = {0, 0, 0, 0};
+    size_t n = 0;
+    for (size_t at = before; n < 4 && at <= text.size(); ++n) {
+      const size_t stop = std::min(text.find(':', at), text.size());
+      const auto part = number_of(text.substr(at, stop - at));
+      if (!part || !(*part >= 0) || (stop < text.size() && *part != std::floor(*part))) break;
+      parts[n] = *part;
+      at = stop + 1;
+      if (stop < text.size()) continue;
+      const double* const hms = parts + (n == 3);  // of four the first are days
+      if (n < 2 || !(hms[1] < 60) || !(hms[2] < 60) || (n == 3 && !(hms[0] < 24))) break;
+      const double seconds = (((n == 3 ? parts[0] : 0) * 24 + hms[0]) * 60 + hms[1]) * 60 + hms[2];
+      return before ? -seconds : seconds;
+    }
+    throw step.fault("time=\"" + printable(text).substr(0, 40) + "\" is no time",
+                     "seconds, hours:minutes:seconds or days:hours:minutes:seconds");
   }
 
   PoseKey key_of(const XmlElement& node) const {

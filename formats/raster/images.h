@@ -39,8 +39,9 @@ struct ImageToWrite {
 struct ImageCalls {
   // room: called with the facts filled in, tells where the values (row-major, channels together) go; may throw.
   ImageRead (*read)(const std::string& path, ImageFacts& facts, const std::function<float*()>& room);
-  // row: the values of a row, valid until the next call. Returns what went wrong; empty = nothing.
-  std::string (*write)(const std::string& path, const ImageToWrite& image, const std::function<const float*(int)>& row);
+  // row: the values of a row, valid until the next call. bytes: the file. Returns what went wrong; empty = nothing.
+  std::string (*write)(const ImageToWrite& image, const std::function<const float*(int)>& row,
+                       std::vector<unsigned char>& bytes);
 };
 
 // Error: as late_symbol.

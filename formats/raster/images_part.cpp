@@ -1,4 +1,5 @@
 // The part `images`: all calls of OpenImageIO.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "base/late_part.h"
@@ -53,7 +54,9 @@ ImageRead read(const std::string& path, ImageFacts& facts, const std::function<f
   return {true, {}};
 }
 
-std::string write(const std::string& path, const ImageToWrite& image, const std::function<const float*(int)>& row) {
+// Into memory: to files its writer of OpenEXR passes over the last bytes that a disk has no room for.
+std::string write(const ImageToWrite& image, const std::function<const float*(int)>& row,
+                  std::vector<unsigned char>& bytes) {
   const auto out = OIIO::ImageOutput::create(image.format);
   if (!out) return told(OIIO::geterror());
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
@@ -63,7 +66,8 @@ std::string write(const std::string& path, const ImageToWrite& image, const std:
   spec.alpha_channel = -1;
   for (const ImageAttribute& a : image.attributes)
     std::visit([&](const auto& value) { spec.attribute(a.name, value); }, a.value);
-  bool fine = out->open(path, spec);
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  bool fine = out->set_ioproxy(&memory) && out->open(image.format, spec);
   for (int y = 0; fine && y < image.height; ++y) fine = out->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, row(y));
   return fine && out->close() ? "" : told(out->geterror());
 }

@@ -64,11 +64,11 @@ void write_exr(const std::string& path, const FloatRaster& r, std::span<const fl
   const size_t bands = r.bands.size(), pixels = size_t{r.width} * r.height;
   SUITE_CHECK_EQ(values.size(), pixels * bands);
   const std::vector<std::string> extra = shown(r);
-  AtomicFile file(path);
   std::vector<float> row(size_t{r.width} * (extra.size() + bands));
   const ImageToWrite image{"openexr", static_cast<int>(r.width), static_cast<int>(r.height), channels(r, extra),
                            attributes(r)};
-  const std::string problem = image_calls().write(file.temporary(), image, [&](int y) {
+  std::vector<unsigned char> bytes;
+  const auto row_at = [&](int y) {
     float* to = row.data();
     for (uint32_t x = 0; x < r.width; ++x) {
       const float* pixel = &values[(static_cast<size_t>(y) * r.width + x) * bands];
@@ -76,9 +76,10 @@ void write_exr(const std::string& path, const FloatRaster& r, std::span<const fl
       to = std::copy(pixel, pixel + bands, to);
     }
     return row.data();
-  });
+  };
+  const std::string problem = image_calls().write(image, row_at, bytes);
   if (!problem.empty()) throw Error(Where{path, 0, 0, {}, -1}, "cannot be written: " + problem);
-  file.commit();
+  write_file(path, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace suite

@@ -82,7 +82,13 @@ void remember_command_line(const std::string& name, int argc, const char* const*
         !a.empty() && a.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%") ==
                           std::string::npos;
     g_command_line += ' ';
-    g_command_line += plain ? a : "'" + a + "'";
+    if (plain) {
+      g_command_line += a;
+      continue;
+    }
+    g_command_line += '\'';
+    for (const char c : a) g_command_line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    g_command_line += '\'';
   }
 }
 

@@ -70,11 +70,13 @@ struct PoseKey {
 TrackPtr keyframe_track(std::vector<PoseKey> keys);
 
 // Places by Lagrange's polynomial of a degree (1 to 15; less with fewer keys) through the keys around a time,
-// orientation as that of keyframes. covered: within the times of the keys.
+// orientation as that of keyframes. covered: within the times of the keys. With velocities, by Hermite's polynomial
+// of that degree or the odd one below (3 at least): each key then counts twice.
 struct InterpolatedMotion {
   std::vector<PoseKey> keys;
   size_t degree = 1;
   TimeSpan covered;
+  std::vector<Vec3> velocities = {};  // m/s in scene ENU, one per key; or none
 };
 TrackPtr interpolated_track(InterpolatedMotion motion);
 

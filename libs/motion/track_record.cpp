@@ -82,7 +82,7 @@ TrackPtr make_keyframes(Numbers& n) {
   return keyframe_track(std::move(keys));
 }
 
-TrackPtr make_interpolated(Numbers& n) {
+TrackPtr make_interpolated(Numbers& n, bool with_velocities) {
   InterpolatedMotion m;
   const int degree = n.whole();
   m.degree = degree < 0 ? 0 : static_cast<size_t>(degree);
@@ -90,6 +90,7 @@ TrackPtr make_interpolated(Numbers& n) {
   while (n.more()) {
     const double time = n.next();
     m.keys.push_back({time, n.pose()});
+    if (with_velocities) m.velocities.push_back(n.vec());
   }
   return interpolated_track(std::move(m));
 }
@@ -185,7 +186,8 @@ TrackPtr make(const TrackRecord& r, int depth) {
       made = ending_track(make(r.parts[0], depth + 1));
       break;
     case Kind::interpolated:
-      made = make_interpolated(n);
+    case Kind::hermite:
+      made = make_interpolated(n, r.kind == Kind::hermite);
       break;
     default:
       throw Error("a stored motion is of an unknown kind");

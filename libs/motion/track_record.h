@@ -18,7 +18,8 @@ struct TrackRecord {
     orbit,
     pointed,
     ending,
-    interpolated
+    interpolated,
+    hermite
   };
   Kind kind = Kind::fixed;
   std::vector<double> numbers;  // SI; track_record.cpp says which

@@ -12,6 +12,7 @@ from .errors import (Finding, InputError, Interrupted, ProgramBug, ProgramError,
                      UsageError)
 from .fitted import FittedFunction, direction, open_sqt
 from .library import set_threads
+from .lit import LitScene, Radiance, open_simulation
 from .netcdf import write_netcdf
 from .programs import Run, find_program, run_program, version
 from .results import Result
@@ -26,10 +27,10 @@ from .tree import Curve, CurveFile, CurveLike, Keys, OpenKeys
 __version__ = "0.1.0"
 __all__ = [
     "Atmosphere", "Band", "Curve", "CurveFile", "CurveLike", "EnviHeader", "Finding", "Fisheye", "FittedFunction",
-    "FormatError", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "Material", "Medium", "Moon", "Object",
+    "FormatError", "FrameCamera", "Hits", "InputError", "Interrupted", "Keys", "Lamp", "LitScene", "Material", "Medium", "Moon", "Object",
     "OpenKeys", "Origin", "Orthographic", "Output", "Placement", "Points", "PreparedScene", "ProgramBug", "ProgramError",
-    "ProgramMissing", "ProgramWarning", "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun",
+    "ProgramMissing", "ProgramWarning", "Radiance", "Report", "Result", "Run", "Scene", "Sensor", "Simulation", "Sky", "Sun",
     "TracedScene", "UsageError", "bands", "box", "check_scene", "cylinder", "direction", "disk", "find_program", "layer",
-    "mesh", "open_envi", "open_scene", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
+    "mesh", "open_envi", "open_scene", "open_simulation", "open_sqt", "open_temperatures", "plane", "prepare_scene", "read_header",
     "read_values", "render", "run_program", "set_threads", "sphere", "terrain", "version", "write_chips", "write_netcdf",
 ]

@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import ctypes
 import os
+import warnings
 import weakref
-from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint8, c_uint32, c_void_p
+from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint8, c_uint32, c_uint64, c_void_p
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -12,11 +13,11 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from .errors import ProgramMissing, error_of
+from .errors import ProgramMissing, ProgramWarning, error_of
 from .programs import find_program
 
 NAME = "libremote_scenes.so.1"
-INTERFACE = 1
+INTERFACE = 2
 """What this package needs of the library; newer ones have more."""
 
 Numbers = npt.NDArray[np.float64]
@@ -31,6 +32,10 @@ class SqtInfo(Structure):
 class SceneInfo(Structure):
     _fields_ = [("materials", c_size_t), ("tags", c_size_t), ("triangles", c_size_t), ("low", c_double * 3),
                 ("high", c_double * 3), ("latitude_deg", c_double), ("longitude_deg", c_double), ("height_m", c_double)]
+
+
+class SimulationInfo(Structure):
+    _fields_ = [("bands", c_size_t), ("paths", c_uint32), ("seed", c_uint64), ("begin", c_double), ("end", c_double)]
 
 
 class HitArrays(Structure):
@@ -50,6 +55,11 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "rs_scene_open": (c_int, [c_char_p, c_double, c_double, POINTER(c_void_p)]), "rs_scene_close": (None, [c_void_p]),
     "rs_scene_describe": (None, [c_void_p, POINTER(SceneInfo)]), "rs_scene_material": (c_char_p, [c_void_p, _n]),
     "rs_scene_tag": (c_char_p, [c_void_p, _n]),
+    "rs_told": (c_char_p, []),
+    "rs_simulation_open": (c_int, [c_char_p, c_char_p, POINTER(c_void_p)]), "rs_simulation_close": (None, [c_void_p]),
+    "rs_simulation_describe": (None, [c_void_p, POINTER(SimulationInfo)]),
+    "rs_simulation_band": (c_char_p, [c_void_p, _n, _d]),
+    "rs_simulation_radiance": (c_int, [c_void_p, _n, _d, _d, _d, c_uint32, c_uint64, _d, _d, POINTER(c_uint8)]),
     "rs_scene_trace": (c_int, [c_void_p, _n, _d, _d, _d, POINTER(c_uint32), POINTER(HitArrays)]),
     "rs_scene_visible": (c_int, [c_void_p, _n, _d, _d, c_double, _d, POINTER(c_uint8)]),
 }
@@ -68,11 +78,12 @@ def find_library() -> Path:
 @lru_cache(maxsize=None)
 def _loaded(path: Path) -> ctypes.CDLL:
     library = ctypes.CDLL(str(path))
+    library.rs_interface.restype = c_int
+    if library.rs_interface() < INTERFACE:
+        raise ProgramMissing(f"{path} is older than this package needs")
     for name, (result, arguments) in _FUNCTIONS.items():
         function = getattr(library, name)
         function.restype, function.argtypes = result, arguments
-    if library.rs_interface() < INTERFACE:
-        raise ProgramMissing(f"{path} is older than this package needs")
     return library
 
 
@@ -85,6 +96,12 @@ def check(status: int) -> None:
     """Raises what a refused call has to say, as run_program does of a program: InputError or ProgramBug."""
     if status:
         raise error_of("libremote_scenes", status, library().rs_message().decode(errors="replace").splitlines())
+
+
+def told() -> None:
+    """Warns of what the last call of a simulation had to say, a ProgramWarning for each sentence."""
+    for sentence in library().rs_told().decode(errors="replace").splitlines():
+        warnings.warn(sentence, ProgramWarning, stacklevel=4)
 
 
 def set_threads(threads: int) -> None:

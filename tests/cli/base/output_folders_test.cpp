@@ -65,6 +65,17 @@ TEST_F(OutputFolders, ThatCannotBeMadeAreToldWithTheFile) {
 }
 
 // Nothing is made for an input that is refused.
+// A run that found no room for its state said that the state held what was finished, and how to go on from it.
+TEST_F(OutputFolders, OfFullDisksPromiseNothing) {
+  good("scene-prep scene.yaml -o a/b/scene.h5", {});
+  const CommandResult r =
+      run_command("cd '" + folder_.path() +
+                  "' && trap '' XFSZ && ulimit -f 16 && " SUITE_BIN_DIR "/dirsig-render sim.yaml -o full --state");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("0 of 1 captures are complete; no state could be kept"));
+  EXPECT_FALSE(file_exists(folder_ / "full/result.state.h5"));
+}
+
 TEST_F(OutputFolders, AreNotMadeForBadInput) {
   write_file(folder_ / "bad.yaml", std::string_view("scene: 1\nmaterials: {grey: {model: lambert}}\n"));
   EXPECT_EQ(run("scene-prep bad.yaml -o w/x/scene.h5").code, 1);

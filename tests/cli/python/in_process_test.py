@@ -225,6 +225,90 @@ world:
                 scene.trace([[0, 0, 9], [0, math.inf, 9]], [0, 0, -1])
 
 
+SIMULATION = """scene: lawn.h5
+seed: 11
+sun: {direction: {azimuth_deg: 140, zenith_deg: 35}}
+sky: {radiance: 40}
+sensors:
+  - {kind: point, name: eyes, paths: 48, bands: [{name: blue, center_um: 0.45, fwhm_um: 0.02}, {name: red, center_um: 0.65, fwhm_um: 0.02}], collectors: [COLLECTORS]}
+  - {kind: frame_camera, name: camera, columns: 4, rows: 4, pitch_um: 100, focal_length_mm: 10, position_m: [0, -40, 30], look_at_m: [0, 0, 0], bands: [{name: green, center_um: 0.55, fwhm_um: 0.02}]}
+"""
+
+
+class Lit(Case):
+    """Rays that are rendered here are pixels of dirsig-render: those of a sensor that looks along the same rays."""
+
+    def setUp(self):
+        super().setUp()
+        scene = lawn_with_things()
+        scene.add("ball", rs.sphere(2), material=rs.Material("lambert", reflectance=0.4), translate=[20, 0, 6])
+        scene.prepare(self.folder / "lawn.h5")
+        spread = np.linspace(-1, 1, 40)
+        self.origin = np.stack([20 * spread, 0 * spread, 30 + 0 * spread], axis=-1)
+        look = np.stack([0.1 * spread, 0.2 * spread ** 2, -1 + 0 * spread], axis=-1)
+        self.direction = look / np.linalg.norm(look, axis=-1, keepdims=True)
+        self.path = self.folder / "view.yaml"
+        self.path.write_text(SIMULATION.replace("COLLECTORS", ", ".join(
+            f"{{quantity: radiance, position_m: {o.tolist()}, look: {d.tolist()}}}" for o, d in zip(self.origin, self.direction))))
+
+    def rendered(self, *arguments):
+        rs.run_program("dirsig-render", [self.path, "-q", "-o", self.folder / "out", *arguments])
+        with open(self.folder / "out/eyes.csv", encoding="ascii") as text:
+            rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
+        return [np.array([r[key] for r in rows]).reshape(-1, 2) for key in ("value", "standard_error")]
+
+    def test_the_bits_of_dirsig_render(self):
+        value, error = self.rendered()
+        with rs.open_simulation(self.path, "eyes") as lit:
+            self.assertEqual((lit.bands, lit.wavelength_um.tolist(), lit.paths, lit.seed, lit.begin_s),
+                             (("blue", "red"), [0.45, 0.65], 48, 11, 0))
+            first = lit.radiance(self.origin, self.direction)
+            self.assertEqual([f"{v:.9g}" for v in first.radiance.flat], value.ravel().tolist())
+            self.assertEqual([f"{v:.9g}" for v in first.standard_error.flat], error.ravel().tolist())
+            self.assertGreater(len(set(value[:, 1])), 15)
+            for threads in (1, 3, 0):
+                rs.set_threads(threads)
+                np.testing.assert_array_equal(lit.radiance(self.origin, self.direction).radiance, first.radiance)
+            # Two seeds agree within the errors of more paths (5 standard errors: 5e-5 for all 80 values by chance); the
+            # control: other rays do not.
+            one, other = (lit.radiance(self.origin, self.direction, seed=seed, paths=4096) for seed in (12, 13))
+            self.assertLess(other.standard_error.mean(), first.standard_error.mean() / 5)
+            noisy = one.standard_error > 1e-6 * one.radiance
+            self.assertGreater(noisy.mean(), 0.5)
+            off = np.abs(other.radiance - one.radiance)[noisy] / np.hypot(one.standard_error, other.standard_error)[noisy]
+            self.assertGreater(off.max(), 0.5)
+            self.assertLess(off.max(), 5)
+            moved = lit.radiance(self.origin + [0.5, 0, 0], self.direction)
+            self.assertGreater((np.abs(moved.radiance - first.radiance) > 1).mean(), 0.05)
+            np.testing.assert_array_equal(lit.radiance(np.empty((0, 3)), [0, 0, -1]).radiance, np.empty((0, 2)))
+
+    def test_the_same_under_the_sun_of_a_time(self):
+        """Each time is rendered by itself, and rays that meet nothing are told."""
+        text = self.path.read_text().replace("sun: {direction: {azimuth_deg: 140, zenith_deg: 35}}\nsky: {radiance: 40}\n",
+                                             'sun: {direction: {time_utc: "2026-06-21T11:00:00Z"}}\n')
+        self.path.write_text(text)
+        with rs.open_simulation(self.path, "eyes") as lit:
+            ray = [[0, -20, 30]] * 2, [0, 0, -1]  # lawn in the open: a Lambert surface under the sun alone
+            both = lit.radiance(*ray, time_s=[4 * 3600.0, 0], paths=256)
+            late = lit.radiance(*ray, time_s=4 * 3600.0, paths=256)
+            self.assertGreater(both.radiance[1, 1], 1.2 * both.radiance[0, 1])
+            error = np.hypot(both.standard_error[0], late.standard_error[0])
+            self.assertLess((np.abs(both.radiance[0] - late.radiance[0]) / error).max(), 5)
+            with self.assertWarnsRegex(rs.ProgramWarning, "none of its paths met anything"):
+                lit.radiance([0, 0, 30], [0, 0, 1])
+
+    def test_what_is_wrong_is_told(self):
+        with self.assertRaisesRegex(rs.InputError, "2 sensors.*eyes, camera"):
+            rs.open_simulation(self.path)
+        with self.assertRaisesRegex(rs.InputError, "no sensor 'nose'"):
+            rs.open_simulation(self.path, "nose")
+        self.assertRaises(rs.InputError, rs.open_simulation, self.folder / "gone.yaml")
+        with rs.open_simulation(self.path, "camera") as lit:
+            self.assertRaisesRegex(rs.InputError, "unit vector", lit.radiance, [0, 0, 9], [0, 0, -3])
+            self.assertRaises(ValueError, lit.radiance, [0, 0, 9], [0, 0, -1], paths=0)
+            self.assertRaises(ValueError, lit.radiance, [0, 0, 9], [0, 0, -1], seed=-1)
+
+
 class Border(Case):
     def test_a_missing_library_is_told(self):
         for name in ("sqt-inspect", "scene-prep"):

@@ -1,5 +1,7 @@
 """The programs' messages as exceptions and warnings, with their places."""
+import json
 import os
+import shlex
 import signal
 import stat
 import threading
@@ -86,6 +88,27 @@ class Programs(Case):
             with self.assertRaisesRegex(rs.ProgramMissing, "REMOTE_SCENES_BIN"):
                 rs.run_program("scene-prep", ["--version"])
         self.assertEqual(rs.version(), rs.__version__)
+
+    def test_maps_far_from_a_high_origin_are_told(self):
+        """Coordinates of maps are on the ellipsoid to other programs: 3000 m / 6381 km of 20 km are 9.4 m."""
+        scene = lawn_with_things()
+        scene.origin = rs.Origin(49.4, 8.7, 3000)
+        far = rs.Orthographic(columns=2, rows=2, gsd_m=1, center_m=[20000, 0], bands=BANDS, paths=1)
+        simulation = by_day(scene.prepare(self.folder / "high.h5"), [far])
+        with self.assertWarnsRegex(rs.ProgramWarning, "farthest corner 9.4 m off"):
+            simulation.render(self.folder / "far")
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            far.gsd_m = 20
+            rs.Simulation(simulation.scene, [far], sky=rs.Sky(radiance=1)).render(self.folder / "coarse")
+        self.assertNotIn("farthest corner", " ".join(str(t.message) for t in told))
+
+    def test_commands_in_results_can_be_given_again(self):
+        camera = rs.Orthographic(columns=2, rows=2, gsd_m=1, bands=BANDS, paths=1)
+        out = self.folder / "it's \"a\" 'view'"
+        by_day(self.prepared(), [camera]).render(out)
+        command = json.loads((out / "render.json").read_text())["command"]
+        self.assertIn(str(out), shlex.split(command))
 
     def stand_in(self, script):
         """A program of ours in the place of scene-prep."""

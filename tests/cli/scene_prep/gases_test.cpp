@@ -91,6 +91,19 @@ double line_by_line(const std::string& list, double low_um, double high_um) {
   return sum / weights;
 }
 
+// Lists of two ranges that overlap, or one given twice, doubled their lines without a word.
+TEST_F(BakeGases, LinesOfTwoListsAreTold) {
+  const auto said = [&](const std::string& lines) {
+    return run("scene-prep --gases recipe.yaml --set 'gases.co2.lines=" + lines + "' 2>&1").out;
+  };
+  EXPECT_THAT(said("[co2.par, co2.par]"), HasSubstr("co2: 40 lines stand in more than one of its files"));
+  std::string half = read_text(folder_ / "co2.par");
+  write_file(folder_ / "low.par", half.substr(0, half.size() / 2));
+  write_file(folder_ / "high.par", half.substr(half.size() / 2));
+  EXPECT_THAT(said("[low.par, co2.par]"), HasSubstr("co2: 20 lines stand"));
+  EXPECT_THAT(said("[low.par, high.par]"), testing::Not(HasSubstr("more than one of its files")));
+}
+
 TEST_F(BakeGases, TheTableServesARender) {
   const CommandResult baked = run("scene-prep --gases recipe.yaml -o gases.h5");
   ASSERT_EQ(baked.code, 0) << baked.err;

@@ -5,6 +5,7 @@ made 1000 times larger, so that the six decimals of --export-obj stand for nanom
 the file's own metres.
 """
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -98,8 +99,18 @@ def ply(kind, path, faces=((0, 1, 4), (0, 1, 2, 3))):
     return path
 
 
-def fbx(path, places, polygon, unit_cm):
-    """A binary FBX 7.4 of one polygon; its bytes."""
+class Whole(int):
+    """A number of 32 bits."""
+
+
+def fbx(path, places, polygon, unit_cm, axes=None, nodes=((2, 0, {}),), shown=(2,)):
+    """A binary FBX 7.4 of one polygon; its bytes. axes: up, front, right, each with its sign. nodes: id, parent and
+    properties of each; shown: those that hold the polygon."""
+    def property_70(key, value):
+        if isinstance(value, tuple):
+            return ("P", (key, key if key.startswith("Lcl") else "Vector3D", "", "A" if key.startswith("Lcl") else "", *map(float, value)))
+        return ("P", (key, "enum", "", "", Whole(value)))
+
     def property_of(p):
         if isinstance(p, str):
             return b"S" + struct.pack("<I", len(p.encode())) + p.encode()
@@ -109,7 +120,9 @@ def fbx(path, places, polygon, unit_cm):
             return kind + struct.pack("<III", len(p), 0, len(data)) + data
         if isinstance(p, float):
             return b"D" + struct.pack("<d", p)
-        return b"I" + struct.pack("<i", p) if p > 2 else b"L" + struct.pack("<q", p)  # 0 to 2: ids
+        if isinstance(p, Whole):
+            return b"I" + struct.pack("<i", p)
+        return b"I" + struct.pack("<i", p) if p > 9 else b"L" + struct.pack("<q", p)  # 0 to 9: ids
 
     def node(at, name, properties=(), children=()):
         data = b"".join(property_of(p) for p in properties)
@@ -122,14 +135,18 @@ def fbx(path, places, polygon, unit_cm):
         return struct.pack("<IIIB", where + len(inner), len(properties), len(data), len(name)) + name.encode() + data + inner
 
     name = "\x00\x01"
+    names = ("UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign", "CoordAxis", "CoordAxisSign")
+    said = [("P", (key, "int", "Integer", "", Whole(value))) for key, value in zip(names, axes or ())]
     all_nodes = [
         ("FBXHeaderExtension", (), [("FBXVersion", (7400,))]),
-        ("GlobalSettings", (), [("Properties70", (), [("P", ("UnitScaleFactor", "double", "Number", "", unit_cm))])]),
+        ("GlobalSettings", (), [("Properties70", (), [("P", ("UnitScaleFactor", "double", "Number", "", unit_cm))] + said)]),
         ("Objects", (), [("Geometry", (1, "tri" + name + "Geometry", "Mesh"),
                           [("Vertices", ([float(c) for p in places for c in p],)),
                            ("PolygonVertexIndex", (polygon[:-1] + [~polygon[-1]],))]),
-                         ("Model", (2, "tri" + name + "Model", "Mesh"), [("Version", (232,))])]),
-        ("Connections", (), [("C", ("OO", 1, 2)), ("C", ("OO", 2, 0))])]
+                         *(("Model", (n, f"tri{n}" + name + "Model", "Mesh"),
+                            [("Version", (232,)), ("Properties70", (), [property_70(*p) for p in more.items()])])
+                           for n, _, more in nodes)]),
+        ("Connections", (), [("C", ("OO", n, parent)) for n, parent, _ in nodes] + [("C", ("OO", 1, n)) for n in shown])]
     data = b"Kaydara FBX Binary  \x00\x1a\x00" + struct.pack("<I", 7400)
     for one in all_nodes:
         data += node(len(data), *one)
@@ -199,6 +216,90 @@ class Models(unittest.TestCase):
             code, said = prepare(WORK + "/bad.fbx")
             self.assertEqual(code, 1, said)
             self.assertIn("bad.fbx: error: ", said)
+
+    def test_axes(self):
+        """`up` stands in place of what a file says: with Collada it was applied on top of it, and models lay on their sides."""
+        subprocess.run(["assimp", "export", DATA + "/gltf/Box.glb", WORK + "/axes.dae", "-fcollada"], check=True, stdout=subprocess.DEVNULL)
+        with open(WORK + "/axes.dae", encoding="utf-8") as f:
+            text = f.read()
+        self.assertEqual(text.count("_UP</up_axis>"), 1)
+        text = re.sub(r"(<float_array[^>]*>)([^<]*)", lambda m: m[1] + " ".join(repr(float(v) * (1 + 0.5 * (i % 3)))
+                                                                              for i, v in enumerate(m[2].split())), text)
+
+        def stands(up_axis, *options):
+            with open(WORK + "/axes.dae", "w", encoding="utf-8") as f:
+                f.write(re.sub("._UP", up_axis, text))
+            code, said = prepare(WORK + "/axes.dae", *options)
+            self.assertEqual(code, 0, said)
+            places = exported()[0].reshape(-1, 3)
+            return [round(float(v), 4) for v in places.max(0) - places.min(0)]
+        y, z = stands("Y_UP"), stands("Z_UP")
+        self.assertEqual(sorted(y), sorted(z))
+        self.assertNotEqual(y, z)
+        for up_axis in ("Y_UP", "Z_UP", "X_UP"):
+            self.assertEqual(stands(up_axis, "--set", "objects.axes.up=y"), y)
+            self.assertEqual(stands(up_axis, "--set", "objects.axes.up=z"), z)
+        # FBX: a wall of 2 m x 3 m x 5 m with the axes that its heading names; it was taken for y up unless z was.
+        places = [(0.0, 0, 0), (2.0, 3, 0), (0, 3.0, 5)]
+        for axes, wanted in ((None, lambda x, y, z: (x, -z, y)), ((2, 1, 1, -1, 0, 1), lambda x, y, z: (x, y, z)),
+                             ((0, 1, 2, 1, 1, -1), lambda x, y, z: (-y, -z, x)), ((2, 1, 0, -1, 1, -1), lambda x, y, z: (-y, x, z)),
+                             ((1, -1, 2, 1, 0, -1), lambda x, y, z: (-x, -z, -y)), ((2, 1, 1, 1, 0, 1), lambda x, y, z: (x, -y, z)),
+                             ((0, 1, 0, 1, 0, 1), lambda x, y, z: (-y, -z, x))):
+            fbx(WORK + "/axes.fbx", places, [0, 1, 2], 100.0, axes)
+            code, said = prepare(WORK + "/axes.fbx", "--set", f"objects.axes.unit_m={SCALE:g}")
+            self.assertEqual(code, 0, said)
+            self.assertEqual({tuple(np.round(p, 5) + 0.0) for p in exported()[0].reshape(-1, 3)},
+                             {tuple(np.round(wanted(*p), 5) + 0.0) for p in places}, axes)
+            self.assertEqual("left-handed" in said, axes == (2, 1, 1, 1, 0, 1), said)
+            self.assertEqual("x is up" in said, axes == (0, 1, 0, 1, 0, 1), said)
+
+    def test_what_fbx_does_with_places(self):
+        """Autodesk's chain of transforms: pivots, rotations before and after, transforms of geometry alone, which children
+        do not inherit (they did, and PostRotation was not undone); scales that are inherited otherwise are told."""
+        places = np.array([(0.0, 0, 0), (2, 0, 0), (0, 3, 5)])
+
+        def move(*t):
+            return np.block([[np.eye(3), np.array(t).reshape(3, 1)], [np.zeros((1, 3)), np.ones((1, 1))]])
+
+        def turn(*angles):  # about x first
+            m = np.eye(4)
+            for k, a in enumerate(np.radians(angles)):
+                i, j, one = (k + 1) % 3, (k + 2) % 3, np.eye(4)
+                one[i, i] = one[j, j] = np.cos(a)
+                one[i, j], one[j, i] = -np.sin(a), np.sin(a)
+                m = one @ m
+            return m
+
+        def size(*s):
+            return np.diag([*s, 1.0])
+        undo, t, r, s = np.linalg.inv, (10, 20, 30), (20, 40, 60), (1, 2, 3)
+        own = {"Lcl Translation": t, "Lcl Rotation": r, "Lcl Scaling": s, "RotationActive": 1}
+        pivots = {"RotationOffset": (4, 5, 6), "RotationPivot": (1, 2, 3), "PreRotation": (90, 0, 0), "PostRotation": (0, 30, 0),
+                  "ScalingOffset": (1, 0, 2), "ScalingPivot": (7, 8, 9)}
+        chain = (move(*t) @ move(4, 5, 6) @ move(1, 2, 3) @ turn(90, 0, 0) @ turn(*r) @ undo(turn(0, 30, 0)) @ undo(move(1, 2, 3))
+                 @ move(1, 0, 2) @ move(7, 8, 9) @ size(*s) @ undo(move(7, 8, 9)))
+        alone = {"GeometricTranslation": (1, 2, 3), "GeometricRotation": (0, 0, 90), "GeometricScaling": (2, 2, 2)}
+        plain = {"Lcl Translation": (0, 0, 1), "InheritType": 1}
+        geometry = move(1, 2, 3) @ turn(0, 0, 90) @ size(2, 2, 2)
+        for nodes, wanted, told in (([(2, 0, own)], [move(*t) @ turn(*r) @ size(*s)], False), ([(2, 0, own | pivots)], [chain], False),
+                                    ([(2, 0, own | pivots | alone), (3, 2, plain)], [chain @ geometry, chain @ move(0, 0, 1)], False),
+                                    ([(2, 0, {"Lcl Scaling": (-1, 1, 1)})], [size(-1, 1, 1)], False),
+                                    ([(2, 0, own), (3, 2, {"Lcl Rotation": (0, 0, 90), "InheritType": 1})],
+                                     [move(*t) @ turn(*r) @ size(*s), move(*t) @ turn(*r) @ size(*s) @ turn(0, 0, 90)], False),
+                                    ([(2, 0, own), (3, 2, {"Lcl Rotation": (0, 0, 90), "InheritType": 0})], None, True),
+                                    ([(2, 0, own), (3, 2, {"InheritType": 2})], None, True),
+                                    ([(2, 0, {"Lcl Scaling": (2, 2, 2)}), (3, 2, {"Lcl Rotation": (0, 0, 90)})],
+                                     [size(2, 2, 2), size(2, 2, 2) @ turn(0, 0, 90)], False)):
+            fbx(WORK + "/nodes.fbx", places.tolist(), [0, 1, 2], 100.0, (2, 1, 1, -1, 0, 1), nodes, [n for n, _, _ in nodes])
+            code, said = prepare(WORK + "/nodes.fbx", "--set", f"objects.nodes.unit_m={SCALE:g}")
+            self.assertEqual(code, 0, said)
+            self.assertEqual("InheritType" in said, told, said)
+            if wanted:
+                there = np.concatenate([places @ m[:3, :3].T + m[:3, 3] for m in wanted])
+                ours = exported()[0].reshape(-1, 3)
+                self.assertEqual(len(ours), len(there))
+                self.assertLess(max(np.linalg.norm(there - p, axis=1).min() for p in ours), 1e-4, nodes)
+                self.assertLess(max(np.linalg.norm(ours - p, axis=1).min() for p in there), 1e-4, nodes)
 
     def test_more_models(self):
         for path in os.environ.get("SUITE_MORE_MODELS", "").split():

@@ -348,6 +348,24 @@ class Helios(unittest.TestCase):
         wanted = np.concatenate([2 * corners @ turn.T + (10, -5, 2), corners])
         self.assertLess(np.abs(exported()[0].reshape(-1, 3) - wanted).max(), 2e-6)
 
+    def test_on_the_ground(self):
+        """A slope z = x/2 whose material is ground; a leaf whose corners are 2.5, 0.5 and 2 m above it, moved by -0.5 m."""
+        with open(WORK + "/slope.mtl", "w", encoding="utf-8") as f:
+            f.write("newmtl soil\nhelios_isGround true\n")
+        with open(WORK + "/slope.obj", "w", encoding="utf-8") as f:
+            f.write("mtllib slope.mtl\nv 0 0 0\nv 20 0 10\nv 20 20 10\nv 0 20 0\nusemtl soil\nf 1 2 3 4\n")
+        corners = np.array([(1.0, 2, 3), (5, 2, 3), (2, 5, 3)])
+        with open(WORK + "/leaf.obj", "w", encoding="utf-8") as f:
+            f.write("".join("v %g %g %g\n" % tuple(c) for c in corners) + "f 1 2 3\n")
+        with open(WORK + "/plot.xml", "w", encoding="utf-8") as f:
+            f.write('<document><scene id="plot">\n<part id="b"><filter type="objloader"><param key="filepath" value="leaf.obj"/></filter>\n'
+                    '<filter type="translate"><param key="offset" value="0;0;0"/><param key="onGround" value="-1"/></filter></part>\n'
+                    '<part id="earth"><filter type="objloader"><param key="filepath" value="slope.obj"/></filter></part></scene></document>\n')
+        code, said = prepare(WORK + "/plot.xml")
+        self.assertEqual(code, 0, said)
+        self.assertIn("'onGround': moved by -0.500 m onto the plane through the ground 'earth'", said)
+        self.assertLess(np.abs(exported()[0].reshape(-1, 3)[:3] - corners + (0, 0, 0.5)).max(), 2e-6)
+
 
 class Leaves(unittest.TestCase):
     """A layer of leaves of AMAPVox, rendered: what comes through black ones, and what stays of an even light in ones that lose nothing."""

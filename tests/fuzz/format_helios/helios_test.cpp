@@ -12,16 +12,29 @@ namespace {
 void read_and_check(std::span<const std::byte> bytes) {
   Report report(scene_issues());
   const HeliosText made = parse_helios({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz.xml",
-                                       {[](const std::string&) {
-                                          return std::array<double, 4>{0, 0, 1, 1};
-                                        },
-                                        [](const std::string&) { return std::string("0 0 0\n3 2 1\n"); }},
+                                       {.grid_of =
+                                            [](const std::string&) {
+                                              return HeliosGrid{{0, 0}, {1, 1}, {}};
+                                            },
+                                        .text_of = [](const std::string&) { return std::string("0 0 0\n3 2 1\n"); },
+                                        .heights_of =
+                                            [](const std::string&) {
+                                              return HeliosHeights{{{0, 0}, {1, 1}, {}}, 2, 2, {1, NAN, 2, 3}};
+                                            },
+                                        .mesh_of =
+                                            [](const std::string&) {
+                                              SourceMesh mesh;
+                                              mesh.positions = {{0, 0, 0}, {1, 2, 3}, {3, 1, 2}};
+                                              mesh.indices = {0, 1, 2};
+                                              return mesh;
+                                            }},
                                        report);
   Params::parse_made(made.yaml, "fuzz.xml", made.origins);
 }
 
 const std::vector<std::string> kWords{
-    "<part>", "</part>", "<filter type=\"scale\">", "1e999", "nan", ";;", "&#10;", "\" ", "objloader", "<scene/>"};
+    "<part>",   "</part>", "<filter type=\"scale\">", "1e999", "nan", ";;", "&#10;", "\" ", "objloader", "<scene/>",
+    "onGround", "-1"};
 
 TEST(FuzzHelios, Scene) { test::fuzz(test::bytes_of(test::helios_scene()), read_and_check, 1, 20000, 4, kWords); }
 
@@ -31,8 +44,8 @@ TEST(FuzzHelios, Points) {
       [](std::span<const std::byte> bytes) {
         const helios::Cubes cubes =
             helios::cubes_of_xyz({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz.xyz", ";", 0.5);
-        EXPECT_GE(cubes.points, cubes.count);
-        EXPECT_GT(cubes.count, size_t{0});
+        EXPECT_GE(cubes.points, cubes.centres.size());
+        EXPECT_GT(cubes.centres.size(), size_t{0});
       },
       1, 20000, 4, kWords);
 }

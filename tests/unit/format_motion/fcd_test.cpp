@@ -62,6 +62,25 @@ TEST(Fcd, ThingsAreWhereTheirRecordsSay) {
   EXPECT_EQ(things[3].track->covered().begin, 3);
 }
 
+// SUMO's --human-readable-time: hours:minutes:seconds, with days before them from the first whole day on.
+TEST(Fcd, TimesForPeople) {
+  const MotionContext context;
+  const auto at = [&](const std::string& time) {
+    return read("<fcd-export><timestep time=\"" + time +
+                    "\"><vehicle id=\"a\" x=\"1\" y=\"2\" angle=\"0\"/></timestep></fcd-export>",
+                {context})[0]
+        .track->covered()
+        .begin;
+  };
+  EXPECT_EQ(at("00:00:00"), 0);
+  EXPECT_EQ(at("07:00:01.50"), 7 * 3600 + 1.5);
+  EXPECT_EQ(at("2:03:04:05"), ((2 * 24 + 3) * 60 + 4) * 60 + 5);
+  EXPECT_EQ(at("-00:01:00"), -60);
+  for (const char* wrong :
+       {"07:00", "1:2:3:4:5", "00:60:00", "00:00:61", "1:24:00:00", "00:1.5:00", "00::00", "a:b:c", "00:00:", ":"})
+    EXPECT_THAT(message_of([&] { at(wrong); }), HasSubstr("is no time")) << wrong;
+}
+
 TEST(Fcd, NetworksOnTheEarth) {
   const SceneFrame frame({48.5, 9.1, 400});
   const MotionContext context{frame, {}, 0, nullptr};

@@ -1,14 +1,18 @@
 // Rasters out: GDAL reads the metadata of the TIFF, viewers find a picture in the OpenEXR.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include "base/files.h"
 #include "formats/raster/raster.h"
 #include "formats/raster/raster_write.h"
+#include "support/message_of.h"
 #include "support/run_command.h"
 
 namespace suite {
@@ -53,6 +57,33 @@ TEST_F(RasterWrite, NumbersComeBack) {
   write_float_tiff(folder_ / "b.tif", r, many);
   EXPECT_EQ(read_raster(folder_ / "b.tif").values, many);
   EXPECT_EQ(folder_.entries(), 2u);
+}
+
+// No matter where a disk is full, there is a whole file or none, and an Error. OpenEXR's lost its end and stayed.
+TEST_F(RasterWrite, FullDisksLeaveNothing) {
+  FloatRaster r = small();
+  r.width = 61, r.height = 47;
+  const std::vector<float> v = numbers(r);
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  for (const bool exr : {false, true}) {
+    const std::string path = folder_ / (exr ? "a.exr" : "a.tif");
+    const auto write = [&] { exr ? write_exr(path, r, v) : write_float_tiff(path, r, v); };
+    write();
+    const size_t size = file_size(path);
+    std::filesystem::remove(path);
+    for (const size_t limit : {size_t{0}, size_t{100}, size / 3, size - 3000, size - 700, size - 100, size - 1}) {
+      struct rlimit tight = before;
+      tight.rlim_cur = limit;
+      ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+      const std::string said = message_of(write);
+      ::setrlimit(RLIMIT_FSIZE, &before);
+      EXPECT_THAT(said, HasSubstr("cannot be written")) << path << " " << limit << " of " << size;
+      EXPECT_EQ(folder_.entries(), 0u) << path << " " << limit;
+    }
+  }
+  ::signal(SIGXFSZ, handler);
 }
 
 TEST_F(RasterWrite, GdalReadsWhatIsTold) {
