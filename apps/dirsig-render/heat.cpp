@@ -302,7 +302,7 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   const double faces = static_cast<double>(p.faces->size());
   // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every four paths at half
   // of the moments straight.
-  const double points = std::max(double{HeatSpec::kBlocks}, p.spec.paths / 4.0);
+  const double points = 1.0 * HeatSpec::kBlocks * points_of_beam(path_options(p.spec));
   const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p) / 2);
   check_size(p, sim);
   const double seconds = seconds_of(p, sim, *scene);

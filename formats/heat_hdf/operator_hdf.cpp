@@ -13,7 +13,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "3";
+constexpr const char *kFormat = "suite heat operator", *kVersion = "4";
 constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight", *kStraight = "straight_sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
@@ -52,7 +52,7 @@ void visit_all(Sun& s, const Visit& visit) {
   visit_rows(visit, "/sunlight/sky", "sr", 1, s.sky, 0.0f);
   visit("/sunlight/below", "sr", size_t{1}, std::span(s.below), 0.0f);
   visit_rows(visit, "/sunlight/sky_of_block", "sr", s.blocks, s.sky_of_block, -kMost);
-  visit("/sunlight/below_of_block", "sr", size_t{s.blocks}, std::span(s.below_of_block), 0.0f);
+  visit("/sunlight/below_of_block", "sr", size_t{s.blocks}, std::span(s.below_of_block), -kMost);
   visit("/sunlight/absorptance", "1", size_t{1}, std::span(s.absorptance), 0.0f);
 }
 

@@ -97,7 +97,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   s.elements = static_cast<size_t>(heat->integer("elements", 1, 10'000'000, 20000));
   if (const auto by = heat->find("elements_by")) s.cut_by_sun = by->as_choice({"sun", "area"}) == 0;
   s.paths = static_cast<uint32_t>(heat->integer("paths", HeatSpec::kBlocks, 1 << 16, 64));
-  s.paths = (s.paths + HeatSpec::kBlocks - 1) / HeatSpec::kBlocks * HeatSpec::kBlocks;
+  s.paths = (s.paths + HeatSpec::kLeastPaths - 1) / HeatSpec::kLeastPaths * HeatSpec::kLeastPaths;
   if (const auto target = heat->find("target_k")) {
     if (heat->find("paths"))
       throw target->error("paths are given, and are to be chosen for a target", "drop one of them");

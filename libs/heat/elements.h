@@ -35,10 +35,11 @@ struct ElementContact {
   double ratio = 0;  // of the length that they touch along to the distance of their middles, of all their instances
 };
 
-// Numbers of the choice of a point; one block of four numbers (math/sampling.h) an attempt.
+// Numbers of the choice of a point; one block of four numbers (math/sampling.h) an attempt. stratum: of so many equal
+// parts of the element, where it can be cut into such (strata.h), else it makes no difference.
 struct PointDraw {
   const SampleStream& stream;
-  uint32_t sample = 0, first_block = 0;
+  uint32_t sample = 0, first_block = 0, stratum = 0, strata = 1;
 };
 
 // What tells places apart: direct sun through the day on their fronts, W/m2, so many numbers a place.
@@ -159,6 +160,7 @@ class Elements {
   void make_elements(const std::vector<bool>& heated);
   Local local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const;
   Hit cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt) const;
+  void stratify(const Group& group, uint32_t cell, const PointDraw& draw, std::array<double, 4>& u) const;
   std::optional<uint32_t> cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const;
 
   const Tracer& tracer_;

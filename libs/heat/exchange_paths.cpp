@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "heat/heat_walk.h"
+#include "heat/path_numbers.h"
 
 namespace suite {
 
@@ -46,22 +47,21 @@ class Wave {
   double unfinished() const { return unfinished_; }
 
  private:
-  SampleStream stream(uint32_t slot) const {
-    const uint32_t each = options_.blocks * options_.paths, face = slot / each, block = slot % each / options_.paths;
-    return SampleStream(options_.seed, kPurpose, face, block);
+  PathNumbers numbers_of(uint32_t slot) const {
+    const uint32_t each = options_.blocks * options_.paths;
+    return {options_, kPurpose, slot / each, slot % each};
   }
-  uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
 
   void start(uint32_t face) {
     const uint32_t each = options_.blocks * options_.paths;
     double emissivity = 0;
     for (uint32_t k = 0; k < each; ++k) {
       const uint32_t slot = face * each + k;
-      const SampleStream numbers = stream(slot);
-      const Hit hit = elements_.point(faces_.element(face), {numbers, sample(slot), kPointBlock});
-      const std::array<double, 4> u = numbers.draw(sample(slot), 0);
+      const PathNumbers numbers = numbers_of(slot);
+      const Hit hit = elements_.point(faces_.element(face), {numbers.net(), numbers.sample(), kPointBlock});
+      const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
       const Dir normal = faces_.is_back(face) ? -hit.normal : hit.normal;
-      const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere({u[0], u[1]})));
+      const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere(numbers.first_direction())));
       surface_.interact(hit, d, at_, hit.time);
       if (at_.baked && at_.baked->model)
         at_.baked->model->total(at_.frame.to_local(d), W_);
@@ -76,7 +76,8 @@ class Wave {
       uint8_t bin = 0;
       while (bin + 1u < W_.size() && left >= 1 - std::min(1.0f, W_[bin])) left -= 1 - std::min(1.0f, W_[bin]), ++bin;
       going_.push_back({slot, bin, sum / static_cast<double>(W_.size()), u[3]});
-      rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers, sample(slot), hit.time), slot});
+      rays_.push_back(
+          {tracer_.leave(hit, d), d, time_of_path(tracer_, numbers.net(), numbers.sample(), hit.time), slot});
     }
     out_.emissivity[face] = emissivity / each;
     if (emissivity == 0) {  // it neither emits nor takes anything: whatever its row is
@@ -103,8 +104,8 @@ class Wave {
     const Dir out = at_.frame.to_local(-ray.direction);
     at_.baked->model->total(out, W_);
     const double kept = std::min(1.0f, W_[path.bin]);
-    const SampleStream numbers = stream(path.slot);
-    const std::array<double, 4> u = numbers.draw(sample(path.slot), 1 + n);
+    const PathNumbers numbers = numbers_of(path.slot);
+    const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 1 + n);
     const bool last = n >= kMostReflections;
     path.left *= kept;
     if (path.left <= path.until || last) {
@@ -149,7 +150,7 @@ ExchangePaths untraced_exchange(const Elements& elements, const HeatFaces& faces
   ExchangePaths out;
   out.blocks = options.blocks, out.paths = options.paths;
   const size_t each = size_t{options.blocks} * options.paths;
-  SUITE_CHECK(each > 0 && faces.size() * each < UINT32_MAX);
+  SUITE_CHECK(each > 0 && options.paths % 2 == 0 && faces.size() * each < UINT32_MAX);
   out.ends.resize(faces.size() * each), out.weights.resize(faces.size() * each);
   out.emissivity.resize(faces.size());
   for (size_t f = 0; f < faces.size(); ++f) out.area.push_back(elements[faces.element(f)].area);

@@ -16,9 +16,10 @@
 namespace suite {
 
 struct PathOptions {
-  uint32_t blocks = 8;  // independent ones, for errors
-  uint32_t paths = 8;   // of a face in each
+  uint32_t blocks = 8;  // strata of two halves each, for errors (path_numbers.h)
+  uint32_t paths = 8;   // of a face in each; even
   uint64_t seed = 1;
+  uint32_t half() const { return paths / 2; }
 };
 
 // Faces [begin, end).
@@ -50,8 +51,12 @@ struct ExchangePaths {
   // Of all paths, from both ends of what two faces exchange, so that what one gives the other takes and rows still sum
   // to 1 (where faces see so few others that both cannot be had, the latter). exchange_reciprocity.cpp has the method.
   ExchangeMatrix matrix(size_t outsides) const;
-  // The paths of one block.
-  ExchangePaths block(uint32_t number) const;
+  // What each face receives by the halves of its blocks, less one another and over 2, W/m2: the sum of the squares over
+  // that of the blocks' number is the variance. To first order: shares of a row are taken for known but for their sum.
+  // emitted: W/m2 by all ends, [end][part]; received: [face][part]; put(face, [block][part]), in parallel.
+  // exchange_errors.cpp.
+  void halves(std::span<const float> emitted, std::span<const float> received, size_t parts,
+              const std::function<void(size_t face, std::span<const float> of_blocks)>& put) const;
   size_t faces() const { return emissivity.size(); }
 };
 

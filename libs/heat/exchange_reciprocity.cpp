@@ -114,19 +114,6 @@ std::vector<double> factors(const Rows& rows, const std::vector<double>& a) {
 
 }  // namespace
 
-ExchangePaths ExchangePaths::block(uint32_t number) const {
-  SUITE_CHECK_LT(number, blocks);
-  ExchangePaths out;
-  out.blocks = 1, out.paths = paths, out.emissivity = emissivity, out.area = area;
-  out.ends.reserve(faces() * paths), out.weights.reserve(faces() * paths);
-  for (size_t f = 0; f < faces(); ++f) {
-    const auto from = static_cast<std::ptrdiff_t>((f * blocks + number) * paths);
-    out.ends.insert(out.ends.end(), ends.begin() + from, ends.begin() + from + paths);
-    out.weights.insert(out.weights.end(), weights.begin() + from, weights.begin() + from + paths);
-  }
-  return out;
-}
-
 ExchangeMatrix ExchangePaths::matrix(size_t outsides) const {
   const size_t n = faces();
   std::vector<double> a;

@@ -386,7 +386,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
 
 HeatResult solve_heat(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                       const WeatherLoads& weather, const HeatSpec& spec, const HeatProgress& progress) {
-  SUITE_CHECK(spec.paths % HeatSpec::kBlocks == 0 && spec.paths > 0);
+  SUITE_CHECK(spec.paths % HeatSpec::kLeastPaths == 0 && spec.paths > 0);
   const HeatScene scene{tracer, elements, faces, optics};
   const auto done = [&](size_t more) { tell_done(progress, static_cast<double>(more)); };
   HeatOperator found;

@@ -3,8 +3,8 @@
 //
 // Method: the exchange of infrared and the sunlight of every face are traced once (exchange_paths.h, sunlight.h);
 // weather turns them into loads; the balance of all elements is solved over the whole span (surfaces.h). The standard
-// error of the paths is that of independent blocks of them, whose loads differ from the mean, followed through the
-// balance linearised about the solution.
+// error of the paths is what independent halves of them differ by (path_numbers.h), followed through the balance
+// linearised about the solution.
 //
 // Assumes: the same weather all over the scene, on faces as it stands in the file; a grey sky whose infrared varies
 // with the zenith angle after M. H. Unsworth & J. L. Monteith, Q. J. R. Meteorol. Soc. 101, 1975 (b = 0.09 in a clear
@@ -36,14 +36,14 @@ struct HeatSpec {
   bool periodic = true;        // the span repeats for ever; else it goes on from its first day's periodic state
   size_t elements = 20000;     // about
   bool cut_by_sun = true;      // elements, where it differs within them (day_sun.h); else they are of about equal areas
-  uint32_t paths = 64;         // of a face, for each of infrared and sunlight; a multiple of kBlocks
+  uint32_t paths = 64;         // of a face, for each of infrared and sunlight; a multiple of kLeastPaths
   double target = 0;           // K, by the paths: asks for as many (target_paths.h); 0 = the paths are given
   double tolerance = 0.01;     // K, of sweeps and of the past
   double ground_albedo = 0.2;  // of sunlight, beyond the scene
   bool lateral = false;        // elements conduct to their neighbours along the surface, too (lateral.h)
   uint64_t seed = 1;
   size_t audit = 0;  // probes of heat_audit.h; 0 = none
-  static constexpr uint32_t kBlocks = 8;
+  static constexpr uint32_t kBlocks = 8, kLeastPaths = 2 * kBlocks;
 };
 
 // Sun and weather in the simulation's time.

@@ -107,8 +107,7 @@ LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const We
   LoadErrors out;
   out.of_block = CompactRows(faces * blocks, kHeatParts);
   for_faces(faces, [&](size_t f) {
-    std::vector<float> rows(blocks * kHeatParts);
-    std::array<double, kHeatParts> mean{};
+    std::array<float, kHeatParts> row{};
     for (size_t b = 0; b < blocks; ++b) {
       const size_t block = f * blocks + b;
       const bool plus = hash_of(kPurpose, f, b) & 1;
@@ -117,14 +116,9 @@ LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const We
         double brings = sun.beam_of_block.at(block, p) / per_part * by.direct[p] +
                         double{sun.below_of_block[block]} * by.below[p] + (plus ? off : -off);
         for (size_t s = 0; s < kSkyShapes; ++s) brings += sun.sky_of_block.at(block, s) * shapes[s * kHeatParts + p];
-        rows[b * kHeatParts + p] = static_cast<float>(brings);
-        mean[p] += brings / static_cast<double>(blocks);
+        row[p] = static_cast<float>(brings);
       }
-    }
-    for (size_t b = 0; b < blocks; ++b) {
-      float* row = &rows[b * kHeatParts];
-      for (size_t p = 0; p < kHeatParts; ++p) row[p] = static_cast<float>(double{row[p]} - mean[p]);
-      out.of_block.set(f * blocks + b, {row, kHeatParts});
+      out.of_block.set(block, row);
     }
   });
   sun.beam_of_block = {}, sun.sky_of_block = {};

@@ -17,7 +17,8 @@ class MeshCells {
   MeshCells(const Mesh& mesh, const std::vector<uint32_t>& material_of_part, double wanted);
 
   size_t size() const { return areas_.size(); }
-  double area(size_t cell) const { return areas_[cell]; }            // m2, local
+  double area(size_t cell) const { return areas_[cell]; }  // m2, local
+  size_t triangles(size_t cell) const { return end_[cell] - first_[cell]; }
   uint32_t material(size_t cell) const { return materials_[cell]; }  // as material_of_part has it
   double total_area() const { return total_; }
 

@@ -43,7 +43,7 @@ class Errors {
   std::vector<float> of_paths() {
     const auto n = static_cast<double>(blocks_);
     add_infrared();
-    followed_ = &of_loads_.of_block, cases_ = blocks_, weight_ = 1 / (n * (n - 1));
+    followed_ = &of_loads_.of_block, cases_ = blocks_, weight_ = 1 / (n * n);
     return follow(s_.neighbours);
   }
 
@@ -65,42 +65,34 @@ class Errors {
     return group_of(part, i).back_rows[part.members[i].element];
   }
 
-  // What every face receives by each block's paths alone, of what all emit. One block's exchange after the other, as
-  // all at once would be the most that is held of anything.
+  // What every face receives by the halves of its blocks, of what all emit.
   void add_infrared() {
-    const size_t outsides = s_.loads.outside.size() / moments_;
-    Histories emits(faces_ + outsides, kHeatParts);
-    parallel_for(0, emits.rows(), 64, [&](size_t begin, size_t end) {
-      for (size_t k = begin; k < end; ++k)
-        emits.set(k, parts_.means([&](size_t m) { return emitted(static_cast<uint32_t>(k), m); }));
+    const size_t ends = faces_ + s_.loads.outside.size() / moments_;
+    std::vector<float> emits(ends * kHeatParts), receives(faces_ * kHeatParts);
+    parallel_for(0, ends, 64, [&](size_t begin, size_t end) {
+      for (size_t k = begin; k < end; ++k) {
+        std::ranges::copy(parts_.means([&](size_t m) { return emitted(static_cast<uint32_t>(k), m); }),
+                          &emits[k * kHeatParts]);
+        if (k < faces_)
+          std::ranges::copy(parts_.means([&](size_t m) { return s_.history.received.at(k, m); }),
+                            &receives[k * kHeatParts]);
+      }
     });
-    for (uint32_t b = 0; b < blocks_; ++b) {
-      const ExchangeMatrix matrix = s_.exchange.block(b).matrix(outsides);
-      parallel_for(0, faces_, 64, [&](size_t begin, size_t end) {
-        std::array<double, kHeatParts> received{};
-        std::array<float, kHeatParts> row{};
-        for (size_t f = begin; f < end; ++f) {
-          matrix.receive_one(f, emits, received);
-          of_loads_.of_block.get(f * blocks_ + b, row);
-          for (size_t p = 0; p < kHeatParts; ++p)
-            row[p] = static_cast<float>(double{row[p]} + s_.exchange.emissivity[f] * received[p]);
-          of_loads_.of_block.set(f * blocks_ + b, row);
-        }
-      });
-    }
+    s_.exchange.halves(emits, receives, kHeatParts, [&](size_t f, std::span<const float> of_blocks) {
+      std::array<float, kHeatParts> row{};
+      for (uint32_t b = 0; b < blocks_; ++b) {
+        of_loads_.of_block.get(f * blocks_ + b, row);
+        for (size_t p = 0; p < kHeatParts; ++p)
+          row[p] += static_cast<float>(s_.exchange.emissivity[f]) * of_blocks[b * kHeatParts + p];
+        of_loads_.of_block.set(f * blocks_ + b, row);
+      }
+    });
   }
 
-  // W/m2 that a face's loads are off by in every case: less what all cases share; [case][part].
+  // W/m2 that a face's loads are off by in every case: [case][part].
   std::vector<float> deviations(uint32_t face) const {
     std::vector<float> out(cases_ * kHeatParts);
     for (size_t c = 0; c < cases_; ++c) followed_->get(face * cases_ + c, {&out[c * kHeatParts], kHeatParts});
-    if (followed_ == &of_loads_.spread) return out;
-    for (size_t p = 0; p < kHeatParts; ++p) {
-      double mean = 0;
-      for (size_t c = 0; c < cases_; ++c) mean += double{out[c * kHeatParts + p]} / static_cast<double>(cases_);
-      for (size_t c = 0; c < cases_; ++c)
-        out[c * kHeatParts + p] = static_cast<float>(double{out[c * kHeatParts + p]} - mean);
-    }
     return out;
   }
 

@@ -19,7 +19,7 @@ struct SolvedSurfaces {
 // What is known before temperatures are: of sunlight, what each block's paths bring, and how points within an element
 // differ. Rows of the parts of the span, W/m2.
 struct LoadErrors {
-  CompactRows of_block;  // by face and block, up to what all blocks of a face share
+  CompactRows of_block;  // by face and block, halves' differences over 2
   CompactRows spread;    // by face and contrast (Sunlight::beam_spread)
 };
 // How far an uneven sky as so many paths of a block find it may be off, W/m2, [face][part].
@@ -33,10 +33,10 @@ struct LinearErrors {
   std::vector<float> size;   // K, root of the mean square of what places of the element differ from its mean
 };
 // What loads differ by, as means over the parts, goes through the conduction of its element with the faces' exchange
-// linearised about the solution, as a periodic state. Of the paths: each block's own loads against those of all; what
-// neighbours make of it is left out: they emit as solved. Of the size: direct sun on the points of the element
-// (Sunlight::beam_spread); what sky and neighbours send is taken as even over it, and conduction along the surface,
-// which evens out, is left out there; errors of the paths go along it. At least kHeatParts moments.
+// linearised about the solution, as a periodic state. Of the paths: what the halves of each block differ by
+// (path_numbers.h); what neighbours make of it is left out: they emit as solved. Of the size: direct sun on the points
+// of the element (Sunlight::beam_spread); what sky and neighbours send is taken as even over it, and conduction along
+// the surface, which evens out, is left out there; errors of the paths go along it. At least kHeatParts moments.
 LinearErrors linear_errors(const SolvedSurfaces& solved, LoadErrors&& loads);
 
 }  // namespace suite

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "heat/sunlight_mirrored.h"
 #include "heat/sunlight_wave.h"
@@ -47,6 +48,7 @@ double Sunlight::unfinished(uint32_t paths) const {
 Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options) {
   Sunlight out;
   const size_t n = faces.size();
+  SUITE_CHECK(options.paths > 0 && options.paths % 2 == 0);
   out.moments = course.moments.size(), out.blocks = options.blocks;
   out.beam = CompactRows(n, out.moments);
   out.sky = CompactRows(n, kSkyPatches);

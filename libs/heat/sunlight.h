@@ -32,8 +32,8 @@ struct SunCourse {
   std::vector<uint32_t> sunny() const;  // moments with the sun up
 };
 
-// Every fourth path of a block has a point that looks at the sun through the whole day, and one there is at least.
-inline uint32_t points_of_beam(const PathOptions& options) { return std::max(1u, options.paths / 4); }
+// Every fourth path of a block has a point that looks at the sun through the whole day, and one of each half at least.
+inline uint32_t points_of_beam(const PathOptions& options) { return (options.paths + 7) / 8 * 2; }
 
 // Parts of the sky: kSkyRings of equal solid angle, each in kSkyTurns.
 inline constexpr uint32_t kSkyRings = 8, kSkyTurns = 16, kSkyPatches = kSkyRings * kSkyTurns;
@@ -49,9 +49,11 @@ struct Sunlight {
   static constexpr uint32_t kParts = 24;   // of the time, for errors
   size_t moments = 0;
   uint32_t blocks = 0;
-  CompactRows beam;           // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
-  CompactRows sky;            // [face][patch]: for 1 W/(m2 sr) of the patch
-  std::vector<float> below;   // [face]: for 1 W/(m2 sr) of all below the horizon
+  CompactRows beam;          // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
+  CompactRows sky;           // [face][patch]: for 1 W/(m2 sr) of the patch
+  std::vector<float> below;  // [face]: for 1 W/(m2 sr) of all below the horizon
+  // Of blocks, halves' differences over 2 (path_numbers.h): the sum of their squares over that of the blocks' number is
+  // the variance of what all blocks find together.
   CompactRows beam_of_block;  // [face, block][part]: as beam, sums over a part of the time
   // [face, contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
   // in steps of moments and scaled so that the mean square over the contrasts is the variance over the face.

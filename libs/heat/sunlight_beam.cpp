@@ -19,6 +19,8 @@ std::vector<Frame> suns_of(const SunCourse& course) {
   return out;
 }
 
+PathOptions watching(const PathOptions& options) { return {options.blocks, points_of_beam(options), options.seed}; }
+
 }  // namespace
 
 SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
@@ -29,6 +31,7 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       faces_(faces),
       course_(course),
       options_(options),
+      watching_(watching(options)),
       joins_(joins),
       out_(out),
       surface_(tracer, *optics.sun),
@@ -45,11 +48,6 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
 }
 
-SampleStream SunlightWave::stream(uint32_t slot, uint64_t purpose) const {
-  const uint32_t each = options_.blocks * options_.paths;
-  return SampleStream(options_.seed, purpose, faces_.number(slot / each), slot % each / options_.paths);
-}
-
 Dir SunlightWave::towards_sun(const Watch& watch, double t) const {
   return on_disk(Frame::around(course_.towards(t)), watch.disk_x, watch.disk_y, course_.angular_radius);
 }
@@ -63,19 +61,17 @@ void SunlightWave::beam(size_t begin, size_t end) {
 void SunlightWave::beam_of(size_t begin, size_t end) {
   std::vector<Watch> watches;
   for (size_t f = begin; f < end; ++f)
-    for (uint32_t b = 0; b < options_.blocks; ++b) {
+    for (uint32_t k = 0; k < watching_.blocks * watching_.paths; ++k) {
       const auto face = static_cast<uint32_t>(f);
-      const SampleStream numbers = stream((face * options_.blocks + b) * options_.paths, kPurpose);
-      for (uint32_t k = 0; k < watches_of_block(); ++k) {
-        Watch w;
-        w.face = face, w.block = b;
-        w.hit = elements_.point(faces_.element(face), {numbers, k, kPointBlock});
-        w.normal = faces_.is_back(face) ? -w.hit.normal : w.hit.normal;
-        const std::array<double, 4> u = numbers.draw(k, 0);
-        const Vec2 d = disk_from_square({u[0], u[1]});
-        w.disk_x = d.x, w.disk_y = d.y;
-        watches.push_back(std::move(w));
-      }
+      const PathNumbers numbers(watching_, kPurpose, faces_.number(face), k);
+      Watch w;
+      w.face = face, w.block = numbers.block(), w.half = numbers.half();
+      w.hit = elements_.point(faces_.element(face), numbers.first_point());
+      w.normal = faces_.is_back(face) ? -w.hit.normal : w.hit.normal;
+      const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
+      const Vec2 d = disk_from_square({u[0], u[1]});
+      w.disk_x = d.x, w.disk_y = d.y;
+      watches.push_back(std::move(w));
     }
   look(watches);
   std::vector<Edge> edges;
@@ -187,14 +183,14 @@ PointDay SunlightWave::day_of(const Watch& watch, std::span<const Edge> edges) c
 }
 
 // Puts the integral of what is taken onto the moments, by the hats of straight lines between them.
-void SunlightWave::add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight) {
+void SunlightWave::add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, double weight) {
   const size_t moments = suns_.size();
   float* parts = &parts_[block * Sunlight::kParts];
   lit_.spread(takes, [&](size_t moment, double value) {
     // A hat's integral is a step, of the first and last moment half a one.
     const double hats = moment == 0 || moment + 1 == moments ? 2 : 1;
     beam_[moment] += static_cast<float>(weight * hats * value / options_.blocks);
-    parts[moment * Sunlight::kParts / moments] += static_cast<float>(weight * value);
+    parts[moment * Sunlight::kParts / moments] += static_cast<float>(sign * weight * value);
   });
   out_.sun_hours[face] += static_cast<float>(weight * lit_.total() * step_ / 3600 / options_.blocks);
 }
@@ -205,7 +201,7 @@ void SunlightWave::add_face(std::span<const Watch> watches, std::span<const Poin
     if (!days[k].lit_first && days[k].changes.empty()) continue;
     lit_.clear();
     lit_.add(days[k], 1);
-    add_lit(watches[k].face, watches[k].block, watches[k].takes, 1.0 / watches_of_block());
+    add_lit(watches[k].face, watches[k].block, watches[k].half ? -1 : 1, watches[k].takes, 1.0 / watches_of_block());
   }
   for (uint32_t b = 0; b < options_.blocks; ++b) add_untold(watches, days, b);
   add_spread(watches, days);
@@ -295,7 +291,8 @@ void SunlightWave::of_point(const Hit& hit, bool back, Vec2 disk, std::span<floa
 }
 
 // What a block's points miss of an edge that passes over the element: it is told from the other blocks' points, once
-// for these points and once for many others. All of them take what the other blocks' do.
+// for these points and once for many others of the same part of the element. All of them take what the other blocks'
+// do.
 void SunlightWave::add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block) {
   std::vector<const PointDay*> others;
   for (size_t k = 0; k < watches.size(); ++k)
@@ -308,17 +305,21 @@ void SunlightWave::add_untold(std::span<const Watch> watches, std::span<const Po
       for (size_t m = 0; m < takes.size(); ++m) takes[m] += w.takes[m] / static_cast<float>(others.size());
   const double begin = course_.moments.front(), end = course_.moments.back();
   const uint32_t face = watches.front().face;
-  lit_.clear();
-  for (size_t k = 0; k < watches.size(); ++k)
-    if (watches[k].block == block) lit_.add(told.at(days[k].place, begin, end), -1.0 / watches_of_block());
-  const SampleStream numbers = stream((face * options_.blocks + block) * options_.paths, kTold);
-  for (uint32_t k = 0; k < kToldPoints; ++k) {
-    const Hit hit = elements_.point(faces_.element(face), {numbers, k, kPointBlock});
-    const std::array<double, 4> u = numbers.draw(k, 0);
-    const Vec2 d = disk_from_square({u[0], u[1]});
-    lit_.add(told.at(place_of(face, hit.position, d.x, d.y), begin, end), 1.0 / kToldPoints);
+  const PathOptions many{options_.blocks, kToldPoints, options_.seed};
+  for (const uint32_t half : {0u, 1u}) {
+    lit_.clear();
+    for (size_t k = 0; k < watches.size(); ++k)
+      if (watches[k].block == block && watches[k].half == half)
+        lit_.add(told.at(days[k].place, begin, end), -1.0 / watches_of_block());
+    for (uint32_t k = 0; k < many.half(); ++k) {
+      const PathNumbers numbers(many, kTold, faces_.number(face), block * many.paths + half * many.half() + k);
+      const Hit hit = elements_.point(faces_.element(face), numbers.first_point());
+      const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
+      const Vec2 d = disk_from_square({u[0], u[1]});
+      lit_.add(told.at(place_of(face, hit.position, d.x, d.y), begin, end), 1.0 / kToldPoints);
+    }
+    add_lit(face, block, half ? -1 : 1, takes, 1);
   }
-  add_lit(face, block, takes, 1);
 }
 
 }  // namespace suite

@@ -259,8 +259,26 @@ void add(const std::vector<Deposit>& deposits, const Elements& elements, const H
   }
 }
 
+// Blocks of mirrors' points are independent of each other as wholes: what they differ by from their mean stands for
+// halves' differences, so that it has the same weight.
 void put(const Sums& sums, Sunlight& out) {
-  out.beam_of_block = CompactRows(sums.of_block, Sunlight::kParts);
+  constexpr uint32_t kParts = Sunlight::kParts;
+  const double blocks = out.blocks, scale = blocks > 1 ? std::sqrt(blocks / (blocks - 1)) : 0;
+  std::array<float, kParts> of_block{}, mean{};
+  for (size_t f = 0; f < out.faces(); ++f) {
+    const float* found = &sums.of_block[f * out.blocks * kParts];
+    for (uint32_t p = 0; p < kParts; ++p) {
+      double sum = 0;
+      for (uint32_t b = 0; b < out.blocks; ++b) sum += double{found[b * kParts + p]};
+      mean[p] = static_cast<float>(sum / blocks);
+    }
+    for (uint32_t b = 0; b < out.blocks; ++b) {
+      out.beam_of_block.get(f * out.blocks + b, of_block);
+      for (uint32_t p = 0; p < kParts; ++p)
+        of_block[p] += static_cast<float>(scale) * (found[b * kParts + p] - mean[p]);
+      out.beam_of_block.set(f * out.blocks + b, of_block);
+    }
+  }
   std::vector<float> row(out.moments);
   for (size_t f = 0; f < out.faces(); ++f) {
     out.beam.get(f, row);
@@ -283,7 +301,8 @@ void add_mirrored_sunlight(const Tracer& tracer, const Elements& elements, const
   const Suns suns(course);
   out.mirrored = {places.size() - places.endless(), places.endless(), places.moving()};
   if (places.size() == 0) return;
-  Sums sums{std::vector<float>(faces.size() * out.moments), out.beam_of_block.floats()};
+  Sums sums{std::vector<float>(faces.size() * out.moments),
+            std::vector<float>(out.beam_of_block.rows() * Sunlight::kParts)};
   const std::vector<Task> tasks = tasks_of(places, suns.up());
   const double density = points_of_beam(options) * static_cast<double>(elements.size()) / elements.total_area();
   // What is found is added up in the order of the tasks, a batch of them at a time.

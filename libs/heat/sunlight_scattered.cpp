@@ -18,7 +18,7 @@ void SunlightWave::scattered(size_t begin, size_t end) {
   going_.clear(), rays_.clear(), spectra_.clear();
   for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
   sights_.clear(), asked_.clear();
-  first_ = begin, rows_.assign((end - begin) * options_.blocks * sunny_.size(), 0.0f);
+  first_ = static_cast<uint32_t>(begin), rows_.assign((end - begin) * 2 * options_.blocks * sunny_.size(), 0.0f);
   sky_.assign((end - begin) * kSkyPatches, 0.0f);
   sky_of_block_.assign((end - begin) * options_.blocks * kSkyShapes, 0.0f);
   fly(
@@ -35,11 +35,11 @@ void SunlightWave::start(uint32_t face) {
   double kept_of_sky = 0;
   for (uint32_t k = 0; k < each; ++k) {
     const uint32_t slot = face * each + k;
-    const SampleStream numbers = stream(slot, kPurpose);
-    const Hit hit = elements_.point(faces_.element(face), {numbers, sample(slot), kPointBlock});
-    const std::array<double, 4> u = numbers.draw(sample(slot), 0);
+    const PathNumbers numbers = numbers_of(slot, kPurpose);
+    const Hit hit = elements_.point(faces_.element(face), {numbers.net(), numbers.sample(), kPointBlock});
+    const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
     const Dir normal = faces_.is_back(face) ? -hit.normal : hit.normal;
-    const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere({u[0], u[1]})));
+    const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere(numbers.first_direction())));
     surface_.interact(hit, d, at_, hit.time);
     if (!at_.baked || !at_.baked->model) continue;
     at_.baked->model->total(at_.frame.to_local(d), W_);
@@ -56,7 +56,7 @@ void SunlightWave::start(uint32_t face) {
     }
     if (!(any > 0)) continue;
     going_.push_back(path);
-    rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers, sample(slot), hit.time), slot});
+    rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers.net(), numbers.sample(), hit.time), slot});
   }
   out_.absorptance[face] = static_cast<float>(kept_of_sky / each);
 }
@@ -68,7 +68,8 @@ void SunlightWave::leave(const Going& path, Dir d) {
   for (size_t i = 0; i < bins_; ++i) value += double{T[i]} * course_.sky[i];
   value *= mean_ratio(path) / each;
   const size_t block = path.slot % each / options_.paths;
-  const auto of_block = static_cast<float>(value * options_.blocks);
+  const bool second = path.slot % options_.paths >= options_.half();
+  const auto of_block = static_cast<float>(value * options_.blocks * (second ? -1 : 1));
   if (d.z > 0) {
     const uint32_t patch = sky_patch(d);
     sky_[(face - first_) * kSkyPatches + patch] += static_cast<float>(value);
@@ -86,12 +87,12 @@ void SunlightWave::add_scattered(size_t begin, size_t end) {
     clear_rows();
     out_.beam.get(f, beam_);
     for (size_t b = 0; b < options_.blocks; ++b) {
-      const float* row = &rows_[((f - begin) * options_.blocks + b) * n];
+      const float *row = &rows_[((f - begin) * options_.blocks + b) * 2 * n], *second = row + n;
       float* parts = &parts_[b * Sunlight::kParts];
       out_.beam_of_block.get(f * options_.blocks + b, {parts, Sunlight::kParts});
       for (size_t k = 0; k < n; ++k) {
-        beam_[sunny_[k]] += row[k] / static_cast<float>(options_.blocks);
-        parts[sunny_[k] * Sunlight::kParts / moments] += row[k];
+        beam_[sunny_[k]] += (row[k] + second[k]) / static_cast<float>(options_.blocks);
+        parts[sunny_[k] * Sunlight::kParts / moments] += row[k] - second[k];
       }
     }
     lift_beam();
@@ -118,8 +119,8 @@ bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
   const ScatterModel& model = *at_.baked->model;
   const Dir out = at_.frame.to_local(-ray.direction);
   ask_sun(path, hit, ray.direction, n);
-  const SampleStream numbers = stream(path.slot, kPurpose);
-  const std::array<double, 4> u = numbers.draw(sample(path.slot), 1 + n);
+  const PathNumbers numbers = numbers_of(path.slot, kPurpose);
+  const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 1 + n);
   const auto drawn = draw_reflection(model, out, u, path.knot, w_, p_);
   if (!drawn) return false;
   const double own = static_cast<double>(p_[static_cast<size_t>(path.knot)]);
@@ -157,32 +158,31 @@ void SunlightWave::ask_sun(const Going& path, const Hit& hit, Dir direction, uin
   if (lit) {
     told_sun_.tell(at_, out, throughput(path), lit, beyond, told_);
     const auto weight = static_cast<float>(mean_ratio(path) * options_.blocks / each);
-    float* row = &rows_[(path.slot / options_.paths - first_ * options_.blocks) * sunny_.size()];
+    float* row = &rows_[row_of(path.slot) * sunny_.size()];
     for (size_t k = 0; k < sunny_.size(); ++k) row[k] += told_[k] * weight;
   }
   join_sun(path, hit, out, n, lit, beyond);
 }
 
-// Joins the surface to the sun at some moments, for what was not told: those of a block's paths go through the day in
+// Joins the surface to the sun at some moments, for what was not told: those of a half's paths go through the day in
 // turn.
 void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t n, const uint8_t* lit,
                             const uint8_t* beyond) {
   const ScatterModel& model = *at_.baked->model;
-  const uint32_t each = options_.blocks * options_.paths, face = path.slot / each, within = path.slot % each;
+  const uint32_t half = options_.blocks * options_.half();
   const uint32_t joins = lit ? std::min(kToldJoins, joins_) : joins_;
-  const SampleStream numbers = stream(path.slot, kPurpose);
+  const PathNumbers numbers = numbers_of(path.slot, kPurpose);
   const auto number = [&](uint32_t what, uint32_t j) {
-    return numbers.hashed(sample(path.slot), 64 + 64 * n + 4 * j + what);
+    return numbers.net().hashed(numbers.sample(), 64 + 64 * n + 4 * j + what);
   };
   const auto count = static_cast<double>(sunny_.size());
-  const double weight = mean_ratio(path) * count * options_.blocks / (1.0 * joins * each);
+  const double weight = mean_ratio(path) * count * options_.blocks / (2.0 * joins * half);
   const std::span<const float> T = throughput(path);
   for (uint32_t j = 0; j < joins; ++j) {
-    // Even over the joins of a block's paths, so that each has the whole day, shifted at random for each surface on the
+    // Even over the joins of a half's paths, so that each has the whole day, shifted at random for each surface on the
     // way.
-    const uint32_t of_block = faces_.number(face) * options_.blocks + within / options_.paths;
-    const double shift = unit_double(hash_of(options_.seed, of_block, n));
-    double at = (sample(path.slot) * joins + j + number(0, j)) / (1.0 * options_.paths * joins) + shift;
+    const double shift = unit_double(hash_of(options_.seed, numbers.net().key(), n));
+    double at = (numbers.sample() * joins + j + number(0, j)) / (1.0 * half * joins) + shift;
     at -= std::floor(at);
     const auto k = static_cast<uint32_t>(std::min(count - 1, at * count));
     const uint32_t moment = sunny_[k];
@@ -195,8 +195,7 @@ void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t
     double value = 0;
     for (size_t i = 0; i < bins_; ++i) value += double{T[i]} * double{w_[i]} * double{course_.beam[moment][i]};
     if (!(value > 0) && told == 0) continue;
-    const auto row = static_cast<uint32_t>(path.slot / options_.paths - first_ * options_.blocks);
-    asked_.push_back({row, k, value * weight / asked, told * weight / asked});
+    asked_.push_back({row_of(path.slot), k, value * weight / asked, told * weight / asked});
     sights_.push_back({tracer_.leave(hit, d), d, course_.moments[moment], path.slot});
   }
 }

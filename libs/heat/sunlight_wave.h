@@ -5,6 +5,7 @@
 
 #include "heat/heat_walk.h"
 #include "heat/lit_time.h"
+#include "heat/path_numbers.h"
 #include "heat/sunlight.h"
 #include "heat/told_sun.h"
 
@@ -25,7 +26,7 @@ class SunlightWave {
  private:
   // A point of a face through the day.
   struct Watch {
-    uint32_t face, block;
+    uint32_t face, block, half;
     Hit hit;
     Dir normal;                // of the face's side
     double disk_x, disk_y;     // where on the sun's disk it looks, radii
@@ -44,18 +45,22 @@ class SunlightWave {
     std::array<double, kMaxKnots> ratios;  // density at each knot over that at its own, of the path so far
   };
   struct Join {
-    uint32_t row;    // of the face and its block, of those that go together
+    uint32_t row;    // of the face, its block and half, of those that go together
     uint32_t sunny;  // number of the moment
     double value, told;
   };
-  SampleStream stream(uint32_t slot, uint64_t purpose) const;
-  uint32_t sample(uint32_t slot) const { return slot % options_.paths; }
+  // within: of the paths (or points, when options say so) of the face.
+  PathNumbers numbers_of(uint32_t slot, uint64_t purpose) const {
+    const uint32_t each = options_.blocks * options_.paths;
+    return {options_, purpose, faces_.number(slot / each), slot % each};
+  }
   Dir towards_sun(const Watch& watch, double t) const;
   Dir towards_sun(const Watch& watch, uint32_t moment) const {
     return on_disk(suns_[moment], watch.disk_x, watch.disk_y, course_.angular_radius);
   }
   void beam_of(size_t begin, size_t end);
-  uint32_t watches_of_block() const { return points_of_beam(options_); }
+  uint32_t watches_of_block() const { return watching_.paths; }
+  uint32_t row_of(uint32_t slot) const { return slot / options_.half() - first_ * 2 * options_.blocks; }
   void look(std::vector<Watch>& watches);
   void find_edges(std::vector<Watch>& watches, std::vector<Edge>& edges);
   PointDay day_of(const Watch& watch, std::span<const Edge> edges) const;
@@ -63,7 +68,7 @@ class SunlightWave {
   void add_face(std::span<const Watch> watches, std::span<const PointDay> days);
   void add_spread(std::span<const Watch> watches, std::span<const PointDay> days);
   void add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block);
-  void add_lit(uint32_t face, uint32_t block, std::span<const float> takes, double weight);
+  void add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, double weight);
   std::span<const float> kept_by(const Watch& watch);
   float taken(const Watch& watch, uint32_t moment, Dir d);
   void start(uint32_t face);
@@ -89,6 +94,7 @@ class SunlightWave {
   const HeatFaces& faces_;
   const SunCourse& course_;
   const PathOptions& options_;
+  const PathOptions watching_;  // of the points that look at the sun
   uint32_t joins_;
   Sunlight& out_;
   Surface surface_;
@@ -97,8 +103,8 @@ class SunlightWave {
   std::vector<uint32_t> sunny_;  // moments with the sun up
   std::vector<Frame> suns_;      // by moment: z to the middle of the sun
   ToldSun told_sun_;
-  size_t first_ = 0;         // of the faces that go together
-  std::vector<float> rows_;  // [face][block][sunny moment] of those: what is scattered to them, for each block's paths
+  uint32_t first_ = 0;       // of the faces that go together
+  std::vector<float> rows_;  // [face][block][half][sunny moment] of those: what is scattered to them, by these paths
   std::vector<float> told_;  // by sunny moment
   std::vector<float> beam_, parts_;        // of one face, as Sunlight::beam and beam_of_block
   std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them

@@ -42,8 +42,8 @@ TargetPaths paths_for(double target, const Tracer& tracer, const Elements& eleme
   // The pilot before asked for more than this one has, which is known to do.
   if (pilot.paths > kPilotPaths) wanted = std::max(wanted, 1.0 * pilot.paths);
   out.enough = wanted <= kMostPaths;
-  const double blocks = std::ceil(std::clamp(wanted, 1.0, double{kMostPaths}) / HeatSpec::kBlocks);
-  out.paths = static_cast<uint32_t>(blocks) * HeatSpec::kBlocks;
+  const double least = std::ceil(std::clamp(wanted, 1.0, double{kMostPaths}) / HeatSpec::kLeastPaths);
+  out.paths = static_cast<uint32_t>(least) * HeatSpec::kLeastPaths;
   return out;
 }
 

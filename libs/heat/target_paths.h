@@ -5,7 +5,7 @@
 namespace suite {
 
 struct TargetPaths {
-  uint32_t paths = 0;  // of a face, a multiple of HeatSpec::kBlocks
+  uint32_t paths = 0;  // of a face, a multiple of HeatSpec::kLeastPaths
   uint32_t pilot_paths = 0;
   double pilot_error = 0;  // K, of so many
   bool enough = true;      // kMostPaths would do

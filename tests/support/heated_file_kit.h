@@ -12,7 +12,7 @@ struct HeatedFile {
 
   explicit HeatedFile(size_t budget = 6) : kit(scene(), budget) {
     HeatSpec run;
-    run.span = {0, 86400}, run.paths = 8, run.step = 3600;
+    run.span = {0, 86400}, run.paths = 16, run.step = 3600;
     StillWeather w;
     w.direct = 500, w.longwave = 300;
     result = kit.solve(still_loads(w, run.span, 24), run);

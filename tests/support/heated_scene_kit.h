@@ -132,6 +132,13 @@ struct HeatKit {
   }
 };
 
+// Standard error of a mean over blocks, from what the halves of each differ by over 2 (Sunlight::beam_of_block).
+inline double error_of(const std::vector<double>& halves) {
+  double squares = 0;
+  for (const double half : halves) squares += half * half;
+  return std::sqrt(squares) / static_cast<double>(halves.size());
+}
+
 // A sun that stands still, its spectrum even over the bins.
 inline SunCourse still_sun(Dir towards, double angular_radius, const std::vector<double>& moments) {
   SunCourse course;

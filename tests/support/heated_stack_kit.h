@@ -1,5 +1,6 @@
 // Exchange of infrared alone, solved to 1e-8 K, and endless plates with shields between them.
 #pragma once
+#include "math/stats.h"
 #include "support/heated_scene_kit.h"
 
 namespace suite::test {
@@ -19,7 +20,7 @@ inline SurfaceHistory solve_exchange(const HeatKit& kit, const ExchangePaths& pa
 // Endless plates at 350 and 280 K, shields without heat capacity between them, all of one emissivity: the flux is
 // sigma (T1^4 - T2^4) / ((shields + 1) (2 / emissivity - 1)) (e.g. Siegel & Howell, Thermal radiation heat transfer).
 struct Stack {
-  double flux = 0, error = 0;  // W/m2 out of the hot plate; standard error by blocks
+  double flux = 0, error = 0;  // W/m2 out of the hot plate; standard error
   double exact = 0;
 };
 inline Stack stack(double emissivity, int shields, uint32_t paths, uint64_t seed) {
@@ -30,21 +31,19 @@ inline Stack stack(double emissivity, int shields, uint32_t paths, uint64_t seed
   for (int k = 1; k <= shields; ++k) s.plane(0, 0, shield, shifted({0, 0, 1.0 * k}));
   s.plane(0, 0, cold, upside_down({0, 0, shields + 1.0}));
   const HeatKit kit(std::move(s), 1);
-  const ExchangePaths traced = kit.exchange({8, paths / 8, seed});
   size_t plate = 0;
   while ((*kit.elements)[plate].material != hot) ++plate;
   Stack out;
   out.exact = (black(350) - black(280)) / ((shields + 1) * (2 / emissivity - 1));
-  double sum = 0, squares = 0;
-  // The histories' own flux, through all paths and through each block's.
-  for (int block = -1; block < 8; ++block) {
-    const ExchangePaths some = block < 0 ? traced : traced.block(static_cast<uint32_t>(block));
-    const SurfaceHistory h = solve_exchange(kit, some, outsides_at(kit, 10), 315);
-    const double flux = emissivity * (black(h.kelvin_at(plate, 0)) - h.received.at(plate, 0));
-    if (block < 0) out.flux = flux;
-    if (block >= 0) sum += flux / 8, squares += flux * flux / 8;
-  }
-  out.error = std::sqrt(std::fmax(0.0, squares - sum * sum) / 7);
+  // The histories' own flux, through all paths and through an eighth of them eight times.
+  const auto flux = [&](const PathOptions& options) {
+    const SurfaceHistory h = solve_exchange(kit, kit.exchange(options), outsides_at(kit, 10), 315);
+    return emissivity * (black(h.kelvin_at(plate, 0)) - h.received.at(plate, 0));
+  };
+  out.flux = flux({8, paths / 8, seed});
+  RunningStats eighths;
+  for (uint64_t k = 0; k < 8; ++k) eighths.add(flux({1, paths / 8, mix64(seed + k)}));
+  out.error = eighths.stderr_of_mean();
   return out;
 }
 

@@ -97,7 +97,7 @@ Box traced_box(const HeatWeather& weather, double noon) {
   const HeatedScene scene({box({-1, -1, 10}, {1, 1, 12}, 0, true)}, {warmed("black", 0, 1)},
                           {heat_of({}, {}, {{"back", "adiabatic"}})}, spec);
   const Sunlight sun =
-      trace_sunlight(*scene.tracer, *scene.elements, *scene.faces, scene.optics, loads.course, {8, 625, 1});
+      trace_sunlight(*scene.tracer, *scene.elements, *scene.faces, scene.optics, loads.course, {8, 626, 1});
   Box out;
   for (size_t n = 0; n < kFaces.size(); ++n) {
     double area = 0;

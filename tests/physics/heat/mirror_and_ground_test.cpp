@@ -133,9 +133,7 @@ Taken found(double alpha, Faces faces, const PathOptions& options) {
         blocks[k / Sunlight::kParts] +=
             area * light.beam_of_block.at(f * blocks.size() + k / Sunlight::kParts, k % Sunlight::kParts) / 3;
     }
-    RunningStats spread;
-    for (const double each : blocks) spread.add(each);
-    side->error = spread.stderr_of_mean();
+    side->error = error_of(blocks);
   }
   return out;
 }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "math/stats.h"
 #include "support/heated_scene_kit.h"
 
 namespace suite {
@@ -37,9 +36,7 @@ Watts watts(const HeatKit& kit, uint32_t material, Dir sun, const PathOptions& o
       blocks[k / Sunlight::kParts] +=
           e.area * light.beam_of_block.at(f * blocks.size() + k / Sunlight::kParts, k % Sunlight::kParts) / 3;
   }
-  RunningStats spread;
-  for (const double each : blocks) spread.add(each);
-  out.error = spread.stderr_of_mean();
+  out.error = error_of(blocks);
   return out;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "math/stats.h"
 #include "support/heated_scene_kit.h"
 #include "support/slab_kit.h"
 
@@ -62,13 +61,14 @@ Scattered scattered(const HeatKit& kit, Told told, uint32_t joins, uint64_t seed
   trace(SunStage::scattered);
   Scattered out;
   for (size_t f = 0; f < light.faces(); ++f) {
-    RunningStats blocks;
-    for (size_t b = 0; b < options.blocks; ++b) {
-      double sum = 0;
-      for (size_t p = 0; p < Sunlight::kParts; ++p) sum += light.beam_of_block.at(f * options.blocks + b, p);
-      blocks.add(sum / static_cast<double>(light.moments));
-    }
-    out.mean.push_back(blocks.mean()), out.variance.push_back(std::pow(blocks.stderr_of_mean(), 2));
+    std::vector<double> blocks(options.blocks);
+    double mean = 0;
+    for (size_t m = 0; m < light.moments; ++m) mean += light.beam.at(f, m) / static_cast<double>(light.moments);
+    for (size_t k = 0; k < blocks.size() * Sunlight::kParts; ++k)
+      blocks[k / Sunlight::kParts] +=
+          light.beam_of_block.at(f * blocks.size() + k / Sunlight::kParts, k % Sunlight::kParts) /
+          static_cast<double>(light.moments);
+    out.mean.push_back(mean), out.variance.push_back(std::pow(error_of(blocks), 2));
   }
   return out;
 }

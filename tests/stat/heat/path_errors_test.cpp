@@ -74,9 +74,9 @@ TEST(PathErrors, CoverWhatOtherSeedsFind) {
   std::vector<double> mean(n, 0);
   for (const auto& run : kelvin)
     for (size_t i = 0; i < n; ++i) mean[i] += run[i] / kRuns;
-  // Student's t of 7 degrees of freedom for 95 %; the mean that stands for the truth scatters with 1/32 of the variance
+  // Student's t of 8 degrees of freedom for 95 %; the mean that stands for the truth scatters with 1/32 of the variance
   // and takes part of it out of the difference.
-  const double t = 2.3646 * std::sqrt(1 - 1.0 / kRuns);
+  const double t = 2.3060 * std::sqrt(1 - 1.0 / kRuns);
   size_t covered = 0, halved = 0;
   double found = 0, told = 0;
   for (size_t r = 0; r < kRuns; ++r)
