@@ -194,7 +194,7 @@ class PathKernel final : public PathTracing {
   std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
   bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
-  bool is_owned(const Question& q, size_t ray);
+  double lost(const Question& q, size_t ray, double passes);
   static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
   // kernel_guide.h: continuations towards where media scatter such lights forwards.
   struct Guide {
