@@ -250,7 +250,7 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
   bool fail(uint32_t p);
   SUITE_INLINE double survives(uint32_t p, double brightest);
-  SUITE_INLINE bool cut(uint32_t p, bool event);
+  SUITE_INLINE bool cut(size_t i, const Continuation& on);
   // Whether it has passed a surface.
   SUITE_INLINE bool leave(size_t i, const Continuation& on);
 

@@ -44,7 +44,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
   if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
   const double alive = survives(p, brightest * on.bright);
-  if (alive == 0 || cut(p, nodes_[i].event)) return false;
+  if (alive == 0 || cut(i, on)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
   const bool medium = nodes_[i].event;
@@ -148,14 +148,19 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p,
   return alive;
 }
 
-// Whether the path has as many nodes as it may have.
+// Whether the path has as many nodes as it may have. Of two branches to the next scattering the open one would bring
+// all light by itself.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(uint32_t p, bool event) {
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(size_t i, const Continuation& on) {
+  const bool event = nodes_[i].event;
+  const uint32_t p = nodes_[i].path;
   const Path& path = paths_[p];
   const uint32_t most = event ? options_.max_scatterings : static_cast<uint32_t>(options_.max_nodes);
   if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
   records_[p].end = PathEnd::max_nodes;
-  records_[p].truncated += path.throughput[0];
+  leave(i, on);
+  const double index = space_.index(p);
+  if (on.branch != Branch::forced) records_[p].truncated += path.throughput[0] * path.share * index * index;
   return true;
 }
 
