@@ -249,6 +249,7 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool draw(size_t i, std::span<float> memory, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
   bool fail(uint32_t p);
+  SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   SUITE_INLINE double survives(uint32_t p, double brightest);
   SUITE_INLINE bool cut(size_t i, const Continuation& on);
   // Whether it has passed a surface.

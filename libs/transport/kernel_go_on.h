@@ -43,7 +43,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
   const double shares = weigh(p, on, own, brightest);
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
   if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
-  const double alive = survives(p, brightest * on.bright);
+  const double alive = survives(p, brightest * on.bright * ahead(i, on));
   if (alive == 0 || cut(i, on)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
@@ -132,6 +132,19 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
       }
     }
   return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
+}
+
+// How much more of its light a path is worth to roulette that comes to a smooth surface from within water: most leave
+// there, with the light of a sky that nobody asks for through the surface, and end; to end them first saves next to
+// nothing. 6 to 10 take 0.4 to 0.7 of the work to an error in the bay of sample_scenes, coastal to red.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, const Continuation& on) const {
+  if constexpr (kGuides) {
+    constexpr double kLeaves = 6;
+    const double index = space_.index(nodes_[i].path);
+    if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
+  }
+  return 1;
 }
 
 // The probability with which the path has survived; 0 when roulette ends it.
