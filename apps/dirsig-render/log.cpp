@@ -59,6 +59,7 @@ Json json_of(std::span<const JobReport::SensorShortfall> sensors) {
       p.set("problems", of.problems);
       p.set("mean_share", of.mean());
       p.set("largest_share", of.most);
+      p.set("mean_share_of_all", lacks.mean_of_all(of));
       j.set(key, std::move(p));
     };
     part("unresolved", lacks.unresolved);

@@ -72,13 +72,16 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
 
 Lack ResultBuilder::lack_of(size_t problem, const Accumulators& sums, size_t slot) const {
   const uint32_t accepted = sums.accepted(slot);
-  Lack lack{0, 0, sums.failures(slot)};
+  const size_t first = problem * result_.values_per_problem();
+  const double radiance = result_.radiance[first + reference_band_];
+  Lack lack{0, 0, 0, sums.failures(slot)};
+  if (radiance > 0) lack.error = result_.standard_error[first + reference_band_] / radiance;
   if (!accepted) return lack;
   const Accumulators::Shortfall of = sums.shortfall(slot);
   lack.cut = of.cut / (1 + of.cut);
   if (!(of.missing > 0)) return lack;
   // Of the bin that lacks most.
-  const double* means = &result_.radiance[problem * result_.values_per_problem()];
+  const double* means = &result_.radiance[first];
   for (size_t at = reference_band_; at < result_.bins * result_.bands; at += result_.bands) {
     const double missing = of.missing * sums.missing_light(slot, at) / accepted;
     if (missing > 0) lack.missing = std::max(lack.missing, missing / (means[at] + missing));

@@ -15,8 +15,15 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > most ? out + strf(" and %zu more", names.size() - most) : out;
 }
 
-std::string share(const Shortfall::Part& part) {
-  return strf("%.3g %% of their radiance on average, %.3g %% at most", 100 * part.mean(), 100 * part.most);
+std::string share(const Shortfall& s, const Shortfall::Part& part) {
+  std::string said = strf("about %.3g %% of the radiance of all problems", 100 * s.mean_of_all(part));
+  if (part.problems)
+    said += strf(", of theirs %.3g %% on average, %.3g %% at most", 100 * part.mean(), 100 * part.most);
+  return said;
+}
+
+bool tells(const Shortfall& s, const Shortfall::Part& part, double least) {
+  return part.problems > 0 || s.mean_of_all(part) > least;
 }
 
 }  // namespace
@@ -33,8 +40,8 @@ Shortfall shortfall_of(std::span<const Lack> problems) {
   Shortfall all;
   all.problems = problems.size();
   for (const Lack& lack : problems) {
-    if (lack.unresolved()) all.unresolved.add(lack.missing);
-    if (lack.truncated()) all.truncated.add(lack.cut);
+    all.unresolved.add(lack.missing, lack.unresolved());
+    all.truncated.add(lack.cut, lack.truncated());
     all.rejecting += lack.rejected > 0;
     all.rejected += lack.rejected;
   }
@@ -44,15 +51,15 @@ Shortfall shortfall_of(std::span<const Lack> problems) {
 std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s) {
   std::vector<std::string> said;
   const auto of = [&](size_t n) { return strf("sensor '%s': %zu of %zu problems ", sensor.c_str(), n, s.problems); };
-  if (s.unresolved.problems)
+  if (tells(s, s.unresolved, Lack::kMissing))
     said.push_back(of(s.unresolved.problems) +
-                   "are not resolved: light of small sources behind smooth refracting surfaces was not found, about " +
-                   share(s.unresolved) +
+                   "are not resolved: light of small sources behind smooth refracting surfaces was not found, " +
+                   share(s, s.unresolved) +
                    "; their standard errors contain it. A wider disk of the sun, lamps with a surface, rough surfaces "
                    "or more paths help");
-  if (s.truncated.problems)
-    said.push_back(of(s.truncated.problems) + "lost light that was cut at the maximum number of nodes, about " +
-                   share(s.truncated) + "; their standard errors contain it. More max_nodes help");
+  if (tells(s, s.truncated, Lack::kCut))
+    said.push_back(of(s.truncated.problems) + "lost light that was cut at the maximum number of nodes, " +
+                   share(s, s.truncated) + "; their standard errors contain it. More max_nodes help");
   if (s.rejected)
     said.push_back(of(s.rejecting) + strf("rejected %llu samples that were not finite or negative",
                                           static_cast<unsigned long long>(s.rejected)));

@@ -11,8 +11,11 @@ std::span<const QualityBit> quality_bits() {
             "radiance (or the target)",
             kTailFactor, 100 * kTailShare)},
       {quality_failures, "failures", "NaN or negative samples were rejected and are missing from the mean"},
-      {quality_truncated, "truncated", "more than 1 % of the throughput was cut at the maximum number of nodes"},
-      {quality_unresolved, "unresolved", "light behind a smooth refracting surface was not found"},
+      {quality_truncated, "truncated",
+       "more than 1 % of the light was cut at the maximum number of nodes, and more than a tenth of the error"},
+      {quality_unresolved, "unresolved",
+       "more than 0.1 % of the light, behind smooth refracting surfaces, was not found, and more than a tenth of the "
+       "error"},
       {quality_clipped, "clipped",
        "the detector's charge is beyond its full well or its counts beyond an end of the converter: the radiance "
        "holds, counts and apparent temperature are no measure of it"}};

@@ -117,6 +117,7 @@ struct CaptureResult {
 enum QualityFlag : uint8_t {
   quality_heavy_tail = 1,  // rare events: the true error may be far beyond the reported one
   quality_failures = 2,    // NaN or negative samples were rejected
+  // Both only where it is more than a tenth of the standard error, too (scheduler/shortfall.h).
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
   quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
   quality_clipped = 16,    // of detectors: counts beyond an end of the converter, or charge beyond the full well

@@ -194,7 +194,7 @@ class PathKernel final : public PathTracing {
   std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
   bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
-  bool is_owned(const Question& q, size_t ray);
+  double lost(const Question& q, size_t ray, double passes);
   static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
   // kernel_guide.h: continuations towards where media scatter such lights forwards.
   struct Guide {
@@ -249,8 +249,9 @@ class PathKernel final : public PathTracing {
   SUITE_INLINE bool draw(size_t i, std::span<float> memory, Continuation& on);
   SUITE_INLINE double weigh(uint32_t p, const Continuation& on, double own, double& brightest);
   bool fail(uint32_t p);
+  SUITE_INLINE double ahead(size_t i, const Continuation& on) const;
   SUITE_INLINE double survives(uint32_t p, double brightest);
-  SUITE_INLINE bool cut(uint32_t p, bool event);
+  SUITE_INLINE bool cut(size_t i, const Continuation& on);
   // Whether it has passed a surface.
   SUITE_INLINE bool leave(size_t i, const Continuation& on);
 

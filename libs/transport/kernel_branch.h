@@ -84,7 +84,8 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::part(uint32_t p) {
   if constexpr (kGuides) {
     if (!space_.scatters_around(p)) return;
-    keep(p, 1.0 / kParts, kParts);
+    paths_[p].share = 1.0 / kParts;
+    keep(p, paths_[p].share, kParts);
     take_up(p);
   }
 }

@@ -96,6 +96,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.events = 0;
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
+  path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
   path.knot = 0;

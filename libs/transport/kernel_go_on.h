@@ -43,8 +43,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i, const 
   const double shares = weigh(p, on, own, brightest);
   if (std::isnan(own) || std::isnan(brightest)) return fail(p);
   if (brightest <= 0 && bins_ == 1) return false;  // nothing more can arrive
-  const double alive = survives(p, brightest * on.bright);
-  if (alive == 0 || cut(p, nodes_[i].event)) return false;
+  const double alive = survives(p, brightest * on.bright * ahead(i, on));
+  if (alive == 0 || cut(i, on)) return false;
   path.before = 1 / shares;
   path.last_density = on.dirac ? 0 : own;
   const bool medium = nodes_[i].event;
@@ -134,6 +134,19 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
   return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
 }
 
+// How much more of its light a path is worth to roulette that comes to a smooth surface from within water: most leave
+// there, with the light of a sky that nobody asks for through the surface, and end; to end them first saves next to
+// nothing. A value of 6 takes 0.5 to 0.7 of the work to an error in the bay of sample_scenes, coastal to red.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, const Continuation& on) const {
+  if constexpr (kGuides) {
+    constexpr double kLeaves = 6;
+    const double index = space_.index(nodes_[i].path);
+    if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
+  }
+  return 1;
+}
+
 // The probability with which the path has survived; 0 when roulette ends it.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p, double brightest) {
@@ -148,14 +161,19 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::survives(uint32_t p,
   return alive;
 }
 
-// Whether the path has as many nodes as it may have.
+// Whether the path has as many nodes as it may have. Of two branches to the next scattering the open one would bring
+// all light by itself.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(uint32_t p, bool event) {
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::cut(size_t i, const Continuation& on) {
+  const bool event = nodes_[i].event;
+  const uint32_t p = nodes_[i].path;
   const Path& path = paths_[p];
   const uint32_t most = event ? options_.max_scatterings : static_cast<uint32_t>(options_.max_nodes);
   if (most == 0 || (event ? path.scatterings : path.surfaces) < most) return false;
   records_[p].end = PathEnd::max_nodes;
-  records_[p].truncated += path.throughput[0];
+  leave(i, on);
+  const double index = space_.index(p);
+  if (on.branch != Branch::forced) records_[p].truncated += path.throughput[0] * path.share * index * index;
   return true;
 }
 

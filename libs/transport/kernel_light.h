@@ -103,7 +103,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::answer() {
     double passes = 1;
     if (blocked[i]) {
       passes = lost_ && !q.wide ? space_.sight().passes(i) : 0;
-      if (!(passes > 0) || is_owned(q, i)) continue;
+      if (passes > 0) passes = lost(q, i, passes);
+      if (!(passes > 0)) continue;
     }
     if (!behind_earth) shine(q, i, passes);
   }

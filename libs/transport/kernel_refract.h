@@ -69,12 +69,13 @@ uint8_t PathKernel<Surfaces, Space, Throughputs, Estimator>::bends_behind(const 
                                                                      : Path::kUnasked;
 }
 
-// Whether light that a straight ray has lost is asked for through what it lost it at.
+// Of light that smooth surfaces stop on its straight way: the share that is lost there, having not been asked for
+// through them. passes: what they pass.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_owned(const Question& q, size_t ray) {
-  if (!refracted_ || q.light == kFromAir || !is_refracted(environment_.lights[q.light]->nature())) return false;
-  if (Space::kGoesBack && nodes_[q.node].event) return false;
-  return refracted_->crossings(sight_rays_.rays()[ray], sight_rays_.distance()[ray]) <= RefractedWay::kMostEvents;
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::lost(const Question& q, size_t ray, double passes) {
+  if (!refracted_ || q.light == kFromAir || !is_refracted(environment_.lights[q.light]->nature())) return passes;
+  if (Space::kGoesBack && nodes_[q.node].event) return passes;
+  return refracted_->unfound(sight_rays_.rays()[ray], sight_rays_.distance()[ray]).value_or(passes);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>

@@ -41,6 +41,7 @@ struct Lane {
   bool sided = false;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
+  double share = 1;          // of a path's light, where it goes on in parts
   uint32_t surfaces = 0;     // met so far, the receiver included
   uint32_t scatterings = 0;  // in media so far
   uint32_t flights = 0;      // through media so far
@@ -66,8 +67,9 @@ enum class PathEnd : uint8_t { escaped, absorbed, roulette, max_nodes };
 struct PathRecord {
   double time = 0;  // s, of the sensor's ray
   PathEnd end = PathEnd::absorbed;
-  Dir escape;                    // direction in which it left the scene
-  double truncated = 0;          // throughput at the reference that was cut at the maximum number of nodes
+  Dir escape;  // direction in which it left the scene
+  // Throughput at the reference that was cut at the maximum number of nodes, for light in air: times the squared index.
+  double truncated = 0;
   uint32_t size = 0;             // nodes: surfaces, the receiver included
   bool received = false;         // node 0 is the sensor's own receiver, no surface
   bool scattered_first = false;  // a medium scattered it before it met anything

@@ -37,6 +37,23 @@ LostLight::LostLight(const Surface& surface, const Optics& optics)
   for (const uint32_t i : refracting(surface.tracer().scene(), optics)) refracts_[i] = true;
 }
 
+// Lobes stand in a fixed order, and what passes is often the last or the first of them; else chance finds it.
+auto LostLight::draw(const ScatterModel& model, Dir out, uint64_t key) -> std::optional<Passed> {
+  constexpr double kLast = 1 - 0x1p-53;
+  const auto passed = [&](Vec2 u, double lobe_u) {
+    auto drawn = model.sample(out, u, lobe_u, 0);
+    if (drawn && !(drawn->delta && drawn->in.z * out.z < 0)) drawn.reset();
+    return drawn;
+  };
+  for (const double lobe_u : {kLast, 0.0})
+    if (const auto drawn = passed({0.5, 0.5}, lobe_u)) return Passed{*drawn, out, 1};
+  const auto drawn = passed({unit_double(mix64(key)), unit_double(mix64(key + 1))}, unit_double(mix64(key + 2)));
+  float probability = 0;
+  if (drawn) model.delta_probability(out, drawn->lobe, 0, {&probability, 1});
+  if (!(probability > 0)) return std::nullopt;
+  return Passed{*drawn, out, double{probability}};
+}
+
 double LostLight::through(const Hit& hit, const Ray& ray) {
   const uint32_t material = surface_.material(hit);
   if (material == kNone || !refracts_[material]) return 0;
@@ -45,16 +62,16 @@ double LostLight::through(const Hit& hit, const Ray& ray) {
   if (!model) return 0;
   const uint64_t key = hash_of(ray.draw, std::bit_cast<uint64_t>(hit.distance));
   const Dir out = at_.frame.to_local(ray.direction);
-  const auto drawn =
-      model->sample(out, {unit_double(mix64(key)), unit_double(mix64(key + 1))}, unit_double(mix64(key + 2)), 0);
-  if (!drawn || !drawn->delta || drawn->in.z * out.z >= 0) return 0;
+  auto passed = draw(*model, out, key);
+  // Denser on the side of the light.
+  if (!passed || std::fabs(passed->drawn.in.z) < std::fabs(out.z))
+    if (const auto turned = draw(*model, -out, key)) passed = turned;
+  if (!passed) return 0;
   // Weights of both ways: their factors n^2 are inverse to each other.
-  float probability = 0;
-  model->delta_probability(out, drawn->lobe, 0, {&probability, 1});
-  model->delta_weight(out, drawn->lobe, 0, there_);
-  model->delta_weight(drawn->in, drawn->lobe, 0, back_);
+  model->delta_weight(passed->out, passed->drawn.lobe, 0, there_);
+  model->delta_weight(passed->drawn.in, passed->drawn.lobe, 0, back_);
   const double both = double{there_[reference_bin_]} * double{back_[reference_bin_]};
-  return probability > 0 && both > 0 ? std::sqrt(both) / double{probability} : 0;
+  return both > 0 ? std::sqrt(both) / passed->chance : 0;
 }
 
 void LostLight::begin(std::span<const Ray> rays, std::span<const double> distance, std::span<const uint8_t> wanted) {

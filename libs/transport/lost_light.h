@@ -3,16 +3,19 @@
 // bends the light, and a path that it has bent meets a small disk almost never.
 //
 // How much is missing is estimated along the straight line: where nothing stops it but smooth transmitting surfaces,
-// the explicit sample counts with their transmittances. These are taken from the side of the light, from where there is
-// always a way in, and without the factor n^2 of radiance, which the light gives back by filling less solid angle. That
-// is what really arrives where flat interfaces lie parallel to the surface that is lit, because the flux through them
-// is; elsewhere it is as large as light that is bent, but arrives somewhere else (caustics, total reflection).
+// the explicit sample counts with their transmittances. These are taken from the thinner side, air's, which the line
+// runs in as light comes, and from where there is always a way in; and without the factor n^2 of radiance, which the
+// light gives back by filling less solid angle. That is what really arrives where flat interfaces lie parallel to the
+// surface that is lit, because the flux through them is; elsewhere it is as large as light that is bent, but arrives
+// somewhere else (caustics, total reflection). What interfaces reflect to and fro between them comes to that, where
+// light is asked for through them (RefractedSight::unfound).
 //
 // The estimate is no part of the radiance. It makes the standard error larger and flags the problem
 // (Accumulators::shortfall, quality_unresolved). Light that a mirror sends, also that of a refracting surface, is not
 // estimated.
 // Based on: Born & Wolf, section 1.5 (transmittance, flux); the explicit samples of shares.h.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,11 +51,17 @@ class LostLight {
   // Share of its light that passes along ray i, 0 where something else stops it.
   double passes(size_t ray) const { return passes_[ray]; }
 
-  // What passes the surface at a hit of a ray towards the light; 0 where it is not smooth and transmitting. Exact in
-  // the mean over Ray::draw where the surface reflects a share of the light.
+  // What passes the surface at a hit of a ray towards the light; 0 where it is not smooth and transmitting. Of models
+  // with more lobes than two exact in the mean over Ray::draw.
   double through(const Hit& hit, const Ray& ray);
 
  private:
+  struct Passed {
+    ScatterModel::Sample drawn;
+    Dir out;
+    double chance;  // of drawing that
+  };
+  static std::optional<Passed> draw(const ScatterModel& model, Dir out, uint64_t key);
   void take();
   const Surface& surface_;
   std::vector<bool> refracts_;  // per material

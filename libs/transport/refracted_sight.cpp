@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "scene/primitives.h"
+#include "transport/parallel_faces.h"
 
 namespace suite {
 
 namespace {
 
 constexpr int kMostBoundaries = 4096;  // index-matched ones on one leg
+constexpr size_t kMostFaces = 4096;    // across a straight ray
 constexpr int kMostSteps = 32, kMostHalvings = 8;
 constexpr int kMostStarts = 8;        // of a trial
 constexpr int kMostWalks = 3;         // of these: that pass an interface and run towards the light
@@ -89,14 +91,32 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   return true;
 }
 
-int RefractedSight::crossings(Ray ray, double distance) {
-  for (int n = 0;; ++n) {
-    Hit hit;
-    if (!hit_next(ray, hit) || hit.distance >= distance || n > RefractedWay::kMostEvents) return n;
-    if (!interfaces_.has(surface_.material(hit))) return RefractedWay::kMostEvents + 1;
+std::optional<double> RefractedSight::unfound(Ray ray, double distance) {
+  crossed_.clear();
+  Hit hit;
+  const Ray from = ray;
+  while (hit_next(ray, hit) && hit.distance < distance && crossed_.size() < kMostFaces) {
+    if (!interfaces_.has(surface_.material(hit))) return std::nullopt;
+    crossed_.push_back(hit);
     ray.origin = surface_.tracer().leave(hit, ray.direction);
     distance -= hit.distance;
   }
+  if (crossed_.size() < 2) return 0;
+  std::vector<double> reflected;
+  for (const Hit& face : crossed_) reflected.push_back(reflectance(face, from));
+  const double share = passed(reflected) - passed_within(reflected, RefractedWay::kMostEvents);
+  return share > kNothing ? share : 0;
+}
+
+// Of an interface, from its thinner side, which the straight ray runs in as the light comes.
+double RefractedSight::reflectance(const Hit& hit, const Ray& ray) {
+  const uint32_t material = surface_.material(hit);
+  surface_.interact(hit, ray.direction, at_, ray.time);
+  const Dir to_light = at_.frame.to_local(ray.direction);
+  const bool thin_in_front = interfaces_.index(material, 0) >= 1;
+  const Dir out = (to_light.z > 0) == thin_in_front ? to_light : -to_light;
+  at_.baked->model->delta_probability(out, interfaces_.lobe(material, false), 0, shares_);
+  return 1 - double{shares_[0]};
 }
 
 // One ray from the node through a chain of interfaces. False when it meets none, or other ones, or one does not let it

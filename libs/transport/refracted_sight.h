@@ -12,11 +12,12 @@
 // and ways with reflections are looked for one after the other, so that the rare second ones make no noise in the
 // first; which interfaces reflect is drawn with the start.
 // Assumes: at most kMostEvents interfaces; longer ways, those that begin with a reflection and rough interfaces are
-// left to continuations that meet a light by chance.
+// left to continuations that meet a light by chance. What longer ways bring is estimated (unfound, lost_light.h).
 // Based on: J. Hanika, M. Droske, L. Fascione, "Manifold next event estimation", EGSR 2015; T. Zeltner, I. Georgiev,
 // W. Jakob, "Specular manifold sampling for rendering high-frequency caustics and glints", ACM TOG 39(4), 2020.
 #pragma once
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -80,9 +81,11 @@ class RefractedSight {
   // Ways from the node to a light, for the wavelengths of a knot: none, one or two. seed: of the
   // random numbers. In the mean over seeds all ways count. What is returned lives until the next call.
   std::span<const RefractedWay> find(const Node& node, const WayEnd& end, size_t knot, uint64_t seed);
-  // How many smooth interfaces a straight ray crosses within a distance; more than kMostEvents = at least one more, or
-  // something else is in its way.
-  int crossings(Ray ray, double distance);
+  // How much of a light no way of find() brings from where a straight ray towards it leads, m: what interfaces pass or
+  // reflect to and fro in more than kMostEvents meetings, as if they were parallel; at the first knot, and 0 below
+  // kNothing. Nothing where something else is in its way: then it is not asked for there.
+  static constexpr double kNothing = 1e-5;
+  std::optional<double> unfound(Ray ray, double distance);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
@@ -121,6 +124,7 @@ class RefractedSight {
   Dir draw_start(const Node& node);
   Dir draw_at_object(const Node& node);
   bool choose_end(const Search& s, Dir direction, Chain& chain, Traced& probe);
+  double reflectance(const Hit& hit, const Ray& ray);
   static void aim(const Search& s, Traced& traced, const Frame& start);
   double random() { return unit_double(mix64(seed_ + counter_++)); }
 
@@ -133,6 +137,7 @@ class RefractedSight {
   uint64_t seed_ = 0, counter_ = 0;
   std::optional<Dir> guessed_;
   std::vector<float> shares_;  // per knot
+  std::vector<Hit> crossed_;   // scratch
   RefractedWay found_[2];
 };
 

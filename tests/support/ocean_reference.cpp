@@ -89,18 +89,35 @@ OceanReference::Slab OceanReference::thin(double depth) const {
   return s;
 }
 
-OceanReference::Slab OceanReference::joined(const Slab& a, const Slab& b) const {
-  // a above b, both alike from both sides. Light between them: (1 - r_a r_b)^-1.
-  const Matrix between = solved(unit_less(product(a.r, b.r)), a.t), again = product(b.r, between);
-  Slab s{a.r, product(b.t, between)};
-  const Matrix back = product(a.t, again);
-  for (size_t k = 0; k < s.r.size(); ++k) s.r[k] += back[k];
-  return s;
+// a above b. Light between them: (1 - r_a r_b)^-1.
+OceanReference::Pile OceanReference::joined(const Pile& a, const Pile& b) const {
+  const Matrix between = solved(unit_less(product(a.from_below, b.from_above)), a.down);
+  const Matrix between_up = solved(unit_less(product(b.from_above, a.from_below)), b.up);
+  Pile p{a.from_above, product(b.down, between), b.from_below, product(a.up, between_up)};
+  const Matrix back = product(a.up, product(b.from_above, between)),
+               back_up = product(b.down, product(a.from_below, between_up));
+  for (size_t k = 0; k < back.size(); ++k) p.from_above[k] += back[k], p.from_below[k] += back_up[k];
+  return p;
+}
+
+OceanReference::Pile OceanReference::pile(const std::vector<Layer>& layers) const {
+  Pile all;
+  for (const Layer& l : layers) {
+    const Slab s = std::isinf(l.depth) ? l.water->half_space_ : l.water->layer(l.depth);
+    const Pile one{s.r, s.t, s.r, s.t};
+    all = all.down.empty() ? one : joined(all, one);
+  }
+  return all;
 }
 
 OceanReference::Slab OceanReference::doubled(const Slab& s, int times) const {
   Slab d = s;
-  for (int k = 0; k < times; ++k) d = joined(d, d);
+  for (int k = 0; k < times; ++k) {
+    const Matrix between = solved(unit_less(product(d.r, d.r)), d.t);
+    const Matrix back = product(d.t, product(d.r, between));
+    d.t = product(d.t, between);
+    for (size_t i = 0; i < back.size(); ++i) d.r[i] += back[i];
+  }
   return d;
 }
 
@@ -145,28 +162,25 @@ OceanReference::Matrix OceanReference::solved(Matrix a, Matrix b) const {
   return b;
 }
 
-OceanLight OceanReference::under_sun(double depth) const {
-  Matrix source(n_ * n_, 0);
-  source[(n_ - 2) * n_] = transmitted_ / (2 * kPi * mu_beam_ * kBeamWeight);
-  return light(std::move(source), depth, *this);
-}
-
-OceanLight OceanReference::under_sky_upon(const OceanReference& below, double depth) const {
-  Matrix source(n_ * n_, 0);
-  for (size_t i = 0; i < n_; ++i) source[i * n_] = index_ * index_ * (1 - surface_[i]);
-  return light(std::move(source), depth, below);
+OceanLight OceanReference::layered(bool sun, const std::vector<Layer>& above, const std::vector<Layer>& below) {
+  const OceanReference& top = *above[0].water;
+  const size_t n = top.n_;
+  Matrix source(n * n, 0);
+  if (sun) source[(n - 2) * n] = top.transmitted_ / (2 * kPi * top.mu_beam_ * kBeamWeight);
+  for (size_t i = 0; i < n && !sun; ++i) source[i * n] = top.index_ * top.index_ * (1 - top.surface_[i]);
+  return top.light(std::move(source), top.pile(above), top.pile(below));
 }
 
 // source: what enters from above, in the first column.
-OceanLight OceanReference::light(Matrix source, double depth, const OceanReference& below) const {
-  const Slab above = layer(depth);
-  const Matrix& deep = below.half_space_.r;
+OceanLight OceanReference::light(Matrix source, const Pile& above, const Pile& below) const {
+  const Matrix& deep = below.from_above;
   // Just under the surface: that, and what the surface sends back of what all of the water does.
-  Matrix returned = joined(above, below.half_space_).r;
+  Matrix returned = joined(above, below).from_above;
   for (size_t i = 0; i < n_; ++i)
     for (size_t j = 0; j < n_; ++j) returned[i * n_ + j] *= surface_[i];
   const Matrix entered = solved(unit_less(returned), std::move(source));
-  const Matrix down = solved(unit_less(product(above.r, deep)), product(above.t, entered)), up = product(deep, down);
+  const Matrix down = solved(unit_less(product(above.from_below, deep)), product(above.down, entered)),
+               up = product(deep, down);
   OceanLight sum;
   for (size_t i = 0; i < n_; ++i) {
     sum.down += 2 * kPi * weight_[i] * mu_[i] * down[i * n_];

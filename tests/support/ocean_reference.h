@@ -26,18 +26,27 @@ class OceanReference {
                  int nodes = 24);
   // `depth` depths of extinction below the surface, under the sun of unit irradiance on a level plane above it, or
   // under a sky of radiance 1.
-  OceanLight under_sun(double depth) const;
-  OceanLight under_sky(double depth) const { return under_sky_upon(*this, depth); }
-  // The same at the lower side of a layer of this water of that depth upon an endless body of other water, of the same
-  // index and number of nodes.
-  OceanLight under_sky_upon(const OceanReference& below, double depth) const;
+  OceanLight under_sun(double depth) const { return layered(true, {{this, depth}}, {{this, INFINITY}}); }
+  OceanLight under_sky(double depth) const { return layered(false, {{this, depth}}, {{this, INFINITY}}); }
+  // The same between layers above and below, from above, the last of them endless; of waters of one index, sun and
+  // number of nodes.
+  struct Layer {
+    const OceanReference* water;
+    double depth;  // of extinction
+  };
+  static OceanLight layered(bool sun, const std::vector<Layer>& above, const std::vector<Layer>& below);
 
  private:
   using Matrix = std::vector<double>;  // row-major, n x n
-  struct Slab {
+  struct Slab {                        // alike from both sides
     Matrix r, t;
   };
-  OceanLight light(Matrix source, double depth, const OceanReference& below) const;
+  struct Pile {  // of layers
+    Matrix from_above, down, from_below, up;
+  };
+  OceanLight light(Matrix source, const Pile& above, const Pile& below) const;
+  Pile pile(const std::vector<Layer>& layers) const;
+  Pile joined(const Pile& a, const Pile& b) const;
   void gauss(double low, double high, int count);
   void scatter(const std::function<double(double)>& phase, double albedo);
   Slab thin(double depth) const;

@@ -77,31 +77,42 @@ void MediaSight::take() {
 bool MediaSight::pass(size_t i) {
   const uint32_t r = owner_[i];
   Hit& hit = hits_[i];
-  uint8_t& blocked = asked_->blocked()[r];
   if (gap_[r] > 0) body_rules_.settle(hit, rays_[i], gap_[r]);
   const double left = asked_->distance()[r] - travelled_[r];
   const bool met = hit.hit() && hit.distance < left;
-  const uint32_t material = met ? surface_.material(hit) : kNone;
-  if (met && !body_rules_.is_boundary(material)) {
-    blocked = bent_[r] = 1;
-    passes_[r] *= lost_ ? lost_->through(hit, rays_[i]) : 0;
-  }
-  if (met && round_ > kMostBoundaries) blocked = 1, passes_[r] = 0;
-  if (!(passes_[r] > 0)) return false;
+  if (met && round_ > kMostBoundaries) asked_->blocked()[r] = 1, passes_[r] = 0;
+  const bool stopped = met && !body_rules_.is_boundary(surface_.material(hit));
+  if (!(passes_[r] > 0) || (stopped && !bends(r, hit, rays_[i]))) return false;
   if (!hit.hit()) body_rules_.leave_scene(bodies_at_[r]);
   const double way = met ? hit.distance : left;
   Ray& ray = rays_[i];
   ray.origin -= ray.direction * gap_[r];
   count(r, ray, way);
   if (!met) return false;
+  if (stopped) return go_behind(i, hit);
   const auto onward = body_rules_.pass(bodies_at_[r], hit, ray, way - gap_[r], statistics_);
-  if (!onward) {
-    if (hit.distance < left) blocked = 1;
-    return false;
-  }
+  if (!onward) return hit.distance < left && bends(r, hit, ray) && go_behind(i, hit);
   travelled_[r] += way;
   gap_[r] = onward->gap;
   ray.origin = onward->start;
+  return true;
+}
+
+// Whether what stops a ray, no boundary, passes light that can be lost there.
+bool MediaSight::bends(uint32_t r, const Hit& hit, const Ray& from) {
+  asked_->blocked()[r] = bent_[r] = 1;
+  passes_[r] *= lost_ && asked_->losable()[r] ? lost_->through(hit, from) : 0;
+  return passes_[r] > 0;
+}
+
+// Follows such light straight on. True.
+bool MediaSight::go_behind(size_t i, const Hit& hit) {
+  const uint32_t r = owner_[i];
+  Ray& ray = rays_[i];
+  body_rules_.transmit(bodies_at_[r], hit, surface_.material(hit), ray.direction, statistics_);
+  travelled_[r] += hit.distance;
+  gap_[r] = 0;
+  ray.origin = surface_.tracer().leave(hit, ray.direction);
   return true;
 }
 

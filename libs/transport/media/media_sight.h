@@ -35,6 +35,8 @@ class MediaSight {
   void add_depths();
   void take();
   bool pass(size_t i);
+  bool bends(uint32_t ray, const Hit& hit, const Ray& from);
+  bool go_behind(size_t i, const Hit& hit);
   void count(size_t ray, const Ray& from, double way);
 
   const Surface& surface_;

@@ -82,7 +82,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   if (!hit.hit() || !bodies_.is_boundary(surface_.material(hit))) return flight;
   if (++live.flights >= kMostFlights) {
     record.end = PathEnd::max_nodes;
-    record.truncated += live.throughput[0];
+    record.truncated += live.throughput[0] * live.share * index_of(medium) * index_of(medium);
     flight.arrival = Arrival::ended;
     return flight;
   }

@@ -62,6 +62,32 @@ TEST(Cavity, ClosingSentence) {
   EXPECT_THAT(sentences("eye", cavity(0.3, 64, 256).report.shortfalls.at(0).shortfall), testing::IsEmpty());
 }
 
+// Both bounds of a flag: the share of the light, and of its error.
+TEST(Lack, IsFlaggedWhereItMatters) {
+  const auto cut = [](double share, double error) { return Lack{share, 0, error, 0}.truncated(); };
+  const auto missing = [](double share, double error) { return Lack{0, share, error, 0}.unresolved(); };
+  EXPECT_TRUE(missing(1.1e-3, 0));
+  EXPECT_FALSE(missing(0.9e-3, 0));
+  EXPECT_TRUE(missing(2e-3, 0.019));
+  EXPECT_FALSE(missing(2e-3, 0.021));
+  EXPECT_TRUE(missing(2e-3, INFINITY)) << "an error that is not known hides nothing";
+  EXPECT_TRUE(missing(1, 100));
+  EXPECT_TRUE(cut(0.011, 0.1));
+  EXPECT_FALSE(cut(0.009, 0));
+  EXPECT_FALSE(cut(0.011, 0.12));
+}
+
+TEST(Lack, OfManyNoisyProblemsIsToldAllTheSame) {
+  const auto told = [](double share, double error) {
+    return sentences("s", shortfall_of(std::vector<Lack>(10, Lack{0, share, error, 0})));
+  };
+  EXPECT_THAT(told(2e-3, 1), testing::ElementsAre(testing::AllOf(testing::HasSubstr("0 of 10"),
+                                                                 testing::HasSubstr("0.2 % of the radiance of all"))));
+  EXPECT_THAT(told(2e-3, 0),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("10 of 10"), testing::HasSubstr("at most"))));
+  EXPECT_THAT(told(9e-4, 0), testing::IsEmpty());
+}
+
 // Sixteen bounces and more between two mirrors: every path does the same. Bug: roulette made 16 of them scatter by 14
 // %.
 TEST(Mirrors, ChainsThatCarryMuchDoNotVary) {
