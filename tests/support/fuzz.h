@@ -110,7 +110,7 @@ class Mutator {
 // (SUITE_FUZZ_SECONDS overrides the time and lifts the count). At least one mutation must be refused, and the input
 // itself must be accepted.
 inline void fuzz(const Bytes& input, const std::function<void(std::span<const std::byte>)>& read, uint64_t seed = 1,
-                 size_t count = 20000, double seconds = 2, const std::vector<std::string>& words = {}) {
+                 size_t count = 20000, double seconds = 1.5, const std::vector<std::string>& words = {}) {
   ASSERT_NO_THROW(read(input));
   if (const char* longer = std::getenv("SUITE_FUZZ_SECONDS")) seconds = std::atof(longer), count = SIZE_MAX;
   const auto start = std::chrono::steady_clock::now();
