@@ -48,7 +48,7 @@ TEST_F(HeatInSimulations, KeysArrive) {
            "heat: {elements: 500, paths: 100, step_s: 300, tolerance_k: 0.001, ground_albedo: 0.3, from: "
            "2026-06-21T00:00:00Z, to: 2026-06-23T00:00:00Z}");
   EXPECT_EQ(full.heat->spec.elements, 500u);
-  EXPECT_EQ(full.heat->spec.paths, 104u) << "whole blocks";
+  EXPECT_EQ(full.heat->spec.paths, 112u) << "whole blocks";
   EXPECT_EQ(full.heat->spec.step, 300);
   EXPECT_EQ(full.heat->spec.ground_albedo, 0.3);
   EXPECT_FALSE(full.heat->spec.periodic) << "longer than a day";
