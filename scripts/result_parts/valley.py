@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -30,9 +31,8 @@ def first_sensor(text):
 
 
 def prepare(folder, root, binaries):
-    os.makedirs(folder, exist_ok=True)
-    if os.path.exists(f"{folder}/scene.h5"):
-        return
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
     subprocess.run([sys.executable, f"{root}/sample_scenes/valley/make_scene.py", folder, str(TREES)], check=True)
     subprocess.run([f"{binaries}/sqt-fit", f"{root}/sample_scenes/calibration_range/satin_purple_rgb.bsdf", "-o", "satin.sqt", "-q"], cwd=folder, check=True)
     subprocess.run([f"{binaries}/scene-prep", "scene.yaml", "-o", "scene.h5", "-q"], cwd=folder, check=True, capture_output=True)
@@ -42,6 +42,7 @@ def study(name, folder, binaries, reuse):
     band, settings = VIEWS[name]
     out = f"{folder}/study_{name}"
     if not (reuse and os.path.exists(f"{out}/study.json")):
+        shutil.rmtree(out, ignore_errors=True)  # of another build: it is not gone on with
         with open(f"{folder}/{name}.yaml") as f:
             text = first_sensor(f.read())
         with open(f"{folder}/study_{name}.yaml", "w") as f:
@@ -66,6 +67,7 @@ def row(name, found, series):
 
 def section(root, table, reuse):
     folder, binaries = f"{root}/build/results/valley", f"{root}/build/release/bin"
-    prepare(folder, root, binaries)
+    if not (reuse and os.path.exists(f"{folder}/scene.h5")):
+        prepare(folder, root, binaries)
     rows = [row(name, *study(name, folder, binaries, reuse)) for name in VIEWS]
     return table(["view", "band", "paths a pixel", "relative RMSE", "wall s of the last, air baked", "slope, paths", "coverage", "flagged", "bias, smallest p"], rows)
