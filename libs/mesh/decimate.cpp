@@ -11,6 +11,7 @@
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 #include "mesh/orient.h"
+#include "mesh/quiet.h"
 #include "mesh/repair.h"
 #include "mesh/weld.h"
 
@@ -250,7 +251,7 @@ Decimated decimate_mesh(SourceMesh& mesh, double to, double error) {
   for (const uint32_t v : corners) done.refused |= ++faces[v] > kMostFaces;
   if (done.refused) return done;
   const Manifold m = manifold(mesh.positions, corners);
-  omerr().disable();
+  quiet_openmesh();
   double tolerance = error;
   for (int tries = 0; tries < kMostTries; ++tries) {
     SourceMesh lighter = mesh;

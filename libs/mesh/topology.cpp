@@ -7,6 +7,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include "mesh/check.h"
+#include "mesh/quiet.h"
 
 namespace suite {
 
@@ -53,7 +54,7 @@ std::vector<uint32_t> several_fans(std::span<const uint32_t> corners, size_t ver
 
 size_t count_loops(std::span<const uint32_t> corners, size_t vertices) {
   using Mesh = OpenMesh::TriMesh_ArrayKernelT<>;
-  omerr().disable();
+  quiet_openmesh();
   Mesh mesh;
   mesh.reserve(vertices, corners.size() / 2, corners.size() / 3);
   for (size_t v = 0; v < vertices; ++v) mesh.add_vertex(Mesh::Point(0, 0, 0));

@@ -6,6 +6,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -23,21 +24,31 @@ def _high(descriptor):
     return high
 
 
+class Ended(RuntimeError):
+    """The browser's process is gone."""
+
+
 class Browser:
     """with Browser() as b: b.open(path) ... b.faults is what the console and the network had to complain of."""
 
     def __init__(self, width=1500, height=900):
         if not CHROMIUM:
             raise RuntimeError("there is no Chromium; scripts/install brings it (Debian package chromium)")
+        self._size = width, height
+        self._start()
+
+    def _start(self):
+        width, height = self._size
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self._log = Path(self._folder.name, "stderr.txt")
         to_read, self._to = map(_high, os.pipe())
         self._from, from_write = map(_high, os.pipe())
         # Chromium reads commands from descriptor 3 and writes to 4.
         command = [CHROMIUM, *_OPTIONS, f"--window-size={width},{height}", f"--user-data-dir={self._folder.name}",
                    "--remote-debugging-pipe", "about:blank"]
         shell = ["bash", "-c", f'exec 3<&{to_read} 4>&{from_write} {to_read}<&- {from_write}>&-; exec "$@"', "bash", *command]
-        self._process = subprocess.Popen(shell, pass_fds=(to_read, from_write), stdout=subprocess.DEVNULL,
-                                         stderr=subprocess.DEVNULL)
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(shell, pass_fds=(to_read, from_write), stdout=subprocess.DEVNULL, stderr=log)
         os.close(to_read)
         os.close(from_write)
         self._count, self._rest, self._session = 0, b"", None
@@ -53,6 +64,9 @@ class Browser:
         return self
 
     def __exit__(self, *_):
+        self._stop()
+
+    def _stop(self):
         try:
             self._session = None
             self.call("Browser.close", seconds=5)
@@ -90,7 +104,7 @@ class Browser:
                 raise RuntimeError("the browser does not answer in time")
             piece = os.read(self._from, 1 << 20)
             if not piece:
-                raise RuntimeError("the browser has ended")
+                raise Ended(f"the browser has ended: {self._log.read_text(errors='replace')[-2000:]}")
             self._rest += piece
         text, _, self._rest = self._rest.partition(b"\0")
         message = json.loads(text)
@@ -113,7 +127,17 @@ class Browser:
             self._loaded = True
 
     def open(self, path, seconds=120):
-        """Opens a file and waits until all of it is there."""
+        """Opens a file and waits until all of it is there. A browser that dies of its own in this is started once more;
+        one that the page kills dies again."""
+        try:
+            self._open(path, seconds)
+        except (Ended, BrokenPipeError) as fault:
+            print(f"{path}: {fault}; once more", file=sys.stderr)
+            self._stop()
+            self._start()
+            self._open(path, seconds)
+
+    def _open(self, path, seconds):
         self._loaded = False
         self.call("Page.navigate", url=Path(path).resolve().as_uri(), seconds=seconds)
         until = time.monotonic() + seconds
