@@ -170,25 +170,20 @@ void export_bsdf(const InspectOptions& o, const SqtFile& file) {
   }
 }
 
-// The tree knows its error from few points; a stricter aim until what is measured keeps the error, or leaves run out.
 void export_tree(const InspectOptions& o, const SqtFile& file) {
   const sqt::Bundle& bundle = *file.bundle;
   const Fitted fitted(bundle);
   const size_t channel = static_cast<size_t>(o.channel);
-  const double aim = aim_of(o, file, channel);
-  const size_t most = o.export_size ? 1000 * static_cast<size_t>(o.export_size) : TensorTree::kMostLeaves;
-  TensorTree tree(fitted, channel, {.error = 0.95 * aim, .leaves = most});
-  Comparison::Figures f = difference(bundle, tree, channel);
-  double stricter = 0.95 * aim;
-  while (f.l1 > aim && !tree.full()) {
-    stricter *= std::clamp(0.95 * aim / f.l1, 0.5, 0.95);
-    tree = TensorTree(fitted, channel, {.error = stricter, .leaves = most});
-    f = difference(bundle, tree, channel);
-  }
+  TensorTree::Aim aim;
+  aim.error = aim_of(o, file, channel);
+  aim.leaves = o.export_size ? 1000 * static_cast<size_t>(o.export_size) : TensorTree::kMostLeaves;
+  aim.measure = [&](const sqt::Function& tree) { return difference(bundle, tree, channel).l1; };
+  const TensorTree tree(fitted, channel, aim);
+  const Comparison::Figures f = difference(bundle, tree, channel);
   write_file(o.export_to, tree.xml(command_line() + "\nagainst the fit: " + figures_text(f)));
   note(strf("%s: channel %lld (%g um) as Visible, %zu leaves, the smallest 2^-%d wide", o.export_to.c_str(), o.channel,
             bundle.info().function.wavelength_um[channel], tree.leaves(), tree.levels()));
-  tell_difference(o, f, aim, most < TensorTree::kMostLeaves ? ": --export-size allows more leaves" : "");
+  tell_difference(o, f, aim.error, aim.leaves < TensorTree::kMostLeaves ? ": --export-size allows more leaves" : "");
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ void declare_options(Cli& cli, InspectOptions& o) {
   cli.option("--export-size", o.export_size,
              "of --export: steps from pole to horizon of .csv and .raw (18), side of the tables of .bsdf (64 or as "
              "many more as "
-             "keep the error, to 512), thousands of leaves of .xml at most (20000)",
+             "keep the error, to 512), thousands of leaves of .xml at most (60000)",
              "N");
   cli.option("--export-error", o.export_error,
              "of .bsdf and .xml: relative L1 to the fit that they are to keep, 0.0001 to 1 (none given: what the fit "

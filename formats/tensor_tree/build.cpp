@@ -12,9 +12,10 @@ namespace suite {
 
 namespace {
 
-constexpr int kMostLevels = 15;         // Radiance draws from squares of 2^-16
-constexpr double kGrazing = 0.1736482;  // cos 80 deg, where the error's measure ends
-constexpr double kBeyond = 0.1;         // what errors beyond it count
+constexpr int kMostLevels = 15;          // Radiance draws from squares of 2^-16
+constexpr double kGrazing = 0.1736482;   // cos 80 deg, where the error's measure ends
+constexpr double kBeyond = 0.1;          // what errors beyond it count
+constexpr double kBeforeMerging = 0.95;  // of the error; merging adds the rest at most
 
 // Cells are cut so far whatever is found in them; those through which mirror or return directions go, farther: a lobe
 // between the points that are asked must not be missed.
@@ -37,13 +38,17 @@ class TensorTreeBuilder {
     ask(0);
     while (split(all_due())) {
     }
-    while (split(worst(aim))) {
+    TensorTree::Aim own = aim;
+    own.error *= kBeforeMerging;
+    for (bool kept = false; !kept;) {
+      while (split(worst(own))) {
+      }
+      tree_.full_ = left() > own.error * sum();
+      const double found = aim.measure && !tree_.full_ ? aim.measure(tree_) : 0;
+      kept = found <= kBeforeMerging * aim.error;
+      if (!kept) own.error *= std::clamp(kBeforeMerging * aim.error / found, 0.5, 0.97);
     }
-    double left = 0, sum = 0;
-    for (const Leaf& leaf : leaves_) left += leaf.error, sum += leaf.sum;
-    tree_.full_ = left > aim.error * sum;
-    // What merging adds: a twentieth of the error at most.
-    merge(0, {}, std::max(aim.error * sum, left) / (20.0 * static_cast<double>(leaves_.size())));
+    merge(0, {}, (1 - kBeforeMerging) * std::max(aim.error * sum(), left()) / static_cast<double>(leaves_.size()));
     compact();
   }
 
@@ -54,6 +59,18 @@ class TensorTreeBuilder {
     uint8_t level = 0;
     float error = 0, sum = 0;  // of |f - mean| and f over the leaf, both weighed
   };
+
+  // Of all leaves.
+  double left() const {
+    double total = 0;
+    for (const Leaf& leaf : leaves_) total += leaf.error;
+    return total;
+  }
+  double sum() const {
+    double total = 0;
+    for (const Leaf& leaf : leaves_) total += leaf.sum;
+    return total;
+  }
 
   // Whether a line or plane of mirror or return directions touches the cell.
   bool on_lobe(const Leaf& leaf) const {
@@ -143,21 +160,18 @@ class TensorTreeBuilder {
   // The leaves to cut next: those with at least half of the largest error, no more than it takes to reach the aim when
   // each cut halves its error, no more than there may be.
   std::vector<size_t> worst(const TensorTree::Aim& aim) const {
-    double left = 0, sum = 0;
     float largest = 0;
-    for (const Leaf& leaf : leaves_) {
-      left += leaf.error, sum += leaf.sum;
+    for (const Leaf& leaf : leaves_)
       if (leaf.level < kMostLevels) largest = std::max(largest, leaf.error);
-    }
+    const double excess = left() - aim.error * sum();
     std::vector<size_t> list;
-    if (left <= aim.error * sum || largest == 0) return list;
+    if (excess <= 0 || largest == 0) return list;
     for (size_t i = 0; i < leaves_.size(); ++i)
       if (leaves_[i].level < kMostLevels && leaves_[i].error >= 0.5F * largest) list.push_back(i);
     std::stable_sort(list.begin(), list.end(), [&](size_t a, size_t b) { return leaves_[a].error > leaves_[b].error; });
     const size_t room = aim.leaves > leaves_.size() ? (aim.leaves - leaves_.size()) / (branches_ - 1) : 0;
     size_t n = 0;
-    for (double gain = 0; n < std::min(room, list.size()) && gain < left - aim.error * sum; ++n)
-      gain += 0.5 * leaves_[list[n]].error;
+    for (double gain = 0; n < std::min(room, list.size()) && gain < excess; ++n) gain += 0.5 * leaves_[list[n]].error;
     list.resize(n);
     return list;
   }

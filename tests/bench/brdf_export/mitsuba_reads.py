@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """mitsuba_reads.py BIN FILE.sqt [PAIRS [OPTIONS OF --export]]
 
-Exports a BRDF as .bsdf, has Mitsuba's `measured` evaluate, sample and weigh it, and compares with sqt-inspect --eval: l1 as sqt-fit has it
-over PAIRS (2000) of directions in each colour (or at the middle wavelength), and the energy of Mitsuba's own samples at 30 deg beside the
-total. Needs the wheel mitsuba (pip install mitsuba numpy)."""
+Exports a BRDF as .bsdf, has Mitsuba's `measured` evaluate, sample and weigh it, and compares with the fit: l1 as sqt-fit has it
+over PAIRS (20000) of directions in each colour (or at the middle wavelength), and the energy of Mitsuba's own samples at 30 deg beside the
+total. Needs the wheel mitsuba (pip install mitsuba ./python) and the suite's library (target remote_scenes)."""
 import json
 import math
 import random
@@ -19,13 +19,14 @@ from pairs import Difference, draw, fitted, vector
 COLOURS = [0.65, 0.55, 0.45]  # um; Mitsuba takes such files in its RGB variants alone, and others in spectral ones
 
 
-def main(binaries, sqt, pairs="2000", *options):
+def main(binaries, sqt, pairs="20000", *options):
     inspect = binaries + "/sqt-inspect"
     header = subprocess.run([inspect, sqt, "--json"], capture_output=True, text=True, check=True).stdout
     waves = json.loads(header)["wavelength_um"]
     colours = waves == COLOURS
     mi.set_variant("scalar_rgb" if colours else "scalar_spectral")
-    asked = COLOURS if colours else [waves[len(waves) // 2]]
+    channels = [waves.index(um) for um in COLOURS] if colours else [len(waves) // 2]
+    asked = [waves[c] for c in channels]
     with tempfile.TemporaryDirectory() as folder:
         file = folder + "/x.bsdf"
         told = subprocess.run([inspect, sqt, "--export", file, *options], capture_output=True, text=True, check=True)
@@ -40,11 +41,11 @@ def main(binaries, sqt, pairs="2000", *options):
         return si
 
     rng, differences = random.Random(1), [Difference() for _ in asked]
-    for _ in range(int(pairs)):
-        out, into, weight = draw(rng)
+    drawn = [draw(rng) for _ in range(int(pairs))]
+    for (out, into, weight), f in zip(drawn, fitted(binaries, sqt, drawn)):
         theirs = np.ravel(np.array(bsdf.eval(mi.BSDFContext(), interaction(out), mi.Vector3f(*into))))
-        for k, um in enumerate(asked):
-            differences[k].add(float(theirs[k]), fitted(binaries, sqt, out, into, um) * into[2], weight)
+        for k, c in enumerate(channels):
+            differences[k].add(float(theirs[k]), f[c] * into[2], weight)
     for um, difference in zip(asked, differences):
         print(f"Mitsuba's values at {um} um: {difference.text()}")
     weights = []

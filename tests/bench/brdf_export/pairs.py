@@ -1,6 +1,11 @@
-"""What the readers of exports share: pairs of directions, and what sqt-inspect says of them."""
+"""What the readers of exports share: pairs of directions, and what the fit has there."""
 import math
-import subprocess
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import remote_scenes
 
 LIMIT = math.cos(math.radians(80))  # where the measure of l1 ends
 SHARP = 1e-3  # of the lobe of directions around the mirror direction
@@ -37,11 +42,11 @@ def draw(rng):
     return out, into, 1 / density
 
 
-def fitted(binaries, sqt, out, into, um):
-    """f without cosine."""
-    angles = [math.degrees(v) for d in (out, into) for v in (math.acos(min(1, d[2])), math.atan2(d[1], d[0]))]
-    told = subprocess.run([binaries + "/sqt-inspect", sqt, "--eval", ",".join(f"{v:.12f}" for v in (*angles, um))], capture_output=True, text=True, check=True).stdout
-    return float(told.split("f_per_sr")[1].split()[0])
+def fitted(binaries, sqt, pairs):
+    """f without cosine of the fit, (pairs, channels), by the library of these programs."""
+    os.environ["REMOTE_SCENES_BIN"] = binaries
+    with remote_scenes.open_sqt(sqt) as fit:
+        return fit.evaluate([p[0] for p in pairs], [p[1] for p in pairs])
 
 
 class Difference:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """tensor_tree_reads.py BIN FILE.sqt [PAIRS [OPTIONS OF --export]]
 
-Exports a BRDF as Radiance's tensor tree, reads the XML with a reader that shares no code with the suite, and compares with sqt-inspect
---eval over PAIRS (2000) of directions: l1 as sqt-fit has it. Needs Python alone.
+Exports a BRDF as Radiance's tensor tree, reads the XML with a reader that shares no code with the suite, and compares with the fit over
+PAIRS (20000) of directions: l1 as sqt-fit has it. Needs what the package needs (pip install ./python) and its library (target remote_scenes).
 
 The reader follows Radiance's own conventions (G. Ward et al., "A practical framework for sharing and rendering real-world bidirectional
 scattering distribution functions", LBNL-6439E, 2013): a tree of 2^rank branches, bit i of a branch the upper half of coordinate i, leaves that
@@ -69,16 +69,16 @@ def value(rank, tree, out, into):
     return tree[index]
 
 
-def main(binaries, sqt, pairs="2000", *options):
+def main(binaries, sqt, pairs="20000", *options):
     with tempfile.TemporaryDirectory() as folder:
         command = [binaries + "/sqt-inspect", sqt, "--export", folder + "/x.xml", *options]
         told = subprocess.run(command, capture_output=True, text=True, check=True).stderr
         rank, tree = read(folder + "/x.xml")
-    um = float(re.search(r"channel \d+ \(([0-9.]+) um\)", told)[1])
+    channel = int(re.search(r"channel (\d+) \(", told)[1])
     rng, difference = random.Random(1), Difference()
-    for _ in range(int(pairs)):
-        out, into, weight = draw(rng)
-        difference.add(value(rank, tree, out, into) * into[2], fitted(binaries, sqt, out, into, um) * into[2], weight)
+    asked = [draw(rng) for _ in range(int(pairs))]
+    for (out, into, weight), f in zip(asked, fitted(binaries, sqt, asked)):
+        difference.add(value(rank, tree, out, into) * into[2], f[channel] * into[2], weight)
     print(told.strip())
     print(f"an independent reader of the tree of rank {rank}: {difference.text()}")
 

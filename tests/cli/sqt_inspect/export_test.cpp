@@ -127,7 +127,7 @@ TEST_F(Export, ErrorsAreKeptOrToldToBeMissed) {
 
 TEST_F(Export, WrongUseIsRefused) {
   EXPECT_EQ(inspect("--export x.txt").code, 2);
-  EXPECT_EQ(inspect("--export x.xml --export-size 20001").code, 2);
+  EXPECT_EQ(inspect("--export x.xml --export-size 60001").code, 2);
   EXPECT_EQ(inspect("--export x.xml --export-error 2").code, 2);
   EXPECT_EQ(inspect("--export x.csv --export-error 0.1").code, 2);
   EXPECT_EQ(inspect("--export-error 0.1").code, 2);
