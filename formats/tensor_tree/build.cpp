@@ -45,7 +45,7 @@ class TensorTreeBuilder {
       }
       tree_.full_ = left() > own.error * sum();
       const double found = aim.measure && !tree_.full_ ? aim.measure(tree_) : 0;
-      kept = found <= kBeforeMerging * aim.error;
+      kept = !(found > kBeforeMerging * aim.error);  // nan: of a function that is 0 everywhere
       if (!kept) own.error *= std::clamp(kBeforeMerging * aim.error / found, 0.5, 0.97);
     }
     merge(0, {}, (1 - kBeforeMerging) * std::max(aim.error * sum(), left()) / static_cast<double>(leaves_.size()));

@@ -152,6 +152,22 @@ TEST(TensorTree, FindsNarrowLobes) {
   }
 }
 
+// Cells are cut on while whoever measures finds more than was asked for, and no longer; nan is no error that cuts
+// lessen.
+TEST(TensorTree, IsCutUntilTheMeasuredErrorIsKept) {
+  const test::Analytic gloss = test::glossy(0.25, 1);
+  const TensorTree own(gloss, 0, {.error = 0.05});
+  const std::vector<double> found = {0.1, 0.06, 0.047};
+  size_t asked = 0;
+  const TensorTree tree(gloss, 0, {.error = 0.05, .measure = [&](const sqt::Function&) { return found.at(asked++); }});
+  EXPECT_EQ(asked, found.size());
+  EXPECT_GT(tree.leaves(), 2 * own.leaves());
+  EXPECT_FALSE(tree.full());
+  asked = 0;
+  const TensorTree unknown(gloss, 0, {.error = 0.05, .measure = [&](const sqt::Function&) { return ++asked, NAN; }});
+  EXPECT_EQ(asked, 1u);
+}
+
 TEST(TensorTree, TellsWhenLeavesRunOut) {
   const test::Analytic gloss = test::glossy(0.1, 1);
   const TensorTree tree(gloss, 0, {.error = 0.005, .leaves = 30'000});
