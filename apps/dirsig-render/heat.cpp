@@ -300,10 +300,10 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   if (!sim.heat || !waits_for_heat(*scene)) return {};
   const PreparedHeat p = prepare(scene, sim, {});
   const double faces = static_cast<double>(p.faces->size());
-  // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every four paths at half
-  // of the moments straight.
+  // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every eight paths at half
+  // of the moments straight, and as often again where edges of shadows are.
   const double points = 1.0 * HeatSpec::kBlocks * points_of_beam(path_options(p.spec));
-  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p) / 2);
+  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p));
   check_size(p, sim);
   const double seconds = seconds_of(p, sim, *scene);
   return strf(

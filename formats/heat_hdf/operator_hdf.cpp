@@ -13,7 +13,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "4";
+constexpr const char *kFormat = "suite heat operator", *kVersion = "5";
 constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight", *kStraight = "straight_sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",

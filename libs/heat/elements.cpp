@@ -210,37 +210,53 @@ namespace {
 // What of a cell is of one material, from the points that were looked at.
 struct Found {
   uint32_t material = kNone;
-  int points = 0;
+  double area = 0;  // m2, or points that stand for equal ones
   Vec3 centre, normal;
 };
 
 }  // namespace
 
+// The middle of every piece of a triangle with its area, where that tells all; else points that stand for equal areas.
+// Returns the cell's local area, m2, over the weights' sum.
+double Elements::look_over(uint32_t cell, const std::function<void(const Hit&, double weight)>& look) const {
+  const Group& group = groups_[group_of_cell_[cell]];
+  const uint32_t inside = cell - group.first_cell, object = slots_[group.first_slot].object;
+  if (group.mesh && group.slots == 1 && group.mesh->triangles(inside) <= kLooks) {
+    const uint32_t triangle = group.mesh->point(inside, 0, 0, 0).triangle;
+    if (!lookup_.is_mapped(lookup_.plain(tracer_.object(object), triangle))) {
+      group.mesh->each_piece(inside, [&](const MeshCells::Point& p, double area) {
+        look(tracer_.on_triangle(object, p.triangle, p.u, p.v, time_), area);
+      });
+      return 1;
+    }
+  }
+  const SampleStream stream(0x68656174, 0, cell);
+  for (uint32_t k = 0; k < kLooks; ++k) {
+    uint32_t attempt = 0;
+    look(cell_point(cell, {stream, k, 0}, attempt), 1);
+  }
+  return (group.mesh ? group.mesh->area(inside) : grids_[group.grid].area(inside)) / kLooks;
+}
+
 void Elements::make_elements(const std::vector<bool>& heated) {
   const size_t cells = group_of_cell_.size();
   std::vector<std::vector<Found>> found(cells);
-  std::vector<double> areas(cells);
+  std::vector<double> areas(cells), weights(cells);
   parallel_for(0, cells, 256, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
-      const auto cell = static_cast<uint32_t>(c);
-      const Group& group = groups_[group_of_cell_[cell]];
-      const SampleStream stream(0x68656174, 0, c);
-      double stretch = 0;
-      for (uint32_t k = 0; k < kLooks; ++k) {
-        uint32_t attempt = 0;
-        const Hit hit = cell_point(cell, {stream, k, 0}, attempt);
+      const Group& group = groups_[group_of_cell_[c]];
+      double stretched = 0;
+      const double local = look_over(static_cast<uint32_t>(c), [&](const Hit& hit, double weight) {
         const TracedObject object = tracer_.object(hit.object);
-        const Affine3& place = slots_[slot_of_.at(object.instance)].to_world;
-        stretch += stretch_of(place, normalized(slots_[slot_of_.at(object.instance)].to_local.normal(hit.normal)));
+        const Slot& slot = slots_[slot_of_.at(object.instance)];
+        stretched += weight * stretch_of(slot.to_world, normalized(slot.to_local.normal(hit.normal)));
+        weights[c] += weight;
         const uint32_t m = lookup_.at(object, hit);
         auto at = std::ranges::find(found[c], m, &Found::material);
         if (at == found[c].end()) at = found[c].insert(at, Found{m, 0, {}, {}});
-        ++at->points, at->centre += hit.position, at->normal += hit.normal;
-      }
-      const uint32_t inside = cell - group.first_cell;
-      const double local = group.mesh ? group.mesh->area(inside) : grids_[group.grid].area(inside);
-      areas[c] = local * stretch / kLooks;
-      if (group.slots > 1) areas[c] = local * group.until.back();
+        at->area += weight, at->centre += weight * hit.position, at->normal += weight * hit.normal;
+      });
+      areas[c] = local * (group.slots > 1 ? weights[c] * group.until.back() : stretched);
     }
   });
   first_element_.push_back(0);
@@ -249,11 +265,11 @@ void Elements::make_elements(const std::vector<bool>& heated) {
       if (f.material == kNone || !heated[f.material]) continue;
       HeatElement e;
       e.material = f.material, e.cell = static_cast<uint32_t>(c);
-      e.share = double{1} * f.points / kLooks;
+      e.share = f.area / weights[c];
       e.area = areas[c] * e.share;
-      e.centre = f.centre / f.points;
+      e.centre = f.centre / f.area;
       const double facing = length(f.normal);
-      e.normal = facing > 1e-6 * f.points ? f.normal / facing : Dir{0, 0, 1};
+      e.normal = facing > 1e-6 * f.area ? f.normal / facing : Dir{0, 0, 1};
       elements_.push_back(e);
       total_area_ += e.area;
     }

@@ -157,6 +157,7 @@ class Elements {
   void refine(const std::vector<Planned>& planned, const DaySun& sun, std::span<const CellSplit> known);
   void add_group(Planned planned);
   uint32_t make_grid(const Slot& slot, const Primitive& primitive, double target);
+  double look_over(uint32_t cell, const std::function<void(const Hit&, double weight)>& look) const;
   void make_elements(const std::vector<bool>& heated);
   Local local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const;
   Hit cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt) const;

@@ -41,10 +41,18 @@ void LitTime::add(const PointDay& day, double weight) {
   }
 }
 
-double LitTime::total() const {
+double LitTime::total(std::span<const float> shares) const {
   double sum = 0, whole = 0;
-  for (size_t m = 0; m < pieces_.size(); ++m) sum += pieces_[m][0] + (whole += whole_[m]);
+  for (size_t m = 0; m < pieces_.size(); ++m) {
+    whole += whole_[m];
+    sum += (pieces_[m][0] + whole) * (shares.empty() ? 1 : double{shares[m]});
+  }
   return sum;
+}
+
+void LitTime::by_step(std::span<float> out) const {
+  double whole = 0;
+  for (size_t m = 0; m < pieces_.size(); ++m) out[m] = static_cast<float>(pieces_[m][0] + (whole += whole_[m]));
 }
 
 }  // namespace suite

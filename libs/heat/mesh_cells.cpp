@@ -114,6 +114,22 @@ void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, dou
   gather(facets, middle, end, target, material);
 }
 
+// Sorts by what is compared alone, which is less to move, and then the facets.
+template <class Iterator, class Key>
+void MeshCells::put_in_order(Iterator from, Iterator to, const Key& key) {
+  struct Place {
+    double key;
+    uint32_t triangle, at;
+  };
+  std::vector<Place> order;
+  order.reserve(static_cast<size_t>(to - from));
+  for (auto f = from; f != to; ++f) order.push_back({key(*f), f->triangle, static_cast<uint32_t>(f - from)});
+  std::ranges::sort(
+      order, [](const Place& a, const Place& b) { return a.key != b.key ? a.key < b.key : a.triangle < b.triangle; });
+  const std::vector<Facet> before(from, to);
+  for (const Place& place : order) *from++ = before[place.at];
+}
+
 // Puts facets in order and says where the second half begins.
 size_t MeshCells::divide(std::vector<Facet>& facets, size_t begin, size_t end, double area) {
   Box3 place, facing;
@@ -128,9 +144,7 @@ size_t MeshCells::divide(std::vector<Facet>& facets, size_t begin, size_t end, d
   const auto key = [&](const Facet& f) { return axis < 3 ? f.centre[axis] : f.normal[axis - 3]; };
   const auto from = facets.begin() + static_cast<std::ptrdiff_t>(begin),
              to = facets.begin() + static_cast<std::ptrdiff_t>(end);
-  std::sort(from, to, [&](const Facet& a, const Facet& b) {
-    return key(a) != key(b) ? key(a) < key(b) : a.triangle < b.triangle;
-  });
+  put_in_order(from, to, key);
   // In the middle, but through folds where there are any.
   double before = 0, widest = axis < 3 ? INFINITY : kFold;
   size_t middle = begin + 1, fold = 0;
@@ -203,7 +217,11 @@ MeshCells::Point MeshCells::point(size_t cell, double x, double y, double z) con
   const auto begin = until_.begin() + first_[cell], end = until_.begin() + end_[cell];
   const auto at = std::min(std::upper_bound(begin, end, x * *(end - 1)), end - 1);
   const uint32_t triangle = order_[static_cast<size_t>(at - until_.begin())];
-  const double root = std::sqrt(y), u = 1 - root, v = z * root;
+  const double root = std::sqrt(y);
+  return within(cell, triangle, 1 - root, z * root);
+}
+
+MeshCells::Point MeshCells::within(size_t cell, uint32_t triangle, double u, double v) const {
   if (piece_[cell] != kNone) {
     const auto& [a, b, c] = pieces_[piece_[cell]];
     return {triangle, a.x + u * (b.x - a.x) + v * (c.x - a.x), a.y + u * (b.y - a.y) + v * (c.y - a.y)};

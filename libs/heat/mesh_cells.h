@@ -28,6 +28,12 @@ class MeshCells {
   };
   // Uniform over the cell's area; x, y, z in [0, 1).
   Point point(size_t cell, double x, double y, double z) const;
+  // Tells the middle of each of its pieces of triangles, with the piece's area (m2, local).
+  template <class Put>
+  void each_piece(size_t cell, const Put& put) const {
+    for (uint32_t k = first_[cell]; k < end_[cell]; ++k)
+      put(within(cell, order_[k], 1.0 / 3, 1.0 / 3), k > first_[cell] ? until_[k] - until_[k - 1] : until_[k]);
+  }
   // The cell of a place on a triangle (local, mesh origin included); kNone when it belongs to none.
   uint32_t cell_of(uint32_t triangle, Vec3 local) const;
   // Then cell_of does not ask the place.
@@ -49,6 +55,9 @@ class MeshCells {
   };
   using Piece = std::array<Vec2, 3>;  // corners, barycentrics of vertices 1 and 2
   Piece piece_of(size_t cell) const;
+  Point within(size_t cell, uint32_t triangle, double u, double v) const;  // of its piece of the triangle
+  template <class Iterator, class Key>
+  static void put_in_order(Iterator from, Iterator to, const Key& key);
   void cut_piece(uint32_t cell);
   void halve(uint32_t cell);
   static size_t divide(std::vector<Facet>& facets, size_t begin, size_t end, double area);

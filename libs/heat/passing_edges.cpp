@@ -86,15 +86,27 @@ PassingEdges::Line PassingEdges::fit(std::span<const PointDay* const> points, si
   return line;
 }
 
+double PassingEdges::passes(const Line& line, const std::array<double, 4>& place) const {
+  double t = line.mean;
+  for (size_t k = 0; k < kMost; ++k) t += line.slope[k] * (place[k] - centre_[k]);
+  return t;
+}
+
 PointDay PassingEdges::at(const std::array<double, 4>& place, double begin, double end) const {
   PointDay day{place, lit_first_, {}};
   double before = begin;
-  for (const Line& line : lines_) {
-    double t = line.mean;
-    for (size_t k = 0; k < kMost; ++k) t += line.slope[k] * (place[k] - centre_[k]);
-    day.changes.push_back(before = std::clamp(t, before, end));
-  }
+  for (const Line& line : lines_) day.changes.push_back(before = std::clamp(passes(line, place), before, end));
   return day;
+}
+
+// As at() has it: a change is not before the one before it, so that the last one that has not passed hides others.
+bool PassingEdges::lit_at(const std::array<double, 4>& place, double t) const {
+  bool lit = lit_first_;
+  for (const Line& line : lines_) {
+    if (passes(line, place) > t) break;
+    lit = !lit;
+  }
+  return lit;
 }
 
 }  // namespace suite

@@ -28,12 +28,15 @@ class PassingEdges {
   bool moves() const { return moves_; }
   // The day at a place, with changes from `begin` to `end` (s).
   PointDay at(const std::array<double, 4>& place, double begin, double end) const;
+  // Whether it is lit there at a time.
+  bool lit_at(const std::array<double, 4>& place, double t) const;
 
  private:
   struct Line {
     double mean = 0;                // s
     std::array<double, 4> slope{};  // s/m, s/radius
   };
+  double passes(const Line& line, const std::array<double, 4>& place) const;  // s
   Line fit(std::span<const PointDay* const> points, size_t change, size_t dimensions, double& score) const;
 
   bool lit_first_ = false, moves_ = false;

@@ -1,12 +1,14 @@
 // What faces absorb of sunlight, as an operator that needs no new rays for other clouds: of the beam at each moment, of
 // each part of the sky, of light from below the horizon; all reflections included.
 //
-// Method: the beam itself is followed by rays from points of the face (one for four paths, one a block at least)
-// towards the sun's disk at every moment, and where the answer changes to 10 s; what reaches the face by reflection
-// comes along paths, each traced once. At every surface they meet they take what its element sends on through the whole
-// day, told from when the sun is on that (told_sun.h), and are joined to the sun at moments of the day in turn to find
-// what that lacks; where they leave, to the part of the sky. Between moments all is taken as straight lines with the
-// same integrals. So the straight sun of all faces is found first.
+// Method: the beam itself is followed by rays from points of the face (one for eight paths, two a block at least)
+// towards the sun's disk at every moment, and where the answer changes to 1 s. Edges of shadows that pass evenly are
+// told from these points (passing_edges.h); where points do not agree with that, more of them look at the sun, each
+// once and at a time of its own, so many as the others scatter (sunlight_told_edges.cpp). What reaches the face by
+// reflection comes along paths, each traced once. At every surface they meet they take what its element sends on
+// through the whole day, told from when the sun is on that (told_sun.h), and are joined to the sun at moments of the
+// day in turn to find what that lacks; where they leave, to the part of the sky. Between moments all is taken as
+// straight lines with the same integrals. So the straight sun of all faces is found first.
 //
 // Beams that mirrors and smooth glass send on are followed from the sun (sunlight_mirrored.h).
 //
@@ -32,8 +34,8 @@ struct SunCourse {
   std::vector<uint32_t> sunny() const;  // moments with the sun up
 };
 
-// Every fourth path of a block has a point that looks at the sun through the whole day, and one of each half at least.
-inline uint32_t points_of_beam(const PathOptions& options) { return (options.paths + 7) / 8 * 2; }
+// Every eighth path of a block has a point that looks at the sun through the whole day, and one of each half at least.
+inline uint32_t points_of_beam(const PathOptions& options) { return (options.paths + 15) / 16 * 2; }
 
 // Parts of the sky: kSkyRings of equal solid angle, each in kSkyTurns.
 inline constexpr uint32_t kSkyRings = 8, kSkyTurns = 16, kSkyPatches = kSkyRings * kSkyTurns;

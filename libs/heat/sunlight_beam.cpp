@@ -8,10 +8,7 @@ namespace suite {
 namespace {
 
 constexpr uint64_t kPurpose = 0x6265616d;
-constexpr uint64_t kTold = 0x746f6c64;  // purpose of points whose days are told from others'
-constexpr uint32_t kToldPoints = 64;    // of a block
-constexpr double kFinest = 1;           // s, to which edges of shadows are found
-constexpr size_t kWatches = 4096;       // at once
+constexpr size_t kWatches = 4096;  // at once
 
 std::vector<Frame> suns_of(const SunCourse& course) {
   std::vector<Frame> out;
@@ -32,6 +29,7 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       course_(course),
       options_(options),
       watching_(watching(options)),
+      more_(asking_more(watching_, course)),
       joins_(joins),
       out_(out),
       surface_(tracer, *optics.sun),
@@ -58,20 +56,24 @@ void SunlightWave::beam(size_t begin, size_t end) {
   for (size_t f = begin; f < end; f += together) beam_of(f, std::min(end, f + together));
 }
 
+SunlightWave::Watch SunlightWave::watch_of(uint32_t face, const PathNumbers& numbers,
+                                           const std::array<double, 4>& disk) const {
+  Watch w;
+  w.face = face, w.block = numbers.block(), w.half = numbers.half();
+  w.hit = elements_.point(faces_.element(face), numbers.first_point());
+  w.normal = faces_.is_back(face) ? -w.hit.normal : w.hit.normal;
+  const Vec2 d = disk_from_square({disk[0], disk[1]});
+  w.disk_x = d.x, w.disk_y = d.y;
+  return w;
+}
+
 void SunlightWave::beam_of(size_t begin, size_t end) {
   std::vector<Watch> watches;
   for (size_t f = begin; f < end; ++f)
     for (uint32_t k = 0; k < watching_.blocks * watching_.paths; ++k) {
       const auto face = static_cast<uint32_t>(f);
       const PathNumbers numbers(watching_, kPurpose, faces_.number(face), k);
-      Watch w;
-      w.face = face, w.block = numbers.block(), w.half = numbers.half();
-      w.hit = elements_.point(faces_.element(face), numbers.first_point());
-      w.normal = faces_.is_back(face) ? -w.hit.normal : w.hit.normal;
-      const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
-      const Vec2 d = disk_from_square({u[0], u[1]});
-      w.disk_x = d.x, w.disk_y = d.y;
-      watches.push_back(std::move(w));
+      watches.push_back(watch_of(face, numbers, numbers.net().draw(numbers.sample(), 0)));
     }
   look(watches);
   std::vector<Edge> edges;
@@ -111,6 +113,13 @@ float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
   return static_cast<float>(cosine * kept);
 }
 
+// At a time between a moment and the next one, of a beam of 1 that is not hidden.
+double SunlightWave::takes_between(const Watch& watch, size_t moment, double late, Dir d) {
+  const std::span<const float> kept = kept_by(watch);
+  if (kept.empty()) return double{taken(watch, static_cast<uint32_t>(late < 0.5 ? moment : moment + 1), d)};
+  return dot(d, watch.normal) * ((1 - late) * double{kept[moment]} + late * double{kept[moment + 1]});
+}
+
 // Fills what each point sees at every moment.
 void SunlightWave::look(std::vector<Watch>& watches) {
   struct At {
@@ -144,7 +153,7 @@ void SunlightWave::find_edges(std::vector<Watch>& watches, std::vector<Edge>& ed
       if (w.lit[m] != w.lit[m + 1] && (w.takes[m] > 0 || w.takes[m + 1] > 0))
         edges.push_back({k, m, course_.moments[m], course_.moments[m + 1], w.lit[m]});
     }
-  const int rounds = std::max(0, static_cast<int>(std::ceil(std::log2(step_ / kFinest))));
+  const int rounds = std::max(0, static_cast<int>(std::ceil(std::log2(step_ / kFinestEdge))));
   std::vector<size_t> asked;
   for (int round = 0; round < rounds; ++round) {
     sights_.clear(), asked.clear();
@@ -182,28 +191,16 @@ PointDay SunlightWave::day_of(const Watch& watch, std::span<const Edge> edges) c
   return day;
 }
 
-// Puts the integral of what is taken onto the moments, by the hats of straight lines between them.
-void SunlightWave::add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, double weight) {
-  const size_t moments = suns_.size();
-  float* parts = &parts_[block * Sunlight::kParts];
-  lit_.spread(takes, [&](size_t moment, double value) {
-    // A hat's integral is a step, of the first and last moment half a one.
-    const double hats = moment == 0 || moment + 1 == moments ? 2 : 1;
-    beam_[moment] += static_cast<float>(weight * hats * value / options_.blocks);
-    parts[moment * Sunlight::kParts / moments] += static_cast<float>(sign * weight * value);
-  });
-  out_.sun_hours[face] += static_cast<float>(weight * lit_.total() * step_ / 3600 / options_.blocks);
-}
-
 void SunlightWave::add_face(std::span<const Watch> watches, std::span<const PointDay> days) {
   clear_rows();
+  const size_t steps = suns_.size() - 1;
+  lit_by_step_.resize(watches.size() * steps);
   for (size_t k = 0; k < watches.size(); ++k) {
-    if (!days[k].lit_first && days[k].changes.empty()) continue;
     lit_.clear();
     lit_.add(days[k], 1);
-    add_lit(watches[k].face, watches[k].block, watches[k].half ? -1 : 1, watches[k].takes, 1.0 / watches_of_block());
+    lit_.by_step({&lit_by_step_[k * steps], steps});
   }
-  for (uint32_t b = 0; b < options_.blocks; ++b) add_untold(watches, days, b);
+  for (uint32_t b = 0; b < options_.blocks; ++b) add_block({watches, days, b});
   add_spread(watches, days);
   const uint32_t face = watches.front().face;
   for (size_t k = 0; k < sunny_.size(); ++k) {
@@ -249,7 +246,7 @@ void SunlightWave::add_spread(std::span<const Watch> watches, std::span<const Po
   for (size_t k = 0; k < n; ++k) {
     lit_.clear();
     lit_.add(days[k], 1);
-    lit_.spread(watches[k].takes,
+    lit_.spread(watches[k].takes, {},
                 [&](size_t moment, double value) { takes[k][moment * kParts / suns_.size()] += value; });
     for (uint32_t p = 0; p < kParts; ++p) mean[p] += takes[k][p] / static_cast<double>(n);
   }
@@ -285,41 +282,9 @@ void SunlightWave::of_point(const Hit& hit, bool back, Vec2 disk, std::span<floa
   if (!day.lit_first && day.changes.empty()) return;
   lit_.clear();
   lit_.add(day, 1);
-  lit_.spread(one[0].takes, [&](size_t moment, double value) {
+  lit_.spread(one[0].takes, {}, [&](size_t moment, double value) {
     takes[moment] += static_cast<float>((moment == 0 || moment + 1 == takes.size() ? 2 : 1) * value);
   });
-}
-
-// What a block's points miss of an edge that passes over the element: it is told from the other blocks' points, once
-// for these points and once for many others of the same part of the element. All of them take what the other blocks'
-// do.
-void SunlightWave::add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block) {
-  std::vector<const PointDay*> others;
-  for (size_t k = 0; k < watches.size(); ++k)
-    if (watches[k].block != block) others.push_back(&days[k]);
-  const PassingEdges told(others, course_.angular_radius > 0, kFinest);
-  if (!told.moves()) return;
-  std::vector<float> takes(suns_.size(), 0.0f);
-  for (const Watch& w : watches)
-    if (w.block != block)
-      for (size_t m = 0; m < takes.size(); ++m) takes[m] += w.takes[m] / static_cast<float>(others.size());
-  const double begin = course_.moments.front(), end = course_.moments.back();
-  const uint32_t face = watches.front().face;
-  const PathOptions many{options_.blocks, kToldPoints, options_.seed};
-  for (const uint32_t half : {0u, 1u}) {
-    lit_.clear();
-    for (size_t k = 0; k < watches.size(); ++k)
-      if (watches[k].block == block && watches[k].half == half)
-        lit_.add(told.at(days[k].place, begin, end), -1.0 / watches_of_block());
-    for (uint32_t k = 0; k < many.half(); ++k) {
-      const PathNumbers numbers(many, kTold, faces_.number(face), block * many.paths + half * many.half() + k);
-      const Hit hit = elements_.point(faces_.element(face), numbers.first_point());
-      const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
-      const Vec2 d = disk_from_square({u[0], u[1]});
-      lit_.add(told.at(place_of(face, hit.position, d.x, d.y), begin, end), 1.0 / kToldPoints);
-    }
-    add_lit(face, block, half ? -1 : 1, takes, 1);
-  }
 }
 
 }  // namespace suite

@@ -304,7 +304,8 @@ void add_mirrored_sunlight(const Tracer& tracer, const Elements& elements, const
   Sums sums{std::vector<float>(faces.size() * out.moments),
             std::vector<float>(out.beam_of_block.rows() * Sunlight::kParts)};
   const std::vector<Task> tasks = tasks_of(places, suns.up());
-  const double density = points_of_beam(options) * static_cast<double>(elements.size()) / elements.total_area();
+  // A ray a moment for every four paths of an element.
+  const double density = (options.paths + 3) / 4 * static_cast<double>(elements.size()) / elements.total_area();
   // What is found is added up in the order of the tasks, a batch of them at a time.
   constexpr size_t kBatch = 64;
   double sent = 0, unfinished = 0;

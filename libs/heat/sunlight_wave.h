@@ -11,6 +11,10 @@
 
 namespace suite {
 
+inline constexpr double kFinestEdge = 1;  // s, to which edges of shadows are found
+// Points of each half of a block that look at the sun once, at most: more than there can be asked for.
+PathOptions asking_more(const PathOptions& watching, const SunCourse& course);
+
 class SunlightWave {
  public:
   SunlightWave(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
@@ -59,16 +63,41 @@ class SunlightWave {
     return on_disk(suns_[moment], watch.disk_x, watch.disk_y, course_.angular_radius);
   }
   void beam_of(size_t begin, size_t end);
+  // disk: two numbers for where on the sun it looks.
+  Watch watch_of(uint32_t face, const PathNumbers& numbers, const std::array<double, 4>& disk) const;
+  // late: share of the time to the next moment that has passed. d: to the sun then.
+  double takes_between(const Watch& watch, size_t moment, double late, Dir d);
   uint32_t watches_of_block() const { return watching_.paths; }
   uint32_t row_of(uint32_t slot) const { return slot / options_.half() - first_ * 2 * options_.blocks; }
   void look(std::vector<Watch>& watches);
   void find_edges(std::vector<Watch>& watches, std::vector<Edge>& edges);
   PointDay day_of(const Watch& watch, std::span<const Edge> edges) const;
   std::array<double, 4> place_of(uint32_t face, Vec3 position, double disk_x, double disk_y) const;
+  // Points of a face and their days, and the block that is told from the others.
+  struct BlockOfFace {
+    std::span<const Watch> watches;
+    std::span<const PointDay> days;
+    uint32_t block;
+    bool own(size_t k) const { return watches[k].block == block; }
+  };
+  // What the other blocks tell of a block's points.
+  struct Told {
+    PassingEdges edges;
+    std::vector<float> takes;    // by moment: the others' mean
+    std::vector<float> even;     // by step: share that is lit, where no edge is told
+    std::vector<uint32_t> more;  // by step: rays for each point besides its own day
+    std::vector<float> own_day;  // by step: share of that day in what its point finds
+    bool any = false;            // of more
+  };
   void add_face(std::span<const Watch> watches, std::span<const PointDay> days);
+  Told told_of(const BlockOfFace& of) const;
+  void plan_more(const BlockOfFace& of, Told& told) const;
+  void add_block(const BlockOfFace& of);
+  void add_told(const BlockOfFace& of, const Told& told, uint32_t half);
+  void ask_more(const BlockOfFace& of, const Told& told);
+  void put_lit(uint32_t block, double sign, size_t moment, double value);
   void add_spread(std::span<const Watch> watches, std::span<const PointDay> days);
-  void add_untold(std::span<const Watch> watches, std::span<const PointDay> days, uint32_t block);
-  void add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, double weight);
+  void add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, std::span<const float> shares);
   std::span<const float> kept_by(const Watch& watch);
   float taken(const Watch& watch, uint32_t moment, Dir d);
   void start(uint32_t face);
@@ -95,6 +124,7 @@ class SunlightWave {
   const SunCourse& course_;
   const PathOptions& options_;
   const PathOptions watching_;  // of the points that look at the sun
+  const PathOptions more_;      // of those that look once
   uint32_t joins_;
   Sunlight& out_;
   Surface surface_;
@@ -113,6 +143,7 @@ class SunlightWave {
   const float* kept_of_ = nullptr;  // reflectance of which kept_ is told
   std::vector<float> kept_;         // by moment
   LitTime lit_;
+  std::vector<float> lit_by_step_;  // [point of a face][step]: share of it
   TraceStatistics trace_;
   std::vector<Going> going_;
   std::vector<float> spectra_;

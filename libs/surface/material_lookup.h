@@ -13,10 +13,12 @@ class MaterialLookup {
   explicit MaterialLookup(const Scene& scene);
   // Material before maps; kNone when the geometry has none.
   uint32_t plain(const TracedObject& object, uint32_t triangle) const;
+  // Whether a class map may put others there.
+  bool is_mapped(uint32_t material) const { return any_ && material != kNone && map_of_[material] != kNone; }
   // The material that a class map puts there; the given one outside of maps. Texture coordinates are only looked at by
   // maps that are placed by them.
   uint32_t mapped(uint32_t material, const TracedObject& object, const Hit& hit) const {
-    return any_ && material != kNone && map_of_[material] != kNone ? by_map(material, object, hit) : material;
+    return is_mapped(material) ? by_map(material, object, hit) : material;
   }
   uint32_t at(const TracedObject& object, const Hit& hit) const {
     return mapped(plain(object, hit.triangle), object, hit);

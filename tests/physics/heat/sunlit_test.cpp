@@ -133,7 +133,7 @@ TEST(Sunlit, SweepingShadowEdge) {
     return worst;
   };
   const double many = off_itself(run(1024)), few = off_itself(run(8));
-  std::printf("shadow edge at %.1g m/s over elements of 1 cm: %.4f K with 2048 points an element, %.3f K with 16\n",
+  std::printf("shadow edge at %.1g m/s over elements of 1 cm: %.4f K with 1024 points an element, %.3f K with 16\n",
               kSpeed, many, few);
   EXPECT_LT(many, 0.05);
   // 16 points are what 64 paths, the default, have.

@@ -45,6 +45,13 @@ TEST(PassingEdges, StraightOnesAreTold) {
     EXPECT_NEAR(told.changes[0], d.changes[0], 1e-3);
     EXPECT_NEAR(told.changes[1], d.changes[1], 1e-3);
   }
+  // The same asked at a time, also where changes would be out of their order.
+  for (const std::array<double, 4>& place :
+       {std::array<double, 4>{0.3, -0.2, 0, 0.5}, {30, -20, 0, 0}, {-9, 9, 0, 0}}) {
+    const PointDay day = edges.at(place, 0, 86400);
+    for (double t = 5; t < 86400; t += 50)
+      EXPECT_EQ(edges.lit_at(place, t), (t >= day.changes[0]) != (t >= day.changes[1])) << t;
+  }
   // In order and within the day wherever it is asked.
   const PointDay far = edges.at({100, -100, 0, 0}, 0, 20000);
   EXPECT_LE(0, far.changes[0]);
@@ -88,9 +95,19 @@ TEST(LitTime, IntegralsAreExact) {
       total += weight, expected[m] += weight * value * (1 - s), expected[m + 1] += weight * value * s;
     }
   }
-  lit.spread(takes, [&](size_t m, double v) { found[m] += v; });
+  lit.spread(takes, {}, [&](size_t m, double v) { found[m] += v; });
   for (size_t m = 0; m <= kSteps; ++m) EXPECT_NEAR(found[m], expected[m], 2e-5) << m;
   EXPECT_NEAR(lit.total(), total, 2e-5);
+  // By step, and a part of some steps.
+  std::vector<float> by_step(kSteps), shares{1, 0.5f, 0, 1, 0.25f};
+  lit.by_step(by_step);
+  double sum = 0, of_shares = 0, spread = 0;
+  for (size_t m = 0; m < kSteps; ++m) sum += double{by_step[m]}, of_shares += double{shares[m] * by_step[m]};
+  EXPECT_NEAR(sum, total, 2e-5);
+  EXPECT_NEAR(lit.total(shares), of_shares, 1e-5);
+  const std::vector<float> ones(kSteps + 1, 1.0f);
+  lit.spread(ones, shares, [&](size_t, double v) { spread += v; });
+  EXPECT_NEAR(spread, of_shares, 1e-5);
   lit.clear();
   EXPECT_EQ(lit.total(), 0);
 }
