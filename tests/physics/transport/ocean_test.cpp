@@ -167,7 +167,7 @@ TEST(Ocean, RendersLayersAsTheReference) {
   const OceanLight truth = OceanReference::layered(false, {{&upper, 1}}, {{&deep, INFINITY}});
   EXPECT_GT(upper.under_sky(1).up / truth.up, 2) << "the layer below matters";
   std::printf("sky, two layers\n");
-  expect_all(ocean({{water(false, 0.9), 1}, {water(true, 0.9)}}), sources, 1 - 1e-6, truth);
+  expect_all(ocean({{water(false, 0.9), 1}, {water(true, 0.9)}}), sources, 1, truth);
 }
 
 // What problem 3 is about: a sea whose chlorophyll has a peak at 17 m, at 500 nm, in layers. Its published tables were
@@ -211,10 +211,10 @@ TEST(Ocean, RendersAProfileAsTheReference) {
   const OceanLight evenly = OceanReference::layered(false, above, {{&waters[0], INFINITY}});
   EXPECT_GT(std::fabs(evenly.up / under_sky.up - 1), 0.05) << "the layers below matter";
   std::printf("sky, a profile, 5 m\n");
-  expect_all(scene, sky, 5 - 1e-6, under_sky);
+  expect_all(scene, sky, 5, under_sky);
   if (!long_run()) return;
   std::printf("sun, a profile, 5 m\n");
-  expect_all(scene, sun, 5 - 1e-6, OceanReference::layered(true, above, below), kPathsToTheSun);
+  expect_all(scene, sun, 5, OceanReference::layered(true, above, below), kPathsToTheSun);
 }
 
 // The sun at 60 degrees, which is asked for through the surface. Particles send it on in a peak so narrow that places
