@@ -61,13 +61,14 @@ void Reader::read_waves(const Params& object, DraftGeometry& g) {
                 std::span(g.terrain.heights).subspan(r * g.terrain.width, g.terrain.width));
   });
   const double left_out = slope_variance(sea, shortest, kShortestWave);
-  report_.add(
-      "SP609", draft_.file,
-      {p.where(),
-       strf("waves '%s': %.3g m high (significant); those shorter than %.3g m are left out, a mean square slope of "
-            "%.3g of %.3g in all, as rough as a ggx_dielectric of roughness %.2g",
-            g.name.c_str(), 4 * std::sqrt(waves.variance()), 2 * kPi / shortest, left_out,
-            slope_variance(sea, 0.1 * peak, kShortestWave), std::sqrt(left_out))});
+  report_.add("SP609", draft_.file,
+              {p.where(), sea.wind_m_s == 0
+                              ? strf("waves '%s': no wind, flat water", g.name.c_str())
+                              : strf("waves '%s': %.3g m high (significant); those shorter than %.3g m are left out, a "
+                                     "mean square slope of "
+                                     "%.3g of %.3g in all, as rough as a ggx_dielectric of roughness %.2g",
+                                     g.name.c_str(), 4 * std::sqrt(waves.variance()), 2 * kPi / shortest, left_out,
+                                     slope_variance(sea, 0.1 * peak, kShortestWave), std::sqrt(left_out))});
 }
 
 }  // namespace suite::scene_text

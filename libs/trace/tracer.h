@@ -129,6 +129,11 @@ class Tracer {
   // nearest(). Replaces the contents of hits.
   void all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
 
+  // The surfaces that a place lies on: those that it is closer to than a quarter of what rays start off them. Time and
+  // draw are those of `at`, its direction is not asked. Hits, with distance: m that the place lies in front of the
+  // surface. Of surfaces that lie in each other one may be left out. Replaces the contents of hits.
+  void touching(const Ray& at, std::vector<Hit>& hits, TraceStatistics& statistics) const;
+
   // Where a ray that leaves `hit` to the side of `direction` must start so as not to meet the same surface again: a few
   // units of the last float place of the tile's or instance's size off the surface, along the geometric normal.
   Vec3 leave(const Hit& hit, Dir direction) const {
@@ -188,6 +193,7 @@ class Tracer {
   void nearest_unbounded(std::span<const Ray> rays, std::span<Hit> hits, TraceStatistics& statistics) const;
   void occluded_in_tiles(std::span<const Ray> rays, std::span<double> reach, std::span<uint8_t> blocked, bool coherent,
                          TraceStatistics& statistics) const;
+  double longest_step(Vec3 place) const;
   void add_all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
   std::shared_ptr<const World> world_;
   TracedObject nested_object(uint32_t number) const;

@@ -27,6 +27,7 @@ BlockRun::BlockRun(const Pipeline& pipeline, const Sensor& sensor, const Capture
       watched_(pipeline.options_.stop == StopRule::change),
       plain_(workspace.sink.targets() == 1 && capture.bin_by == Capture::BinBy::none),
       scale_(capture.bin_by == Capture::BinBy::time ? static_cast<float>(capture.bins) : 1.0f) {
+  on_surface_.assign(block.problems(), -1);
   for (uint32_t i = 0; i < block.problems(); ++i) {
     problems_.push_back(problem_at(capture, block, i));
     next_.push_back(sums.next(slot_of(i), block.scrambles));
@@ -118,13 +119,26 @@ void BlockRun::start(uint32_t p) {
   const auto [stream, number] = stream_of(lane);
   const size_t bins = pipeline_.state_.size();
   float* const weights = &workspace_.weights[p * bins];
-  const SensorRay ray =
+  const bool on_surface = stands_on_surface(lane.place);
+  SensorRay ray =
       ask_ray(sensor_, capture_, problems_[lane.place], workspace_.numbers[p], stream, number, {weights, bins});
+  if (on_surface) stand_off(pipeline_.surface_.tracer(), ray.ray, workspace_.touched, statistics_.trace);
   workspace_.throughputs.begin(p, static_cast<float>(ray.weight) * scale_, ray.spectral ? weights : nullptr);
   workspace_.sink.begin(p);
   PathTracing& kernel = workspace_.kernel_of(ray);
   workspace_.kernels[p] = &kernel;
   kernel.start(p, ray, stream, number);
+}
+
+// Whether the samples of a problem have to be asked for surfaces that they start on: when its first one does. (Where
+// rays start at many places, few happen to lie on any.)
+bool BlockRun::stands_on_surface(size_t i) {
+  if (on_surface_[i] >= 0) return on_surface_[i] > 0;
+  const auto [stream, number] = stream_of({static_cast<uint32_t>(i), 0});
+  SensorRay first = ask_ray(sensor_, capture_, problems_[i], stream.draw(number, dimensions::kSensor.first), stream,
+                            number, workspace_.unused);
+  on_surface_[i] = stand_off(pipeline_.surface_.tracer(), first.ray, workspace_.touched, statistics_.trace);
+  return on_surface_[i] > 0;
 }
 
 // Takes what a completed path has brought.

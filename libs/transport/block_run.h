@@ -29,6 +29,7 @@ class BlockRun {
   std::pair<SampleStream, uint32_t> stream_of(const WaveLane& lane) const;
   void draw(uint32_t paths);
   void start(uint32_t p);
+  bool stands_on_surface(size_t i);
   void take(uint32_t p);
   bool add(uint32_t p, size_t slot, int scramble);
   float lowest(size_t channel) const;
@@ -51,6 +52,7 @@ class BlockRun {
   std::vector<size_t> problems_;       // by place in the block
   std::vector<uint32_t> next_, end_;   // samples of each problem
   std::vector<uint8_t> whole_;         // it wants all samples from next_ on
+  std::vector<int8_t> on_surface_;     // its first sample starts there; -1 = not asked
   std::vector<uint64_t> keys_;         // of its sample streams
   std::vector<SampleStream> streams_;  // [problem][scramble]
 };

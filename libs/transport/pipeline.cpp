@@ -89,7 +89,8 @@ Pipeline::Workspace::Workspace(const KernelContext& x, std::unique_ptr<const Env
       kernel(make_kernel(choose_kernel(context), context, width, throughputs, sink)),
       numbers(width),
       kernels(width),
-      weights(width * x.optics.state().size()) {}
+      weights(width * x.optics.state().size()),
+      unused(x.optics.state().size()) {}
 
 bool Pipeline::Workspace::serves(const Capture& capture, const ChannelPlan& channels) const {
   const auto same = [](const Dir& a, const Dir& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };

@@ -25,26 +25,24 @@ constexpr double kSame = 1e-4;         // rad at the light: ways as near as this
 constexpr size_t kMostObjects = 4096;  // beyond, starts take them all together
 constexpr double kLongestTurn = 0.5;   // rad, of one of Newton's steps
 
-// Bounds in ENU; empty when there are none.
-Box3 bounds_of(const Tracer& tracer, uint32_t number, const TracedObject& object) {
-  const Scene& scene = tracer.scene();
-  Box3 local, world;
-  if (object.primitive != kNone)
-    local = primitive_box(scene.primitives[object.primitive]);
-  else if (const Mesh& mesh = scene.meshes[object.mesh]; mesh.stored)
-    local = mesh.stored->box;
-  else
-    for (size_t i = 0; i < mesh.vertex_count(); ++i)
-      local.grow(mesh.origin + Vec3{double{mesh.positions[3 * i]}, double{mesh.positions[3 * i + 1]},
-                                    double{mesh.positions[3 * i + 2]}});
-  if (local.empty()) return local;
-  const double begin = tracer.window() ? tracer.window()->begin : 0, end = tracer.window() ? tracer.window()->end : 0;
-  for (const double time : {begin, 0.5 * (begin + end), end}) {
-    const Affine3 place = tracer.to_world(number, time);
-    for (int i = 0; i < 8; ++i)
-      world.grow(place.point({i & 1 ? local.high.x : local.low.x, i & 2 ? local.high.y : local.low.y,
-                              i & 4 ? local.high.z : local.low.z}));
-  }
+// In the object's own frame; empty when there are no bounds.
+Box3 own_bounds(const Scene& scene, const TracedObject& object) {
+  if (object.primitive != kNone) return primitive_box(scene.primitives[object.primitive]);
+  const Mesh& mesh = scene.meshes[object.mesh];
+  if (mesh.stored) return mesh.stored->box;
+  Box3 box;
+  for (size_t i = 0; i < mesh.vertex_count(); ++i)
+    box.grow(mesh.origin +
+             Vec3{double{mesh.positions[3 * i]}, double{mesh.positions[3 * i + 1]}, double{mesh.positions[3 * i + 2]}});
+  return box;
+}
+
+Box3 placed(const Box3& box, const Affine3& place) {
+  Box3 world;
+  if (box.empty()) return world;
+  for (int i = 0; i < 8; ++i)
+    world.grow(
+        place.point({i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z}));
   return world;
 }
 
@@ -68,12 +66,19 @@ RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
     const auto& parts = scene.meshes[o.mesh].parts;
     return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return interfaces_.has(p.material); });
   };
-  tracer.each("smooth refracting surfaces", refracts,
-              [&](uint32_t number, const TracedObject& o) { objects_.push_back(bounds_of(tracer, number, o)); });
+  bool any_moves = false;
+  tracer.each("smooth refracting surfaces", refracts, [&](uint32_t number, const TracedObject& o) {
+    const Box3 own = own_bounds(scene, o);
+    const bool moves = o.node != kNone && !own.empty();
+    objects_.push_back(moves ? Refractor{own, number} : Refractor{placed(own, tracer.place(number))});
+    any_moves = any_moves || moves;
+  });
   if (objects_.size() <= kMostObjects) return;
   Box3 all;
-  for (const Box3& box : objects_) all.grow(box);
-  objects_.assign(1, all);
+  for (const Refractor& o : objects_)
+    if (o.moves == kNone) all.grow(o.box);
+  if (any_moves) all.grow(tracer.bounds());
+  objects_.assign(1, {all});
 }
 
 // The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none.
@@ -269,7 +274,9 @@ bool RefractedSight::guess(const Search& s, Dir& direction) {
 
 Dir RefractedSight::draw_at_object(const Node& node) {
   const auto which = static_cast<size_t>(random() * static_cast<double>(objects_.size()));
-  const Box3& box = objects_[std::min(which, objects_.size() - 1)];
+  const Refractor& object = objects_[std::min(which, objects_.size() - 1)];
+  const Box3 box =
+      object.moves == kNone ? object.box : placed(object.box, surface_.tracer().to_world(object.moves, node.time));
   const double how = random(), u = random(), v = random(), w = random();
   const auto evenly = [&](Dir axis, double least) {  // over a cone
     const double c = 1 - u * (1 - least), s = std::sqrt(std::max(0.0, 1 - c * c)), phi = 2 * kPi * v;

@@ -131,7 +131,11 @@ class RefractedSight {
   const Surface& surface_;
   SmoothInterfaces interfaces_;
   std::vector<uint8_t> passes_;  // per material: bounds a medium and bends nothing
-  std::vector<Box3> objects_;    // that refract; an empty box has no bounds
+  struct Refractor {
+    Box3 box;                // empty = it has no bounds
+    uint32_t moves = kNone;  // the object whose frame the box is in; kNone = ENU
+  };
+  std::vector<Refractor> objects_;
   Interaction at_, beside_;
   TraceStatistics statistics_;
   uint64_t seed_ = 0, counter_ = 0;

@@ -19,6 +19,17 @@ SensorRay ask_ray(const Sensor& sensor, const Capture& capture, size_t problem, 
   return sensor.ray({capture, problem, {u.data(), numbers}, weights});
 }
 
+bool stand_off(const Tracer& tracer, Ray& ray, std::vector<Hit>& touched, TraceStatistics& statistics) {
+  TraceStatistics asking;  // these are no rays of paths
+  tracer.touching(ray, touched, asking);
+  statistics.cycles += asking.cycles;
+  for (const Hit& h : touched) {
+    const double to = dot(ray.direction, h.normal) >= 0 ? double{h.step} : -double{h.step};
+    ray.origin += h.normal * (to - h.distance);
+  }
+  return !touched.empty();
+}
+
 size_t bin_of(const Capture& capture, const PathRecord& path) {
   if (capture.bin_by == Capture::BinBy::none) return 0;
   if (capture.bin_by == Capture::BinBy::time) {

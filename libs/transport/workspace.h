@@ -35,6 +35,8 @@ struct Pipeline::Workspace {
   std::vector<SampleStream::Point> points;
   std::vector<PathTracing*> kernels;  // [path]
   std::vector<float> weights;         // [path][bin], of rays that weigh wavelengths
+  std::vector<float> unused;          // [bin], of rays that are only looked at
+  std::vector<Hit> touched;
 };
 
 }  // namespace suite

@@ -92,18 +92,19 @@ void check_sea_state(const SeaState& s, const Where& where) {
     if (!(value >= low && value <= high))
       throw Error(where, strf("waves: %s %g", what, value), strf("%g to %g %s", low, high, unit), "SP101");
   };
-  check("wind_m_s", s.wind_m_s, 0.5, 40, "m/s");
+  if (s.wind_m_s != 0) check("wind_m_s", s.wind_m_s, 0.5, 40, "m/s, or 0 for flat water");
   check("fetch_m", s.fetch_m, 100, 1e7, "m");
   check("depth_m", s.depth_m, 0.01, 12000, "m");
 }
 
 double wave_spectrum(const SeaState& s, double k) {
-  if (!(k > 0) || k > kShortestWave) return 0;
+  if (!(k > 0) || k > kShortestWave || s.wind_m_s == 0) return 0;
   if (s.spectrum == WaveSpectrum::pierson_moskowitz) return moskowitz(s, k);
   return s.spectrum == WaveSpectrum::jonswap ? jonswap(s, k) : Elfouhaily(s).at(k);
 }
 
 double peak_wave_number(const SeaState& s) {
+  if (s.wind_m_s == 0) return 0;
   if (s.spectrum == WaveSpectrum::elfouhaily) return Elfouhaily(s).peak;
   const double w = s.spectrum == WaveSpectrum::jonswap ? jonswap_peak(s)
                                                        : std::pow(0.8 * 0.74, 0.25) * kGravity / (1.026 * s.wind_m_s);
@@ -116,6 +117,7 @@ double height_variance(const SeaState& s, double low, double high) { return mome
 double slope_variance(const SeaState& s, double low, double high) { return moment(s, low, high, 2); }
 
 Waves::Waves(const SeaState& s, double shortest, size_t count, uint64_t seed) {
+  if (s.wind_m_s == 0) return;
   const double longest = 0.2 * peak_wave_number(s), step = std::log(shortest / longest) / static_cast<double>(count);
   const bool unified = s.spectrum == WaveSpectrum::elfouhaily;
   Pcg32 random(seed, 0x7761766573);

@@ -17,7 +17,7 @@ enum class WaveSpectrum { pierson_moskowitz, jonswap, elfouhaily };
 
 struct SeaState {
   WaveSpectrum spectrum = WaveSpectrum::elfouhaily;
-  double wind_m_s = 7;   // at 10 m, 0.5 to 40
+  double wind_m_s = 7;   // at 10 m, 0.5 to 40; 0 = flat water, whose spectrum is 0
   double fetch_m = 1e6;  // over which it blows, 100 to 1e7; pierson_moskowitz does not know it
   double toward = 0;     // rad, mathematical azimuth that the wind blows to
   double depth_m = 1e4;  // of the water, above 0: dispersion only, the spectrum is that of deep water
@@ -29,7 +29,7 @@ void check_sea_state(const SeaState& sea, const Where& where = {});
 // waves (kShortestWave); the two older ones fall as k^-3 until there.
 double wave_spectrum(const SeaState& sea, double k);
 inline constexpr double kShortestWave = 1500;  // rad/m
-double peak_wave_number(const SeaState& sea);  // rad/m
+double peak_wave_number(const SeaState& sea);  // rad/m; 0 without wind
 // rad/s: gravity and surface tension (km 370 rad/m, as Elfouhaily et al.), finite depth.
 double wave_frequency(const SeaState& sea, double k);
 // Integrals of the spectrum from low to high (rad/m): variance of height (m2), mean square slope of both directions.

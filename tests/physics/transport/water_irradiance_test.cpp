@@ -28,14 +28,14 @@ class Receivers final : public RaySensor {
   bool sphere_;
 };
 
-std::shared_ptr<Scene> water(double bed) {
+std::shared_ptr<Scene> water(double bed, double absorption, double bottom) {
   auto scene = std::make_shared<Scene>();
-  scene->media = {medium(Curve::constant(kAbsorption), Curve::constant(0))};
+  scene->media = {medium(Curve::constant(absorption), Curve::constant(0))};
   scene->media[0].index = Curve::constant(kIndex);
   scene->materials = {material("bed", lambert(bed)),
                       material("surface", {"dielectric", {}, {{"index", Curve::constant(kIndex)}}, {}, nullptr})};
   scene->materials[1].inside = 0;
-  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kBottom}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -bottom}));
   place(*scene, PrimitiveKind::plane, {0, 0}, 1);
   check_scene(*scene, "water");
   return scene;
@@ -75,13 +75,14 @@ Light closed_form(double depth, double bed, double a) {
   return l;
 }
 
-Light look(double depth, double bed, Light& error) {
+Light look(double depth, double bed, Light& error, double absorption = kAbsorption, double bottom = kBottom) {
   SourceSpecs sources;
   sources.add(SunSpec{dir_from_angles(kSun, 0), 0, Curve::constant(1)});
   sources.add(uniform_sky(kSky, false));
   const Vec3 at{0, 0, -depth};
   const auto run = [&](std::vector<Ray> rays, bool sphere) {
-    const Rendered r = render(water(bed), sources, std::make_unique<Receivers>(std::move(rays), 1 << 15, sphere));
+    const Rendered r =
+        render(water(bed, absorption, bottom), sources, std::make_unique<Receivers>(std::move(rays), 1 << 15, sphere));
     EXPECT_EQ(r.report.statistics.failures, 0u);
     return r.result;
   };
@@ -109,6 +110,20 @@ TEST(WaterIrradiance, IsThatOfTheClosedForm) {
         EXPECT_GT(truth.down - other.down, 4 * error.down) << "control: 3 % more absorption is seen";
       }
     }
+}
+
+// A millimetre and a kilometre of water, and an optical depth of 50, where 1e-24 of the light is left.
+TEST(WaterIrradiance, AtItsExtremes) {
+  constexpr struct { double depth, absorption; } kCases[] = {{1e-3, 0.3}, {1000, 1e-3}, {1000, 0.05}};
+  for (const auto& [depth, absorption] : kCases) {
+    Light error;
+    const Light seen = look(depth, 0, error, absorption, depth + 1), truth = through(depth, absorption);
+    std::printf("depth %g m, absorption %g 1/m: Ed %.5g (%.5g +- %.2g), E0 %.5g (%.5g +- %.2g)\n", depth, absorption,
+                truth.down, seen.down, error.down, truth.scalar, seen.scalar, error.scalar);
+    EXPECT_NEAR(seen.down, truth.down, 4 * error.down + 1e-4 * truth.down);
+    EXPECT_NEAR(seen.scalar, truth.scalar, 4 * error.scalar + 1e-4 * truth.scalar);
+    EXPECT_LT(error.down, 0.03 * truth.down);
+  }
 }
 
 }  // namespace

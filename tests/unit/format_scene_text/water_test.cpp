@@ -66,11 +66,11 @@ TEST_F(WaterText, FaultsAreLocated) {
 }
 
 TEST_F(WaterText, WavesBecomeAMeshThatMovesWithTime) {
-  const auto sea = [&](const std::string& more) {
+  const auto sea = [&](const std::string& more, const std::string& wind = "6") {
     write_file(folder_ / "w.yaml",
                "scene: 1\nmaterials:\n  sea: {model: sea, wind_m_s: 2}\nobjects:\n"
-               "  sea: {waves: {wind_m_s: 6, size_m: [40, 20], step_m: 0.5" +
-                   more + "}, material: sea}\nworld: [{place: sea}]\n");
+               "  sea: {waves: {wind_m_s: " +
+                   wind + ", size_m: [40, 20], step_m: 0.5" + more + "}, material: sea}\nworld: [{place: sea}]\n");
     report_ = Report(scene_issues());
     return bake_scene(read_scene_text(folder_ / "w.yaml", {}, report_), report_);
   };
@@ -87,6 +87,10 @@ TEST_F(WaterText, WavesBecomeAMeshThatMovesWithTime) {
   EXPECT_NE(heights(still), heights(sea(", time_s: 0.2")));
   EXPECT_NE(heights(still), heights(sea(", seed: 2")));
   EXPECT_THAT(report_.text(), Not(HasSubstr("SP108")));
+  for (const float z : heights(sea("", "0"))) EXPECT_EQ(z, 0);
+  EXPECT_THAT(report_.text(), HasSubstr("no wind, flat water"));
+  sea("", "0.2");
+  EXPECT_THAT(report_.text(), HasSubstr("or 0 for flat water"));
   sea(", spectrum: choppy");
   EXPECT_THAT(report_.text(), HasSubstr("elfouhaily"));
   sea(", fetch_m: 1");
