@@ -137,7 +137,12 @@ bool BlockRun::stands_on_surface(size_t i) {
   const auto [stream, number] = stream_of({static_cast<uint32_t>(i), 0});
   SensorRay first = ask_ray(sensor_, capture_, problems_[i], stream.draw(number, dimensions::kSensor.first), stream,
                             number, workspace_.unused);
-  on_surface_[i] = stand_off(pipeline_.surface_.tracer(), first.ray, workspace_.touched, statistics_.trace);
+  const Tracer& tracer = pipeline_.surface_.tracer();
+  // Most cameras look from one place.
+  const bool asked =
+      clear_ && clear_->origin == first.ray.origin && (!tracer.window() || clear_->time == first.ray.time);
+  on_surface_[i] = !asked && stand_off(tracer, first.ray, workspace_.touched, statistics_.trace);
+  if (!on_surface_[i]) clear_ = first.ray;
   return on_surface_[i] > 0;
 }
 

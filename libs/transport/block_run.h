@@ -1,5 +1,6 @@
 // The problems of one block while they run.
 #pragma once
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -53,6 +54,7 @@ class BlockRun {
   std::vector<uint32_t> next_, end_;   // samples of each problem
   std::vector<uint8_t> whole_;         // it wants all samples from next_ on
   std::vector<int8_t> on_surface_;     // its first sample starts there; -1 = not asked
+  std::optional<Ray> clear_;           // the last one that was found to start on no surface
   std::vector<uint64_t> keys_;         // of its sample streams
   std::vector<SampleStream> streams_;  // [problem][scramble]
 };
