@@ -60,6 +60,9 @@ class Atmosphere {
   // The same, and the radiance S that the air of the segment sends back to `from`, W/(m2 sr um).
   virtual void path(Vec3 from, Dir direction, double distance, std::span<float> T, std::span<float> S) const = 0;
 
+  // About how much S changes with the direction at most, over itself, 1/rad; infinity: not known.
+  virtual double steepness(Dir) const { return std::numeric_limits<double>::infinity(); }
+
   // The parts of path(): their sum is S, but where that comes from a table, to its accuracy. False where they are not
   // known.
   struct Parts {

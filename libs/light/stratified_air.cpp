@@ -66,6 +66,13 @@ class StratifiedAir final : public Atmosphere {
     view_->radiance(column_.shells.height(end), to_local(end, -d), S);
   }
 
+  // Aureoles fall with the angle, and ways grow towards the horizon.
+  double steepness(Dir d) const override {
+    double sum = 1 + 1 / std::fabs(d.z);
+    for (const Beam& beam : beams_) sum += 1 / length(d - beam.direction);
+    return sum;
+  }
+
   bool parts(Vec3 from, Dir d, double distance, const Parts& p) const override {
     integrate(from, d, distance, p.transmittance, p.thermal, {true, false, false});
     integrate(from, d, distance, p.transmittance, p.single, {false, true, false});

@@ -175,6 +175,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::request_hits(TraceRequ
 // that were made with it have been handed over.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly() {
+  if (first_stage_) space_.begin_wave();
   for (size_t i = 0; i < active_.size(); ++i) fly_one(i);
   hand_over();
   if constexpr (Space::kGoesBack)

@@ -7,6 +7,7 @@
 
 #include "light/environment.h"
 #include "transport/contribution.h"
+#include "transport/known_way.h"
 #include "transport/lane.h"
 #include "transport/options.h"
 #include "transport/sight.h"
@@ -52,6 +53,8 @@ class NothingSpace {
   struct Around {};  // what surrounds a path
   explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
 
+  // A wave of paths begins; and one of them does.
+  void begin_wave() {}
   template <class L>
   void start(uint32_t, const L&) {}
   // Where the ray that looks for what a path meets next begins.
@@ -86,17 +89,19 @@ class NothingSpace {
   Sight sight_;
 };
 
-// A way through air alone, whose transmittance and radiance are known at once. seen: the sensor's own way is behind;
-// ends: light from the end of the way is to come through it.
+// A way through air alone, whose transmittance and radiance are known at once. first: for the sensor's own way, null
+// when that is behind; ends: light from the end of the way is to come through it.
 template <class L>
-Flight fly_through_air(const Atmosphere& air, const L& lane, bool seen, double length, bool ends,
+Flight fly_through_air(const Atmosphere& air, KnownWay* first, const L& lane, double length, bool ends,
                        std::span<float> through, std::span<float> emitted) {
-  const bool sky = seen && length == std::numeric_limits<double>::infinity();
+  const bool sky = !first && length == std::numeric_limits<double>::infinity();
   // In a mirror neighbouring directions would be told apart.
   if (sky && !ends && lane.last_density > 0)
     return {Arrival::met, {}, false, air.sky_radiance(lane.origin, lane.direction, through, emitted)};
   if (sky)
     air.skylight(lane.origin, lane.direction, through, emitted);
+  else if (first)
+    first->path(air, lane.origin, lane.direction, length, through, emitted);
   else
     air.path(lane.origin, lane.direction, length, through, emitted);
   return {Arrival::met, {1, through.data()}, true, emitted.data()};
@@ -107,12 +112,14 @@ class AirSpace : public NothingSpace {
  public:
   static constexpr bool kFills = true;
   static constexpr uint32_t kDense = 2;
-  explicit AirSpace(const SpaceContext& c) : NothingSpace(c), air_(*c.environment.atmosphere) {}
+  explicit AirSpace(const SpaceContext& c)
+      : NothingSpace(c), air_(*c.environment.atmosphere), seen_(c.optics.state().size()) {}
 
+  void begin_wave() { seen_.forget(); }
   template <class L>
   Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
-             std::span<float> emitted) const {
-    return fly_through_air(air_, lane, lane.surfaces > 0, length, ends, through, emitted);
+             std::span<float> emitted) {
+    return fly_through_air(air_, lane.surfaces > 0 ? nullptr : &seen_, lane, length, ends, through, emitted);
   }
   static constexpr uint16_t kEmitter = kFromAir;
   const Light* sky() const { return air_.sky(); }
@@ -133,6 +140,9 @@ class AirSpace : public NothingSpace {
 
  protected:
   const Atmosphere& air_;
+
+ private:
+  KnownWay seen_;  // of sensors' rays
 };
 
 }  // namespace suite

@@ -21,6 +21,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       ambient_(c.surface.tracer().scene().ambient),
       field_(c.surface.tracer().scene(), c.optics.state(), c.surface.tracer().periodic()),
       plain_air_(air_ && !c.optics.air() && field_.placed().empty() && ambient_ == kNone),
+      seen_(plain_air_ ? c.optics.state().size() : 0),
       bodies_(c.surface),
       flights_(field_, c.optics, c.knot_probability, air_),
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
@@ -54,7 +55,8 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   const Branch branch = live.branch;
   if (plain_air_ && medium == kNone && branch != Branch::forced &&
       !(hit.hit() && bodies_.is_boundary(surface_.material(hit))))
-    return fly_through_air(*air_, live, live.surfaces + live.scatterings > 0, length, ends, through, emitted);
+    return fly_through_air(*air_, live.surfaces + live.scatterings > 0 ? nullptr : &seen_, live, length, ends, through,
+                           emitted);
   const Flights::Result flown = flights_.fly(live, length, medium, is_airless(medium), {u[0], u[1]}, through, emitted);
   Flight flight{Arrival::met,
                 {static_cast<float>(flown.scale), flown.dense ? through.data() : nullptr},

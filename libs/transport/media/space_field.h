@@ -22,6 +22,7 @@ class FieldSpace {
   using Around = MediumStack;
   explicit FieldSpace(const SpaceContext& context);
 
+  void begin_wave() { seen_.forget(); }
   // Puts a new path into the bodies around its origin.
   void start(uint32_t p, const LivePath& live);
   Vec3 ray_from(uint32_t p, const LivePath& live) const { return ways_[p].gap > 0 ? ways_[p].from : live.origin; }
@@ -113,6 +114,7 @@ class FieldSpace {
   uint32_t ambient_;
   VolumeField field_;
   const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
+  KnownWay seen_;         // of sensors' rays in it
   Bodies bodies_;
   Flights flights_;
   MediaSight sight_;
