@@ -9,12 +9,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "math/sampling.h"
 #include "support/cpu_clock.h"
 
@@ -25,6 +27,13 @@ inline Bytes bytes_of(std::string_view text) {
   Bytes b(text.size());
   std::memcpy(b.data(), text.data(), text.size());
   return b;
+}
+
+// A mutation as a file, for readers of files. A file that is there goes first: one that is replaced, some file systems
+// bring to the disk at once, which takes longer than most mutations do.
+inline void put_file(const std::string& path, std::span<const std::byte> bytes) {
+  std::filesystem::remove(path);
+  write_file(path, bytes);
 }
 
 class Mutator {

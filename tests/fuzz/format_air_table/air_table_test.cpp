@@ -21,7 +21,7 @@ TEST(FuzzAirTable, File) {
   t.water_self.assign(4, 1e-29f);
   write_air_table(path, t);
   test::fuzz(read_bytes(path), [&](std::span<const std::byte> mutated) {
-    write_file(path, mutated);
+    test::put_file(path, mutated);
     check_gas_table(read_air_table(path));
   });
 }

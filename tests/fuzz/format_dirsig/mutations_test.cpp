@@ -59,7 +59,7 @@ TEST_P(DirsigMutations, GiveATextOrOneLocatedMessage) {
                                       : models               ? "models.scene"
                                                              : "range.scene");
   const auto read = [&](std::span<const std::byte> bytes) {
-    write_file(folder / name, bytes);
+    test::put_file(folder / name, bytes);
     dirsig::Import import({}, folder.path());
     const dirsig::SimulationHelp help = dirsig_help();
     const dirsig::MadeText made =

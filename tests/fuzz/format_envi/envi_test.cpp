@@ -57,7 +57,7 @@ TEST(Fuzz, EnviImage) {
   write_envi(folder / "a.img", header, values);
   test::fuzz(read_bytes(folder / "a.img.hdr"),
              [&](std::span<const std::byte> b) {
-               write_file(folder / "a.img.hdr", b);
+               test::put_file(folder / "a.img.hdr", b);
                const EnviImage image(folder / "a.img");
                EXPECT_EQ(image.read_all().size(), image.header().values());
              },

@@ -13,7 +13,7 @@ TEST(FuzzHeat, File) {
   file.write(path);
   const std::vector<std::byte> bytes = read_bytes(path);
   test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
-    write_file(path, mutated);
+    test::put_file(path, mutated);
     heat_cut(path);
     const HeatResult r = read_heat(path, *file.kit.elements, *file.kit.faces);
     for (size_t f = 0; f < file.kit.faces->size(); ++f) r.kelvin_at(f, 40000);

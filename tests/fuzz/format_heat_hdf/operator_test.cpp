@@ -13,7 +13,7 @@ TEST(FuzzHeatOperator, File) {
   write_operator(path, s.found(), s.identity(), "a test");
   const std::vector<std::byte> bytes = read_bytes(path);
   test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
-    write_file(path, mutated);
+    test::put_file(path, mutated);
     operator_cut(path);
     StoredOperator(path, s.identity()).sun_path();
     const HeatOperator found = s.stored(path, s.identity());

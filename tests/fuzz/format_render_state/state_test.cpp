@@ -22,7 +22,7 @@ TEST(FuzzState, File) {
   }
   const std::vector<std::byte> bytes = read_bytes(path);
   test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
-    write_file(path, mutated);
+    test::put_file(path, mutated);
     read_state_head(path, identity);
     const auto store = make_state(path, identity, {StateUse::resume});
     store->begin(shapes);

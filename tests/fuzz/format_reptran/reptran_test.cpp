@@ -20,7 +20,7 @@ TEST(FuzzReptran, Files) {
     test::fuzz(
         damage_gas ? test::reptran_gas() : test::reptran_bands(),
         [&](std::span<const std::byte> mutated) {
-          write_file(damage_gas ? gas : bands, mutated);
+          test::put_file(damage_gas ? gas : bands, mutated);
           const auto provider = representative_gases(read_reptran(bands).table);
           for (const auto& band : provider->bands(1, 1e6)) provider->absorbers(band, levels);
         },

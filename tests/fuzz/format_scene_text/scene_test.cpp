@@ -20,7 +20,7 @@ class FuzzScene : public ::testing::Test {
   // The bytes as a file of that name, handed to `read`.
   auto as_file(const std::string& name, std::function<void(const std::string&)> read) {
     return [this, name, read](std::span<const std::byte> bytes) {
-      write_file(folder_ / name, bytes);
+      test::put_file(folder_ / name, bytes);
       read(folder_ / name);
     };
   }

@@ -67,7 +67,7 @@ const std::vector<std::string> kWords{"nan",
                                       "[0, 1e300, -1]"};
 
 void read(const TempFolder& folder, std::span<const std::byte> bytes) {
-  write_file(folder / "sim.yaml", bytes);
+  test::put_file(folder / "sim.yaml", bytes);
   SimulationCallbacks callbacks;
   callbacks.deliver = [](const Delivery&) {};
   callbacks.origin = [](const std::string&, const std::vector<SimulationScene>&) { return GeodeticOrigin{}; };

@@ -31,7 +31,7 @@ std::vector<std::byte> cloud(uint32_t compression, bool half) {
 void fuzz_vdb(uint32_t compression, bool half, uint64_t seed) {
   const TempFolder folder;
   const auto read = [&](std::span<const std::byte> bytes) {
-    write_file(folder / "m.vdb", bytes);
+    test::put_file(folder / "m.vdb", bytes);
     const VoxelData g = read_vdb(folder / "m.vdb", "density", "");
     if (g.density.size() != g.size()) throw std::runtime_error("the field does not fill the grid");
     for (const float d : g.density)

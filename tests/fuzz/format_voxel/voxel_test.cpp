@@ -10,7 +10,7 @@ TEST(FuzzVoxel, Text) {
   TempFolder folder;
   write_file(folder / "d.u8", std::string(24, '\3'));
   const auto read = [&](std::span<const std::byte> bytes) {
-    write_file(folder / "g.vox", bytes);
+    test::put_file(folder / "g.vox", bytes);
     const VoxelData g = read_voxels(folder / "g.vox");
     for (const auto size : {g.density.size(), g.temperature.size(), g.medium.size(), g.material.size()})
       if (size && size != g.size()) throw std::runtime_error("a field does not fill the grid");
