@@ -69,7 +69,7 @@ Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t
                    std::span<const CellSplit> known, std::span<const RestInterval> rests)
     : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()), rests_(rests.begin(), rests.end()) {
   SUITE_CHECK(budget > 0 && heated.size() == tracer.scene().materials.size());
-  if (!rests_.empty()) changing_ = std::make_unique<const ChangingRoom>(tracer);
+  if (!rests_.empty()) changing_ = std::make_unique<const ChangingRoom>(tracer, rests_);
   Seen seen;
   gather(seen, heated);
   if (seen.kinds.empty() && seen.exact.empty())

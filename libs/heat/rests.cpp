@@ -218,52 +218,71 @@ namespace {
 constexpr size_t kMostBoxes = 64;
 constexpr int kLooksOfWay = 33;  // at what moves
 
-// Where an object is at some time or other. What moves is looked at so often that its box, grown by half of the way
-// between looks, holds it between them.
-Box3 box_over(const Tracer& tracer, uint32_t object) {
-  const Box3 local = tracer.local_box(object);
-  const Box3 everywhere{{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
-  if (local.empty()) return everywhere;
-  Box3 all;
-  for (const RestRun& run : rest_runs(tracer, object)) {
-    if (run.kind == RestRun::Kind::away) continue;
-    const int looks = run.kind == RestRun::Kind::rests ? 1 : kLooksOfWay;
-    Box3 way;
-    double step = 0;
-    Vec3 last;
-    for (int k = 0; k < looks; ++k) {
-      const double t = run.span.begin + (run.span.end - run.span.begin) * (k + 0.5) / looks;
-      if (!tracer.there(object, t)) continue;
-      const Affine3 place = tracer.to_world(object, t);
-      for (int corner = 0; corner < 8; ++corner)
-        way.grow(place.point({corner & 1 ? local.high.x : local.low.x, corner & 2 ? local.high.y : local.low.y,
-                              corner & 4 ? local.high.z : local.low.z}));
-      const Vec3 middle = place.point(local.center());
-      if (k > 0) step = std::max(step, length(middle - last));
-      last = middle;
-    }
-    const double more = run.kind == RestRun::Kind::rests ? kStill : step + 0.1 * length(way.size());
-    if (!way.empty()) all.grow(Box3{way.low - Vec3{more, more, more}, way.high + Vec3{more, more, more}});
+double look_along(TimeSpan span, int k) { return span.begin + (span.end - span.begin) * (k + 0.5) / kLooksOfWay; }
+
+Box3 placed(const Box3& local, const Affine3& place) {
+  Box3 out;
+  for (int corner = 0; corner < 8; ++corner)
+    out.grow(place.point({corner & 1 ? local.high.x : local.low.x, corner & 2 ? local.high.y : local.low.y,
+                          corner & 4 ? local.high.z : local.low.z}));
+  return out;
+}
+
+Box3 grown(const Box3& box, double by) { return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}}; }
+
+// Where an object is while it moves. It is looked at so often that the boxes of two looks, grown by half of the way
+// between them and a tenth, hold it in between.
+void add_way(const Tracer& tracer, uint32_t object, const Box3& local, TimeSpan span, std::vector<Box3>& boxes) {
+  std::optional<Box3> last;
+  for (int k = 0; k < kLooksOfWay; ++k) {
+    const double t = look_along(span, k);
+    if (!tracer.there(object, t)) continue;
+    const Box3 now = placed(local, tracer.to_world(object, t));
+    Box3 both = now;
+    if (last) both.grow(*last);
+    const double way = last ? length(now.center() - last->center()) : 0;
+    boxes.push_back(grown(both, way / 2 + 0.1 * length(now.size())));
+    last = now;
   }
-  return all;
+}
+
+// All places in which an object may be met while things rest: of its rests, and of what moves through an interval.
+void add_places(const Tracer& tracer, uint32_t object, const std::vector<RestRun>& runs,
+                std::span<const RestInterval> intervals, std::vector<Box3>& boxes) {
+  const Box3 local = tracer.local_box(object);
+  if (local.empty()) {
+    boxes.push_back({{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}});
+    return;
+  }
+  for (const RestRun& run : runs) {
+    if (run.kind == RestRun::Kind::rests) {
+      double t = look_at(run.span, 0);
+      for (size_t k = 1; k < kManyLooks && !tracer.there(object, t); ++k) t = look_at(run.span, k);
+      if (tracer.there(object, t))
+        boxes.push_back(grown(placed(local, tracer.to_world(object, t)), 2 * kStill * (1 + length(local.size()))));
+    }
+    if (run.kind == RestRun::Kind::moves && std::ranges::any_of(intervals, [&](const RestInterval& r) {
+          return run.span.begin < r.still.end && r.still.begin < run.span.end;
+        }))
+      add_way(tracer, object, local, run.span, boxes);
+  }
 }
 
 }  // namespace
 
-ChangingRoom::ChangingRoom(const Tracer& tracer) {
-  std::map<uint32_t, Box3> of_node;
+ChangingRoom::ChangingRoom(const Tracer& tracer, std::span<const RestInterval> intervals) {
+  std::vector<Box3> boxes;
   tracer.each(
       "things that move, come or go", [](const TracedObject& o) { return o.node != kNone; },
-      [&](uint32_t number, const TracedObject& o) {
+      [&](uint32_t number, const TracedObject&) {
         const std::vector<RestRun> runs = rest_runs(tracer, number);
         if (runs.size() > 1 || runs.front().kind == RestRun::Kind::moves)
-          of_node[o.node].grow(box_over(tracer, number));
+          add_places(tracer, number, runs, intervals, boxes);
       });
-  const size_t together = (of_node.size() + kMostBoxes - 1) / kMostBoxes;
-  size_t k = 0;
-  for (const auto& [node, box] : of_node) {
-    if (k++ % together == 0) boxes_.emplace_back();
-    boxes_.back().grow(box), all_.grow(box);
+  const size_t together = (boxes.size() + kMostBoxes - 1) / kMostBoxes;
+  for (size_t k = 0; k < boxes.size(); ++k) {
+    if (k % together == 0) boxes_.emplace_back();
+    boxes_.back().grow(boxes[k]), all_.grow(boxes[k]);
   }
 }
 

@@ -56,7 +56,7 @@ std::vector<std::string> motion_sentences(const Tracer& tracer, std::span<const 
 // Where things are that change: paths that do not pass there are the same in all intervals.
 class ChangingRoom {
  public:
-  explicit ChangingRoom(const Tracer& tracer);
+  ChangingRoom(const Tracer& tracer, std::span<const RestInterval> intervals);
   // Whether a ray is in it anywhere up to a distance (m, infinity allowed).
   bool meets(const Ray& ray, double distance) const;
 
