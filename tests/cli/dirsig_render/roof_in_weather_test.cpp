@@ -48,7 +48,7 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
   expect("out/midwave.img", 1, {312.3, 310.3, 303.4});
 
   // Truth as pictures: the colour of a pixel is that of its number on the bar, whose ends the file says.
-  const Raster picture = read_raster(folder_ / "out/afternoon_sun_hours.png");
+  const Raster shown = read_raster(folder_ / "out/afternoon_sun_hours.png");
   const std::string text = read_text(folder_ / "out/afternoon_sun_hours.png");
   const size_t said = text.find("sun hours, linear from ");
   ASSERT_NE(said, std::string::npos);
@@ -59,7 +59,7 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
     const double hours = value("out/afternoon_truth.img", place.column, place.row, 2);
     const Rgb colour = inferno((hours - low) / (high - low));
     const size_t x = place.column * kEnlarged + 2, y = place.row * kEnlarged + 2 + kTop;
-    const float* at = &picture.values[(y * picture.width + x) * picture.channels];
+    const float* at = &shown.values[(y * shown.width + x) * shown.channels];
     std::printf("%.2f h of sun at column %zu: %.0f %.0f %.0f\n", hours, place.column, double{at[0]}, double{at[1]},
                 double{at[2]});
     EXPECT_NEAR(double{at[0]}, colour.r, 2) << hours;
