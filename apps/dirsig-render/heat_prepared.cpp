@@ -130,9 +130,11 @@ double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - 
 
 // A few faces, spread over all, are traced.
 double seeing_changes(const PreparedHeat& p) {
-  constexpr size_t kLooks = 4;
+  constexpr size_t kLooks = 8;
+  constexpr uint32_t kMostPaths = 8;  // in each block
   if (p.elements->rests().empty()) return 0;
-  const PathOptions paths{HeatSpec::kBlocks, 2, p.spec.seed};
+  PathOptions paths = path_options(p.spec);
+  paths.paths = std::min(paths.paths, kMostPaths);
   ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
   const size_t n = p.faces->size(), waves = (n + ExchangePaths::kTogether - 1) / ExchangePaths::kTogether,
                looks = std::min(kLooks, waves);
