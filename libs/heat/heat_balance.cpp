@@ -345,9 +345,10 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
   result.step_error = step_errors(solved);
   tell_done(progress, 1);
-  if (spec.audit > 0 && scene.elements.resting() > 0)
+  const bool audits = spec.audit > 0 && !stands_in_several_places(scene);
+  if (spec.audit > 0 && !audits)
     result.notes.push_back("no audit is made: its walks do not go with what stands in several places");
-  if (spec.audit > 0 && scene.elements.resting() == 0) {
+  if (audits) {
     begin(progress, "audit", static_cast<double>(spec.audit));
     result.audit =
         audit_heat({scene.tracer, scene.elements, scene.faces, scene.optics, spec.periodic, spec.seed}, solved,

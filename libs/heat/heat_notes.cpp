@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "heat/heat_walk.h"
@@ -128,6 +129,18 @@ std::string rests_note(const HeatScene& scene, const HeatOperator& found) {
         "; what moves leaves the exchange meanwhile: it gives shade, counts as warm as the air, and its elements are "
         "followed as if they stood where they rested before";
   return out;
+}
+
+bool stands_in_several_places(const HeatScene& scene) {
+  std::map<uint32_t, bool> known;  // by object
+  for (size_t e = 0; e < scene.elements.size(); ++e) {
+    if (!scene.elements.changes_place(e)) continue;
+    const uint32_t object = scene.elements.point(e, {SampleStream(0, 0, 0), 0, 0}).object;
+    const auto [at, fresh] = known.emplace(object, false);
+    if (fresh) at->second = changes_place(scene.tracer, object);
+    if (at->second) return true;
+  }
+  return false;
 }
 
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {

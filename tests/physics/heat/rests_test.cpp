@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "math/stats.h"
 #include "support/heated_scene_kit.h"
 
 namespace suite {
@@ -130,6 +131,35 @@ TEST(Rests, APanelThatTurnsTakesTheSunByItsTilt) {
   const auto received = [&](size_t k) { return double{r.received[panel * r.moments + k]}; };
   EXPECT_NEAR(received(20), 300, 1);
   EXPECT_NEAR(received(120), 0.75 * 300 + 0.25 * black(300), 6);
+}
+
+// Random walks that look at the scene at their own times, and know neither elements nor intervals: ground below a plate
+// of 350 K that is there by day, in the afternoon.
+TEST(Rests, AnAuditSeesPlacesOfTheirTimes) {
+  const auto too_warm = [](double least) {
+    HeatedScene s;
+    TemperatureSpec ground = asphalt();
+    ground.numbers["thickness_m"] = 0.1, ground.texts["convection"] = "mcadams";
+    s.plane(1, 1, s.heated(1, ground));
+    s.plane(1, 1, s.heated(1, held_at(350)), upside_down({0, 0, 0.5}));
+    s.there({21600, 64800});
+    const HeatKit kit(std::move(s), 2, kDay, {}, least);
+    StillWeather w;
+    w.longwave = 200;
+    HeatSpec spec = spec_of(4096);
+    spec.audit = 8000;
+    const HeatAudit audit = kit.solve(still_loads(w, kDay, kSteps), spec).audit.value();
+    RunningStats off;
+    for (const AuditProbe& probe : audit.probes)
+      if (probe.face == 0 && probe.time > 43200 && probe.time < 64800) off.add(-(probe.more[0] + probe.more[1]) / 2);
+    std::printf("afternoon's ground %s intervals: %+.2f +- %.2f K too warm\n", least > 0 ? "with" : "without",
+                off.mean(), off.stderr_of_mean());
+    return off;
+  };
+  const RunningStats with = too_warm(600), without = too_warm(0);
+  EXPECT_LT(std::fabs(with.mean()), 3 * with.stderr_of_mean());  // significance 0.3 %
+  EXPECT_LT(without.mean() + 3 * without.stderr_of_mean(), 0);   // negative control
+  EXPECT_LT(without.mean() + 3, with.mean());
 }
 
 TEST(Rests, BitsAreTheSameForAnyNumberOfThreads) {
