@@ -10,6 +10,7 @@
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "base/run_app.h"
+#include "truth_picture.h"
 
 namespace suite {
 
@@ -43,8 +44,11 @@ void check_names(const Simulation& sim) {
     for (size_t i = 0; i < sim.sensors.size(); ++i) {
       const std::string& other = sim.sensors[i]->name();
       if (!other.starts_with(one->name() + "_")) continue;
+      std::vector<std::string> endings = truth_picture_names();
       for (const char* ending :
            {"error", "quality", "truth", "material", "tag", "igm", "glt", "geo", "electrons", "dn"})
+        endings.emplace_back(ending);
+      for (const std::string& ending : endings)
         if (other == one->name() + "_" + ending)
           throw Error(sim.sensor_where[i],
                       "the files of sensor '" + other + "' and of sensor '" + one->name() + "' have the same names",

@@ -72,7 +72,9 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
     check_size(p, sim);
   }
   std::optional<LeftOut> left_out;
-  if (sim.heat->leave_out > 0) {
+  if (sim.heat->leave_out > 0 && !p.elements->rests().empty())
+    note("heat: no elements are left out: which matter differs from one interval of rest to another");
+  else if (sim.heat->leave_out > 0) {
     const auto [cold, warm] = std::ranges::minmax(found.weather.air_kelvin);
     left_out.emplace(p, sim, std::array{cold, warm}, progress);
   }
@@ -245,7 +247,7 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
     if (ranks->leads()) bytes = packed_field(*result);
     ranks->share(bytes);
     if (!ranks->leads()) *result = unpacked_field(bytes);
-    if (sim.heat->leave_out > 0 && options.heat.empty()) share_kept(*p, *ranks);
+    if (sim.heat->leave_out > 0 && options.heat.empty() && p->elements->rests().empty()) share_kept(*p, *ranks);
   }
   return {.field = std::make_shared<const FoundField>(p, result, points_of(*p, *result, sim, *scene))};
 }
@@ -283,15 +285,17 @@ double seconds_of(const PreparedHeat& p, const Simulation& sim, const Scene& sce
            static_cast<double>(faces);
   };
   ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
-  Sunlight sun = untraced_sunlight(*p.faces, weather.course, paths);
+  Sunlight sun = untraced_sunlight(*p.elements, *p.faces, weather.course, paths);
   const double infrared = seconds(ExchangePaths::kTogether, [&](FaceRange r) {
     trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, r, exchange);
   });
-  return infrared + seconds(Sunlight::kTogether, [&](FaceRange r) {
-           for (const SunStage stage : {SunStage::straight, SunStage::scattered})
-             trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths, kSunJoins, stage, r,
-                            sun);
-         });
+  const double more =
+      p.elements->rests().empty() ? 0 : seeing_changes(p) * static_cast<double>(p.elements->rests().size() - 1);
+  return (1 + more) * infrared + (1 + 0.7 * more) * seconds(Sunlight::kTogether, [&](FaceRange r) {
+                                   for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+                                     trace_sunlight(*p.tracer, *p.elements, *p.faces, p.optics, weather.course, paths,
+                                                    kSunJoins, stage, r, sun);
+                                 });
 }
 
 }  // namespace
@@ -303,7 +307,9 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
   // A face's path has a few surfaces; sunlight asks for the sun at each, and from a point for every eight paths at half
   // of the moments straight, and as often again where edges of shadows are.
   const double points = 1.0 * HeatSpec::kBlocks * points_of_beam(path_options(p.spec));
-  const double rays = faces * (p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p));
+  const double later = static_cast<double>(std::max<size_t>(1, p.elements->rests().size()) - 1),
+               seeing = later > 0 ? seeing_changes(p) : 0, more = seeing * later;
+  const double rays = faces * ((1 + more) * p.spec.paths * (2 + 2 + 4 * 1.5) + points * moments_of(p));
   check_size(p, sim);
   const double seconds = seconds_of(p, sim, *scene);
   return strf(
@@ -313,6 +319,11 @@ std::string heat_forecast(const std::shared_ptr<const Scene>& scene, const Simul
          strf(
              "heat: some %.1f s for the rays with %d threads at work, as long to twice as long again for the balance\n",
              seconds / threads(), threads()) +
+         (later > 0
+              ? strf("heat: %.0f intervals of rest; some %.2g %% of the faces see what changes, and are traced in "
+                     "each\n",
+                     later + 1, 100 * seeing)
+              : std::string{}) +
          (p.spec.target > 0
               ? strf("heat: that is with %u paths of a face; target_k asks a pilot for their number\n", p.spec.paths)
               : std::string{});

@@ -58,6 +58,13 @@ std::string placements_of(const Simulation& sim, TimeSpan span) {
   return text;
 }
 
+std::string text_of(const std::vector<RestInterval>& rests) {
+  std::string text;
+  for (const RestInterval& r : rests)
+    text += strf("%.6f %.6f %.6f %.6f;", r.span.begin, r.span.end, r.still.begin, r.still.end);
+  return text;
+}
+
 OperatorIdentity identity_of_search(const PreparedHeat& p, const SunCourse& course, const Simulation& sim) {
   const HeatSpec& spec = p.spec;
   return {
@@ -67,7 +74,8 @@ OperatorIdentity identity_of_search(const PreparedHeat& p, const SunCourse& cour
         strf("%zu of %016llx", p.elements->size(), static_cast<unsigned long long>(p.elements->fingerprint()))},
        {"number of paths", strf("%u", spec.paths)},
        {"seed", strf("%llu", static_cast<unsigned long long>(spec.seed))},
-       {"span", strf("%.3f to %.3f s", spec.span.begin, spec.span.end)}},
+       {"span", strf("%.3f to %.3f s", spec.span.begin, spec.span.end)},
+       {"set of intervals of rest", sha256(text_of(p.elements->rests())).substr(0, 16)}},
       digest_of(course),
       p.faces->ends(),
       path_of(course),
@@ -138,7 +146,7 @@ HeatOperator operator_of(const PreparedHeat& p, const SunCourse& course, const S
     const StoredOperator stored(from, identity);
     found.exchange = untraced_exchange(*p.elements, *p.faces, paths);
     stored.read(found.exchange);
-    found.sun = untraced_sunlight(*p.faces, course, paths);
+    found.sun = untraced_sunlight(*p.elements, *p.faces, course, paths);
     sunlight = take_stored(stored, from, identity, found.sun);
     if (sunlight) give_up(found.sun.lit);
   } else {

@@ -69,6 +69,36 @@ HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
           [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
 }
 
+namespace {
+
+std::vector<RestInterval> rests_of(const Tracer& tracer, const Simulation& sim) {
+  const HeatSpec& spec = sim.heat->spec;
+  if (spec.intervals == 1) return {};
+  std::vector<RestInterval> rests = rest_intervals(tracer, spec.step);
+  if (rests.size() <= spec.intervals) return rests;
+  throw Error(
+      sim.heat->where,
+      strf("what moves, comes or goes rests in %zu intervals of the span, and %zu are the most", rests.size(),
+           spec.intervals),
+      strf("'intervals: %zu' (rays and memory grow with it), a longer step_s, or 'intervals: 1': what moves then "
+           "leaves the exchange, and what comes and goes is in it for its share of the span",
+           rests.size()));
+}
+
+// Places of other times would be those of other elements.
+void check_rests(const PreparedHeat& p, const Simulation& sim) {
+  if (p.cut.rests.empty()) return;
+  const TimeSpan of{p.cut.rests.front().span.begin, p.cut.rests.back().span.end};
+  if (of != p.spec.span)
+    throw Error(
+        sim.heat->where,
+        strf("the file has temperatures of things that move from %g to %g s, the simulation asks for %g to %g s",
+             of.begin, of.end, p.spec.span.begin, p.spec.span.end),
+        "ask for that span with 'from' and 'to', or find them anew");
+}
+
+}  // namespace
+
 PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& job,
                      const std::optional<HeatCut>& cut, bool rays) {
   PreparedHeat p;
@@ -80,10 +110,12 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
   p.optics = heat_optics(*scene, used_materials(*p.tracer), warn);
   const HeatWeather weather = weather_of(sim, *scene);
   p.cut = cut.value_or(HeatCut{p.spec.elements, p.spec.cut_by_sun, {}, {}, {}});
+  if (!cut) p.cut.rests = rests_of(*p.tracer, sim);
+  check_rests(p, sim);
   if (!cut && p.cut.by_sun) p.cut.sun = sun_moments(p.spec.span, [&](double t) { return weather.sun(t).direction; });
   const DaySun sun = day_sun(*p.tracer, p.cut.sun);
   p.elements = std::make_shared<Elements>(*p.tracer, p.optics.has_heat, p.cut.elements, p.spec.span.begin,
-                                          p.cut.by_sun ? &sun : nullptr, p.cut.splits);
+                                          p.cut.by_sun ? &sun : nullptr, p.cut.splits, p.cut.rests);
   p.cut.splits = p.elements->splits();
   p.faces = std::make_unique<HeatFaces>(*p.elements, p.optics);
   check_surroundings({*p.tracer, *p.elements, *p.faces, p.optics}, p.spec);
@@ -95,6 +127,26 @@ PreparedHeat prepare(const std::shared_ptr<const Scene>& scene, const Simulation
 }
 
 double moments_of(const PreparedHeat& p) { return std::round((p.spec.span.end - p.spec.span.begin) / p.spec.step) + 1; }
+
+// A few faces, spread over all, are traced.
+double seeing_changes(const PreparedHeat& p) {
+  constexpr size_t kLooks = 8;
+  constexpr uint32_t kMostPaths = 8;  // in each block
+  if (p.elements->rests().empty()) return 0;
+  PathOptions paths = path_options(p.spec);
+  paths.paths = std::min(paths.paths, kMostPaths);
+  ExchangePaths exchange = untraced_exchange(*p.elements, *p.faces, paths);
+  const size_t n = p.faces->size(), waves = (n + ExchangePaths::kTogether - 1) / ExchangePaths::kTogether,
+               looks = std::min(kLooks, waves);
+  double seeing = 0, faces = 0;
+  for (size_t k = 0; k < looks; ++k) {
+    const size_t begin = waves * k / looks * ExchangePaths::kTogether,
+                 end = std::min(n, begin + ExchangePaths::kTogether);
+    trace_exchange(*p.tracer, *p.elements, *p.faces, p.optics, paths, {begin, end}, exchange);
+    for (size_t f = begin; f < end; ++f) seeing += exchange.rows.changing[f], ++faces;
+  }
+  return seeing / faces;
+}
 
 double bytes_of(const PreparedHeat& p) {
   constexpr double kNodes = 4 * 30 * 8;
@@ -109,9 +161,16 @@ double bytes_of(const PreparedHeat& p) {
   // the search for what solves their equations.
   const double lateral = p.spec.lateral ? 8 * moments * 2 + kNodes * 4 : 0;
   const double errors = kept + paths * 8 / HeatSpec::kBlocks * 3 + 6 * moments + 4.0 * 5 * kHeatParts;
+  // Of later intervals of rest: rows of what is traced, and of the matrices.
+  const double more = seeing_changes(p) * static_cast<double>(std::max<size_t>(1, p.elements->rests().size()) - 1);
+  const double later_tracing = more * (paths * 8 + 2 * moments + 2 * kSkyPatches +
+                                       HeatSpec::kBlocks * (2 * kHeatParts + 8 + 2 * kSkyShapes + 8 + 4)),
+               later_balance = more > 0 ? paths * 8 * 4 + more * paths * 8 * 3 : 0;
   const double told = 4 * moments * 4 + 4.0 * 3 * kHeatParts;  // as the result has it, in place of the paths
   return static_cast<double>(p.faces->size()) *
-         std::max({paths * 8 + std::max({tracing, making, balance + lateral, errors + lateral}), told});
+         std::max({paths * 8 + std::max({tracing + later_tracing, making, balance + lateral + later_balance,
+                                         errors + lateral + later_balance}),
+                   told});
 }
 
 void check_size(const PreparedHeat& p, const Simulation& sim) {

@@ -19,6 +19,8 @@ double moments_of(const PreparedHeat& prepared);
 // the nodes of the slabs. Beside the scene and its elements; ends that paths share, as parts of the sky, make it less:
 // a street of 50000 elements took 190 MB of 247 MB.
 double bytes_of(const PreparedHeat& prepared);
+// Share of the faces that see what changes from one interval of rest to another, about.
+double seeing_changes(const PreparedHeat& prepared);
 // Refuses more than there is room for, before anything is traced.
 void check_size(const PreparedHeat& prepared, const Simulation& simulation);
 

@@ -13,6 +13,7 @@ AppInfo render_info() {
           "  NAME_quality.img flags of every pixel, a sum of the bits that its header names\n"
           "  NAME_truth.img   material, instance, range, hit position (ENU), paths; NaN = nothing there\n"
           "  NAME.png         preview: three bands, or one with a bar (thermal ones in kelvin)\n"
+          "  NAME_sun_hours.png, NAME_temperature.png, ...   of truth about warmth, with a bar\n"
           "  NAME_error_correlation.csv   correlation of the errors of the bands, which share paths\n"
           "and render.json    what was run: every capture with its paths, seconds and errors\n"
           "and what the sensor itself makes: NAME_dn.img, NAME_electrons.img, tables and logs as text.\n"

@@ -11,6 +11,7 @@
 #include "math/stats.h"
 #include "preview.h"
 #include "quantities.h"
+#include "truth_picture.h"
 
 namespace suite {
 
@@ -41,12 +42,13 @@ struct OutputWriter::Image {
   std::vector<Classes> classes;
   std::vector<std::string> files;
   std::optional<Preview> preview;
-  std::vector<float> all;           // [pixel][value], for formats that take a whole picture
-  std::vector<float> all_quality;   // [pixel], likewise
-  std::vector<Vec3> place;          // [pixel], when a geolocation is wanted
-  size_t place_column = 0;          // of the truth: east, north and up
-  size_t unknown = 0;               // numbers that are no quantity
-  std::vector<double> correlation;  // [band][band], summed over rows
+  std::vector<TruthPicture> pictures;  // of truth
+  std::vector<float> all;              // [pixel][value], for formats that take a whole picture
+  std::vector<float> all_quality;      // [pixel], likewise
+  std::vector<Vec3> place;             // [pixel], when a geolocation is wanted
+  size_t place_column = 0;             // of the truth: east, north and up
+  size_t unknown = 0;                  // numbers that are no quantity
+  std::vector<double> correlation;     // [band][band], summed over rows
   std::optional<MapGrid> map;
   std::optional<TimeWindow> window;  // of all rows
   std::string who, description;
@@ -122,6 +124,7 @@ void OutputWriter::open_truth(Image& m, const Delivery& d, const std::string& ba
                               const std::string& about) const {
   const std::vector<std::string>& names = d.result.truth_names;
   if (names.empty()) return;
+  m.pictures = TruthPicture::of(names, spec_.preview_of(d.sensor.name()), m.columns, m.rows);
   m.truth = open(m, base + "_truth", truth_header(h, names, notes_, about));
   for (const ClassSource& source :
        {ClassSource{"material", "nothing", notes_.materials}, ClassSource{"tag", "untagged", notes_.tags}})
@@ -251,6 +254,7 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
     x = std::isnan(x) ? 0 : std::clamp(std::round(x / spec_.scale), 0.0, 65535.0);
   }
   m.preview->append(result);
+  for (TruthPicture& picture : m.pictures) picture.append(result);
   m.radiance->append(radiance);
   m.error->append(error);
   m.quality->append(std::vector<double>(result.quality.begin(), result.quality.end()));
@@ -301,6 +305,10 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
   write_file(m.files.back(), correlation + "\n");
   m.preview->write(base + ".png");
   m.files.push_back(base + ".png");
+  for (const TruthPicture& picture : m.pictures) {
+    m.files.push_back(base + "_" + picture.name() + ".png");
+    picture.write(m.files.back());
+  }
   if (m.unknown && m.wishes.quantity == Quantity::brightness_temperature)
     warn(
         strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "bar_picture.h"
 #include "base/run_app.h"
 #include "spectral/thermometer.h"
 
@@ -12,7 +13,6 @@ namespace suite {
 namespace {
 
 constexpr double kGammaOfScreens = 2.2;  // near sRGB
-constexpr uint32_t kMost = 15000;        // pixels, which leaves room for a bar on a canvas
 
 // The truth column that tells where nothing was hit, and how.
 struct Emptiness {
@@ -27,50 +27,7 @@ Emptiness emptiness_of(const std::vector<std::string>& names) {
   return {};
 }
 
-float percentile(std::vector<float>& values, double percent) {
-  const auto at = values.begin() + std::lround(percent / 100 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-// Black: a percentile of each pixel's darkest band, so that no more pixels lose a colour there; white: of its
-// brightest. Pixels that are not finite do not count, nor those where nothing is and nothing shines. The two are apart
-// in any case.
-std::array<double, 2> ends_of(std::span<const float> values, const std::vector<bool>& nothing, const PreviewSpec& spec,
-                              double least_apart) {
-  if (spec.range) return *spec.range;
-  const size_t bands = values.size() / std::max(size_t{1}, nothing.size());
-  std::vector<float> darkest, brightest;
-  for (size_t i = 0; i < nothing.size(); ++i) {
-    const float* v = &values[i * bands];
-    const auto [low, high] = std::minmax_element(v, v + bands);
-    if (!std::isfinite(*low) || !std::isfinite(*high) || (nothing[i] && *low == 0 && *high == 0)) continue;
-    darkest.push_back(*low), brightest.push_back(*high);
-  }
-  if (darkest.empty()) return {0, 1};
-  const double low = percentile(darkest, spec.low_percent), high = percentile(brightest, spec.high_percent);
-  if (high - low >= least_apart && high > low) return {low, high};
-  if (least_apart > 0) return {(low + high - least_apart) / 2, (low + high + least_apart) / 2};
-  return high > 0 ? std::array<double, 2>{0, high} : std::array<double, 2>{0, 1};
-}
-
 }  // namespace
-
-// Where things are in a picture: without a bar nothing but the picture; with one a title above and the bar at the
-// right, and what is small is enlarged so that both are legible.
-struct Preview::Layout {
-  Layout(int columns, int rows, bool bar) {
-    enlarged = bar ? std::max(1, std::min((kLegible + rows - 1) / rows, 2 * kLegible / columns)) : 1;
-    picture_width = width = columns * enlarged, height = rows * enlarged;
-    if (!bar) return;
-    scale = std::clamp((std::min(width, height) + 140) / 280, 1, 5);
-    top = 2 * Canvas::text_height(scale);
-    height = top + std::max(height, 100 * scale);
-    width += 16 * scale + bar_labels_width(scale);
-  }
-  static constexpr int kLegible = 400;
-  int enlarged, picture_width, width, height, scale = 1, top = 0;
-};
 
 Preview::Preview(std::span<const Band> bands, std::span<const size_t> chosen, PreviewSpec spec, uint32_t columns,
                  uint32_t rows)
@@ -78,7 +35,7 @@ Preview::Preview(std::span<const Band> bands, std::span<const size_t> chosen, Pr
       chosen_(chosen.begin(), chosen.end()),
       columns_(columns),
       rows_(rows),
-      stride_(std::max({1u, (columns + kMost - 1) / kMost, (rows + kMost - 1) / kMost})) {
+      stride_(picture_stride(columns, rows)) {
   for (const size_t b : chosen_) bands_.push_back(bands[b]);
   kelvin_ = chosen_.size() == 1 && spec_.show != PreviewSpec::Show::radiance &&
             (spec_.show == PreviewSpec::Show::kelvin || bands_[0].center_um > kThermalFrom);
@@ -112,7 +69,7 @@ RasterStyle Preview::style(std::span<const float> all, size_t values, bool same_
     }
   RasterStyle style;
   style.display = chosen_;
-  style.ends = ends_of(shown, nothing_, spec, 0);
+  style.ends = picture_ends(shown, nothing_, spec, 0);
   if (!kelvin_) style.gamma = spec_.gamma > 0 ? spec_.gamma : kGammaOfScreens;
   constexpr int kSteps = 16;
   for (int i = 0; kelvin_ && i <= kSteps; ++i) {
@@ -136,11 +93,11 @@ Rgb Preview::color(double t) const {
 
 void Preview::write(const std::string& path) {
   if (kelvin_) to_kelvin();
-  const std::array<double, 2> ends = ends_of(values_, nothing_, spec_, kelvin_ ? 0.5 : 0);
+  const std::array<double, 2> ends = picture_ends(values_, nothing_, spec_, kelvin_ ? 0.5 : 0);
   const bool bar = spec_.bar && chosen_.size() == 1;
   const int columns = static_cast<int>((columns_ + stride_ - 1) / stride_),
             rows = static_cast<int>((rows_ + stride_ - 1) / stride_);
-  const Layout at(columns, rows, bar);
+  const BarLayout at(columns, rows, bar);
   Canvas canvas(at.width, at.height, bar ? kWhite : kBlack);
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
@@ -151,7 +108,12 @@ void Preview::write(const std::string& path) {
     }
   if (bar) {
     const bool empty = kelvin_ && std::any_of(values_.begin(), values_.end(), [](float v) { return std::isnan(v); });
-    draw_legend(canvas, at, ends, empty);
+    const std::string what = kelvin_ ? "brightness temperature, " : "radiance, ";
+    draw_legend(canvas, at,
+                {{bands_[0].name + ": " + what + unit(), what + unit(), std::string(unit())},
+                 ends,
+                 [&](double t) { return color(t); },
+                 empty});
   }
   write_png(path, canvas,
             command_line() + strf("; linear from %g to %g %s (", ends[0], ends[1], unit()) +
@@ -159,24 +121,6 @@ void Preview::write(const std::string& path) {
                 (kelvin_           ? "), inferno"
                  : spec_.gamma > 0 ? strf("), gamma %g", spec_.gamma)
                                    : "), sRGB"));
-}
-
-void Preview::draw_legend(Canvas& canvas, const Layout& at, std::array<double, 2> ends, bool empty) const {
-  const int s = at.scale, line = Canvas::text_height(s), x = at.picture_width + 6 * s;
-  const std::string what = kelvin_ ? "brightness temperature, " : "radiance, ";
-  for (const std::string& title : {bands_[0].name + ": " + what + unit(), what + unit(), std::string(unit())})
-    if (Canvas::text_width(title, s) <= at.width) {
-      canvas.text(2 * s, (at.top - line) / 2, title, kBlack, s);
-      break;
-    }
-  const int bottom = std::min(at.height - (empty ? 3 * line : line / 2), at.top + 60 * line);
-  draw_bar(
-      canvas, x, at.top + line / 2, 10 * s, bottom - at.top - line / 2, ends[0], ends[1],
-      [&](double t) { return color(t); }, s);
-  if (!empty) return;
-  canvas.fill(x, bottom + line, 10 * s, line, kGrey);
-  canvas.frame(x, bottom + line, 10 * s, line, kBlack);
-  canvas.text(x + 17 * s, bottom + line, "nothing", kBlack, s);
 }
 
 void check_preview(const Sensor& sensor, const PreviewSpec& spec) {

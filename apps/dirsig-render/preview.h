@@ -34,8 +34,6 @@ class Preview {
   double gamma(double t) const;
   Rgb color(double t) const;  // of one band, from 0 to 1
   const char* unit() const { return kelvin_ ? "K" : "W/(m2 sr um)"; }
-  struct Layout;
-  void draw_legend(Canvas& canvas, const Layout& at, std::array<double, 2> ends, bool empty) const;
 
   PreviewSpec spec_;
   std::vector<Band> bands_;  // chosen ones

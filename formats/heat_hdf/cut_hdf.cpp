@@ -6,7 +6,27 @@ namespace suite {
 
 namespace {
 
+constexpr size_t kMostRests = 1000;
 constexpr double kMostMoments = 1000, kMostElements = 1e8, kMostBeam = 1e6;
+
+}  // namespace
+
+namespace {
+
+std::vector<RestInterval> take_rests(h5::Reader& r) {
+  const std::vector<double> v = r.get<double>("/cut/rests", "s", 4);
+  std::vector<RestInterval> out;
+  for (size_t k = 0; k < v.size(); k += 4) {
+    const RestInterval rest{{v[k], v[k + 1]}, {v[k + 2], v[k + 3]}};
+    const bool follows = out.empty() || rest.span.begin == out.back().span.end;
+    if (!(follows && rest.span.begin <= rest.still.begin && rest.still.begin <= rest.still.end &&
+          rest.still.end <= rest.span.end && std::isfinite(rest.span.begin) && std::isfinite(rest.span.end)))
+      r.fail("has intervals of rest that cannot be");
+    out.push_back(rest);
+  }
+  if (out.size() < 2 || out.size() > kMostRests) r.fail(strf("has %zu intervals of rest", out.size()));
+  return out;
+}
 
 }  // namespace
 
@@ -19,6 +39,12 @@ void put_cut(h5::Writer& w, const HeatCut& cut) {
     std::vector<uint32_t> splits;
     for (const CellSplit& s : cut.splits) splits.insert(splits.end(), {s.unit, s.cell});
     w.put("/cut/splits", splits, "1", 2);
+  }
+  if (!cut.rests.empty()) {
+    std::vector<double> rests;
+    for (const RestInterval& r : cut.rests)
+      rests.insert(rests.end(), {r.span.begin, r.span.end, r.still.begin, r.still.end});
+    w.put("/cut/rests", rests, "s", 4);
   }
   if (cut.sun.empty()) return;
   std::vector<double> time, direct, towards;
@@ -38,6 +64,7 @@ HeatCut take_cut(h5::Reader& r) {
   if (!(v[0] >= 1 && v[0] <= kMostElements)) r.fail(strf("was made for %g elements", v[0]));
   if (!(v[1] >= 0 && v[1] <= kMostMoments)) r.fail(strf("has elements cut by %g places of the sun", v[1]));
   HeatCut cut{static_cast<size_t>(v[0]), by == "sun", {}, {}, {}};
+  if (r.has("/cut/rests")) cut.rests = take_rests(r);
   if (r.has("/cut/kept")) cut.kept = r.get<uint32_t>("/cut/kept", "1");
   if (r.has("/cut/splits")) {
     const std::vector<uint32_t> splits = r.get<uint32_t>("/cut/splits", "1", 2);

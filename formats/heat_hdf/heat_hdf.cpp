@@ -10,7 +10,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat", *kVersion = "5";
+constexpr const char *kFormat = "suite heat", *kVersion = "6";
 
 // A number of 64 bits as two of 32, exactly.
 std::vector<uint32_t> halves(uint64_t v) { return {static_cast<uint32_t>(v >> 32), static_cast<uint32_t>(v)}; }

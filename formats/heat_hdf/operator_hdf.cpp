@@ -13,7 +13,7 @@ namespace suite {
 
 namespace {
 
-constexpr const char *kFormat = "suite heat operator", *kVersion = "5";
+constexpr const char *kFormat = "suite heat operator", *kVersion = "6";
 constexpr const char *kInfrared = "infrared", *kSunlight = "sunlight", *kStraight = "straight_sunlight";
 constexpr float kMost = 1e9f;  // of any value; means of few points corrected by others (passing_edges.h) may be below 0
 constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
@@ -21,7 +21,8 @@ constexpr const char *kMirrored = "mirrored_places_endless_moving_unfinished",
 constexpr const char* kRadius = "radius_rad_of_the_sun";
 constexpr const char* kHint = "remove it to find the paths again, or write to another folder";
 
-// The datasets of a part, each with its values a face, and the least that a value can be.
+// The datasets of a part, each with its values a row, and the least that a value can be. What only faces have is
+// shorter than the rows are.
 template <class Exchange, class Visit>
 requires std::is_same_v<std::remove_const_t<Exchange>, ExchangePaths>
 void visit_all(Exchange& e, const Visit& visit) {
@@ -29,6 +30,7 @@ void visit_all(Exchange& e, const Visit& visit) {
   visit("/infrared/end", "1", each, std::span(e.ends), 0.0f);
   visit("/infrared/weight", "1", each, std::span(e.weights), 0.0f);
   visit("/infrared/emissivity", "1", size_t{1}, std::span(e.emissivity), 0.0f);
+  if (!e.rows.changing.empty()) visit("/infrared/changing", "1", size_t{1}, std::span(e.rows.changing), 0.0f);
 }
 // Rows in two bytes a number, so many a face.
 template <class Rows, class Visit>
@@ -49,6 +51,7 @@ template <class Sun, class Visit>
 requires std::is_same_v<std::remove_const_t<Sun>, Sunlight>
 void visit_all(Sun& s, const Visit& visit) {
   visit_straight(s, visit);
+  if (!s.rows.changing.empty()) visit("/sunlight/changing", "1", size_t{1}, std::span(s.rows.changing), 0.0f);
   visit_rows(visit, "/sunlight/sky", "sr", 1, s.sky, 0.0f);
   visit("/sunlight/below", "sr", size_t{1}, std::span(s.below), 0.0f);
   visit_rows(visit, "/sunlight/sky_of_block", "sr", s.blocks, s.sky_of_block, -kMost);
@@ -77,6 +80,18 @@ void visit_all(const Straight<Sun>& straight, const Visit& visit) {
   visit("/sunlight/lit", "1", s.faces() > 0 ? s.lit.size() / s.faces() : 0, std::span(s.lit), 0.0f);
 }
 
+const PathRows& rows_of(const ExchangePaths& found) { return found.rows; }
+const PathRows& rows_of(const Sunlight& found) { return found.rows; }
+template <class Sun>
+const PathRows& rows_of(const Straight<Sun>& straight) {
+  return straight.of.rows;
+}
+// The part of a range that a dataset has.
+FaceRange range_in(size_t values, size_t width, FaceRange range) {
+  const size_t rows = width > 0 ? values / width : 0;
+  return {std::min(range.begin, rows), std::min(range.end, rows)};
+}
+
 const char* name_of(const ExchangePaths&) { return kInfrared; }
 const char* name_of(const Sunlight&) { return kSunlight; }
 template <class Sun>
@@ -103,7 +118,9 @@ void put(h5::Writer& w, const Found& found, FaceRange range, PathCount count, co
   w.attribute(name + "_begin_end_rays_unfinished", numbers);
   visit_all(found, [&](const std::string& dataset, const char* units, size_t width, auto values, float) {
     using Value = typename decltype(values)::value_type;
-    w.put(dataset, std::span<const Value>(values).subspan(range.begin * width, range.size() * width), units, width);
+    const FaceRange part = range_in(values.size(), width, range);
+    if (part.size() > 0 || range.size() == 0)
+      w.put(dataset, std::span<const Value>(values).subspan(part.begin * width, part.size() * width), units, width);
   });
 }
 
@@ -179,19 +196,25 @@ class Stored {
       reader_.fail("was found with the sun elsewhere: on another day, at another place or in other steps");
   }
 
-  // Of a file with faces in all. Adds to the counts.
+  // The rows that it has.
+  FaceRange range(const std::string& name) {
+    const std::vector<double> v = counts(name);
+    return {static_cast<size_t>(v[0]), static_cast<size_t>(v[1])};
+  }
+  // Adds to the counts.
   template <class Found>
-  FaceRange read(Found&& into, size_t faces) {
-    using Kind = std::remove_cvref_t<Found>;
+  FaceRange read(Found&& into) {
+    constexpr size_t kTogether = std::remove_cvref_t<Found>::kTogether;
     const std::string name = name_of(into);
     ends_ = identity_.ends;
-    const std::vector<double> v = reader_.numbers(name + "_begin_end_rays_unfinished", 6);
-    for (const double n : v)
-      if (!(n >= 0 && n <= 4294967295.0 && n == std::floor(n))) reader_.fail("counts what cannot be");
+    const std::vector<double> v = counts(name);
     const FaceRange range{static_cast<size_t>(v[0]), static_cast<size_t>(v[1])};
-    if (!(range.begin < range.end && range.end <= faces) || range.begin % Kind::kTogether != 0 ||
-        (range.end % Kind::kTogether != 0 && range.end != faces))
-      reader_.fail(strf("has faces %zu to %zu of %zu", range.begin, range.end, faces));
+    const PathRows& rows = rows_of(into);
+    const auto [first, last] = rows.alike(range.begin);
+    const bool piece = range.end <= last && (range.begin - first) % kTogether == 0 &&
+                       ((range.end - first) % kTogether == 0 || range.end == last);
+    if (!(range.begin < range.end) || (!piece && range != FaceRange{0, rows.size()}))
+      reader_.fail(strf("has faces %zu to %zu of %zu", range.begin, range.end, rows.size()));
     visit_all(into, [&](const std::string& dataset, const char* units, size_t width, auto values, float least) {
       take(dataset, units, width, range, values, least);
     });
@@ -200,6 +223,14 @@ class Stored {
     };
     count_of(into) += {whole(v[2], v[3]), whole(v[4], v[5])};
     return range;
+  }
+  // Which faces see changes, and room for what they have.
+  template <class Found>
+  void read_changing(Found& into) {
+    if (into.rows.changing.empty()) return;
+    take(std::string("/") + name_of(into) + "/changing", "1", 1, {0, into.rows.faces}, std::span(into.rows.changing),
+         0.0f);
+    into.make_more();
   }
   void read_mirrored(Sunlight& into) {
     const std::vector<double> v = reader_.numbers(kMirrored, 4);
@@ -215,9 +246,17 @@ class Stored {
   [[noreturn]] void fail(const std::string& what) const { reader_.fail(what); }
 
  private:
+  std::vector<double> counts(const std::string& name) {
+    std::vector<double> v = reader_.numbers(name + "_begin_end_rays_unfinished", 6);
+    for (const double n : v)
+      if (!(n >= 0 && n <= 4294967295.0 && n == std::floor(n))) reader_.fail("counts what cannot be");
+    return v;
+  }
   template <class Value>
   void take(const std::string& dataset, const char* units, size_t width, FaceRange range, std::span<Value> values,
             float least) {
+    range = range_in(values.size(), width, range);
+    if (range.size() == 0) return;
     const auto opened = reader_.open(dataset, h5::native<Value>(), units, width, static_cast<long long>(range.size()));
     Value* to = &values[range.begin * width];
     reader_.read(dataset, opened, h5::native<Value>(), to, 0, opened.count);
@@ -239,9 +278,9 @@ class Folder final : public HeatPieces {
  public:
   Folder(std::string folder, OperatorIdentity identity, double seconds)
       : folder_(std::move(folder)), identity_(std::move(identity)), seconds_(seconds) {}
-  std::vector<FaceRange> take(ExchangePaths& out) override { return take_all(out, out.faces()); }
-  std::vector<FaceRange> take(Sunlight& out, SunStage stage) override {
-    return stage == SunStage::straight ? take_all(Straight<Sunlight>{out}, out.faces()) : take_all(out, out.faces());
+  std::vector<FaceRange> take(ExchangePaths& out, FaceRange of) override { return take_all(out, of); }
+  std::vector<FaceRange> take(Sunlight& out, FaceRange of, SunStage stage) override {
+    return stage == SunStage::straight ? take_all(Straight<Sunlight>{out}, of) : take_all(out, of);
   }
   void keep(const ExchangePaths& found, FaceRange range, PathCount count) override { put_one(found, range, count); }
   void keep(const Sunlight& found, SunStage stage, FaceRange range, PathCount count) override {
@@ -254,7 +293,7 @@ class Folder final : public HeatPieces {
     return folder_ + strf("/%s_%010zu.h5", part, range.begin);
   }
   template <class Found>
-  std::vector<FaceRange> take_all(Found&& out, size_t faces) {
+  std::vector<FaceRange> take_all(Found&& out, FaceRange of) {
     std::vector<std::string> files;
     const std::string prefix = std::string(name_of(out)) + "_";
     std::error_code none;
@@ -266,7 +305,9 @@ class Folder final : public HeatPieces {
     for (const std::string& path : files) {
       Stored stored(path, identity_);
       if (prefix != std::string(kInfrared) + "_") stored.check_sun();
-      const FaceRange range = stored.read(out, faces);
+      const size_t first = stored.range(name_of(out)).begin;
+      if (first < of.begin || (first >= of.end && of.begin == 0 && rows_of(out).intervals > 1)) continue;
+      const FaceRange range = stored.read(out);
       if (!there.empty() && range.begin < there.back().end) stored.fail("has faces that another piece has, too");
       there.push_back(range);
     }
@@ -296,9 +337,8 @@ void write_operator(const std::string& path, const HeatOperator& found, const Op
   h5::Writer w(file.temporary(), path);
   put_identity(w, identity);
   w.attribute("arguments", made_by);
-  const FaceRange all{0, found.exchange.faces()};
-  put(w, found.exchange, all, found.exchange.count, identity.sun);
-  put(w, found.sun, all, found.sun.count, identity.sun);
+  put(w, found.exchange, {0, found.exchange.rows.size()}, found.exchange.count, identity.sun);
+  put(w, found.sun, {0, found.sun.rows.size()}, found.sun.count, identity.sun);
   put_mirrored(w, found.sun);
   put_path(w, identity.path);
   put_cut(w, identity.cut);
@@ -310,7 +350,8 @@ struct StoredOperator::File : Stored {
   using Stored::Stored;
   template <class Found>
   void read_all(Found& into) {
-    if (read(into, into.faces()) != FaceRange{0, into.faces()}) fail("has not all faces");
+    read_changing(into);
+    if (read(into) != FaceRange{0, into.rows.size()}) fail("has not all faces");
   }
 };
 

@@ -109,6 +109,7 @@ std::optional<HeatRequest> read_heat_request(const Params& root, const Simulatio
   s.audit = static_cast<size_t>(heat->integer("audit", 0, 100'000'000, 0));
   if (s.audit == 1)
     throw heat->at("audit").error("one probe has no error", "two at least, thousands for tenths of a kelvin");
+  s.intervals = static_cast<size_t>(heat->integer("intervals", 1, 1000, static_cast<long long>(s.intervals)));
   s.seed = sim.pipeline.seed;
   read_what_is_kept(*heat, out);
   const auto from = heat->find("from"), to = heat->find("to");

@@ -39,6 +39,8 @@ void CompactRows::set(size_t row, std::span<const float> values) {
                 : uint16_t{0};
 }
 
+void CompactRows::resize(size_t rows) { least_.resize(rows), step_.resize(rows), above_.resize(rows * width_); }
+
 void CompactRows::get(size_t row, std::span<float> values) const {
   for (size_t k = 0; k < values.size(); ++k) values[k] = static_cast<float>(at(row, k));
 }

@@ -24,6 +24,7 @@ class CompactRows {
   // Numbers that are not finite make all of their row NaN.
   void set(size_t row, std::span<const float> values);
   void get(size_t row, std::span<float> values) const;
+  void resize(size_t rows);           // more are 0
   std::vector<float> floats() const;  // of all rows, one after the other
 
   // As they are kept, for files: by row; by number.

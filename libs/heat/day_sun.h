@@ -26,11 +26,12 @@ DaySun day_sun(const Tracer& tracer, std::vector<SunMoment> asked);
 
 // What elements were made with; with it the same are made again, whatever the day.
 struct HeatCut {
-  size_t elements = 0;            // as asked for
-  bool by_sun = false;            // else of about equal areas
-  std::vector<SunMoment> sun;     // of these moments, none where it never rose
-  std::vector<uint32_t> kept;     // of these elements, ascending, where some were left out
-  std::vector<CellSplit> splits;  // what was cut; none: to be found with the sun
+  size_t elements = 0;                   // as asked for
+  bool by_sun = false;                   // else of about equal areas
+  std::vector<SunMoment> sun;            // of these moments, none where it never rose
+  std::vector<uint32_t> kept;            // of these elements, ascending, where some were left out
+  std::vector<CellSplit> splits;         // what was cut; none: to be found with the sun
+  std::vector<RestInterval> rests = {};  // of what moves, comes or goes; none: of all of the time
   bool operator==(const HeatCut&) const = default;
 };
 

@@ -60,15 +60,16 @@ struct Elements::Seen {
     std::vector<Slot> slots;
     std::vector<double> areas;
   };
-  std::map<std::pair<uint32_t, uint32_t>, Kind> kinds;
-  std::vector<std::pair<Slot, uint32_t>> exact;  // with the primitive
+  std::map<std::array<uint32_t, 3>, Kind> kinds;  // what moves is of its own
+  std::vector<std::pair<Slot, uint32_t>> exact;   // with the primitive
   double area = 0;
 };
 
 Elements::Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time, const DaySun* sun,
-                   std::span<const CellSplit> known)
-    : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()) {
+                   std::span<const CellSplit> known, std::span<const RestInterval> rests)
+    : tracer_(tracer), budget_(budget), time_(time), lookup_(tracer.scene()), rests_(rests.begin(), rests.end()) {
   SUITE_CHECK(budget > 0 && heated.size() == tracer.scene().materials.size());
+  if (!rests_.empty()) changing_ = std::make_unique<const ChangingRoom>(tracer, rests_);
   Seen seen;
   gather(seen, heated);
   if (seen.kinds.empty() && seen.exact.empty())
@@ -92,14 +93,15 @@ void Elements::gather(Seen& seen, const std::vector<bool>& heated) {
   const auto is_wanted = [&](uint32_t m) { return m != kNone && wanted[m]; };
   tracer_.each("surfaces whose temperatures are to be found", made_of(scene, wanted),
                [&](uint32_t number, const TracedObject& o) {
-                 if (o.node != kNone && !stays_put(tracer_, number)) {
+                 if (slot_of_.contains(o.instance)) return;
+                 const std::optional<Slot> found = slot_for(number, o);
+                 if (!found) {
                    ++moving_;
                    return;
                  }
-                 if (slot_of_.contains(o.instance)) return;
                  slot_of_[o.instance] = 0;
-                 const Affine3 place = tracer_.to_world(number, time_);
-                 const Slot slot{number, o.instance, 0, place, place.inverse()};
+                 const Slot slot = *found;
+                 const Affine3& place = slot.to_world;
                  if (o.primitive != kNone) {
                    seen.exact.emplace_back(slot, o.primitive);
                    const Primitive& primitive = scene.primitives[o.primitive];
@@ -107,7 +109,7 @@ void Elements::gather(Seen& seen, const std::vector<bool>& heated) {
                    for (size_t f = 0; f < faces.size(); ++f) seen.area += faces.area(f) * size_of(place);
                    return;
                  }
-                 Seen::Kind& kind = seen.kinds[{o.mesh, o.material_override}];
+                 Seen::Kind& kind = seen.kinds[{o.mesh, o.material_override, slot.places}];
                  const Mesh& mesh = scene.meshes[o.mesh];
                  if (kind.slots.empty()) {
                    mesh.require();
@@ -225,7 +227,7 @@ double Elements::look_over(uint32_t cell, const std::function<void(const Hit&, d
     const uint32_t triangle = group.mesh->point(inside, 0, 0, 0).triangle;
     if (!lookup_.is_mapped(lookup_.plain(tracer_.object(object), triangle))) {
       group.mesh->each_piece(inside, [&](const MeshCells::Point& p, double area) {
-        look(tracer_.on_triangle(object, p.triangle, p.u, p.v, time_), area);
+        look(tracer_.on_triangle(object, p.triangle, p.u, p.v, time_of(slots_[group.first_slot])), area);
       });
       return 1;
     }
@@ -285,19 +287,20 @@ uint32_t Elements::Grid::cell_at(const PrimitiveFaces::Place& p) const {
   return cuts.find(part.first + row * part.columns + column, {p.a, p.b});
 }
 
-std::optional<uint32_t> Elements::cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const {
-  const auto found = slot_of_.find(instance);
+std::optional<uint32_t> Elements::cell_at(const HeatedPlace& place, double time) const {
+  const auto found = slot_of_.find(place.instance);
   if (found == slot_of_.end() || slots_.empty()) return std::nullopt;
   const Slot& slot = slots_[found->second];
   const Group& group = groups_[slot.group];
   if (group.mesh) {
-    const uint32_t inside = group.mesh->whole(triangle) ? group.mesh->cell_of(triangle, {})
-                                                        : group.mesh->cell_of(triangle, slot.to_local.point(position));
+    const uint32_t inside = group.mesh->whole(place.triangle)
+                                ? group.mesh->cell_of(place.triangle, {})
+                                : group.mesh->cell_of(place.triangle, to_local_at(slot, time).point(place.position));
     if (inside == kNone) return std::nullopt;
     return group.first_cell + inside;
   }
   const Grid& grid = grids_[group.grid];
-  return group.first_cell + grid.cell_at(grid.faces.place(slot.to_local.point(position)));
+  return group.first_cell + grid.cell_at(grid.faces.place(to_local_at(slot, time).point(place.position)));
 }
 
 bool Elements::covers(const Hit& hit) const {
@@ -307,13 +310,13 @@ bool Elements::covers(const Hit& hit) const {
   const Group& group = groups_[slot.group];
   if (group.mesh) return true;
   const PrimitiveFaces& faces = grids_[group.grid].faces;
-  const Vec3 local = slot.to_local.point(hit.position);
+  const Vec3 local = to_local_at(slot, hit.time).point(hit.position);
   const PrimitiveFaces::Place p = faces.place(local);
   return length(faces.point(p.face, p.a, p.b).position - local) <= 1e-3 * (1 + length(local));
 }
 
-std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material) const {
-  const std::optional<uint32_t> cell = cell_at(place.instance, place.triangle, place.position);
+std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material, double time) const {
+  const std::optional<uint32_t> cell = cell_at(place, time);
   if (!cell) return std::nullopt;
   std::optional<uint32_t> best;
   for (uint32_t e = first_element_[*cell]; e < first_element_[*cell + 1]; ++e) {
@@ -327,7 +330,8 @@ std::optional<uint32_t> Elements::at(const HeatedPlace& place, uint32_t material
 }
 
 std::optional<uint32_t> Elements::at(const Hit& hit, uint32_t material) const {
-  return at(HeatedPlace{hit.position, hit.normal, tracer_.object(hit.object).instance, hit.triangle}, material);
+  return at(HeatedPlace{hit.position, hit.normal, tracer_.object(hit.object).instance, hit.triangle}, material,
+            hit.time);
 }
 
 double Elements::largest() const {

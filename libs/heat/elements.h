@@ -1,8 +1,9 @@
 // Elements: pieces of the scene's surface that have one temperature each, made of a material, an instance and a cell of
 // its triangles or of its exact surface.
 //
-// Assumes: what is at rest in the tracer it is made from, be it there all the time or not. Instances that are more than
-// the budget are put together with their neighbours of the same kind.
+// Assumes: what is at rest in the tracer it is made from, be it there all the time or not, or rests there now and then
+// (rests.h): areas and normals of that are those of its first rest. Instances that are more than the budget are put
+// together with their neighbours of the same kind.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,6 +15,7 @@
 
 #include "heat/mesh_cells.h"
 #include "heat/primitive_faces.h"
+#include "heat/rests.h"
 #include "math/sampling.h"
 #include "surface/material_lookup.h"
 #include "trace/tracer.h"
@@ -36,10 +38,11 @@ struct ElementContact {
 };
 
 // Numbers of the choice of a point; one block of four numbers (math/sampling.h) an attempt. stratum: of so many equal
-// parts of the element, where it can be cut into such (strata.h), else it makes no difference.
+// parts of the element, where it can be cut into such (strata.h), else it makes no difference. interval: of rest, where
+// things stand; kNone: where they rest first.
 struct PointDraw {
   const SampleStream& stream;
-  uint32_t sample = 0, first_block = 0, stratum = 0, strata = 1;
+  uint32_t sample = 0, first_block = 0, stratum = 0, strata = 1, interval = kNone;
 };
 
 // What tells places apart: direct sun through the day on their fronts, W/m2, so many numbers a place.
@@ -60,10 +63,14 @@ class Elements {
   // Surfaces without end are cut off half the scene's size around it; beyond they are as warm as at the edge. Keeps a
   // reference to the tracer. time: s, within its window. sun: where it differs most within a cell, area counting, cells
   // are cut in two until there are as many as the budget (elements_split.cpp); none = all of about equal areas. known:
-  // what was cut then, instead of asking the sun again. Error: nothing of these materials is at rest; what was cut is
-  // not there.
+  // what was cut then, instead of asking the sun again. rests: of the tracer's window; what moves has elements where it
+  // rests in one of them. Error: nothing of these materials is at rest; what was cut is not there.
   Elements(const Tracer& tracer, const std::vector<bool>& heated, size_t budget, double time,
-           const DaySun* sun = nullptr, std::span<const CellSplit> known = {});
+           const DaySun* sun = nullptr, std::span<const CellSplit> known = {},
+           std::span<const RestInterval> rests = {});
+  const std::vector<RestInterval>& rests() const { return rests_; }
+  // What changes from one to another; null without any.
+  const ChangingRoom* changing() const { return changing_.get(); }
   const std::vector<CellSplit>& splits() const { return splits_; }
 
   size_t size() const { return elements_.size(); }
@@ -73,10 +80,17 @@ class Elements {
   // Places (m) all over the element's cell, so many on each instance that it is of, one instance after the other.
   std::vector<Vec3> places_by_instance(size_t element, const SampleStream& stream, uint32_t each) const;
   // The element of a material at a place; nothing where none is (what moves, what was left out). Where the cell never
-  // had one of this material, as at the edges of maps, the largest one of the cell.
-  std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material) const;
+  // had one of this material, as at the edges of maps, the largest one of the cell. time: s, of what moves.
+  std::optional<uint32_t> at(const HeatedPlace& place, uint32_t material, double time) const;
   std::optional<uint32_t> at(const Hit& hit, uint32_t material) const;
-  // The place as a hit; nothing where its instance has no elements.
+  // False on what moves then, though it rests at other times.
+  bool rests(const Hit& hit) const;
+  // For how much of an interval of rest (of the tracer's window, where there are none) each element is there and rests;
+  // empty when all are always.
+  std::vector<float> presence(size_t interval) const;
+  // Whether the element is of what stands in other places at other times.
+  bool changes_place(size_t element) const;
+  // The place as a hit; nothing where its instance has no elements, or stands elsewhere at other times.
   std::optional<Hit> hit_at(const HeatedPlace& place) const;
   // False beyond the places where surfaces without end are cut off, and on what has no elements.
   bool covers(const Hit& hit) const;
@@ -99,7 +113,8 @@ class Elements {
   size_t budget() const { return budget_; }  // as asked
   double total_area() const { return total_area_; }
   size_t instances() const { return slots_.size(); }
-  size_t moving() const { return moving_; }  // instances of these materials that move: they have none
+  size_t moving() const { return moving_; }          // instances of these materials that move: they have none
+  size_t resting() const { return places_.size(); }  // that move, and rest now and then
   static constexpr int kLooks = 64;  // points of a cell of a class map that are looked at, to find its materials
   size_t shared_cells() const { return shared_cells_; }  // that hold several materials
   double largest() const;                                // m2, of an element
@@ -109,7 +124,8 @@ class Elements {
  private:
   struct Slot {  // an instance
     uint32_t object, instance, group;
-    Affine3 to_world, to_local;
+    Affine3 to_world, to_local;  // where it rests first
+    uint32_t places = kNone;     // of those of what is elsewhere at other times
   };
   struct Group {  // instances that share elements
     uint32_t first_slot = 0, slots = 0, first_cell = 0;
@@ -151,6 +167,9 @@ class Elements {
     Vec2 uv;
   };
   void gather(Seen& seen, const std::vector<bool>& heated);
+  std::optional<Slot> slot_for(uint32_t number, const TracedObject& object);
+  double time_of(const Slot& slot, uint32_t interval = kNone) const;
+  Affine3 to_local_at(const Slot& slot, double time) const;
   // together: m2 below whose half instances are put together. target: m2 of a cell.
   void group_meshes(Seen& seen, double together, double target, std::vector<Planned>& planned);
   static double size_of(const Affine3& m);  // what areas grow by, as a mean over directions
@@ -162,7 +181,7 @@ class Elements {
   Local local_point(const Group& group, uint32_t cell, const std::array<double, 4>& u) const;
   Hit cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt) const;
   void stratify(const Group& group, uint32_t cell, const PointDraw& draw, std::array<double, 4>& u) const;
-  std::optional<uint32_t> cell_at(uint32_t instance, uint32_t triangle, Vec3 position) const;
+  std::optional<uint32_t> cell_at(const HeatedPlace& place, double time) const;
 
   const Tracer& tracer_;
   size_t budget_;
@@ -171,6 +190,9 @@ class Elements {
   std::vector<std::unique_ptr<MeshCells>> meshes_;
   std::vector<Grid> grids_;
   std::vector<Slot> slots_;
+  std::vector<RestInterval> rests_;
+  std::vector<RestPlaces> places_;
+  std::unique_ptr<const ChangingRoom> changing_;
   std::vector<Group> groups_;
   std::unordered_map<uint32_t, uint32_t> slot_of_;  // by instance
   std::vector<uint32_t> group_of_cell_;

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "heat/elements.h"
+#include "heat/made_of.h"
 
 namespace suite {
 
@@ -25,6 +26,70 @@ void Elements::keep(const std::vector<bool>& kept) {
   elements_ = std::move(left), first_element_ = std::move(first);
 }
 
+// Where the instance of an object stands; nothing for what never rests.
+std::optional<Elements::Slot> Elements::slot_for(uint32_t number, const TracedObject& o) {
+  double time = time_;
+  uint32_t places = kNone;
+  if (o.node != kNone && rests_.empty()) {
+    if (!stays_put(tracer_, number)) return std::nullopt;
+  } else if (o.node != kNone && (suite::changes_place(tracer_, number) || !tracer_.there(number, time_))) {
+    std::optional<RestPlaces> found = rest_places(tracer_, number, rests_);
+    if (found) {
+      places = static_cast<uint32_t>(places_.size()), time = found->time[found->home];
+      places_.push_back(*std::move(found));
+    } else if (!stays_put(tracer_, number)) {
+      return std::nullopt;
+    }
+  }
+  const Affine3 place = tracer_.to_world(number, time);
+  return Slot{number, o.instance, 0, place, place.inverse(), places};
+}
+
+// At which a slot stands where it does in an interval.
+double Elements::time_of(const Slot& slot, uint32_t interval) const {
+  if (slot.places == kNone) return time_;
+  const RestPlaces& places = places_[slot.places];
+  return places.time[interval == kNone ? places.home : interval];
+}
+
+Affine3 Elements::to_local_at(const Slot& slot, double time) const {
+  return slot.places == kNone ? slot.to_local : tracer_.to_world(slot.object, time).inverse();
+}
+
+bool Elements::rests(const Hit& hit) const {
+  const auto found = slot_of_.find(tracer_.object(hit.object).instance);
+  if (found == slot_of_.end() || slots_.empty()) return false;
+  const uint32_t places = slots_[found->second].places;
+  return places == kNone || places_[places].rests[interval_of(rests_, hit.time)];
+}
+
+std::vector<float> Elements::presence(size_t interval) const {
+  const std::optional<TimeSpan> window = tracer_.window();
+  if (!window) return {};
+  const TimeSpan span = rests_.empty() ? *window : rests_[interval].still;
+  std::vector<double> of_group(groups_.size(), 0.0);
+  for (const Slot& slot : slots_) {
+    double there = 1;
+    if (slot.places != kNone)
+      there = places_[slot.places].rests[interval] ? 1 : 0;
+    else if (tracer_.object(slot.object).node != kNone)
+      there = share_there(tracer_, slot.object, span);
+    of_group[slot.group] += there / groups_[slot.group].slots;
+  }
+  constexpr double kNearlyAll = 1 - 1e-9;
+  if (std::ranges::all_of(of_group, [](double there) { return there > kNearlyAll; })) return {};
+  std::vector<float> out;
+  for (const HeatElement& e : elements_) {
+    const double there = of_group[group_of_cell_[e.cell]];
+    out.push_back(there > kNearlyAll ? 1.0f : static_cast<float>(there));
+  }
+  return out;
+}
+
+bool Elements::changes_place(size_t element) const {
+  return slots_[groups_[group_of_cell_[elements_[element].cell]].first_slot].places != kNone;
+}
+
 std::vector<Vec3> Elements::places_by_instance(size_t element, const SampleStream& stream, uint32_t each) const {
   const uint32_t cell = elements_[element].cell;
   const Group& group = groups_[group_of_cell_[cell]];
@@ -32,8 +97,8 @@ std::vector<Vec3> Elements::places_by_instance(size_t element, const SampleStrea
   for (uint32_t s = group.first_slot; s < group.first_slot + group.slots; ++s)
     for (uint32_t k = 0; k < each; ++k) {
       const Local p = local_point(group, cell, stream.draw(k, 0));
-      const Hit hit = group.mesh ? tracer_.on_triangle(slots_[s].object, p.triangle, p.u, p.v, time_)
-                                 : tracer_.on_exact(slots_[s].object, p.position, p.normal, p.uv, time_);
+      const Hit hit = group.mesh ? tracer_.on_triangle(slots_[s].object, p.triangle, p.u, p.v, time_of(slots_[s]))
+                                 : tracer_.on_exact(slots_[s].object, p.position, p.normal, p.uv, time_of(slots_[s]));
       places.push_back(hit.position);
     }
   return places;
@@ -43,6 +108,7 @@ std::optional<Hit> Elements::hit_at(const HeatedPlace& place) const {
   const auto found = slot_of_.find(place.instance);
   if (found == slot_of_.end() || slots_.empty()) return std::nullopt;
   const Slot& slot = slots_[found->second];
+  if (slot.places != kNone) return std::nullopt;
   const Group& group = groups_[slot.group];
   const Vec3 local = slot.to_local.point(place.position);
   if (!group.mesh) {

@@ -78,10 +78,10 @@ Hit Elements::cell_point(uint32_t cell, const PointDraw& draw, uint32_t& attempt
     const Slot& s = slots_[slot];
     const Local p = local_point(group, cell, u);
     const bool last = attempt + 1 >= kAttempts;
-    if (group.mesh) return tracer_.on_triangle(s.object, p.triangle, p.u, p.v, time_);
+    if (group.mesh) return tracer_.on_triangle(s.object, p.triangle, p.u, p.v, time_of(s, draw.interval));
     const double kept = p.stretch * stretch_of(s.to_world, p.normal) / most_stretch(s.to_world);
     if (last || (p.stretch == 1 && keeps_shape(s.to_world)) || u[3] < kept)
-      return tracer_.on_exact(s.object, p.position, p.normal, p.uv, time_);
+      return tracer_.on_exact(s.object, p.position, p.normal, p.uv, time_of(s, draw.interval));
   }
 }
 

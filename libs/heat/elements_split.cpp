@@ -133,8 +133,9 @@ class Elements::Refinement {
         const auto slot = static_cast<size_t>(numbers.hashed(k, 1) * static_cast<double>(slots.size()));
         const Local p = e_.local_point(group, j.cell, numbers.draw(k, 0));
         const uint32_t object = slots[slot].object;
-        places.push_back(unit.mesh ? e_.tracer_.on_triangle(object, p.triangle, p.u, p.v, e_.time_)
-                                   : e_.tracer_.on_exact(object, p.position, p.normal, p.uv, e_.time_));
+        const double time = e_.time_of(slots[slot]);
+        places.push_back(unit.mesh ? e_.tracer_.on_triangle(object, p.triangle, p.u, p.v, time)
+                                   : e_.tracer_.on_exact(object, p.position, p.normal, p.uv, time));
       }
     }
   }

@@ -65,6 +65,30 @@ ExchangeMatrix ExchangeMatrix::of_rows(size_t outsides, std::vector<size_t> begi
   return m;
 }
 
+ExchangeMatrix ExchangeMatrix::differing(const ExchangeMatrix& other, double alike) && {
+  SUITE_CHECK(elements_ == other.elements_ && outsides_ == other.outsides_);
+  const auto differ = [&](size_t row) {
+    double off = 0;
+    size_t k = begins_[row], j = other.begins_[row];
+    const size_t end = begins_[row + 1], other_end = other.begins_[row + 1];
+    while ((k < end || j < other_end) && off < alike) {
+      const bool here = k < end && (j == other_end || ends_[k] <= other.ends_[j]),
+                 there = j < other_end && (k == end || other.ends_[j] <= ends_[k]);
+      off += std::fabs((here ? shares_[k] * factors_[row] : 0) - (there ? other.shares_[j] * other.factors_[row] : 0));
+      k += here, j += there;
+    }
+    return off >= alike;
+  };
+  ExchangeMatrix out(elements_, outsides_);
+  for (size_t row = 0; row < elements_; ++row) {
+    if (differ(row))
+      for (size_t k = begins_[row]; k < begins_[row + 1]; ++k)
+        out.ends_.push_back(ends_[k]), out.shares_.push_back(shares_[k]);
+    out.begins_.push_back(out.ends_.size()), out.factors_.push_back(factors_[row]);
+  }
+  return out;
+}
+
 void ExchangeMatrix::receive(std::span<const double> emitted, size_t moments, std::span<double> received) const {
   SUITE_CHECK_EQ(factors_.size(), elements_);
   SUITE_CHECK_EQ(emitted.size(), (elements_ + outsides_) * moments);

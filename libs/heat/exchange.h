@@ -36,6 +36,9 @@ class ExchangeMatrix {
   size_t elements() const { return elements_; }
   size_t outsides() const { return outsides_; }
   size_t entries() const { return ends_.size(); }
+  // Of a matrix by of_rows(), with the rows alone whose shares differ from another's by `alike` or more altogether.
+  ExchangeMatrix differing(const ExchangeMatrix& other, double alike) &&;
+  bool has_row(size_t element) const { return begins_[element] < begins_[element + 1]; }
 
   // emitted: W/m2, `moments` of the first end, then of the next, ..., outsides last; received likewise, of the
   // elements. All rows must be there. In parallel over elements.

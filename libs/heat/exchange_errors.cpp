@@ -45,18 +45,20 @@ class Halves {
   void of_face(uint32_t f, std::span<float> out) const {
     std::ranges::fill(out, 0.0f);
     const size_t n = paths_.faces();
+    const bool both = paths_.always_there(f);
     double sum = 0;
     for (size_t k = f * each_; k < (f + 1) * each_; ++k) {
       if (!(paths_.weights[k] > 0)) continue;
       const uint32_t end = paths_.ends[k];
-      const double share = double{paths_.weights[k]} / whole_[f] * (end < n && end != f ? trust(f, end) : 1);
+      const double share = double{paths_.weights[k]} / whole_[f] * (both && end < n && end != f ? trust(f, end) : 1);
       sum += share;
       add(k, f, end, share, out);
     }
-    for (size_t i = arrivals_.begin[f]; i < arrivals_.begin[f + 1]; ++i) {
+    for (size_t i = arrivals_.begin[f]; both && i < arrivals_.begin[f + 1]; ++i) {
       const size_t k = arrivals_.slot[i];
       const auto from = static_cast<uint32_t>(k / each_);
-      const double share = double{paths_.weights[k]} / whole_[from] * trust(f, from);
+      double share = double{paths_.weights[k]} / whole_[from] * trust(f, from);
+      if (!paths_.always_there(from)) share *= double{paths_.presence.front()[from]};
       sum += share;
       add(k, f, from, share, out);
     }

@@ -11,6 +11,7 @@
 #pragma once
 #include "heat/exchange.h"
 #include "heat/heat_faces.h"
+#include "heat/path_rows.h"
 #include "surface/surface.h"
 
 namespace suite {
@@ -22,7 +23,7 @@ struct PathOptions {
   uint32_t half() const { return paths / 2; }
 };
 
-// Faces [begin, end).
+// Rows of paths [begin, end): of faces, or of those after them (path_rows.h).
 struct FaceRange {
   size_t begin = 0, end = 0;
   size_t size() const { return end - begin; }
@@ -40,16 +41,28 @@ struct PathCount {
 struct ExchangePaths {
   static constexpr size_t kTogether = 128;  // faces that are traced together
   uint32_t blocks = 0, paths = 0;
-  std::vector<uint32_t> ends;      // [face][block][path]: HeatFaces::end_at()
-  std::vector<float> weights;      // the same; of a face they do not sum to anything in particular
+  PathRows rows;
+  std::vector<uint32_t> ends;      // [row][block][path]: HeatFaces::end_at()
+  std::vector<float> weights;      // the same; of a row they do not sum to anything in particular
   std::vector<double> emissivity;  // by face, hemispheric
   std::vector<double> area;        // m2, by face
+  // By interval and face, for how much of it the face is there and rests, or empty (Elements::presence()): it emits as
+  // if it always were, others see it for that.
+  std::vector<std::vector<float>> presence;
+  bool always_there(size_t face) const {  // of one interval
+    return presence.empty() || presence.front().empty() || presence.front()[face] == 1;
+  }
   PathCount count;
   double rays() const { return static_cast<double>(count.rays); }
   double unfinished() const;  // share of the weight that was absorbed where it was after kMostReflections
 
-  // Of all paths, from both ends of what two faces exchange, so that what one gives the other takes and rows still sum
-  // to 1 (where faces see so few others that both cannot be had, the latter). exchange_reciprocity.cpp has the method.
+  // Those of an interval of rest alone.
+  ExchangePaths in_interval(size_t interval) const;
+  // Room for what faces that see changes have in later intervals, when it is known which these are.
+  void make_more();
+  // Without intervals of rest, as the next: of all paths, from both ends of what two faces exchange, so that what one
+  // gives the other takes and rows still sum to 1 (where faces see so few others that both cannot be had, the latter).
+  // exchange_reciprocity.cpp has the method.
   ExchangeMatrix matrix(size_t outsides) const;
   // What each face receives by the halves of its blocks, less one another and over 2, W/m2: the sum of the squares over
   // that of the blocks' number is the variance. To first order: shares of a row are taken for known but for their sum.
@@ -60,15 +73,23 @@ struct ExchangePaths {
   size_t faces() const { return emissivity.size(); }
 };
 
+// Rows of faces alone, of which it is to be found which see changes.
+inline PathRows rows_of_faces(const Elements& elements, size_t faces) {
+  PathRows rows;
+  rows.faces = faces, rows.intervals = std::max<size_t>(1, elements.rests().size());
+  if (elements.changing()) rows.changing.assign(faces, 0);
+  return rows;
+}
+
 // Room for the paths of all faces, of which none is traced.
 ExchangePaths untraced_exchange(const Elements& elements, const HeatFaces& faces, const PathOptions& options);
-// Traces those of some faces; the range begins at a multiple of kTogether, and ends at one or with the faces. In
-// parallel over faces, the same on any number of threads and in ranges of any size. progress: is told faces that are
-// done; may be empty.
+// Traces those of some rows; the range begins at a multiple of kTogether, and ends at one or with the faces; of rows
+// after the faces', counted from these. In parallel, the same on any number of threads and in ranges of any size.
+// progress: is told faces that are done; may be empty.
 void trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                     const PathOptions& options, FaceRange range, ExchangePaths& out,
                     const std::function<void(size_t)>& progress = {});
-// Of all faces.
+// Of all rows.
 ExchangePaths trace_exchange(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                              const HeatOptics& optics, const PathOptions& options,
                              const std::function<void(size_t)>& progress = {});

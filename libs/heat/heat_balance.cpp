@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "heat/absorbed_sunlight.h"
 #include "heat/heat_audit.h"
 #include "heat/heat_notes.h"
 #include "heat/lateral.h"
@@ -70,30 +71,6 @@ std::vector<double> outsides(const Tracer& tracer, const HeatFaces& faces, const
       out[(faces.outside_material(m) - first) * moments + k] = kelvin ? body(kelvin(loads.moments[k])) : 0;
   }
   return out;
-}
-
-// W/m2 by face and moment, in the place of what faces take of the beam. Light of patches in eights, which go at once.
-void absorb(Sunlight& sun, const WeatherLoads& loads, const HeatSpec& spec) {
-  const size_t moments = loads.moments.size();
-  parallel_for(0, sun.faces(), 64, [&](size_t begin, size_t end) {
-    std::vector<float> row(moments), takes(kSkyPatches);
-    for (size_t f = begin; f < end; ++f) {
-      sun.beam.get(f, row), sun.sky.get(f, takes);
-      for (size_t k = 0; k < moments; ++k) {
-        double sum = double{row[k]} * loads.direct[k];
-        if (loads.global[k] > 0) {
-          const float* sky = loads.sky[k].data();
-          std::array<float, 8> diffuse{};
-          for (uint32_t p = 0; p < kSkyPatches; p += 8)
-            for (uint32_t i = 0; i < 8; ++i) diffuse[i] += takes[p + i] * sky[p + i];
-          for (const float v : diffuse) sum += double{v};
-          sum += double{sun.below[f]} * spec.ground_albedo * loads.global[k] / kPi;
-        }
-        row[k] = static_cast<float>(sum);
-      }
-      sun.beam.set(f, row);
-    }
-  });
 }
 
 }  // namespace
@@ -168,6 +145,10 @@ SurfaceLoads first_day(const SurfaceLoads& loads, const WeatherLoads& weather, s
       for (size_t k = 0; k < moments; ++k) out.push_back(from[r * all + (k + 1 == moments ? 0 : k)]);
     return out;
   };
+  for (std::vector<float> share : loads.shares) {
+    share.resize(moments), share.back() = share.front();
+    day.shares.push_back(std::move(share));
+  }
   day.absorbed = CompactRows(faces, moments);
   std::vector<float> whole(all);
   for (size_t f = 0; f < faces; ++f) {
@@ -243,11 +224,12 @@ SurfaceLoads face_loads(const HeatScene& scene, Sunlight& sun, const WeatherLoad
   for (size_t k = 0; k + 1 < weather.moments.size(); ++k)
     loads.steps.push_back(weather.moments[k + 1] - weather.moments[k]);
   loads.air = weather.air;
-  absorb(sun, weather, spec);
-  const std::vector<float> uneven = uneven_sky(sun, weather, spec.paths / HeatSpec::kBlocks);
+  loads.shares = interval_shares(scene.elements.rests(), weather.moments);
+  absorb(sun, weather, spec.ground_albedo, loads.shares);
+  const std::vector<float> uneven = uneven_sky(sun, weather, loads.shares, spec.paths / HeatSpec::kBlocks);
   sun.sky = {};
   loads.absorbed = std::move(sun.beam);
-  errors = load_errors(sun, uneven, weather, spec.ground_albedo);
+  errors = load_errors(sun, uneven, weather, loads.shares, spec.ground_albedo);
   for (size_t f = 0; f < scene.faces.size(); ++f)
     loads.source.push_back(
         scene.faces.is_back(f) ? 0 : scene.optics.heated[scene.elements[scene.faces.element(f)].material].source);
@@ -287,7 +269,7 @@ SurfaceHistory balanced(const std::vector<SurfaceGroup>& groups, const SurfaceNe
                         const ExchangePaths& exchange, size_t outside_count, const SurfaceLoads& loads,
                         const WeatherLoads& weather, const HeatSpec& spec, double& past_error) {
   const ExchangeMatrix matrix = exchange.matrix(outside_count);
-  CoupledSurfaces surfaces(groups, matrix, neighbours);
+  CoupledSurfaces surfaces(groups, {matrix, exchange}, neighbours);
   double mean_air = 0;
   for (const double T : weather.air_kelvin) mean_air += T / static_cast<double>(weather.air_kelvin.size());
   surfaces.start(mean_air);
@@ -352,7 +334,7 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   keep(h, loads, exchange, found.sun, weather, spec, result);
   result.assumed = scene.optics.assumed;
   result.notes = heat_notes(scene, found, !weather.humid);
-  for (const std::string& note : {apart_note(lateral), visitors_note(scene, exchange, h)})
+  for (const std::string& note : {apart_note(lateral), visitors_note(scene, exchange, h), rests_note(scene, found)})
     if (!note.empty()) result.notes.push_back(note);
   sum_balance(scene.elements, groups, loads, h, result);
   give_back_freed();
@@ -363,7 +345,10 @@ HeatResult solve_heat(const HeatScene& scene, HeatOperator&& found, const Weathe
   result.path_error = std::move(errors.paths), result.size_error = std::move(errors.size);
   result.step_error = step_errors(solved);
   tell_done(progress, 1);
-  if (spec.audit > 0) {
+  const bool audits = spec.audit > 0 && !stands_in_several_places(scene);
+  if (spec.audit > 0 && !audits)
+    result.notes.push_back("no audit is made: its walks do not go with what stands in several places");
+  if (audits) {
     begin(progress, "audit", static_cast<double>(spec.audit));
     result.audit =
         audit_heat({scene.tracer, scene.elements, scene.faces, scene.optics, spec.periodic, spec.seed}, solved,

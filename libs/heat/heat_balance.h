@@ -9,9 +9,9 @@
 // Assumes: the same weather all over the scene, on faces as it stands in the file; a grey sky whose infrared varies
 // with the zenith angle after M. H. Unsworth & J. L. Monteith, Q. J. R. Meteorol. Soc. 101, 1975 (b = 0.09 in a clear
 // sky); sunlight spread over the sky after Perez et al. 1993 (light/perez_sky.h); beyond the scene even ground as warm
-// as the air. What moves has no elements: it gives shade, and is as warm as the air. What
-// comes and goes is part of the exchange for its share of the span, whenever that is. Media are passed
-// by.
+// as the air. What moves, comes or goes is part of the exchange in intervals of rest (rests.h), and while it moves
+// gives shade and is as warm as the air to others. Without such intervals what moves has no elements, and what comes
+// and goes is part of the exchange for its share of the span, whenever that is. Media are passed by.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -42,7 +42,8 @@ struct HeatSpec {
   double ground_albedo = 0.2;  // of sunlight, beyond the scene
   bool lateral = false;        // elements conduct to their neighbours along the surface, too (lateral.h)
   uint64_t seed = 1;
-  size_t audit = 0;  // probes of heat_audit.h; 0 = none
+  size_t audit = 0;       // probes of heat_audit.h; 0 = none
+  size_t intervals = 24;  // of rest, at most; 1: none are looked for
   static constexpr uint32_t kBlocks = 8, kLeastPaths = 2 * kBlocks;
 };
 

@@ -33,7 +33,7 @@ HeatFaces::HeatFaces(const Elements& elements, const HeatOptics& optics)
 uint32_t HeatFaces::end_at(const Hit& hit, Dir direction, uint32_t material) const {
   if (!has_heat_[material]) return outside_material(material);
   const std::optional<uint32_t> element = elements_.at(hit, material);
-  if (!element) return outside_moving();
+  if (!element || !elements_.rests(hit)) return outside_moving();
   const bool front = dot(direction, hit.normal) < 0;
   if (front) return *element;
   return back_[*element] == kNone ? closed_back(*element) : back_[*element];

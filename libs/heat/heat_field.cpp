@@ -25,7 +25,7 @@ HeatField::HeatField(std::shared_ptr<const Elements> elements, std::shared_ptr<c
 }
 
 double HeatField::kelvin(const HeatedPlace& place, double time) const {
-  const std::optional<uint32_t> element = elements_->at(place, place.material);
+  const std::optional<uint32_t> element = elements_->at(place, place.material, time);
   if (!element) return result_->air_at(time);
   const double kelvin = result_->kelvin_at(*element, time);
   if (!points_ || !points_->tells(*element, time)) return kelvin;
@@ -33,7 +33,7 @@ double HeatField::kelvin(const HeatedPlace& place, double time) const {
 }
 
 double HeatField::error(const HeatedPlace& place, double time) const {
-  const std::optional<uint32_t> element = elements_->at(place, place.material);
+  const std::optional<uint32_t> element = elements_->at(place, place.material, time);
   if (!element) return NAN;
   HeatErrors errors = result_->errors_at(*element, time);
   // Points that do not settle have their element's temperature, and its error.
@@ -42,7 +42,7 @@ double HeatField::error(const HeatedPlace& place, double time) const {
 }
 
 ExplainedField::Cause HeatField::cause(const HeatedPlace& place, double time) const {
-  const std::optional<uint32_t> element = elements_->at(place, place.material);
+  const std::optional<uint32_t> element = elements_->at(place, place.material, time);
   if (!element) return {};
   const auto at = [&](const std::vector<float>& rows) {
     if (rows.empty()) return double{NAN};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "heat/heat_walk.h"
@@ -88,6 +89,7 @@ double taken_of_visitors(const ExchangePaths& exchange, const HeatScene& scene, 
 }  // namespace
 
 std::string visitors_note(const HeatScene& scene, const ExchangePaths& exchange, const SurfaceHistory& history) {
+  if (!scene.elements.rests().empty()) return {};
   constexpr double kLittle = 1;  // W/m2
   const std::vector<bool> visits = visitors(scene);
   if (std::ranges::find(visits, true) == visits.end()) return {};
@@ -105,6 +107,40 @@ std::string visitors_note(const HeatScene& scene, const ExchangePaths& exchange,
       "mean %.3g W/m2 on the %zu faces that feel more than %g W/m2; shade and sunlight have their times",
       static_cast<size_t>(std::ranges::count(visits, true)), most, most / kFilm,
       felt > 0 ? sum / static_cast<double>(felt) : 0, felt, kLittle);
+}
+
+std::string rests_note(const HeatScene& scene, const HeatOperator& found) {
+  const std::vector<RestInterval>& rests = scene.elements.rests();
+  if (rests.empty()) return {};
+  std::string until;
+  for (size_t k = 0; k + 1 < rests.size(); ++k) until += strf("%s%.6g", k == 0 ? "" : ", ", rests[k].span.end);
+  const auto faces = static_cast<double>(scene.faces.size());
+  const auto share = [&](const PathRows& rows) {
+    return 100 * static_cast<double>(rows.size() - rows.faces) / (static_cast<double>(rests.size() - 1) * faces);
+  };
+  std::string out = strf(
+      "things move, come or go: infrared and scattered sunlight are those of %zu intervals of rest, which change at %s "
+      "s; %.2g and %.2g %% of the faces see what changes",
+      rests.size(), until.c_str(), share(found.exchange.rows), share(found.sun.rows));
+  const std::vector<std::string> moves = motion_sentences(scene.tracer, rests);
+  for (const std::string& sentence : moves) out += "; " + sentence;
+  if (!moves.empty())
+    out +=
+        "; what moves leaves the exchange meanwhile: it gives shade, counts as warm as the air, and its elements are "
+        "followed as if they stood where they rested before";
+  return out;
+}
+
+bool stands_in_several_places(const HeatScene& scene) {
+  std::map<uint32_t, bool> known;  // by object
+  for (size_t e = 0; e < scene.elements.size(); ++e) {
+    if (!scene.elements.changes_place(e)) continue;
+    const uint32_t object = scene.elements.point(e, {SampleStream(0, 0, 0), 0, 0}).object;
+    const auto [at, fresh] = known.emplace(object, false);
+    if (fresh) at->second = changes_place(scene.tracer, object);
+    if (at->second) return true;
+  }
+  return false;
 }
 
 std::vector<std::string> heat_notes(const HeatScene& scene, const HeatOperator& found, bool dry_air) {

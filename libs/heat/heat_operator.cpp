@@ -14,21 +14,21 @@ namespace suite {
 
 namespace {
 
-// trace(range) for all that is not there. of: the stage, if there are several.
+// trace(range) for all rows that are not there. of: the stage, if there are several.
 template <class Found, class Trace, class... Of>
-void find_missing(size_t faces, Found& found, HeatPieces* pieces, const std::function<void(size_t)>& progress,
+void find_missing(FaceRange rows, Found& found, HeatPieces* pieces, const std::function<void(size_t)>& progress,
                   const Trace& trace, Of... of) {
-  const std::vector<FaceRange> there = pieces ? pieces->take(found, of...) : std::vector<FaceRange>{};
+  const std::vector<FaceRange> there = pieces ? pieces->take(found, rows, of...) : std::vector<FaceRange>{};
   auto next = there.begin();
   // Pieces grow until one takes about as long as may be lost.
-  size_t waves = pieces ? 2 * static_cast<size_t>(threads()) : faces;
-  for (size_t at = 0; at < faces;) {
+  size_t waves = pieces ? 2 * static_cast<size_t>(threads()) : rows.size();
+  for (size_t at = rows.begin; at < rows.end;) {
     if (next != there.end() && next->begin == at) {
       if (progress) progress(next->size());
       at = next++->end;
       continue;
     }
-    const size_t limit = next != there.end() ? next->begin : faces;
+    const size_t limit = next != there.end() ? next->begin : rows.end;
     const FaceRange range{at, waves < (limit - at) / Found::kTogether ? at + waves * Found::kTogether : limit};
     const PathCount before = found.count;
     const Stopwatch::time_point begun = Stopwatch::now();
@@ -48,23 +48,31 @@ void find_missing(size_t faces, Found& found, HeatPieces* pieces, const std::fun
 ExchangePaths find_exchange(const HeatScene& s, const PathOptions& options, HeatPieces* pieces,
                             const std::function<void(size_t)>& progress) {
   ExchangePaths out = untraced_exchange(s.elements, s.faces, options);
-  find_missing(s.faces.size(), out, pieces, progress, [&](FaceRange range) {
-    trace_exchange(s.tracer, s.elements, s.faces, s.optics, options, range, out, progress);
-  });
+  const auto find = [&](FaceRange rows, const std::function<void(size_t)>& told) {
+    find_missing(rows, out, pieces, told, [&](FaceRange range) {
+      trace_exchange(s.tracer, s.elements, s.faces, s.optics, options, range, out, told);
+    });
+  };
+  find({0, s.faces.size()}, progress);
+  out.make_more();
+  if (out.rows.size() > s.faces.size()) find({s.faces.size(), out.rows.size()}, {});
   return out;
 }
 
 Sunlight find_sunlight(const HeatScene& s, const SunCourse& course, const PathOptions& options, HeatPieces* pieces,
                        const std::function<void(size_t)>& progress) {
-  Sunlight out = untraced_sunlight(s.faces, course, options);
-  for (const SunStage stage : {SunStage::straight, SunStage::scattered})
+  Sunlight out = untraced_sunlight(s.elements, s.faces, course, options);
+  const auto find = [&](FaceRange rows, SunStage stage, const std::function<void(size_t)>& told) {
     find_missing(
-        s.faces.size(), out, pieces, progress,
+        rows, out, pieces, told,
         [&](FaceRange range) {
-          trace_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, kSunJoins, stage, range, out,
-                         progress);
+          trace_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, kSunJoins, stage, range, out, told);
         },
         stage);
+  };
+  for (const SunStage stage : {SunStage::straight, SunStage::scattered}) find({0, s.faces.size()}, stage, progress);
+  out.make_more();
+  if (out.rows.size() > s.faces.size()) find({s.faces.size(), out.rows.size()}, SunStage::scattered, {});
   give_up(out.lit);
   add_mirrored_sunlight(s.tracer, s.elements, s.faces, s.optics, course, options, out);
   return out;

@@ -27,10 +27,10 @@ struct HeatScene {
 class HeatPieces {
  public:
   virtual ~HeatPieces() = default;
-  // Puts what is there in its place, counts included. The ranges of it, ascending and apart, each as the tracing
-  // functions take them.
-  virtual std::vector<FaceRange> take(ExchangePaths& out) = 0;
-  virtual std::vector<FaceRange> take(Sunlight& out, SunStage stage) = 0;
+  // Puts what is there of some rows, those of faces or all after them, in its place, counts included. The ranges of it,
+  // ascending and apart, each as the tracing functions take them.
+  virtual std::vector<FaceRange> take(ExchangePaths& out, FaceRange of) = 0;
+  virtual std::vector<FaceRange> take(Sunlight& out, FaceRange of, SunStage stage) = 0;
   // count: of this piece. A piece of scattered sunlight has the straight one with it.
   virtual void keep(const ExchangePaths& found, FaceRange range, PathCount count) = 0;
   virtual void keep(const Sunlight& found, SunStage stage, FaceRange range, PathCount count) = 0;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "heat/elements.h"
 #include "math/sampling.h"
 #include "math/warps.h"
 #include "optics/scatter_model.h"
@@ -19,10 +20,14 @@ inline constexpr uint32_t kPointBlock = 1u << 20;
 // Reflections after which a path is ended and told.
 inline constexpr uint32_t kMostReflections = 100000;
 
-// When a path looks at the scene: at any time of the tracer's window, so that what comes and goes counts for its share.
-inline double time_of_path(const Tracer& tracer, const SampleStream& numbers, uint32_t sample, double at_rest) {
+// Which times paths of an interval of rest look at: while all rests; without intervals any of the tracer's window, so
+// that what comes and goes counts for its share. Nothing where nothing ever changes.
+inline std::optional<TimeSpan> path_window(const Tracer& tracer, const Elements& elements, size_t interval) {
+  return elements.rests().empty() ? tracer.window() : elements.rests()[interval].still;
+}
+inline double time_of_path(std::optional<TimeSpan> window, const SampleStream& numbers, uint32_t sample,
+                           double at_rest) {
   constexpr uint32_t kPurpose = 1;
-  const std::optional<TimeSpan> window = tracer.window();
   return window ? window->begin + numbers.hashed(sample, kPurpose) * (window->end - window->begin) : at_rest;
 }
 

@@ -127,10 +127,13 @@ ExchangePaths left_of(const ExchangePaths& exchange, const HeatFaces& all, const
     return end == face ? number[face] : left.closed_back(left.element(number[face]));
   };
   ExchangePaths out;
+  SUITE_CHECK(exchange.rows.intervals == 1);
   out.blocks = exchange.blocks, out.paths = exchange.paths, out.count = exchange.count;
+  out.rows.faces = count, out.presence.emplace_back();
   for (size_t f = 0; f < exchange.faces(); ++f) {
     if (number[f] == kNone) continue;
     out.emissivity.push_back(exchange.emissivity[f]), out.area.push_back(exchange.area[f]);
+    if (const auto& there = exchange.presence.front(); !there.empty()) out.presence.front().push_back(there[f]);
     for (size_t k = f * each; k < (f + 1) * each; ++k) {
       out.weights.push_back(exchange.weights[k]);
       out.ends.push_back(end_of(exchange.ends[k]));

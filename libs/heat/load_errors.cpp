@@ -62,6 +62,28 @@ struct SkyParts {
   }
 };
 
+// How much of each part of the span a row tells, of those that a face has.
+class PartShares {
+ public:
+  PartShares(const PathRows& rows, const std::vector<std::vector<float>>& shares) : rows_(rows), all_(kHeatParts, 1.0) {
+    if (rows.intervals == 1) return;
+    const PartMeans parts(shares.front().size());
+    for (const std::vector<float>& share : shares)
+      of_interval_.push_back(parts.means([&](size_t k) { return double{share[k]}; }));
+  }
+  // put(row, share by part)
+  template <class Put>
+  void each(size_t face, const Put& put) const {
+    if (!rows_.has_more(face)) return put(face, all_.data());
+    for (size_t k = 0; k < rows_.intervals; ++k) put(rows_.row(face, k), of_interval_[k].data());
+  }
+
+ private:
+  const PathRows& rows_;
+  std::vector<double> all_;
+  std::vector<std::vector<double>> of_interval_;
+};
+
 void for_faces(size_t faces, const std::function<void(size_t)>& body) {
   parallel_for(0, faces, 64, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) body(f);
@@ -74,22 +96,26 @@ void for_faces(size_t faces, const std::function<void(size_t)>& body) {
 // met it. Each of n paths brings y = pi a (L - shapes) with the probability w / (pi a) of the patch, w its weight: the
 // variance of their mean is (sum w y - (sum w (L - shapes))^2) / n, as if paths were independent, which they are less
 // than that.
-std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather, uint32_t paths) {
+std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather,
+                              const std::vector<std::vector<float>>& shares, uint32_t paths) {
   const std::vector<double> uneven = SkyParts(weather).left;
+  const PartShares of_parts(sun.rows, shares);
   std::vector<float> out(sun.faces() * kHeatParts);
   for_faces(sun.faces(), [&](size_t f) {
     const double most = kPi * double{sun.absorptance[f]};
     std::array<float, kSkyPatches> w;
-    sun.sky.get(f, w);
     std::array<double, kHeatParts> square{}, mean{};
-    for (size_t k = 0; k < kSkyPatches; ++k) {
-      if (w[k] == 0) continue;
-      const double weight = double{w[k]};
-      for (size_t p = 0; p < kHeatParts; ++p) {
-        const double y = uneven[k * kHeatParts + p];
-        square[p] += most * weight * y * y, mean[p] += weight * y;
+    of_parts.each(f, [&](size_t row, const double* share) {
+      sun.sky.get(row, w);
+      for (size_t k = 0; k < kSkyPatches; ++k) {
+        if (w[k] == 0) continue;
+        const double weight = double{w[k]};
+        for (size_t p = 0; p < kHeatParts; ++p) {
+          const double y = uneven[k * kHeatParts + p] * share[p];
+          square[p] += most * weight * y * y, mean[p] += weight * y;
+        }
       }
-    }
+    });
     for (size_t p = 0; p < kHeatParts; ++p)
       out[f * kHeatParts + p] = static_cast<float>(std::sqrt(std::max(0.0, square[p] - mean[p] * mean[p]) / paths));
   });
@@ -98,7 +124,8 @@ std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather, 
 
 // Every block gets the deviation by an uneven sky with a random sign, the same through the day.
 LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const WeatherLoads& weather,
-                       double ground_albedo) {
+                       const std::vector<std::vector<float>>& shares, double ground_albedo) {
+  const PartShares of_parts(sun.rows, shares);
   constexpr uint64_t kPurpose = 0x736b79;
   const WeatherParts by(weather, ground_albedo);
   const std::vector<double> shapes = SkyParts(weather).shapes;
@@ -108,16 +135,23 @@ LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const We
   out.of_block = CompactRows(faces * blocks, kHeatParts);
   for_faces(faces, [&](size_t f) {
     std::array<float, kHeatParts> row{};
+    std::array<double, kHeatParts> brings{};
     for (size_t b = 0; b < blocks; ++b) {
       const size_t block = f * blocks + b;
       const bool plus = hash_of(kPurpose, f, b) & 1;
-      for (size_t p = 0; p < kHeatParts; ++p) {
-        const double off = double{uneven[f * kHeatParts + p]};
-        double brings = sun.beam_of_block.at(block, p) / per_part * by.direct[p] +
-                        double{sun.below_of_block[block]} * by.below[p] + (plus ? off : -off);
-        for (size_t s = 0; s < kSkyShapes; ++s) brings += sun.sky_of_block.at(block, s) * shapes[s * kHeatParts + p];
-        row[p] = static_cast<float>(brings);
-      }
+      brings.fill(0);
+      of_parts.each(f, [&](size_t of_row, const double* share) {
+        const size_t found = of_row * blocks + b;
+        for (size_t p = 0; p < kHeatParts; ++p) {
+          double sum = sun.beam_of_block.at(found, p) / per_part * by.direct[p] +
+                       share[p] * double{sun.below_of_block[found]} * by.below[p];
+          if (const double off = double{uneven[f * kHeatParts + p]}; of_row == f) sum += plus ? off : -off;
+          for (size_t s = 0; s < kSkyShapes; ++s)
+            sum += share[p] * sun.sky_of_block.at(found, s) * shapes[s * kHeatParts + p];
+          brings[p] += sum;
+        }
+      });
+      for (size_t p = 0; p < kHeatParts; ++p) row[p] = static_cast<float>(brings[p]);
       out.of_block.set(block, row);
     }
   });

@@ -1,7 +1,12 @@
 #include "heat/mesh_cells.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
 
 namespace suite {
 
@@ -93,41 +98,95 @@ void MeshCells::cut(const Facet& facet, double target, uint32_t material) {
   }
 }
 
-// Halves by area along the longest extent of place, or of direction where that is longer.
+// Halves by area along the longest extent of place, or of direction where that is longer: all that are to be halved at
+// once, as they have nothing in common.
 void MeshCells::gather(std::vector<Facet>& facets, size_t begin, size_t end, double target, uint32_t material) {
-  if (begin == end) return;
-  double area = 0;
-  for (size_t i = begin; i < end; ++i) area += facets[i].area;
-  if (end - begin == 1 || area <= 1.5 * target) {
+  struct Range {
+    size_t begin, end, middle;
+  };
+  std::vector<Range> open, next;
+  std::vector<std::array<size_t, 2>> whole;
+  if (begin < end) open.push_back({begin, end, begin});
+  while (!open.empty()) {
+    parallel_for(0, open.size(), 1, [&](size_t first, size_t last) {
+      for (size_t k = first; k < last; ++k) {
+        Range& part = open[k];
+        double area = 0;
+        for (size_t i = part.begin; i < part.end; ++i) area += facets[i].area;
+        if (part.end - part.begin > 1 && area > 1.5 * target) part.middle = divide(facets, part.begin, part.end, area);
+      }
+    });
+    for (const Range& part : open) {
+      if (part.middle == part.begin) {
+        whole.push_back({part.begin, part.end});
+        continue;
+      }
+      next.push_back({part.begin, part.middle, part.begin});
+      next.push_back({part.middle, part.end, part.middle});
+    }
+    open.swap(next), next.clear();
+  }
+  std::ranges::sort(whole);
+  for (const auto& [first, last] : whole) {
     double sum = 0;
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t i = first; i < last; ++i) {
       cell_[facets[i].triangle] = static_cast<uint32_t>(areas_.size());
       split_[facets[i].triangle] = 1;
       order_.push_back(facets[i].triangle);
       until_.push_back(sum += facets[i].area);
     }
     part_.push_back(0);
-    return add_cell(sum, material);
+    add_cell(sum, material);
   }
-  const size_t middle = divide(facets, begin, end, area);
-  gather(facets, begin, middle, target, material);
-  gather(facets, middle, end, target, material);
 }
+
+namespace {
+
+struct Ordered {
+  double key;
+  uint32_t triangle, at;
+  bool operator<(const Ordered& o) const { return key != o.key ? key < o.key : triangle < o.triangle; }
+};
+
+// As std::sort, in passes over the bytes of the keys: many are sorted several times faster.
+void sort_by_bytes(std::vector<Ordered>& order) {
+  constexpr size_t kMany = 4096, kByte = 256;
+  if (order.size() < kMany) return std::sort(order.begin(), order.end());
+  const auto bits = [](double key) {
+    const auto b = std::bit_cast<uint64_t>(key + 0.0);  // -0 as 0
+    return b >> 63 ? ~b : b | uint64_t{1} << 63;
+  };
+  std::array<std::array<size_t, kByte>, 8> counts{};
+  for (const Ordered& o : order)
+    for (size_t k = 0; k < 8; ++k) ++counts[k][bits(o.key) >> (8 * k) & 255];
+  std::vector<Ordered> other(order.size());
+  for (size_t k = 0; k < 8; ++k) {
+    if (std::ranges::find(counts[k], order.size()) != counts[k].end()) continue;  // all alike
+    size_t sum = 0;
+    for (size_t& count : counts[k]) sum += std::exchange(count, sum);
+    for (const Ordered& o : order) other[counts[k][bits(o.key) >> (8 * k) & 255]++] = o;
+    order.swap(other);
+  }
+  for (size_t k = 0; k < order.size();) {
+    size_t end = k + 1;
+    while (end < order.size() && order[end].key == order[k].key) ++end;
+    const auto first = order.begin() + static_cast<std::ptrdiff_t>(k);
+    if (end - k > 1) std::sort(first, order.begin() + static_cast<std::ptrdiff_t>(end));
+    k = end;
+  }
+}
+
+}  // namespace
 
 // Sorts by what is compared alone, which is less to move, and then the facets.
 template <class Iterator, class Key>
 void MeshCells::put_in_order(Iterator from, Iterator to, const Key& key) {
-  struct Place {
-    double key;
-    uint32_t triangle, at;
-  };
-  std::vector<Place> order;
+  std::vector<Ordered> order;
   order.reserve(static_cast<size_t>(to - from));
   for (auto f = from; f != to; ++f) order.push_back({key(*f), f->triangle, static_cast<uint32_t>(f - from)});
-  std::ranges::sort(
-      order, [](const Place& a, const Place& b) { return a.key != b.key ? a.key < b.key : a.triangle < b.triangle; });
+  sort_by_bytes(order);
   const std::vector<Facet> before(from, to);
-  for (const Place& place : order) *from++ = before[place.at];
+  for (const Ordered& place : order) *from++ = before[place.at];
 }
 
 // Puts facets in order and says where the second half begins.

@@ -78,12 +78,21 @@ class Errors {
                             &receives[k * kHeatParts]);
       }
     });
-    s_.exchange.halves(emits, receives, kHeatParts, [&](size_t f, std::span<const float> of_blocks) {
+    if (s_.exchange.rows.intervals == 1) return add_infrared(s_.exchange, emits, receives, {});
+    for (size_t k = 0; k < s_.exchange.rows.intervals; ++k)
+      add_infrared(s_.exchange.in_interval(k), emits, receives,
+                   parts_.means([&](size_t m) { return double{s_.loads.shares[k][m]}; }));
+  }
+  // share: of each part, which it tells; empty = all.
+  void add_infrared(const ExchangePaths& exchange, std::span<const float> emits, std::span<const float> receives,
+                    const std::vector<double>& share) {
+    exchange.halves(emits, receives, kHeatParts, [&](size_t f, std::span<const float> of_blocks) {
       std::array<float, kHeatParts> row{};
       for (uint32_t b = 0; b < blocks_; ++b) {
         of_loads_.of_block.get(f * blocks_ + b, row);
         for (size_t p = 0; p < kHeatParts; ++p)
-          row[p] += static_cast<float>(s_.exchange.emissivity[f]) * of_blocks[b * kHeatParts + p];
+          row[p] += static_cast<float>(exchange.emissivity[f] * (share.empty() ? 1 : share[p])) *
+                    of_blocks[b * kHeatParts + p];
         of_loads_.of_block.set(f * blocks_ + b, row);
       }
     });

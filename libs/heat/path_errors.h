@@ -22,11 +22,13 @@ struct LoadErrors {
   CompactRows of_block;  // by face and block, halves' differences over 2
   CompactRows spread;    // by face and contrast (Sunlight::beam_spread)
 };
+// shares: of the moments by interval of rest (interval_shares()).
 // How far an uneven sky as so many paths of a block find it may be off, W/m2, [face][part].
-std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather, uint32_t paths);
+std::vector<float> uneven_sky(const Sunlight& sun, const WeatherLoads& weather,
+                              const std::vector<std::vector<float>>& shares, uint32_t paths);
 // uneven: of that. Uses up what the sunlight has by block and of its spread.
 LoadErrors load_errors(Sunlight& sun, const std::vector<float>& uneven, const WeatherLoads& weather,
-                       double ground_albedo);
+                       const std::vector<std::vector<float>>& shares, double ground_albedo);
 
 struct LinearErrors {
   std::vector<float> paths;  // K, standard error of the mean of all blocks, [face][part of the span]

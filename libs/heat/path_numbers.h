@@ -38,7 +38,9 @@ class PathNumbers {
     return {u[0], u[1]};
   }
   // Which point of its element it starts from: of all of it for the strata together. Not to be kept longer than this.
-  PointDraw first_point() const { return {own_, number_, kPointBlock, block_, options_.blocks}; }
+  PointDraw first_point(uint32_t interval = kNone) const {
+    return {own_, number_, kPointBlock, block_, options_.blocks, interval};
+  }
 
  private:
   const PathOptions& options_;

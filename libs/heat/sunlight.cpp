@@ -45,11 +45,13 @@ double Sunlight::unfinished(uint32_t paths) const {
   return static_cast<double>(count.unfinished) / kUnfinishedUnit / (1.0 * static_cast<double>(faces()) * paths);
 }
 
-Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options) {
+Sunlight untraced_sunlight(const Elements& elements, const HeatFaces& faces, const SunCourse& course,
+                           const PathOptions& options) {
   Sunlight out;
   const size_t n = faces.size();
   SUITE_CHECK(options.paths > 0 && options.paths % 2 == 0);
   out.moments = course.moments.size(), out.blocks = options.blocks;
+  out.rows = rows_of_faces(elements, n);
   out.beam = CompactRows(n, out.moments);
   out.sky = CompactRows(n, kSkyPatches);
   out.lit.assign(n * course.sunny().size(), 0);
@@ -61,12 +63,21 @@ Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, cons
   return out;
 }
 
+void Sunlight::make_more() {
+  rows.add_more();
+  const size_t n = rows.size();
+  beam.resize(n), sky.resize(n), below.resize(n);
+  beam_of_block.resize(n * blocks), sky_of_block.resize(n * blocks), below_of_block.resize(n * blocks);
+}
+
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                     const SunCourse& course, const PathOptions& options, uint32_t joins, SunStage stage,
                     FaceRange range, Sunlight& out, const std::function<void(size_t)>& progress) {
   constexpr size_t kWave = Sunlight::kTogether;
-  const size_t n = faces.size();
-  SUITE_CHECK(range.begin % kWave == 0 && (range.end % kWave == 0 || range.end == n));
+  const auto [first_row, end_row] = out.rows.alike(range.begin);
+  SUITE_CHECK((range.begin - first_row) % kWave == 0 && range.end <= end_row &&
+              ((range.end - first_row) % kWave == 0 || range.end == end_row));
+  range = {range.begin - first_row, range.end - first_row};
   std::atomic<uint64_t> rays{0}, unfinished{0};
   // Waves are always the same: rays that go together may decide the last bits of a hit.
   parallel_for(range.begin / kWave, (range.end + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
@@ -74,12 +85,12 @@ void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFa
     const AtWork work(tracer);
     SunlightWave wave(tracer, elements, faces, optics, course, options, joins, out);
     for (size_t w = first; w < last; ++w) {
-      const size_t begin = w * kWave, end = std::min(n, begin + kWave);
+      const size_t begin = first_row + w * kWave, end = std::min(end_row, begin + kWave);
       stage == SunStage::straight ? wave.beam(begin, end) : wave.scattered(begin, end);
     }
     rays += wave.rays();
     unfinished += static_cast<uint64_t>(wave.unfinished() * kUnfinishedUnit);
-    if (progress) progress(std::min(n, last * kWave) - first * kWave);
+    if (progress) progress(std::min(end_row - first_row, last * kWave) - first * kWave);
   });
   out.count += {rays, unfinished};
 }
@@ -89,7 +100,7 @@ std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements
                                   const std::function<bool(size_t)>& wanted) {
   constexpr size_t kWave = Sunlight::kTogether;
   const size_t n = faces.size();
-  Sunlight out = untraced_sunlight(faces, course, options);
+  Sunlight out = untraced_sunlight(elements, faces, course, options);
   parallel_for(0, (n + kWave - 1) / kWave, 1, [&](size_t first, size_t last) {
     const FlushDenormals denormals;
     const AtWork work(tracer);
@@ -107,9 +118,13 @@ std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options, uint32_t joins,
                         const std::function<void(size_t)>& progress) {
-  Sunlight out = untraced_sunlight(faces, course, options);
+  Sunlight out = untraced_sunlight(elements, faces, course, options);
   for (const SunStage stage : {SunStage::straight, SunStage::scattered})
     trace_sunlight(tracer, elements, faces, optics, course, options, joins, stage, {0, faces.size()}, out, progress);
+  out.make_more();
+  if (const size_t all = out.rows.size(); all > faces.size())
+    trace_sunlight(tracer, elements, faces, optics, course, options, joins, SunStage::scattered, {faces.size(), all},
+                   out, progress);
   add_mirrored_sunlight(tracer, elements, faces, optics, course, options, out);
   return out;
 }

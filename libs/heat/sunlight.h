@@ -51,18 +51,20 @@ struct Sunlight {
   static constexpr uint32_t kParts = 24;   // of the time, for errors
   size_t moments = 0;
   uint32_t blocks = 0;
-  CompactRows beam;          // [face][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun
-  CompactRows sky;           // [face][patch]: for 1 W/(m2 sr) of the patch
-  std::vector<float> below;  // [face]: for 1 W/(m2 sr) of all below the horizon
+  PathRows rows;     // of faces the straight beam and, with shares of the moments, what is scattered in the first
+                     // interval of rest; after them what is scattered in later ones
+  CompactRows beam;  // [row][moment]: W/m2 absorbed for 1 W/m2 on a plane that faces the sun; a face has the sum
+  CompactRows sky;   // [row][patch]: for 1 W/(m2 sr) of the patch
+  std::vector<float> below;  // [row]: for 1 W/(m2 sr) of all below the horizon
   // Of blocks, halves' differences over 2 (path_numbers.h): the sum of their squares over that of the blocks' number is
   // the variance of what all blocks find together.
-  CompactRows beam_of_block;  // [face, block][part]: as beam, sums over a part of the time
+  CompactRows beam_of_block;  // [row, block][part]: as beam, sums over a part of the time
   // [face, contrast][part]: sums over the face's points of what they take of the beam less the mean, with random signs,
   // in steps of moments and scaled so that the mean square over the contrasts is the variance over the face.
   static constexpr uint32_t kContrasts = 3;
   CompactRows beam_spread;
-  CompactRows sky_of_block;           // [face, block][shape]: of a sky of that shape
-  std::vector<float> below_of_block;  // [face][block]
+  CompactRows sky_of_block;           // [row, block][shape]: of a sky of that shape
+  std::vector<float> below_of_block;  // [row][block]
   std::vector<float> sun_hours;       // [face]: hours with the sun on it, mean over its points
   std::vector<uint8_t> lit;           // [face][moment with the sun up]: share of its points that the sun is on, of 255
   std::vector<float> absorptance;     // [face]: of even light of the sky's spectrum
@@ -75,20 +77,23 @@ struct Sunlight {
     double unfinished = 0;  // share of the light they send on that was left out after kMostReflections
   } mirrored;
 
-  size_t faces() const { return below.size(); }
+  size_t faces() const { return sun_hours.size(); }
+  // Room for what faces that see changes have in later intervals, when it is known which these are.
+  void make_more();
   double rays() const { return static_cast<double>(count.rays); }
   double unfinished(uint32_t paths) const;  // of the light of so many paths of a face, what was left out
 };
 
 // Room for the sunlight of all faces, of which none is traced.
-Sunlight untraced_sunlight(const HeatFaces& faces, const SunCourse& course, const PathOptions& options);
+Sunlight untraced_sunlight(const Elements& elements, const HeatFaces& faces, const SunCourse& course,
+                           const PathOptions& options);
 
-// The straight sun of all faces comes first, then what is scattered.
+// The straight sun of all faces comes first, then what is scattered, of faces and of rows after them.
 enum class SunStage { straight, scattered };
 // joins: moments that a path is joined to at each surface.
 inline constexpr uint32_t kSunJoins = 4;
-// Traces that of some faces; the range begins at a multiple of kTogether, and ends at one or with the faces. In
-// parallel over faces, the same on any number of threads and in ranges of any size.
+// Traces that of some rows, as ranges of trace_exchange() are; straight of faces alone. In parallel, the same on any
+// number of threads and in ranges of any size.
 void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces, const HeatOptics& optics,
                     const SunCourse& course, const PathOptions& options, uint32_t joins, SunStage stage,
                     FaceRange range, Sunlight& out, const std::function<void(size_t)>& progress = {});
@@ -97,7 +102,7 @@ void trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFa
 std::vector<float> trace_straight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                                   const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
                                   const std::function<bool(size_t face)>& wanted);
-// Of all faces. progress: is told each of them twice.
+// Of all rows. progress: is told each face twice.
 Sunlight trace_sunlight(const Tracer& tracer, const Elements& elements, const HeatFaces& faces,
                         const HeatOptics& optics, const SunCourse& course, const PathOptions& options,
                         uint32_t joins = kSunJoins, const std::function<void(size_t)>& progress = {});

@@ -44,6 +44,13 @@ SunlightWave::SunlightWave(const Tracer& tracer, const Elements& elements, const
       w_(bins_),
       p_(knots_),
       lit_(course.moments.empty() ? 0 : course.moments.front(), step_, std::max<size_t>(1, course.moments.size()) - 1) {
+  if (elements.rests().empty()) return;
+  shares_ = interval_shares(elements.rests(), course.moments);
+  for (const std::vector<float>& share : shares_) {
+    std::vector<uint32_t>& within = sunny_within_.emplace_back();
+    for (uint32_t k = 0; k < sunny_.size(); ++k)
+      if (share[sunny_[k]] > 0) within.push_back(k);
+  }
 }
 
 Dir SunlightWave::towards_sun(const Watch& watch, double t) const {
@@ -60,8 +67,13 @@ SunlightWave::Watch SunlightWave::watch_of(uint32_t face, const PathNumbers& num
                                            const std::array<double, 4>& disk) const {
   Watch w;
   w.face = face, w.block = numbers.block(), w.half = numbers.half();
-  w.hit = elements_.point(faces_.element(face), numbers.first_point());
+  w.hit = elements_.point(faces_.element(face), numbers.first_point(0));
   w.normal = faces_.is_back(face) ? -w.hit.normal : w.hit.normal;
+  if (!elements_.rests().empty() && elements_.changes_place(faces_.element(face)))
+    for (uint32_t k = 0; k < elements_.rests().size(); ++k) {
+      const Hit hit = elements_.point(faces_.element(face), numbers.first_point(k));
+      w.stands.push_back({hit, faces_.is_back(face) ? -hit.normal : hit.normal});
+    }
   const Vec2 d = disk_from_square({disk[0], disk[1]});
   w.disk_x = d.x, w.disk_y = d.y;
   return w;
@@ -104,8 +116,8 @@ std::span<const float> SunlightWave::kept_by(const Watch& watch) {
 }
 
 float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
-  const double cosine = dot(d, watch.normal);
-  surface_.interact(watch.hit, d, at_, course_.moments[moment]);
+  const double t = course_.moments[moment], cosine = dot(d, normal_at(watch, t));
+  surface_.interact(hit_at(watch, t), d, at_, t);
   if (!at_.baked || !at_.baked->model) return 0;
   at_.baked->model->total(at_.frame.to_local(d), W_);
   double kept = 0;
@@ -117,7 +129,8 @@ float SunlightWave::taken(const Watch& watch, uint32_t moment, Dir d) {
 double SunlightWave::takes_between(const Watch& watch, size_t moment, double late, Dir d) {
   const std::span<const float> kept = kept_by(watch);
   if (kept.empty()) return double{taken(watch, static_cast<uint32_t>(late < 0.5 ? moment : moment + 1), d)};
-  return dot(d, watch.normal) * ((1 - late) * double{kept[moment]} + late * double{kept[moment + 1]});
+  return dot(d, normal_at(watch, course_.moments[moment] + late * step_)) *
+         ((1 - late) * double{kept[moment]} + late * double{kept[moment + 1]});
 }
 
 // Fills what each point sees at every moment.
@@ -133,10 +146,10 @@ void SunlightWave::look(std::vector<Watch>& watches) {
     const std::span<const float> kept = kept_by(w);
     for (const uint32_t m : sunny_) {
       const Dir d = towards_sun(w, m);
-      const double cosine = dot(d, w.normal);
+      const double t = course_.moments[m], cosine = dot(d, normal_at(w, t));
       if (!(cosine > 0)) continue;
       w.takes[m] = kept.empty() ? taken(w, m, d) : static_cast<float>(cosine) * kept[m];
-      sights_.push_back({tracer_.leave(w.hit, d), d, course_.moments[m], static_cast<uint32_t>(k)});
+      sights_.push_back({tracer_.leave(hit_at(w, t), d), d, t, static_cast<uint32_t>(k)});
       asked.push_back({k, m});
     }
   }
@@ -161,8 +174,8 @@ void SunlightWave::find_edges(std::vector<Watch>& watches, std::vector<Edge>& ed
       const double t = (edges[e].low + edges[e].high) / 2;
       const Watch& w = watches[edges[e].watch];
       const Dir d = towards_sun(w, t);
-      if (d.z > 0 && dot(d, w.normal) > 0) {
-        sights_.push_back({tracer_.leave(w.hit, d), d, t, static_cast<uint32_t>(edges[e].watch)});
+      if (d.z > 0 && dot(d, normal_at(w, t)) > 0) {
+        sights_.push_back({tracer_.leave(hit_at(w, t), d), d, t, static_cast<uint32_t>(edges[e].watch)});
         asked.push_back(e);
       } else {
         (edges[e].lit_low ? edges[e].high : edges[e].low) = t;

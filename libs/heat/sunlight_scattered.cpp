@@ -16,7 +16,8 @@ constexpr uint32_t kToldJoins = 2;     // where what is sent on is told
 
 void SunlightWave::scattered(size_t begin, size_t end) {
   going_.clear(), rays_.clear(), spectra_.clear();
-  for (size_t f = begin; f < end; ++f) start(static_cast<uint32_t>(f));
+  changing_ = begin < faces_.size() ? elements_.changing() : nullptr;
+  for (size_t row = begin; row < end; ++row) start(static_cast<uint32_t>(row));
   sights_.clear(), asked_.clear();
   first_ = static_cast<uint32_t>(begin), rows_.assign((end - begin) * 2 * options_.blocks * sunny_.size(), 0.0f);
   sky_.assign((end - begin) * kSkyPatches, 0.0f);
@@ -30,13 +31,16 @@ void SunlightWave::scattered(size_t begin, size_t end) {
 }
 
 // The throughput holds what the face keeps of each bin, times pi: the density of a cosine is 1/pi.
-void SunlightWave::start(uint32_t face) {
-  const uint32_t each = options_.blocks * options_.paths;
+void SunlightWave::start(uint32_t row) {
+  const uint32_t each = options_.blocks * options_.paths, face = out_.rows.face(row),
+                 interval = out_.rows.interval(row);
+  const std::optional<TimeSpan> window = path_window(tracer_, elements_, interval);
   double kept_of_sky = 0;
   for (uint32_t k = 0; k < each; ++k) {
-    const uint32_t slot = face * each + k;
+    const uint32_t slot = row * each + k;
     const PathNumbers numbers = numbers_of(slot, kPurpose);
-    const Hit hit = elements_.point(faces_.element(face), {numbers.net(), numbers.sample(), kPointBlock});
+    const Hit hit =
+        elements_.point(faces_.element(face), {numbers.net(), numbers.sample(), kPointBlock, 0, 1, interval});
     const std::array<double, 4> u = numbers.net().draw(numbers.sample(), 0);
     const Dir normal = faces_.is_back(face) ? -hit.normal : hit.normal;
     const Dir d = normalized(Frame::around(normal).to_world(cosine_hemisphere(numbers.first_direction())));
@@ -56,13 +60,15 @@ void SunlightWave::start(uint32_t face) {
     }
     if (!(any > 0)) continue;
     going_.push_back(path);
-    rays_.push_back({tracer_.leave(hit, d), d, time_of_path(tracer_, numbers.net(), numbers.sample(), hit.time), slot});
+    rays_.push_back({tracer_.leave(hit, d), d, time_of_path(window, numbers.net(), numbers.sample(), hit.time), slot});
   }
-  out_.absorptance[face] = static_cast<float>(kept_of_sky / each);
+  if (interval == 0) out_.absorptance[face] = static_cast<float>(kept_of_sky / each);
+  // Whatever changes around what changes its place.
+  if (changing_ && elements_.changes_place(faces_.element(face))) out_.rows.changing[face] = 1;
 }
 
 void SunlightWave::leave(const Going& path, Dir d) {
-  const uint32_t each = options_.blocks * options_.paths, face = path.slot / each;
+  const uint32_t each = options_.blocks * options_.paths, row = path.slot / each;
   const std::span<const float> T = throughput(path);
   double value = 0;
   for (size_t i = 0; i < bins_; ++i) value += double{T[i]} * course_.sky[i];
@@ -72,12 +78,12 @@ void SunlightWave::leave(const Going& path, Dir d) {
   const auto of_block = static_cast<float>(value * options_.blocks * (second ? -1 : 1));
   if (d.z > 0) {
     const uint32_t patch = sky_patch(d);
-    sky_[(face - first_) * kSkyPatches + patch] += static_cast<float>(value);
-    float* shapes = &sky_of_block_[((face - first_) * options_.blocks + block) * kSkyShapes];
+    sky_[(row - first_) * kSkyPatches + patch] += static_cast<float>(value);
+    float* shapes = &sky_of_block_[((row - first_) * options_.blocks + block) * kSkyShapes];
     for (const float shape : sky_shapes(patch)) *shapes++ += of_block * shape;
   } else {
-    out_.below[face] += static_cast<float>(value);
-    out_.below_of_block[size_t{face} * options_.blocks + block] += of_block;
+    out_.below[row] += static_cast<float>(value);
+    out_.below_of_block[size_t{row} * options_.blocks + block] += of_block;
   }
 }
 
@@ -86,16 +92,19 @@ void SunlightWave::add_scattered(size_t begin, size_t end) {
   for (size_t f = begin; f < end && n > 0; ++f) {
     clear_rows();
     out_.beam.get(f, beam_);
+    const bool within = out_.rows.changes(f);
+    const auto share = [&](size_t k) { return within ? shares_[out_.rows.interval(f)][sunny_[k]] : 1.0f; };
     for (size_t b = 0; b < options_.blocks; ++b) {
       const float *row = &rows_[((f - begin) * options_.blocks + b) * 2 * n], *second = row + n;
       float* parts = &parts_[b * Sunlight::kParts];
       out_.beam_of_block.get(f * options_.blocks + b, {parts, Sunlight::kParts});
       for (size_t k = 0; k < n; ++k) {
-        beam_[sunny_[k]] += (row[k] + second[k]) / static_cast<float>(options_.blocks);
-        parts[sunny_[k] * Sunlight::kParts / moments] += row[k] - second[k];
+        beam_[sunny_[k]] += share(k) * (row[k] + second[k]) / static_cast<float>(options_.blocks);
+        parts[sunny_[k] * Sunlight::kParts / moments] += share(k) * (row[k] - second[k]);
       }
     }
-    lift_beam();
+    // What is scattered alone adds to what is straight.
+    if (f < faces_.size()) lift_beam();
     keep_rows(static_cast<uint32_t>(f));
   }
 }
@@ -107,6 +116,8 @@ void SunlightWave::add_sky(size_t begin, size_t end) {
 }
 
 bool SunlightWave::go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n) {
+  if (changing_ && changing_->meets(ray, hit.hit() ? hit.distance : INFINITY))
+    out_.rows.changing[path.slot / (options_.blocks * options_.paths)] = 1;
   if (!hit.hit()) {
     leave(path, ray.direction);
     return false;
@@ -175,7 +186,11 @@ void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t
   const auto number = [&](uint32_t what, uint32_t j) {
     return numbers.net().hashed(numbers.sample(), 64 + 64 * n + 4 * j + what);
   };
-  const auto count = static_cast<double>(sunny_.size());
+  const uint32_t interval = out_.rows.interval(path.slot / (options_.blocks * options_.paths));
+  // Those of later intervals ask for moments of these.
+  const std::vector<uint32_t>* within = interval > 0 ? &sunny_within_[interval] : nullptr;
+  const auto count = static_cast<double>(within ? within->size() : sunny_.size());
+  if (count == 0) return;
   const double weight = mean_ratio(path) * count * options_.blocks / (2.0 * joins * half);
   const std::span<const float> T = throughput(path);
   for (uint32_t j = 0; j < joins; ++j) {
@@ -184,7 +199,8 @@ void SunlightWave::join_sun(const Going& path, const Hit& hit, Dir out, uint32_t
     const double shift = unit_double(hash_of(options_.seed, numbers.net().key(), n));
     double at = (numbers.sample() * joins + j + number(0, j)) / (1.0 * half * joins) + shift;
     at -= std::floor(at);
-    const auto k = static_cast<uint32_t>(std::min(count - 1, at * count));
+    const auto number_of = static_cast<uint32_t>(std::min(count - 1, at * count));
+    const uint32_t k = within ? (*within)[number_of] : number_of;
     const uint32_t moment = sunny_[k];
     const Vec2 disk = disk_from_square({number(1, j), number(2, j)});
     const Dir d = on_disk(suns_[moment], disk.x, disk.y, course_.angular_radius), in = at_.frame.to_local(d);

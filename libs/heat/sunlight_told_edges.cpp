@@ -165,9 +165,9 @@ void SunlightWave::ask_more(const BlockOfFace& of, const Told& told) {
         if (told.edges.moves())
           look.told = told.edges.lit_at(place_of(face, w.hit.position, w.disk_x, w.disk_y), t) ? 1 : 0;
         const Dir d = towards_sun(w, t);
-        if (d.z > 0 && dot(d, w.normal) > 0) {
+        if (d.z > 0 && dot(d, normal_at(w, t)) > 0) {
           look.takes = takes_between(w, m, u[2], d);
-          sights_.push_back({tracer_.leave(w.hit, d), d, t, 0});
+          sights_.push_back({tracer_.leave(hit_at(w, t), d), d, t, 0});
           asked.push_back(looks.size());
         }
         looks.push_back(look);

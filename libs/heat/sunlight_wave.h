@@ -32,10 +32,15 @@ class SunlightWave {
   struct Watch {
     uint32_t face, block, half;
     Hit hit;
-    Dir normal;                // of the face's side
-    double disk_x, disk_y;     // where on the sun's disk it looks, radii
-    std::vector<uint8_t> lit;  // by moment
-    std::vector<float> takes;  // by moment: what it absorbs of a beam of 1 that is not hidden
+    Dir normal;  // of the face's side
+    struct Stand {
+      Hit hit;
+      Dir normal;
+    };
+    std::vector<Stand> stands;  // by interval of rest, of what stands in other places at other times; else empty
+    double disk_x, disk_y;      // where on the sun's disk it looks, radii
+    std::vector<uint8_t> lit;   // by moment
+    std::vector<float> takes;   // by moment: what it absorbs of a beam of 1 that is not hidden
   };
   struct Edge {  // between two moments that differ
     size_t watch, moment;
@@ -56,9 +61,15 @@ class SunlightWave {
   // within: of the paths (or points, when options say so) of the face.
   PathNumbers numbers_of(uint32_t slot, uint64_t purpose) const {
     const uint32_t each = options_.blocks * options_.paths;
-    return {options_, purpose, faces_.number(slot / each), slot % each};
+    return {options_, purpose, faces_.number(out_.rows.face(slot / each)), slot % each};
   }
   Dir towards_sun(const Watch& watch, double t) const;
+  const Hit& hit_at(const Watch& w, double t) const {
+    return w.stands.empty() ? w.hit : w.stands[interval_of(elements_.rests(), t)].hit;
+  }
+  const Dir& normal_at(const Watch& w, double t) const {
+    return w.stands.empty() ? w.normal : w.stands[interval_of(elements_.rests(), t)].normal;
+  }
   Dir towards_sun(const Watch& watch, uint32_t moment) const {
     return on_disk(suns_[moment], watch.disk_x, watch.disk_y, course_.angular_radius);
   }
@@ -100,7 +111,7 @@ class SunlightWave {
   void add_lit(uint32_t face, uint32_t block, double sign, std::span<const float> takes, std::span<const float> shares);
   std::span<const float> kept_by(const Watch& watch);
   float taken(const Watch& watch, uint32_t moment, Dir d);
-  void start(uint32_t face);
+  void start(uint32_t row);
   bool go_on(Going& path, Ray& ray, const Hit& hit, uint32_t n);
   // By sunny moment, whether points of the face were lit; null: it is none of an element.
   const uint8_t* lit_on(uint32_t face) const {
@@ -133,8 +144,11 @@ class SunlightWave {
   std::vector<uint32_t> sunny_;  // moments with the sun up
   std::vector<Frame> suns_;      // by moment: z to the middle of the sun
   ToldSun told_sun_;
-  uint32_t first_ = 0;       // of the faces that go together
-  std::vector<float> rows_;  // [face][block][half][sunny moment] of those: what is scattered to them, by these paths
+  std::vector<std::vector<float>> shares_;           // interval_shares(), where there are several
+  std::vector<std::vector<uint32_t>> sunny_within_;  // by interval: sunny moments (of these) that are of it
+  const ChangingRoom* changing_ = nullptr;           // of rows of which it is to be found whether they see changes
+  uint32_t first_ = 0;                               // of the rows that go together
+  std::vector<float> rows_;  // [row][block][half][sunny moment] of those: what is scattered to them, by these paths
   std::vector<float> told_;  // by sunny moment
   std::vector<float> beam_, parts_;        // of one face, as Sunlight::beam and beam_of_block
   std::vector<float> sky_, sky_of_block_;  // of those that go together, as Sunlight has them

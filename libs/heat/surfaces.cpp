@@ -113,9 +113,11 @@ struct CoupledSurfaces::Received {
     if (!of.group_of(part, 0).back_rows.empty()) back.resize(count * moments);
     for_elements(count, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        of.exchange_.receive_one(of.front_row(part, i), *through.around, {&front[i * moments], moments});
+        of.exchange_.receive_one(of.front_row(part, i), *through.around, through.loads.shares,
+                                 {&front[i * moments], moments});
         if (!back.empty())
-          of.exchange_.receive_one(of.back_row(part, i), *through.around, {&back[i * moments], moments});
+          of.exchange_.receive_one(of.back_row(part, i), *through.around, through.loads.shares,
+                                   {&back[i * moments], moments});
       }
     });
   }
@@ -123,14 +125,14 @@ struct CoupledSurfaces::Received {
   std::vector<double> front, back;  // W/m2, by element of the part and moment
 };
 
-CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange,
+CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, ExchangeThrough exchange,
                                  const SurfaceNeighbours& neighbours)
     : groups_(std::move(groups)),
-      exchange_(exchange),
-      step_error_(exchange.elements()),
+      exchange_(std::move(exchange)),
+      step_error_(exchange_.elements()),
       behind_(step_error_),
       stored_(step_error_) {
-  std::vector<int> seen(exchange.elements(), 0);
+  std::vector<int> seen(exchange_.elements(), 0);
   for (size_t g = 0; g < groups_.size(); ++g) {
     const SurfaceGroup& group = groups_[g];
     const size_t count = group.front_rows.size();
@@ -152,7 +154,7 @@ CoupledSurfaces::CoupledSurfaces(std::vector<SurfaceGroup> groups, const Exchang
   }
   for (size_t row = 0; row < seen.size(); ++row)
     if (seen[row] != 1) throw Error(strf("%d surfaces have row %zu of the exchange", seen[row], row), "one each");
-  for (SurfacePart& part : surface_parts(groups_, exchange.elements(), neighbours)) {
+  for (SurfacePart& part : surface_parts(groups_, exchange_.elements(), neighbours)) {
     const SurfaceGroup& group = groups_[part.members.front().group];
     Part& made = parts_.emplace_back(std::move(part));
     if (!group.layers.empty())
@@ -316,7 +318,7 @@ CouplingResult CoupledSurfaces::couple(Through& through, Histories& emitted) {
     });
     through.first = false;
   };
-  return couple_histories(exchange_, emitted, respond, options);
+  return couple_histories(exchange_.first(), emitted, respond, options);
 }
 
 SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOptions& options) {
@@ -340,7 +342,7 @@ SurfaceHistory CoupledSurfaces::solve(const SurfaceLoads& loads, const SurfaceOp
   parallel_for(0, own, 64, [&](size_t begin, size_t end) {
     std::vector<double> row(through.moments);
     for (size_t i = begin; i < end; ++i) {
-      exchange_.receive_one(i, emitted, row);
+      exchange_.receive_one(i, emitted, loads.shares, row);
       history.received.set(i, std::vector<float>(row.begin(), row.end()));
     }
   });

@@ -9,7 +9,7 @@
 
 #include "heat/balance.h"
 #include "heat/compact_rows.h"
-#include "heat/exchange.h"
+#include "heat/exchange_through.h"
 #include "heat/slab_batch.h"
 #include "heat/surface_parts.h"
 
@@ -42,9 +42,10 @@ struct SurfaceLoads {
   double begin = 0;           // s
   std::vector<double> steps;  // s
   AirSeries air;
-  CompactRows absorbed;         // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
-  std::vector<double> source;   // W/m2 released at every element's front, by face; empty = none
-  std::vector<double> outside;  // W/m2 emitted by the outsides of the exchange, by outside and moment
+  std::vector<std::vector<float>> shares;  // of the moments by interval of rest; may be empty where there is one
+  CompactRows absorbed;                    // W/m2 shortwave: by face, then by moment (begin and the steps' ends)
+  std::vector<double> source;              // W/m2 released at every element's front, by face; empty = none
+  std::vector<double> outside;             // W/m2 emitted by the outsides of the exchange, by outside and moment
 };
 
 struct SurfaceOptions {
@@ -71,8 +72,7 @@ class CoupledSurfaces {
  public:
   // The exchange must outlive this. Error: as SlabBatch, groups whose rows are not those of the exchange, each once,
   // and neighbours of other layers, or one open and one closed back.
-  CoupledSurfaces(std::vector<SurfaceGroup> groups, const ExchangeMatrix& exchange,
-                  const SurfaceNeighbours& neighbours = {});
+  CoupledSurfaces(std::vector<SurfaceGroup> groups, ExchangeThrough exchange, const SurfaceNeighbours& neighbours = {});
   // The present state: one temperature (K) everywhere.
   void start(double kelvin);
   // Solves the span and leaves the state at its end, from where a span that is not periodic goes on: the past of n days
@@ -99,7 +99,7 @@ class CoupledSurfaces {
   CouplingResult couple(Through& through, Histories& emitted);
 
   std::vector<SurfaceGroup> groups_;
-  const ExchangeMatrix& exchange_;
+  ExchangeThrough exchange_;
   std::vector<Part> parts_;
   std::vector<double> step_error_, behind_, stored_;  // by face
 };

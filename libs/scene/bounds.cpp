@@ -38,13 +38,19 @@ Box3 transformed(const Box3& box, const Affine3& map) {
 
 namespace {
 
-// Where a box comes along on its way, sampled so that no corner is more than 1 % of the box off.
+// Where a box comes along on its way, sampled so that no corner is more than 1 % of the box off: from kink to kink, as
+// what rests for a day may be gone in seconds.
 Box3 swept(const Box3& box, const Track& track, TimeSpan span) {
   if (box.empty()) return {};
   const double radius = length(box.size()) / 2 + length(box.center());
+  std::vector<double> times = track.kinks(span);
+  times.insert(times.begin(), span.begin), times.push_back(span.end);
   Box3 all;
-  for (const Affine3& key : time_keys(track, span, time_steps_for(track, span, radius, 0.01 * radius + 1e-9)))
-    all.grow(transformed(box, key));
+  for (size_t k = 0; k + 1 < times.size(); ++k) {
+    const TimeSpan part{times[k], times[k + 1]};
+    for (const Affine3& key : time_keys(track, part, time_steps_for(track, part, radius, 0.01 * radius + 1e-9)))
+      all.grow(transformed(box, key));
+  }
   return all;
 }
 

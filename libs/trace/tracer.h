@@ -158,6 +158,14 @@ class Tracer {
   Affine3 to_world(const Hit& hit) const { return to_world(hit.object, hit.time); }
   size_t object_count() const;  // each copy counted
 
+  // When what an object hangs on may begin or end to move, to come and go or to change its material: times (s) inside
+  // the window, ascending; more than there truly are. A timetable of more rows in the window is left out.
+  static constexpr double kMostChanges = 10000;
+  std::vector<double> changes(uint32_t number) const;
+  bool there(uint32_t number, double time) const;  // an object, made as it is here
+  std::string motion_name(uint32_t number) const;  // of the motion or timetable it hangs on, for messages
+  Box3 local_box(uint32_t number) const;           // extent in its own frame; empty when unbounded
+
   // Visits at least one object of each kind: mesh or exact surface, and material override.
   void kinds(const std::function<void(const TracedObject&)>& visit) const;
   // Visits all objects that are wanted, in the order of their numbers. wanted is asked about what an object is, its

@@ -10,6 +10,7 @@
 #include "formats/weather/weather.h"
 #include "heat/day_sun.h"
 #include "heat/heat_balance.h"
+#include "motion/track.h"
 #include "support/heat_kit.h"
 #include "support/radiometry_kit.h"
 
@@ -81,6 +82,11 @@ class HeatedScene {
     scene_->schedules.push_back(s);
     scene_->groups.front().placements.back().schedule = static_cast<uint32_t>(scene_->schedules.size() - 1);
   }
+  // The last one moves.
+  void moves(TrackPtr track) {
+    scene_->tracks.push_back({"'mover'", std::move(track)});
+    scene_->groups.front().placements.back().track = static_cast<uint32_t>(scene_->tracks.size() - 1);
+  }
   std::shared_ptr<Scene> scene() { return scene_; }
 
  private:
@@ -106,14 +112,17 @@ struct HeatKit {
   std::unique_ptr<const Elements> elements;
   std::unique_ptr<const HeatFaces> faces;
 
-  // sun: towards it, where elements are to be cut by it.
-  HeatKit(HeatedScene made, size_t budget, TimeSpan span = {0, 86400}, const std::function<Dir(double)>& sun = {})
+  // sun: towards it, where elements are to be cut by it. least: s, of what counts as a rest; 0 = none is looked for.
+  HeatKit(HeatedScene made, size_t budget, TimeSpan span = {0, 86400}, const std::function<Dir(double)>& sun = {},
+          double least = 0)
       : scene(made.scene()) {
     check_scene(*scene, "test scene");
     tracer = std::make_unique<const Tracer>(scene, std::nullopt, span);
     optics = heat_optics(*scene, used_materials(*tracer), {});
     const DaySun by = sun ? day_sun(*tracer, sun_moments(span, sun)) : DaySun{};
-    elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin, sun ? &by : nullptr);
+    const auto rests = least > 0 ? rest_intervals(*tracer, least) : std::vector<RestInterval>{};
+    elements = std::make_unique<const Elements>(*tracer, optics.has_heat, budget, span.begin, sun ? &by : nullptr,
+                                                std::span<const CellSplit>{}, rests);
     faces = std::make_unique<const HeatFaces>(*elements, optics);
   }
   ExchangePaths exchange(const PathOptions& options) const {

@@ -10,7 +10,9 @@ struct SearchedScene {
   HeatSpec spec;
   SunCourse course;
 
-  explicit SearchedScene(size_t budget = 1500) : kit(scene(), budget) {
+  // moving: the plate stands elsewhere from noon on.
+  explicit SearchedScene(size_t budget = 1500, bool moving = false)
+      : kit(scene(moving), budget, {0, 86400}, {}, moving ? 600 : 0) {
     spec.span = {0, 86400}, spec.paths = 16, spec.step = 3600;
     course = loads(StillWeather{}).course;
   }
@@ -24,7 +26,7 @@ struct SearchedScene {
             sun,
             kit.faces->ends(),
             path_of(course),
-            {1500, true, {{3600, 500, {0, 0, 1}}}, {}, {}}};
+            {1500, true, {{3600, 500, {0, 0, 1}}}, {}, {}, kit.elements->rests()}};
   }
   HeatOperator found(HeatPieces* pieces = nullptr, const std::function<void(size_t)>& progress = {}) const {
     HeatOperator out;
@@ -36,7 +38,7 @@ struct SearchedScene {
     const StoredOperator file(path, of);
     HeatOperator out;
     out.exchange = untraced_exchange(*kit.elements, *kit.faces, path_options(spec));
-    out.sun = untraced_sunlight(*kit.faces, course, path_options(spec));
+    out.sun = untraced_sunlight(*kit.elements, *kit.faces, course, path_options(spec));
     file.read(out.exchange), file.read(out.sun);
     return out;
   }
@@ -45,13 +47,14 @@ struct SearchedScene {
   }
 
  private:
-  static HeatedScene scene() {
+  static HeatedScene scene(bool moving) {
     HeatedScene s;
     const TemperatureSpec wall =
         heat({{"thickness_m", 0.1}, {"density_kg_m3", 2000}, {"specific_heat_j_kg_k", 900}, {"conductivity_w_m_k", 1}});
     s.plane(8, 8, s.heated(0.8, wall));
     s.plane(8, 3, s.heated(0.4, wall), with_axes({1, 0, 0}, {0, 0, 1}, {0, 4, 1.5}));
     s.plane(1, 1, s.heated(0.5, heat({}, {{"back", "open"}})), shifted({0, 0, 2}));
+    if (moving) s.moves(keyframe_track({{0, {}}, {43200, {}}, {43210, {{}, {2, 0, 0}}}, {86400, {{}, {2, 0, 0}}}}));
     return s;
   }
 };

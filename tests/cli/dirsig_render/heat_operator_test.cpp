@@ -101,6 +101,35 @@ TEST_F(HeatOperatorRun, WhatLeavesOnItsDateIsAnotherScene) {
   EXPECT_THAT(day.err, HasSubstr("was found with another scene"));
 }
 
+// What comes and goes has rows of its own in later intervals of rest: they go on where they were, and are read again.
+TEST_F(HeatOperatorRun, IntervalsOfRestGoOnToTheSameBits) {
+  ASSERT_EQ(run("scene-prep leaving.yaml -o rests.h5 -q").code, 0);
+  const std::string more = " --heat-only --set scene=rests.h5 --set heat.save_every_s=0" + kFew;
+  const CommandResult whole = run("dirsig-render sim.yaml -o rests" + more);
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_THAT(whole.err, HasSubstr("2 intervals of rest, which change at 57600 s"));
+  const std::string pieces = *folder_ / "part/heat_operator.pieces";
+  run_command("cd '" + folder_->path() + "' && { " SUITE_BIN_DIR "/dirsig-render sim.yaml -o part" + more +
+              " & pid=$!; while ! ls '" + pieces +
+              "' 2>/dev/null | grep -q '^sunlight.*h5$' && kill -0 $pid 2>/dev/null; do sleep 0.01; done; kill -9 "
+              "$pid; wait $pid; }");
+  EXPECT_FALSE(there("part/heat.h5"));
+  const CommandResult rest = run("dirsig-render sim.yaml -o part" + more);
+  ASSERT_EQ(rest.code, 0) << rest.err;
+  EXPECT_EQ(text("part/heat.csv"), text("rests/heat.csv"));
+  const CommandResult again = run("dirsig-render sim.yaml -o rests" + more);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("no new rays"));
+  EXPECT_EQ(text("part/heat.csv"), text("rests/heat.csv"));
+  const CommandResult read = run("dirsig-render sim.yaml -o read --heat rests/heat.h5" + more);
+  EXPECT_EQ(read.code, 0) << read.err;
+  // More than are allowed is told; without them it is as before there were any.
+  const CommandResult one = run("dirsig-render sim.yaml -o one --set heat.intervals=1" + more);
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.err, HasSubstr("for their share of it, evenly"));
+  EXPECT_NE(text("one/heat.csv"), text("rests/heat.csv"));
+}
+
 TEST_F(HeatOperatorRun, TwoDaysLaterFindsOnlyItsSunlight) {
   const CommandResult day =
       run("dirsig-render sim.yaml -o day --heat-operator first/heat_operator.h5 --heat-only "

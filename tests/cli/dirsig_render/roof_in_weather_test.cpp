@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "formats/picture/picture.h"
+#include "formats/raster/raster.h"
 #include "support/sample_kit.h"
 
 namespace suite {
@@ -44,6 +46,30 @@ TEST_F(RoofInWeather, ShowsWhatIsExpected) {
   expect("out/afternoon.img", 0, {312.6, 310.6, 304.3});
   expect("out/midwave.img", 0, {317.0, 315.4, 303.7});
   expect("out/midwave.img", 1, {312.3, 310.3, 303.4});
+
+  // Truth as pictures: the colour of a pixel is that of its number on the bar, whose ends the file says.
+  const Raster shown = read_raster(folder_ / "out/afternoon_sun_hours.png");
+  const std::string text = read_text(folder_ / "out/afternoon_sun_hours.png");
+  const size_t said = text.find("sun hours, linear from ");
+  ASSERT_NE(said, std::string::npos);
+  double low = 0, high = 0;
+  ASSERT_EQ(std::sscanf(&text[said], "sun hours, linear from %lf to %lf h", &low, &high), 2);
+  constexpr size_t kEnlarged = 6, kTop = 32;  // 96 x 72 detectors
+  for (const Place place : {kRoof, kYard, kShade}) {
+    const double hours = value("out/afternoon_truth.img", place.column, place.row, 2);
+    const Rgb colour = inferno((hours - low) / (high - low));
+    const size_t x = place.column * kEnlarged + 2, y = place.row * kEnlarged + 2 + kTop;
+    const float* at = &shown.values[(y * shown.width + x) * shown.channels];
+    std::printf("%.2f h of sun at column %zu: %.0f %.0f %.0f\n", hours, place.column, double{at[0]}, double{at[1]},
+                double{at[2]});
+    EXPECT_NEAR(double{at[0]}, colour.r, 2) << hours;
+    EXPECT_NEAR(double{at[1]}, colour.g, 2);
+    EXPECT_NEAR(double{at[2]}, colour.b, 2);
+  }
+  EXPECT_GT(value("out/afternoon_truth.img", kYard.column, kYard.row, 2),
+            value("out/afternoon_truth.img", kShade.column, kShade.row, 2) + 1);
+  for (const char* other : {"temperature", "temperature_error"})
+    EXPECT_TRUE(file_exists(folder_ / (std::string("out/night_") + other + ".png"))) << other;
 
   // The same temperatures, of elements alone: the edge of the shadow lies where they have theirs.
   render("elements", "--heat out/heat.h5 --set heat.final_gather=false " + few);

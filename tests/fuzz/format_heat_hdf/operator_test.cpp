@@ -6,10 +6,12 @@
 
 namespace suite {
 
-TEST(FuzzHeatOperator, File) {
+namespace {
+
+void fuzz_operator(bool moving) {
   const TempFolder folder;
   const std::string path = folder / "heat_operator.h5";
-  const test::SearchedScene s(6);
+  const test::SearchedScene s(6, moving);
   write_operator(path, s.found(), s.identity(), "a test");
   const std::vector<std::byte> bytes = read_bytes(path);
   test::fuzz(bytes, [&](std::span<const std::byte> mutated) {
@@ -17,8 +19,14 @@ TEST(FuzzHeatOperator, File) {
     operator_cut(path);
     StoredOperator(path, s.identity()).sun_path();
     const HeatOperator found = s.stored(path, s.identity());
-    found.exchange.matrix(s.kit.faces->outsides());
+    for (size_t k = 0; k < found.exchange.rows.intervals; ++k)
+      found.exchange.in_interval(k).matrix(s.kit.faces->outsides());
   });
 }
+
+}  // namespace
+
+TEST(FuzzHeatOperator, File) { fuzz_operator(false); }
+TEST(FuzzHeatOperator, FileOfWhatMoves) { fuzz_operator(true); }
 
 }  // namespace suite

@@ -67,7 +67,7 @@ Off off_fine_elements(double kelvin, bool beam_alone) {
         const Hit hit = fine.kit.elements->point(e, {stream, k, 0});
         const HeatedPlace place{hit.position, hit.normal, fine.kit.tracer->object(hit.object).instance, hit.triangle,
                                 0};
-        const uint32_t in = coarse.kit.elements->at(place, 0).value();
+        const uint32_t in = coarse.kit.elements->at(place, 0, t).value();
         const double T = coarse.result.kelvin_at(in, t);
         element += T / kPoints, told += (T + (points.tells(in, t) ? points.above(in, place, t).value() : 0)) / kPoints;
       }

@@ -48,7 +48,7 @@ enum class Told { truly, wrongly, nothing };
 Scattered scattered(const HeatKit& kit, Told told, uint32_t joins, uint64_t seed) {
   const SunCourse course = day();
   const PathOptions options{8, 16, seed};
-  Sunlight light = untraced_sunlight(*kit.faces, course, options);
+  Sunlight light = untraced_sunlight(*kit.elements, *kit.faces, course, options);
   const auto trace = [&](SunStage stage) {
     trace_sunlight(*kit.tracer, *kit.elements, *kit.faces, kit.optics, course, options, joins, stage,
                    {0, kit.faces->size()}, light);

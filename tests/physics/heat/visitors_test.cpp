@@ -42,6 +42,10 @@ TEST(Visitors, WhatIsSpreadOverTheSpanIsTold) {
   std::printf("a plate over another for half the time: %.2f W/m2 told, %.2f\n", *half, exact);
   EXPECT_NEAR(*half, exact, 0.06 * exact);
   EXPECT_GT(exact, 50);
+  // What paths from the plate say of those below is for its share, too: they start at all times, as if it were there.
+  const double all = share * black(350) + (1 - share) * 200;
+  std::printf("received below it: %.2f W/m2, %.2f\n", received, all);
+  EXPECT_NEAR(received, all, 0.02 * all);
   EXPECT_FALSE(told(solved(kAlways)));  // negative control
 }
 

@@ -44,9 +44,9 @@ size_t files_in(const std::string& folder) {
   return n;
 }
 
-TEST(HeatOperatorHdf, OtherWeatherNeedsNoNewRay) {
+void other_weather(bool moving) {
   const TempFolder folder;
-  const SearchedScene s;
+  const SearchedScene s(1500, moving);
   const std::string path = folder / "heat_operator.h5";
   write_operator(path, s.found(), s.identity(), "a test");
   expect_same(s.found(), s.stored(path, s.identity()));
@@ -65,12 +65,15 @@ TEST(HeatOperatorHdf, OtherWeatherNeedsNoNewRay) {
   EXPECT_GT(differs, 5);  // negative control
 }
 
+TEST(HeatOperatorHdf, OtherWeatherNeedsNoNewRay) { other_weather(false); }
+TEST(HeatOperatorHdf, NeitherDoesItWhereThingsMove) { other_weather(true); }
+
 // Ends a search as a signal would: nothing after it is run.
 struct Ended {};
 
-TEST(HeatOperatorHdf, AnEndedSearchGoesOn) {
+void ended_search(bool moving) {
   const TempFolder folder;
-  const SearchedScene s;
+  const SearchedScene s(1500, moving);
   const HeatOperator whole = s.found();
   const size_t faces = s.kit.faces->size();
   const std::string pieces_folder = folder / "pieces";
@@ -100,6 +103,15 @@ TEST(HeatOperatorHdf, AnEndedSearchGoesOn) {
   remove_pieces(pieces_folder);
   EXPECT_EQ(files_in(pieces_folder), 1u);
   remove_pieces(folder / "none");
+}
+
+TEST(HeatOperatorHdf, AnEndedSearchGoesOn) { ended_search(false); }
+TEST(HeatOperatorHdf, SoItDoesWhereThingsMove) {
+  const SearchedScene s(1500, true);
+  const HeatOperator found = s.found();
+  EXPECT_GT(found.exchange.rows.size(), found.exchange.faces());  // some faces see it
+  EXPECT_LT(found.exchange.rows.size(), 2 * found.exchange.faces());
+  ended_search(true);
 }
 
 TEST(HeatOperatorHdf, Messages) {
