@@ -1,5 +1,6 @@
 // The runtime of the aligned method; see aligned.h. Tables are in aligned_tables.h, here they are asked.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -9,12 +10,14 @@
 #include "sqt/aligned_tables.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
+#include "sqt/vectors.h"
 
 namespace suite::sqt {
 
 namespace {
 
 constexpr size_t kStride = AlignedSheet::kStride;
+constexpr size_t kTogether = 8;  // channels
 // log2 of the scale that stands for a total of zero.
 constexpr float kNothing = -90;
 
@@ -41,7 +44,8 @@ class AlignedBundle final : public Bundle {
       return;
     }
     const Place fine = place(fine_, q.up);
-    for (size_t c = 0; c < f.size(); ++c) f[c] = value_at(q, fine, c);
+    for (size_t c = 0; c < f.size(); c += kTogether)
+      values_at(q, fine, c, f.subspan(c, std::min(kTogether, f.size() - c)));
   }
   double value(Dir out, Dir in, size_t channel) const override {
     const Query& q = ask(out, in);
@@ -121,7 +125,7 @@ class AlignedBundle final : public Bundle {
     for (size_t s = 0; s < tables_.sheets().size(); ++s) {
       const AlignedTables::Sheet& sheet = tables_.sheets()[s];
       for (size_t i = 0; i < sheet.tree.size(); ++i) {
-        const int16_t* p = &sheet.plane[(i * layout_.width() + column) * kStride];
+        const int16_t* p = numbers(&sheet.plane[i * layout_.width() * kStride], view, channel);
         const double g = portable_exp2(sheet.scale.value(p[0]) + static_cast<float>(scale(at, channel))),
                      mass = tables_.probability(column, p[3]);
         const CellId id = sheet.tree.cell(i);
@@ -150,7 +154,7 @@ class AlignedBundle final : public Bundle {
   struct Query {
     Place at;
     Dir up;
-    const int16_t* leaf;  // numbers of the leaf, [channel][view]
+    const int16_t* leaf;  // numbers of the leaf, [view][channel]
     LogScale scale;
     float dx, dy;
     double to_density;  // from the leaf's probability
@@ -277,24 +281,52 @@ class AlignedBundle final : public Bundle {
     q.at = place(views_, q.up);
     return true;
   }
+  // Of a leaf, those of a view and a channel.
+  const int16_t* numbers(const int16_t* leaf, size_t view, size_t channel) const {
+    return leaf + (view * layout_.channels + channel) * kStride;
+  }
   double value_at(const Query& q, const Place& fine, size_t channel) const {
     float l = static_cast<float>(scale(fine, channel));
     if (l <= kNothing) return 0;
     using Four = float __attribute__((vector_size(16)));
     using Numbers = int16_t __attribute__((vector_size(8)));
-    const int16_t* row = q.leaf + channel * layout_.views() * kStride;
     Four plane{};
     for (int b = 0; b < q.at.count; ++b)
       plane += static_cast<float>(q.at.weight[b]) *
-               __builtin_convertvector(load<Numbers>(row + q.at.view[b] * kStride), Four);
+               __builtin_convertvector(load<Numbers>(numbers(q.leaf, q.at.view[b], channel)), Four);
     return portable_exp2(l + q.scale.value(plane[0] + q.dx * plane[1] + q.dy * plane[2]));
+  }
+  // The same of up to kTogether channels from `first` on, to the same bits.
+  void values_at(const Query& q, const Place& fine, size_t first, std::span<double> f) const {
+    // Two channels each: the sums over views, then value + slope . place, the pairs of which are added up.
+    EightFloats part[kTogether / 2] = {};
+    const EightFloats place{1, q.dx, q.dy, 0, 1, q.dx, q.dy, 0};
+    for (int b = 0; b < q.at.count; ++b) {
+      const int16_t* const row = numbers(q.leaf, q.at.view[b], first);
+      for (size_t i = 0; i < kTogether / 2; ++i)
+        part[i] += static_cast<float>(q.at.weight[b]) * __builtin_convertvector(load<Short8>(row + 8 * i), EightFloats);
+    }
+    const auto pairs = [](EightFloats x, EightFloats y) {
+      return __builtin_shuffle(x, y, Int8{0, 2, 8, 10, 4, 6, 12, 14}) +
+             __builtin_shuffle(x, y, Int8{1, 3, 9, 11, 5, 7, 13, 15});
+    };
+    for (EightFloats& p : part) p *= place;
+    const EightFloats plane =
+        __builtin_shuffle(pairs(pairs(part[0], part[1]), pairs(part[2], part[3])), Int8{0, 4, 1, 5, 2, 6, 3, 7});
+    std::array<float, kTogether> scales{};
+    for (size_t k = 0; k < f.size(); ++k) scales[k] = static_cast<float>(scale(fine, first + k));
+    const auto s = load<EightFloats>(scales.data());
+    const EightFloats value = portable_exp2(s + (static_cast<float>(q.scale.offset) + plane * q.scale.unit()));
+    std::array<float, kTogether> values;
+    store(values.data(), s <= kNothing ? EightFloats{} : value);
+    std::copy_n(values.begin(), f.size(), f.begin());
   }
   double density(const Query& q, size_t channel) const {
     double p = 0;
     const size_t first = channel * layout_.views();
     for (int b = 0; b < q.at.count; ++b) {
       const size_t column = first + q.at.view[b];
-      p += q.at.weight[b] * tables_.probability(column, q.leaf[column * kStride + 3]);
+      p += q.at.weight[b] * tables_.probability(column, numbers(q.leaf, q.at.view[b], channel)[3]);
     }
     return p * q.to_density;
   }

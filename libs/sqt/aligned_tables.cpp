@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/parallel.h"
 
@@ -32,6 +33,24 @@ void transpose(Int8 (&r)[8]) {
   }
 }
 
+// [leaf][channel][view] to [leaf][view][channel], four numbers each.
+void put_views_outside(const AlignedLayout& layout, size_t leaves, UnsetVector<int16_t>& plane) {
+  const size_t width = layout.width(), views = layout.views(), channels = layout.channels;
+  if (channels == 1) return;
+  using Four = uint64_t;
+  static_assert(sizeof(Four) == AlignedSheet::kStride * sizeof(int16_t));
+  parallel_for(0, leaves, 256, [&](size_t begin, size_t end) {
+    std::vector<Four> row(width), turned(width);
+    for (size_t i = begin; i < end; ++i) {
+      int16_t* const at = &plane[i * width * AlignedSheet::kStride];
+      std::memcpy(row.data(), at, width * sizeof(Four));
+      for (size_t v = 0; v < views; ++v)
+        for (size_t c = 0; c < channels; ++c) turned[v * channels + c] = row[c * views + v];
+      std::memcpy(at, turned.data(), width * sizeof(Four));
+    }
+  });
+}
+
 }  // namespace
 
 AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedSheet> stored)
@@ -53,6 +72,7 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
     sheet.tree = Tree(s.leaves);
     sheet.scale = s.scale;
     sheet.plane = std::move(s.plane);
+    put_views_outside(layout, s.leaves.size(), sheet.plane);
     sheet.first = first;
     first += s.leaves.size();
     sheet.inverse_area = std::move(s.inverse_area);

@@ -374,7 +374,8 @@ class PacketTracer {
   Affine3 seen_at(const Way& way, double time) const;
   double exact_time(const Ray& ray) const;
   void finish_triangle(const Found& found, const Ray& ray, Hit& hit) const;
-  void finish_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, double near, Hit& hit) const;
+  void finish_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, double near,
+                    Hit& hit) const;
   void place_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, const LocalHit& found,
                    Hit& hit) const;
 
