@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace suite::sqt {
@@ -62,6 +63,8 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
   const std::vector<double> sum = sum_masses(stored);
   columns_.resize(row_);
   for (size_t j = 0; j < width; ++j) columns_[j].scale = sum[j] > 0 ? static_cast<float>(0x1.ff8p30 / sum[j]) : 0;
+  cumulative_.reserve(tiles_ * row_ * kTile);
+  expect_large(cumulative_.data(), cumulative_.capacity() * sizeof(int32_t));
   cumulative_.resize(tiles_ * row_ * kTile);
   tile_sum_.resize(row_ * (tiles_ + 1));
   parallel_for(0, row_ / 8, (row_ / 8 + 15) / 16, [&](size_t begin, size_t end) { accumulate(stored, begin, end); });
