@@ -94,7 +94,12 @@ class AlignedBundle final : public Bundle {
     size_t s = tables_.sheets().size() - 1;
     while (drawn.leaf < tables_.sheets()[s].first) --s;
     const AlignedTables::Sheet& sheet = tables_.sheets()[s];
-    Dir d = direction_fast(point_in(sheet.tree.cell(drawn.leaf - sheet.first), u));
+    const size_t leaf = drawn.leaf - sheet.first;
+    // Whoever draws asks for value and density next.
+    const auto* const row =
+        reinterpret_cast<const char*>(numbers(&sheet.plane[leaf * layout_.width() * kStride], at.view[0], 0));
+    for (size_t line = 0; line < 4; ++line) __builtin_prefetch(row + 64 * line);
+    Dir d = direction_fast(point_in(sheet.tree.cell(leaf), u));
     if (mirrored) d.y = -d.y;
     const LobeMap lobe = map(up, s);
     if (layout_.upper_only && lobe.cosine(d) <= 0) return std::nullopt;
