@@ -99,6 +99,7 @@ class AlignedBundle final : public Bundle {
     const auto* const row =
         reinterpret_cast<const char*>(numbers(&sheet.plane[leaf * layout_.width() * kStride], at.view[0], 0));
     for (size_t line = 0; line < 4; ++line) __builtin_prefetch(row + 64 * line);
+    __builtin_prefetch(&sheet.inverse_area[leaf]);
     Dir d = direction_fast(point_in(sheet.tree.cell(leaf), u));
     if (mirrored) d.y = -d.y;
     const LobeMap lobe = map(up, s);
