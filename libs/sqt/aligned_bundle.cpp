@@ -8,16 +8,15 @@
 #include "base/error.h"
 #include "sqt/aligned.h"
 #include "sqt/aligned_tables.h"
+#include "sqt/planes.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
-#include "sqt/vectors.h"
 
 namespace suite::sqt {
 
 namespace {
 
 constexpr size_t kStride = AlignedSheet::kStride;
-constexpr size_t kTogether = 8;  // channels
 // log2 of the scale that stands for a total of zero.
 constexpr float kNothing = -90;
 
@@ -304,26 +303,13 @@ class AlignedBundle final : public Bundle {
   }
   // The same of up to kTogether channels from `first` on, to the same bits.
   void values_at(const Query& q, const Place& fine, size_t first, std::span<double> f) const {
-    // Two channels each: the sums over views, then value + slope . place, the pairs of which are added up.
-    EightFloats part[kTogether / 2] = {};
-    const EightFloats place{1, q.dx, q.dy, 0, 1, q.dx, q.dy, 0};
-    for (int b = 0; b < q.at.count; ++b) {
-      const int16_t* const row = numbers(q.leaf, q.at.view[b], first);
-      for (size_t i = 0; i < kTogether / 2; ++i)
-        part[i] += static_cast<float>(q.at.weight[b]) * __builtin_convertvector(load<Short8>(row + 8 * i), EightFloats);
-    }
-    const auto pairs = [](EightFloats x, EightFloats y) {
-      return __builtin_shuffle(x, y, Int8{0, 2, 8, 10, 4, 6, 12, 14}) +
-             __builtin_shuffle(x, y, Int8{1, 3, 9, 11, 5, 7, 13, 15});
-    };
-    for (EightFloats& p : part) p *= place;
-    const EightFloats plane =
-        __builtin_shuffle(pairs(pairs(part[0], part[1]), pairs(part[2], part[3])), Int8{0, 4, 1, 5, 2, 6, 3, 7});
-    std::array<float, kTogether> scales{};
+    std::array<const int16_t*, 4> rows;
+    for (int b = 0; b < q.at.count; ++b) rows[b] = numbers(q.leaf, q.at.view[b], first);
+    const EightFloats plane = planes(std::span(rows).first(q.at.count), q.at.weight, q.dx, q.dy);
+    std::array<float, kTogether> scales{}, values;
     for (size_t k = 0; k < f.size(); ++k) scales[k] = static_cast<float>(scale(fine, first + k));
     const auto s = load<EightFloats>(scales.data());
     const EightFloats value = portable_exp2(s + (static_cast<float>(q.scale.offset) + plane * q.scale.unit()));
-    std::array<float, kTogether> values;
     store(values.data(), s <= kNothing ? EightFloats{} : value);
     std::copy_n(values.begin(), f.size(), f.begin());
   }
