@@ -1,5 +1,6 @@
 // The runtime of the aligned method; see aligned.h. Tables are in aligned_tables.h, here they are asked.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include "base/error.h"
 #include "sqt/aligned.h"
 #include "sqt/aligned_tables.h"
+#include "sqt/planes.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
 
@@ -41,7 +43,8 @@ class AlignedBundle final : public Bundle {
       return;
     }
     const Place fine = place(fine_, q.up);
-    for (size_t c = 0; c < f.size(); ++c) f[c] = value_at(q, fine, c);
+    for (size_t c = 0; c < f.size(); c += kTogether)
+      values_at(q, fine, c, f.subspan(c, std::min(kTogether, f.size() - c)));
   }
   double value(Dir out, Dir in, size_t channel) const override {
     const Query& q = ask(out, in);
@@ -90,7 +93,13 @@ class AlignedBundle final : public Bundle {
     size_t s = tables_.sheets().size() - 1;
     while (drawn.leaf < tables_.sheets()[s].first) --s;
     const AlignedTables::Sheet& sheet = tables_.sheets()[s];
-    Dir d = direction_fast(point_in(sheet.tree.cell(drawn.leaf - sheet.first), u));
+    const size_t leaf = drawn.leaf - sheet.first;
+    // Whoever draws asks for value and density next.
+    const auto* const row =
+        reinterpret_cast<const char*>(numbers(&sheet.plane[leaf * layout_.width() * kStride], at.view[0], 0));
+    for (size_t line = 0; line < 4; ++line) __builtin_prefetch(row + 64 * line);
+    __builtin_prefetch(&sheet.inverse_area[leaf]);
+    Dir d = direction_fast(point_in(sheet.tree.cell(leaf), u));
     if (mirrored) d.y = -d.y;
     const LobeMap lobe = map(up, s);
     if (layout_.upper_only && lobe.cosine(d) <= 0) return std::nullopt;
@@ -121,7 +130,7 @@ class AlignedBundle final : public Bundle {
     for (size_t s = 0; s < tables_.sheets().size(); ++s) {
       const AlignedTables::Sheet& sheet = tables_.sheets()[s];
       for (size_t i = 0; i < sheet.tree.size(); ++i) {
-        const int16_t* p = &sheet.plane[(i * layout_.width() + column) * kStride];
+        const int16_t* p = numbers(&sheet.plane[i * layout_.width() * kStride], view, channel);
         const double g = portable_exp2(sheet.scale.value(p[0]) + static_cast<float>(scale(at, channel))),
                      mass = tables_.probability(column, p[3]);
         const CellId id = sheet.tree.cell(i);
@@ -150,7 +159,7 @@ class AlignedBundle final : public Bundle {
   struct Query {
     Place at;
     Dir up;
-    const int16_t* leaf;  // numbers of the leaf, [channel][view]
+    const int16_t* leaf;  // numbers of the leaf, [view][channel]
     LogScale scale;
     float dx, dy;
     double to_density;  // from the leaf's probability
@@ -277,24 +286,39 @@ class AlignedBundle final : public Bundle {
     q.at = place(views_, q.up);
     return true;
   }
+  // Of a leaf, those of a view and a channel.
+  const int16_t* numbers(const int16_t* leaf, size_t view, size_t channel) const {
+    return leaf + (view * layout_.channels + channel) * kStride;
+  }
   double value_at(const Query& q, const Place& fine, size_t channel) const {
     float l = static_cast<float>(scale(fine, channel));
     if (l <= kNothing) return 0;
     using Four = float __attribute__((vector_size(16)));
     using Numbers = int16_t __attribute__((vector_size(8)));
-    const int16_t* row = q.leaf + channel * layout_.views() * kStride;
     Four plane{};
     for (int b = 0; b < q.at.count; ++b)
       plane += static_cast<float>(q.at.weight[b]) *
-               __builtin_convertvector(load<Numbers>(row + q.at.view[b] * kStride), Four);
+               __builtin_convertvector(load<Numbers>(numbers(q.leaf, q.at.view[b], channel)), Four);
     return portable_exp2(l + q.scale.value(plane[0] + q.dx * plane[1] + q.dy * plane[2]));
+  }
+  // The same of up to kTogether channels from `first` on, to the same bits.
+  void values_at(const Query& q, const Place& fine, size_t first, std::span<double> f) const {
+    std::array<const int16_t*, 4> rows;
+    for (int b = 0; b < q.at.count; ++b) rows[b] = numbers(q.leaf, q.at.view[b], first);
+    const EightFloats plane = planes(std::span(rows).first(q.at.count), q.at.weight, q.dx, q.dy);
+    std::array<float, kTogether> scales{}, values;
+    for (size_t k = 0; k < f.size(); ++k) scales[k] = static_cast<float>(scale(fine, first + k));
+    const auto s = load<EightFloats>(scales.data());
+    const EightFloats value = portable_exp2(s + (static_cast<float>(q.scale.offset) + plane * q.scale.unit()));
+    store(values.data(), s <= kNothing ? EightFloats{} : value);
+    std::copy_n(values.begin(), f.size(), f.begin());
   }
   double density(const Query& q, size_t channel) const {
     double p = 0;
     const size_t first = channel * layout_.views();
     for (int b = 0; b < q.at.count; ++b) {
       const size_t column = first + q.at.view[b];
-      p += q.at.weight[b] * tables_.probability(column, q.leaf[column * kStride + 3]);
+      p += q.at.weight[b] * tables_.probability(column, numbers(q.leaf, q.at.view[b], channel)[3]);
     }
     return p * q.to_density;
   }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace suite::sqt {
@@ -32,6 +34,24 @@ void transpose(Int8 (&r)[8]) {
   }
 }
 
+// [leaf][channel][view] to [leaf][view][channel], four numbers each.
+void put_views_outside(const AlignedLayout& layout, size_t leaves, UnsetVector<int16_t>& plane) {
+  const size_t width = layout.width(), views = layout.views(), channels = layout.channels;
+  if (channels == 1) return;
+  using Four = uint64_t;
+  static_assert(sizeof(Four) == AlignedSheet::kStride * sizeof(int16_t));
+  parallel_for(0, leaves, 256, [&](size_t begin, size_t end) {
+    std::vector<Four> row(width), turned(width);
+    for (size_t i = begin; i < end; ++i) {
+      int16_t* const at = &plane[i * width * AlignedSheet::kStride];
+      std::memcpy(row.data(), at, width * sizeof(Four));
+      for (size_t v = 0; v < views; ++v)
+        for (size_t c = 0; c < channels; ++c) turned[v * channels + c] = row[c * views + v];
+      std::memcpy(at, turned.data(), width * sizeof(Four));
+    }
+  });
+}
+
 }  // namespace
 
 AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedSheet> stored)
@@ -43,6 +63,8 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
   const std::vector<double> sum = sum_masses(stored);
   columns_.resize(row_);
   for (size_t j = 0; j < width; ++j) columns_[j].scale = sum[j] > 0 ? static_cast<float>(0x1.ff8p30 / sum[j]) : 0;
+  cumulative_.reserve(tiles_ * row_ * kTile);
+  expect_large(cumulative_.data(), cumulative_.capacity() * sizeof(int32_t));
   cumulative_.resize(tiles_ * row_ * kTile);
   tile_sum_.resize(row_ * (tiles_ + 1));
   parallel_for(0, row_ / 8, (row_ / 8 + 15) / 16, [&](size_t begin, size_t end) { accumulate(stored, begin, end); });
@@ -53,6 +75,7 @@ AlignedTables::AlignedTables(const AlignedLayout& layout, std::vector<AlignedShe
     sheet.tree = Tree(s.leaves);
     sheet.scale = s.scale;
     sheet.plane = std::move(s.plane);
+    put_views_outside(layout, s.leaves.size(), sheet.plane);
     sheet.first = first;
     first += s.leaves.size();
     sheet.inverse_area = std::move(s.inverse_area);

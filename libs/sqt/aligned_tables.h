@@ -1,9 +1,10 @@
 // What the runtime of the aligned method looks up: leaves with their planes and masses, cumulative masses to draw from.
 // Built once from decoded trees. Internal to libs/sqt; the method is described in aligned.h.
 //
-// Leaf, channel and view share four numbers (value, two slopes, mass), so that eval and pdf touch the same lines of
-// cache. Of a column (channel, view), the mass of a leaf is a whole number that follows from its code and the column's
-// scale; cumulative masses are sums of the same numbers: pdf is what sample does.
+// Leaf, view and channel share four numbers (value, two slopes, mass), so that eval and pdf touch the same lines of
+// cache; all channels of a view stand side by side, so that those are few. Of a column (channel, view), the mass of a
+// leaf is a whole number that follows from its code and the column's scale; cumulative masses are sums of the same
+// numbers: pdf is what sample does.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -20,7 +21,7 @@ class AlignedTables {
   struct Sheet {
     Tree tree;
     LogScale scale;
-    UnsetVector<int16_t> plane;       // [leaf][channel][view]{value, slope x, slope y, mass}
+    UnsetVector<int16_t> plane;       // [leaf][view][channel]{value, slope x, slope y, mass}
     std::vector<float> inverse_area;  // 1/sr of one leaf, its mirror image counted in
     size_t first = 0;                 // index of the first leaf among all sheets
   };

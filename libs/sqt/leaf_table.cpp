@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "sqt/cell_centers.h"
 
 namespace suite::sqt {
@@ -89,6 +90,8 @@ LeafTable::LeafTable(const AlignedLayout& layout, LogScale scale, AlignedSheet& 
   sheet_.inverse_area.reserve(expected + coarse);
   sheet_.plane.reserve((expected + coarse) * width_ * AlignedSheet::kStride + kSlack);
   sheet_.mass.reserve((expected + coarse) * row_);
+  // Looked up at random: with small pages most look-ups miss the processor's table of them, too.
+  expect_large(sheet_.plane.data(), sheet_.plane.capacity() * sizeof(int16_t));
 }
 
 void LeafTable::add(CellXY at, int order, const Center& center, const int16_t* value, const int16_t* slope_x,

@@ -200,6 +200,14 @@ struct Asked {
   bool may_pass;
 };
 
+// Where an exact surface is, both ways.
+struct ExactPose {
+  Affine3 to_world, to_local;
+  bool mirrored;
+  explicit ExactPose(const Affine3& place)
+      : to_world(place), to_local(place.inverse()), mirrored(place.determinant() < 0) {}
+};
+
 // What does not change with the window.
 struct World {
   World(std::shared_ptr<const Scene> scene, std::optional<Periodic> periodic, std::shared_ptr<const HitFilter> filter,
@@ -225,7 +233,7 @@ struct World {
   // First hit of an exact surface between t_min and t_max beyond `from` (m along the ray) that the filter does not let
   // through; its t counts from there, and again(t) is where to look for the next.
   static double again(double t) { return t + 1e-12 * std::max(1.0, std::fabs(t)); }
-  std::optional<LocalHit> meet(const Ray& ray, const Asked& asked, const Affine3& to_world, double from, double t_min,
+  std::optional<LocalHit> meet(const Ray& ray, const Asked& asked, const ExactPose& pose, double from, double t_min,
                                double t_max) const;
   Asked asked(uint32_t object) const { return {flat.objects[object], flat.number(object), filter && may_pass[object]}; }
   Asked asked(const Way& way) const { return {way.object, way.number, filter && filter->concerns(way.object)}; }
@@ -366,8 +374,9 @@ class PacketTracer {
   Affine3 seen_at(const Way& way, double time) const;
   double exact_time(const Ray& ray) const;
   void finish_triangle(const Found& found, const Ray& ray, Hit& hit) const;
-  void finish_exact(double scale, const Ray& ray, const Way& way, double near, Hit& hit) const;
-  void place_exact(double scale, const Ray& ray, const Way& way, const Affine3& to_world, const LocalHit& found,
+  void finish_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, double near,
+                    Hit& hit) const;
+  void place_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, const LocalHit& found,
                    Hit& hit) const;
 
   bool absent(uint32_t object, const Ray& ray) const;

@@ -21,15 +21,15 @@ bool World::keeps(const Ray& ray, const Asked& asked, uint32_t triangle, double 
   return filter->keeps(ray, asked.object, hit);
 }
 
-std::optional<LocalHit> World::meet(const Ray& ray, const Asked& asked, const Affine3& to_world, double from,
+std::optional<LocalHit> World::meet(const Ray& ray, const Asked& asked, const ExactPose& pose, double from,
                                     double t_min, double t_max) const {
   const Primitive& primitive = scene->primitives[asked.object.primitive];
-  const Affine3 to_local = to_world.inverse();
-  const Vec3 origin = to_local.point(ray.origin + ray.direction * from), direction = to_local.vector(ray.direction);
+  const Vec3 origin = pose.to_local.point(ray.origin + ray.direction * from),
+             direction = pose.to_local.vector(ray.direction);
   auto found = intersect(primitive, origin, direction, t_min, t_max);
   if (!asked.may_pass) return found;
   while (found && !keeps(ray, asked, 0, found->u, found->v, ray.origin + ray.direction * (from + found->t),
-                         to_world.normal(found->normal)))
+                         pose.to_world.normal(found->normal)))
     found = intersect(primitive, origin, direction, again(found->t), t_max);
   return found;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "trace/embree_internal.h"
 #include "trace/primitive_hit.h"
@@ -132,15 +134,27 @@ void PacketTracer::finish(std::span<Hit> hits) {
     const Mesh& mesh = world_.scene->meshes[f.mesh];
     for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[3 * size_t{corner[k]}]);
   }
+  // Of the last exact surface at rest: rays beside each other meet the same.
+  std::optional<ExactPose> resting;
+  uint32_t rests = kNone;
   for (size_t r = 0; r < found_.size(); ++r) {
     const Found& f = found_[r];
     if (f.object == kNone) continue;
-    if (f.mesh != kNone)
+    if (f.mesh != kNone) {
       finish_triangle(f, rays_[r], hits[r]);
-    else if (world_.flat.objects[f.object].primitive != kNone)
-      finish_exact(f.tile ? f.tile->scale : 0, rays_[r], world_.flat.way(f.object), reach_[r], hits[r]);
-    else
-      finish_exact(f.tile->scale, rays_[r], world_.flat.way_again(f.number), reach_[r], hits[r]);
+      continue;
+    }
+    const PlacedObject& own = world_.flat.objects[f.object];
+    if (own.primitive == kNone) {
+      const Way& way = world_.flat.way_again(f.number);
+      const ExactPose pose(world_.to_world(way, exact_time(rays_[r])));
+      finish_exact(f.tile->scale, rays_[r], world_.asked(way), pose, reach_[r], hits[r]);
+      continue;
+    }
+    if (own.node != kNone || std::exchange(rests, f.object) != f.object)
+      resting.emplace(world_.to_world(own, exact_time(rays_[r])));
+    if (own.node != kNone) rests = kNone;
+    finish_exact(f.tile ? f.tile->scale : 0, rays_[r], world_.asked(f.object), *resting, reach_[r], hits[r]);
   }
 }
 
@@ -158,7 +172,7 @@ void PacketTracer::all(const Tile& tile, const Packet& packet, std::vector<Hit>&
     const uint32_t object = world_.flat.with_number(g.number);
     if (g.exact) {
       const Way way = world_.flat.way_again(g.number);
-      place_exact(tile.scale, ray, way, seen_at(way, ray.time), *g.exact, hit);
+      place_exact(tile.scale, ray, world_.asked(way), ExactPose(seen_at(way, ray.time)), *g.exact, hit);
     } else {
       const bool direct = std::find(tile.direct.begin(), tile.direct.end(), object) != tile.direct.end();
       const uint32_t mesh = world_.flat.way_again(g.number).object.mesh;
@@ -182,10 +196,10 @@ void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
   if (absent(object, ray)) return;
   const Way way = world_.flat.way(object);
   const Asked asked = world_.asked(object);
-  const Affine3 to_world = seen_at(way, ray.time);
-  for (auto found = world_.meet(ray, asked, to_world, 0, 0, reach_[0]); found;
-       found = world_.meet(ray, asked, to_world, 0, World::again(found->t), reach_[0]))
-    place_exact(0, ray, way, to_world, *found, hits.emplace_back());
+  const ExactPose pose(seen_at(way, ray.time));
+  for (auto found = world_.meet(ray, asked, pose, 0, 0, reach_[0]); found;
+       found = world_.meet(ray, asked, pose, 0, World::again(found->t), reach_[0]))
+    place_exact(0, ray, asked, pose, *found, hits.emplace_back());
 }
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
@@ -267,32 +281,31 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
 
 // `near` is where float arithmetic saw the surface; of the exact roots the nearest to it is the one. scale: of the
 // tile.
-void PacketTracer::finish_exact(double scale, const Ray& ray, const Way& way, double near, Hit& hit) const {
-  const Asked asked = world_.asked(way);
-  const Affine3 to_world = world_.to_world(way, exact_time(ray));
+void PacketTracer::finish_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose, double near,
+                                Hit& hit) const {
   // A root a little before or behind, or none at all at a silhouette: then what float saw stands.
-  const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, way.object);
-  auto found = world_.meet(ray, asked, to_world, 0, near - window, near + window);
-  if (!found || found->t <= 0) found = world_.meet(ray, asked, to_world, 0, 0, INFINITY);
+  const double window = 1e-5 * std::fabs(near) + 2e-4 * scale + 1e-9 + 4 * aside(moving_, asked.object);
+  auto found = world_.meet(ray, asked, pose, 0, near - window, near + window);
+  if (!found || found->t <= 0) found = world_.meet(ray, asked, pose, 0, 0, INFINITY);
   if (!found) {
     hit = Hit{};
     return;
   }
-  place_exact(scale, ray, way, to_world, *found, hit);
+  place_exact(scale, ray, asked, pose, *found, hit);
 }
 
-void PacketTracer::place_exact(double scale, const Ray& ray, const Way& way, const Affine3& to_world,
+void PacketTracer::place_exact(double scale, const Ray& ray, const Asked& asked, const ExactPose& pose,
                                const LocalHit& found, Hit& hit) const {
   hit.distance = found.t;
   hit.position = ray.origin + ray.direction * found.t;
-  hit.normal = normalized(to_world.normal(found.normal));
-  if (to_world.determinant() < 0) hit.normal = -hit.normal;
+  hit.normal = normalized(pose.to_world.normal(found.normal));
+  if (pose.mirrored) hit.normal = -hit.normal;
   // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
   const double step =
       scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
-  hit.step = static_cast<float>(step + aside(moving_, way.object));
+  hit.step = static_cast<float>(step + aside(moving_, asked.object));
   hit.time = ray.time;
-  hit.object = way.number;
+  hit.object = asked.number;
   hit.triangle = 0;
   hit.u = static_cast<float>(found.u), hit.v = static_cast<float>(found.v);
 }
@@ -309,7 +322,7 @@ void PacketTracer::unbounded(uint32_t object, std::span<uint8_t> blocked) {
       t = distance_to(world_.scene->primitives[way.object.primitive], to_local.point(ray.origin),
                       to_local.vector(ray.direction), 0, reach_[r]);
     else if (!absent(object, ray))
-      if (const auto found = world_.meet(ray, asked, seen_at(way, ray.time), 0, 0, reach_[r])) t = found->t;
+      if (const auto found = world_.meet(ray, asked, ExactPose(seen_at(way, ray.time)), 0, 0, reach_[r])) t = found->t;
     if (!(t < reach_[r])) continue;
     reach_[r] = blocked.empty() ? t : -1;
     if (blocked.empty())

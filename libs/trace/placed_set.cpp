@@ -44,7 +44,7 @@ struct ExactSurface {
     const bool moves = context.moving && way.object.node != kNone;
     std::optional<Affine3> moved;
     if (moves) moved = context.moving->nodes[way.object.node].at(ray.time) * way.place;
-    auto found = set.world->meet(ray, asked, moved ? *moved : way.place, from(lane), near / context.stretch,
+    auto found = set.world->meet(ray, asked, ExactPose(moved ? *moved : way.place), from(lane), near / context.stretch,
                                  far / context.stretch);
     if (found) found->t *= context.stretch;
     return found;

@@ -35,5 +35,29 @@ TEST(Bundle, AnswersForThePairAsked) {
   EXPECT_EQ(fitted(0.4)->value(out, mirror, 0), of_wide);
 }
 
+// All channels at once, by groups, are to the last bit what each is by itself, however many there are.
+TEST(Bundle, TellsAllChannelsAsEach) {
+  const Dir out = dir_from_angles(0.5, 0.2);
+  for (const size_t channels : {2u, 9u}) {
+    test::Analytic glossy = test::glossy(0.3, channels);
+    for (size_t c = 0; c < channels; ++c) glossy.info().wavelength_um[c] = 0.7 - 0.02 * static_cast<double>(c);
+    const auto bundle = make_bundle(test::small_fit(glossy).data);
+    ASSERT_EQ(bundle->channels(), channels);
+    std::vector<double> f(channels), p(channels), before(channels);
+    for (const Dir& in : {dir_from_angles(0.5, 0.2 + kPi), dir_from_angles(0.9, 1), dir_from_angles(1.5, 4)}) {
+      bundle->value(out, in, f);
+      bundle->pdf(out, in, p);
+      for (size_t c = 0; c < channels; ++c) {
+        EXPECT_EQ(bundle->value(out, in, c), f[c]) << c << " of " << channels;
+        EXPECT_EQ(bundle->pdf(out, in, c), p[c]) << c << " of " << channels;
+        EXPECT_GT(f[c], 0);
+        EXPECT_NE(f[c], c > 0 ? f[c - 1] : 0) << "channels that are alike show nothing";
+      }
+      EXPECT_NE(f, before);
+      before = f;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace suite::sqt
