@@ -31,8 +31,10 @@ inline constexpr Blocks kGuided{1136, kNodes};            // guided continuation
 inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
 inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
+inline constexpr Blocks kChain{1232, 2 * kNodes};         // chains of scatterings before a surface
+
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide, kChain};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -51,7 +53,8 @@ enum class Hashed : uint32_t {
   place = flight + kPerFlight,
   guided,
   side,
-  end = side + kPerSide
+  chain = side + kPerSide,
+  end
 };
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
 // Of Hashed::choices.
@@ -110,6 +113,12 @@ inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sampl
 inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kNodes) return stream.draw(sample, kGuided.first + n);
   return hashed(stream, sample, Hashed::guided, 0, n);
+}
+// Numbers of the chain before the n-th surface of a path, of which the first two sets are stratified.
+inline constexpr uint32_t kMostPerChain = 64;
+inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t which) {
+  if (n < kNodes && which < 2) return stream.draw(sample, kChain.first + 2 * n + which);
+  return hashed(stream, sample, Hashed::chain, 0, n * kMostPerChain + which);
 }
 // Numbers of the side flight from the scattering that ends the n-th flight. First: where to (two), by which scatterer,
 // whether at all; second: the flight (two), a light's direction (two).

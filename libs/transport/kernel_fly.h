@@ -39,6 +39,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       rays_(width),
       hits_(width),
       flights_(Space::kFills ? width : 0),
+      chain_through_(kGuides && refracted_ ? bins_ : 0),
       contributions_(std::max<size_t>(256, 4 * width)),
       transmission_(bins_) {
   list_lights();
@@ -96,6 +97,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.events = 0;
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
+  path.quiet = 0;
   path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
@@ -194,9 +196,14 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   Contribution& c = contribution(p, Space::kEmitter);
   c.water = path.water;
   if constexpr (Space::kGoesBack) passed_[p].before = path;
+  const double before = path.length;
   const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
   const Flight& flight = flights_[slot];
+  if constexpr (kGuides)
+    if (path.quiet && (flight.arrival != Arrival::scattered || path.length - before > path.quiet_reach ||
+                       path.quiet_events-- == 0))
+      path.quiet = 0;
   c.radiance = flight.emitted;
   if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.

@@ -183,6 +183,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const uint32_t p = node.path;
   Path& path = paths_[p];
   path.branch = on.branch, path.sided = on.sided;
+  if (kGuides && !node.event && !guides_.empty()) {
+    const Guide& guide = *guide_of(node);
+    path.quiet = guide.chains, path.quiet_light = guide.light;
+    path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
+  }
   if (refracted_) path.bends = bends_behind(node, on);
   if (waters_.any()) path.water = water_behind(node, on.in);
   if constexpr (Space::kScatters) {

@@ -96,6 +96,12 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   return true;
 }
 
+double RefractedSight::free_way(const Ray& ray) {
+  Hit hit;
+  surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+  return hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+}
+
 std::optional<double> RefractedSight::unfound(Ray ray, double distance) {
   crossed_.clear();
   Hit hit;

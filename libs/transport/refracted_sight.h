@@ -86,6 +86,8 @@ class RefractedSight {
   // kNothing. Nothing where something else is in its way: then it is not asked for there.
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
+  // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
+  double free_way(const Ray& ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:

@@ -53,11 +53,14 @@ class FieldSpace {
     return medium != kNone && optics_.media()[medium].scatters();
   }
 
+  // Whether it is a medium that is the same everywhere up to the next surface.
+  bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
+
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
   void stand(uint32_t p);
   // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at the reference.
   // Mean cosine of its scattering at the reference, over all that is there.
-  double scattering(uint32_t p) const { return events_[p].rate[0]; }
+  double scattering(uint32_t p, size_t knot = 0) const { return events_[p].rate[knot]; }
   double asymmetry(uint32_t p) const;
   Vec3 place(uint32_t p) const { return events_[p].place; }
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;

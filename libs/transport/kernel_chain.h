@@ -1,0 +1,187 @@
+// Definitions of kernel.h: light that comes to a surface through water that scatters it on its way.
+//
+// Water scatters forwards, several times on a way of some metres, and what comes to a place from a small sun is as
+// likely to have been scattered 0, 1, 2 or n times. A path that looks for it from the place draws directions without
+// knowing whether they will end near the sun's. So they are drawn from its end: where a node has found a way to the
+// light (kernel_refract.h), of direction s and length L in the matter beside the node, it also draws a chain of
+//   n scatterings, 1 <= n <= kMostLinks, with probability P_k(n) ~ t^n / n!, t = L times the scattering coefficient,
+//   directions d_n as matter scatters what comes along s, d_(n-1) what comes along d_n, ..., d_1 from the node, and
+//   places: of m scatterings that are still to come the next one is put at a share x of the way up to the next surface,
+//     or to kReach L, with density e + (1 - e) m (1 - x)^(m-1): n places that are even on the whole way.
+// From the last place the light is asked for as from a node. The phase functions are those of the densities but for the
+// last one, of which the way may come from another direction than s; in the mean Poisson's law, places and transmittance
+// make one another's factors up as well, if matter scatters forwards. What is left varies little.
+// Such chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no
+// surface. What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere
+// beside the node, and let some light through unscattered (kDeepest).
+// Based on: paths drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance
+// sampling of low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
+// "Non-uniform random variate generation", 1986, chapter VI.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "transport/kernel.h"
+
+namespace suite {
+
+// Whether the light has been asked for so.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const RefractedQuestion& q, Dir toward,
+                                                                          double length, size_t knot) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    constexpr double kDeepest = 8, kForwards = 0.5;
+    const NodeAt& node = nodes_[q.node];
+    if (branches_.empty() || !q.end.far || node.event || !space_.even_around(node.path)) return false;
+    const Dir normal = hits_[node.slot].normal;
+    if (dot(toward, normal) * dot(paths_[node.path].direction, normal) > 0) return false;  // other matter is there
+    Guide& guide = guides_[q.node];
+    if (guide.chains != 0 && guide.light != q.light) return false;
+    space_.stand(node.path);
+    if (!(space_.asymmetry(node.path) > kForwards)) return false;
+    double depth[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) {
+      depth[k] = space_.scattering(node.path, k) * length;
+      if (!(depth[k] > 0 && depth[k] < kDeepest)) return false;
+    }
+    guide.chains |= 1u << knot;
+    guide.light = q.light;
+    guide.reach = kReach * length;
+    if (draw_chain(node, toward, depth)) follow_chain(q, knot);
+    return true;
+  }
+  return false;
+}
+
+// Number and directions of scatterings.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeAt& node, Dir toward,
+                                                                     std::span<const double> depth) {
+  if constexpr (kGuides) {
+    const Path& path = paths_[node.path];
+    Chain& chain = chain_;
+    const auto own = static_cast<size_t>(path.knot);
+    const auto poisson = [&](size_t k, int n) {  // of n over that of none
+      double p = 1;
+      for (int i = 1; i <= n; ++i) p *= depth[k] / i;
+      return p;
+    };
+    const std::array<double, 4> u = dimensions::of_guided(path.stream, path.sample, path.surfaces - 1);
+    const auto of_some = [&](size_t k) {  // of any number but none over that of none
+      double sum = 0, p = 1;
+      for (int i = 1; i <= kMostLinks; ++i) sum += p *= depth[k] / i;
+      return sum;
+    };
+    double left = u[3] * of_some(own), p = depth[own];
+    chain.links = 1;
+    for (; chain.links < kMostLinks && left >= p; p *= depth[own] / chain.links) left -= p, ++chain.links;
+    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * poisson(k, chain.links) / of_some(k);
+    const auto n = static_cast<size_t>(chain.links);
+    chain.toward[n] = toward;
+    for (size_t i = n; i-- > 0;) {
+      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, n == i + 2 ? 1 : n - i);
+      if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
+      float density[kMaxKnots];
+      space_.densities(node.path, -chain.toward[i + 1], chain.toward[i], {density, knots()});
+      chain.density[i] = density[own];
+      if (!(density[own] > 0)) return false;
+      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= double{density[k]} / double{density[own]};
+    }
+    return true;
+  }
+  return false;
+}
+
+// The n-th draw of a direction, or of a place, of the chain that the path draws at its last surface.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path,
+                                                                                         size_t n) const {
+  return dimensions::of_chain(path.stream, path.sample, path.surfaces - 1, static_cast<uint32_t>(n));
+}
+
+// To its places; false where it meets what it cannot pass.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const RefractedQuestion& q, size_t knot) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    constexpr double kEvenly = 0.15;
+    const NodeAt& node = nodes_[q.node];
+    const uint32_t p = node.path;
+    const Path& path = paths_[p];
+    const Chain& chain = chain_;
+    if (options_.max_scatterings > 0 && path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
+      return false;
+    const Hit& hit = hits_[node.slot];
+    if (!surfaces_.takes(p, hit, -path.direction, chain.toward[0])) return false;
+    const std::span<float> through = chain_through_, memory = dense(p);
+    const Factor factor = evaluate(node, chain.toward[0], memory);
+    for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
+    keep_bins_of(knot, through);
+    space_.begin_way(p, false, hit, surfaces_.material(p), -path.direction, chain.toward[0]);
+    double shares = 0, arrival = 0;
+    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
+    double scale = 1 / shares;
+    Ray ray{surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time, path.draw};
+    for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
+      ray.direction = chain.toward[i];
+      const double most = std::min(free_way(ray), guides_[q.node].reach);
+      const double m = static_cast<double>(chain.links) - static_cast<double>(i);
+      const std::array<double, 4> u = chain_numbers(path, i == 0 ? 0 : kMostLinks + i);
+      const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
+      scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
+      arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
+      ray.origin += ray.direction * (x * most);
+      if (m > 1) scatter_along(p, i, chain.toward[i + 1], through, memory);
+    }
+    throughputs_.give_back(p);
+    return shine_behind_chain(q, knot, ray.origin, scale, arrival);
+  }
+  return false;
+}
+
+// Asks for the light from the last place.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(const RefractedQuestion& q, size_t knot,
+                                                                             Vec3 place, double scale, double arrival) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    constexpr uint64_t kPurpose = 0x636861696e;
+    const NodeAt& node = nodes_[q.node];
+    const uint32_t p = node.path;
+    const Path& path = paths_[p];
+    const auto links = static_cast<uint32_t>(chain_.links);
+    RefractedSight::Node from;
+    from.place = place, from.time = path.time, from.draw = path.draw;
+    const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
+    for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed)) {
+      const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
+      std::copy(chain_through_.begin(), chain_through_.end(), through.begin());
+      scatter_along(p, links - 1, way.direction, through, memory);
+      space_.begin_way(p, false, hits_[node.slot], surfaces_.material(p), -path.direction, chain_.toward[0]);
+      shine_behind(way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
+    }
+    return true;
+  }
+  return false;
+}
+
+// From a ray's start to the next surface, m.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& ray) {
+  const double way = refracted_->free_way(ray);
+  if (!environment_.earth) return way;
+  const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
+  return met ? std::min(way, met->distance) : way;
+}
+
+// What link i of the chain of path p makes of light that comes from a direction.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(uint32_t p, size_t i, Dir from,
+                                                                        std::span<float> through,
+                                                                        std::span<float> memory) {
+  if constexpr (kGuides) {
+    const Factor w = space_.evaluate(p, dot(chain_.toward[i], from), memory);
+    const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
+    for (size_t b = 0; b < bins_; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
+  }
+}
+
+}  // namespace suite
