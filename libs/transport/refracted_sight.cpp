@@ -67,18 +67,40 @@ RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
     return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return interfaces_.has(p.material); });
   };
   bool any_moves = false;
+  uint32_t only_number = kNone;
   tracer.each("smooth refracting surfaces", refracts, [&](uint32_t number, const TracedObject& o) {
     const Box3 own = own_bounds(scene, o);
     const bool moves = o.node != kNone && !own.empty();
     objects_.push_back(moves ? Refractor{own, number} : Refractor{placed(own, tracer.place(number))});
     any_moves = any_moves || moves;
+    only_number = number;
   });
+  if (objects_.size() == 1) set_sheet(optics, only_number);
   if (objects_.size() <= kMostObjects) return;
   Box3 all;
   for (const Refractor& o : objects_)
     if (o.moves == kNone) all.grow(o.box);
   if (any_moves) all.grow(tracer.bounds());
   objects_.assign(1, {all});
+}
+
+// The only refracting object, if it is of one material everywhere, of which no map bends the normal.
+void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
+  const Tracer& tracer = surface_.tracer();
+  const TracedObject o = tracer.object(number);
+  std::vector<uint32_t> materials;
+  if (o.material_override != kNone)
+    materials = {o.material_override};
+  else if (o.primitive != kNone)
+    materials = {tracer.scene().primitives[o.primitive].material};
+  else
+    for (const Part& part : tracer.scene().meshes[o.mesh].parts) materials.push_back(part.material);
+  for (const uint32_t m : materials) {
+    if (m != materials[0] || !interfaces_.has(m)) return;
+    if (const auto& maps = optics.material(m).maps; maps && maps->bends()) return;
+  }
+  sheet_material_ = materials[0];
+  sheet_ = RefractingSheet::of(tracer, number, o);
 }
 
 // The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none.
@@ -352,6 +374,30 @@ double RefractedSight::share(const RefractedWay& way, size_t knot) {
   return all;
 }
 
+void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay& way) {
+  way = found.way;
+  way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));
+  way.trials = 1;
+  way.doubtful = false;
+}
+
+// The only way that there can be, where that is known; nothing where it is not, or not found at once.
+auto RefractedSight::find_only(const Search& s, RefractedWay& way) -> Found {
+  if (!sheet_ || !s.end.far) return Found::unknown;
+  const double index = interfaces_.index(sheet_material_, s.knot);
+  const RefractingSheet::Ways ways = sheet_->ways(s.node.place, s.end.direction, index);
+  if (ways == RefractingSheet::Ways::none) return Found::none;
+  if (ways == RefractingSheet::Ways::unknown) return Found::unknown;
+  const auto start = sheet_->guess(s.end.direction, index);
+  Chain once;
+  once.events = 1;
+  Traced probe, found;
+  if (!start || !trace(s, *start, once, probe)) return Found::unknown;
+  if (!walk(s, probe, once, found)) return found.off < kNearEnough && !found.open ? Found::none : Found::unknown;
+  set_way(s, found, way);
+  return Found::one;
+}
+
 // Of the ways with or without reflections.
 bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   constexpr double kWorthIt = 0.01;  // less light is followed up as rarely as it is weaker
@@ -359,10 +405,7 @@ bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   if (!try_once(s, mirrored, first)) return false;
   const double kept = mirrored ? std::min(1.0, share(first.way, s.knot) / kWorthIt) : 1;
   if (kept < 1 && !(random() < kept)) return false;
-  way = first.way;
-  way.spreading = 1 / (std::fabs(first.det) * (s.end.far ? 1 : s.distance * s.distance));
-  way.trials = 1;
-  way.doubtful = false;
+  set_way(s, first, way);
   const auto same = [&] {
     const double near = std::max(kSame, 100 * (first.off + again.off)) * std::max(first.inverse, again.inverse);
     return again.way.events == way.events && again.way.mirrors() == way.mirrors() && again.det * first.det > 0 &&
@@ -383,6 +426,8 @@ std::span<const RefractedWay> RefractedSight::find(const Node& node, const WayEn
   if (!(distance > 0)) return {};
   const Search search{node, end, end.far ? end.direction : way / distance, distance, knot};
   seed_ = seed, counter_ = 0;
+  if (const Found only = find_only(search, found_[0]); only != Found::unknown)
+    return std::span(found_).first(only == Found::one ? 1 : 0);
   Dir direction;
   guessed_.reset();
   if (guess(search, direction)) guessed_ = direction;
