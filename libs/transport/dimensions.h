@@ -31,7 +31,8 @@ inline constexpr Blocks kGuided{1136, kNodes};            // guided continuation
 inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
 inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
-inline constexpr Blocks kChain{1232, 2 * kNodes};         // chains of scatterings before a surface
+inline constexpr uint32_t kPerChain = 3;                      // of one to the sun and one to the sky
+inline constexpr Blocks kChain{1232, 2 * kPerChain * kNodes};  // chains of scatterings before a surface
 
 constexpr bool disjoint() {
   constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide, kChain};
@@ -114,11 +115,13 @@ inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t samp
   if (n < kNodes) return stream.draw(sample, kGuided.first + n);
   return hashed(stream, sample, Hashed::guided, 0, n);
 }
-// Numbers of the chain before the n-th surface of a path, of which the first two sets are stratified.
+// Numbers of the chain to the sun or the sky before the n-th surface of a path, of which the first sets are stratified.
 inline constexpr uint32_t kMostPerChain = 64;
-inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sample, uint32_t n, uint32_t which) {
-  if (n < kNodes && which < 2) return stream.draw(sample, kChain.first + 2 * n + which);
-  return hashed(stream, sample, Hashed::chain, 0, n * kMostPerChain + which);
+inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sample, uint32_t n, bool sky,
+                                      uint32_t which) {
+  const uint32_t chain = 2 * n + (sky ? 1 : 0);
+  if (n < kNodes && which < kPerChain) return stream.draw(sample, kChain.first + kPerChain * chain + which);
+  return hashed(stream, sample, Hashed::chain, 0, chain * kMostPerChain + which);
 }
 // Numbers of the side flight from the scattering that ends the n-th flight. First: where to (two), by which scatterer,
 // whether at all; second: the flight (two), a light's direction (two).

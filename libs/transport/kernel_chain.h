@@ -30,8 +30,7 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const RefractedQuestion& q, Dir toward,
                                                                           double length, size_t knot) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    constexpr double kDeepest = 8, kForwards = 0.5;
-    const NodeAt& node = nodes_[q.node];
+        const NodeAt& node = nodes_[q.node];
     if (branches_.empty() || !q.end.far || node.event || !space_.even_around(node.path)) return false;
     const Dir normal = hits_[node.slot].normal;
     if (dot(toward, normal) * dot(paths_[node.path].direction, normal) > 0) return false;  // other matter is there
@@ -47,7 +46,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
     guide.chains |= 1u << knot;
     guide.light = q.light;
     guide.reach = kReach * length;
-    if (draw_chain(node, toward, depth)) follow_chain(q, knot);
+    if (draw_chain(node, toward, depth, false)) follow_chain(q, knot);
     return true;
   }
   return false;
@@ -56,7 +55,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
 // Number and directions of scatterings.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeAt& node, Dir toward,
-                                                                     std::span<const double> depth) {
+                                                                     std::span<const double> depth, bool sky) {
   if constexpr (kGuides) {
     const Path& path = paths_[node.path];
     Chain& chain = chain_;
@@ -66,7 +65,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       for (int i = 1; i <= n; ++i) p *= depth[k] / i;
       return p;
     };
-    const std::array<double, 4> u = dimensions::of_guided(path.stream, path.sample, path.surfaces - 1);
+    const std::array<double, 4> u = chain_numbers(path, sky, 0);
     const auto of_some = [&](size_t k) {  // of any number but none over that of none
       double sum = 0, p = 1;
       for (int i = 1; i <= kMostLinks; ++i) sum += p *= depth[k] / i;
@@ -79,7 +78,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
-      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, n == i + 2 ? 1 : n - i);
+      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, sky, n - i);
       if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
       float density[kMaxKnots];
       space_.densities(node.path, -chain.toward[i + 1], chain.toward[i], {density, knots()});
@@ -92,11 +91,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
   return false;
 }
 
-// The n-th draw of a direction, or of a place, of the chain that the path draws at its last surface.
+// The n-th set of numbers of the chain that the path draws at its last surface.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path,
+std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path, bool sky,
                                                                                          size_t n) const {
-  return dimensions::of_chain(path.stream, path.sample, path.surfaces - 1, static_cast<uint32_t>(n));
+  return dimensions::of_chain(path.stream, path.sample, path.surfaces - 1, sky, static_cast<uint32_t>(n));
 }
 
 // To its places; false where it meets what it cannot pass.
@@ -125,7 +124,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       const double m = static_cast<double>(chain.links) - static_cast<double>(i);
-      const std::array<double, 4> u = chain_numbers(path, i == 0 ? 0 : kMostLinks + i);
+      const std::array<double, 4> u = chain_numbers(path, q.sky, i == 0 ? 1 : kMostLinks + i);
       const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
       scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
@@ -181,6 +180,75 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(uint32_t
     const Factor w = space_.evaluate(p, dot(chain_.toward[i], from), memory);
     const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
     for (size_t b = 0; b < bins_; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
+  }
+}
+
+// Whether the light that the air sends along a flight's way to infinity has been asked for already, before `flown` m of
+// it were flown. Tells the path what is not to be asked for where the flight has ended.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, const Flight& flight, double flown,
+                                                                    double length) const {
+  if constexpr (kGuides) {
+    if (path.quiet == 0 && path.sky == Path::Sky::open) return false;
+    const bool scattered = flight.arrival == Arrival::scattered;
+    const bool beyond = scattered && (flown > path.quiet_reach || path.quiet_events-- == 0);
+    if (!scattered || beyond) path.quiet = 0;
+    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered)
+      return refracted_->sheet_ways(path.sky_place, path.direction) != RefractingSheet::Ways::unknown;
+    if (beyond || flight.arrival == Arrival::onward) path.sky = Path::Sky::open;
+  }
+  return false;
+}
+
+// Asks for the light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along
+// a chain.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    const Light* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
+    const Path& path = paths_[node.path];
+    if (!sky || branches_.empty() || node.event || !asks_through(node) || !space_.even_around(node.path)) return;
+    const Vec3 place = hits_[node.slot].position;
+    const double deep = refracted_->below_sheet(place);
+    if (!(deep > 0)) return;
+    space_.stand(node.path);
+    if (!(space_.asymmetry(node.path) > kForwards)) return;
+    Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
+    const double reach = guide.chains ? guide.reach : kReach * deep;
+    for (size_t k = 0; k < knots(); ++k) {
+      const double depth = space_.scattering(node.path, k) * deep;
+      if (!(depth > 0 && depth < kDeepest)) return;
+    }
+    guide.sky = true, guide.reach = reach;
+    const std::array<double, 4> u = chain_numbers(path, true, 2);
+    const auto sample = sky->sample({}, {u[2], u[3], 0, 0}, path.time);
+    if (!sample || !(sample->density > 0)) return;
+    if (refracted_->sheet_ways(place, sample->direction) != RefractingSheet::Ways::one) return;
+    const std::vector<size_t>& set = refracted_->interfaces().set_of();
+    for (size_t k = 0; k < knots(); ++k) {
+      bool alive = false;
+      for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
+      if (set[k] == k && alive) ask_sky(node, k, *sample, deep);
+    }
+  }
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node, size_t knot,
+                                                                  const LightSample& sample, double deep) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    const RefractedQuestion q{static_cast<uint32_t>(&node - nodes_.data()), Space::kEmitter, false,
+                              {sample.direction, {}},                       1 / sample.density, nullptr, 0, true};
+    const Path& path = paths_[node.path];
+    const auto toward = refracted_->sheet_guess(sample.direction, knot);
+    if (!toward) return;
+    const double length = deep / refracted_->steepness(*toward);
+    constexpr uint64_t kPurpose = 0x736b79;
+    const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), knot);
+    for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed)) shine_along(way, q, knot);
+    double depth[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) depth[k] = space_.scattering(node.path, k) * length;
+    if (draw_chain(node, *toward, depth, true)) follow_chain(q, knot);
   }
 }
 

@@ -98,6 +98,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
   path.quiet = 0;
+  path.sky = Path::Sky::open;
   path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
@@ -200,11 +201,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
   const Flight& flight = flights_[slot];
-  if constexpr (kGuides)
-    if (path.quiet && (flight.arrival != Arrival::scattered || path.length - before > path.quiet_reach ||
-                       path.quiet_events-- == 0))
-      path.quiet = 0;
-  c.radiance = flight.emitted;
+  const bool heard = has_heard(path, flight, path.length - before, length);
+  c.radiance = heard ? nullptr : flight.emitted;
   if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.
   if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? space_.sky() : nullptr)

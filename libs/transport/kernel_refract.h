@@ -93,6 +93,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
         if (alive) shine_refracted(q, k);
       }
     }
+    if (refracted_)
+      for (const NodeAt& node : nodes_) ask_sky(node);
   }
 }
 
@@ -106,7 +108,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::keep_bins_of(size_t kn
 // What is left of light along a way that has been begun, per bin, and its optical length. False: nothing.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& path, const RefractedWay& way, size_t knot,
-                                                                 std::span<float> through, double& arrival) {
+                                                                 bool sky, std::span<float> through, double& arrival) {
   Ray ray{way.origin, way.direction, path.time, path.draw};
   for (int i = 0; i < way.events; ++i) {
     const RefractedEvent& at = way.at[i];
@@ -119,14 +121,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& pat
     ray.direction = at.in;
   }
   if (is_behind_earth(ray, way.length)) return false;
+  if (sky) return true;
   const double index = space_.follow_way(ray, way.length, through, transmission_);
   if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const RefractedQuestion& q, size_t knot) {
-  const NodeAt& node = nodes_[q.node];
+RefractedSight::Node PathKernel<Surfaces, Space, Throughputs, Estimator>::from_node(const NodeAt& node) const {
   const uint32_t p = node.path;
   const Path& path = paths_[p];
   RefractedSight::Node from;
@@ -140,10 +142,17 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
     from.hit = &hit;
     if (!at.two_sided) from.side = dot(path.direction, hit.normal) < 0 ? hit.normal : -hit.normal;
   }
+  return from;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const RefractedQuestion& q, size_t knot) {
+  const NodeAt& node = nodes_[q.node];
+  const Path& path = paths_[node.path];
   constexpr uint64_t kPurpose = 0x62656e74;
   const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
   std::optional<RefractedWay> first;
-  for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed))
+  for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed))
     if (shine_along(way, q, knot) && kGuides && !first) first = way;
   if (first && !ask_along_chain(q, first->direction, first->at[0].length, knot)) guide(q, *first);
 }
@@ -175,7 +184,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const Ref
   const auto most = static_cast<uint32_t>(options_.max_nodes);
   if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
   double arrival = reached.arrival;
-  if (!weaken(path, way, knot, reached.through, arrival)) return false;
+  if (!weaken(path, way, knot, q.sky, reached.through, arrival)) return false;
   const auto from_light = sent(q, way);
   if (!from_light) return false;
   WaterSeen water = WaterSeen::nothing;
@@ -191,7 +200,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const Ref
     Contribution& c = contribution(p, q.light);
     c.events |= by_surface | by_dirac;
     if (node.event || reached.scatterings > 0) c.events |= by_medium;
-    c.asked = true;
+    c.asked = !q.sky;
     c.beam = q.beam;
     c.water = water;
     c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
@@ -210,8 +219,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const Ref
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 auto PathKernel<Surfaces, Space, Throughputs, Estimator>::sent(const RefractedQuestion& q, const RefractedWay& way)
     -> std::optional<Sent> {
-  const Light& light = *environment_.lights[q.light];
   const NodeAt& node = nodes_[q.node];
+  if (q.sky) {
+    const std::span<float> own = throughputs_.take(node.path);
+    return Sent{q.scale, space_.sky_behind({way.last, way.to, 0}, transmission_, own)};
+  }
+  const Light& light = *environment_.lights[q.light];
   const double when = time(node);
   if (q.end.far) {
     if (q.spectrum) return Sent{q.scale, q.spectrum};

@@ -88,6 +88,17 @@ class RefractedSight {
   // kNothing. Nothing where something else is in its way: then it is not asked for there.
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
+  // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): how far a place lies below it, m,
+  // 0 elsewhere; ways through it at most; where flat water would have one leave a place below; the cosine of a direction
+  // to its axis.
+  double below_sheet(Vec3 place) const { return sheet_ ? sheet_->deep(place) : 0; }
+  RefractingSheet::Ways sheet_ways(Vec3 place, Dir to) const {
+    return sheet_->ways(place, to, interfaces_.index(sheet_material_, 0));
+  }
+  std::optional<Dir> sheet_guess(Dir to, size_t knot) const {
+    return sheet_->guess(to, interfaces_.index(sheet_material_, knot));
+  }
+  double steepness(Dir direction) const { return sheet_->steepness(direction); }
   // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
   double free_way(const Ray& ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }

@@ -8,6 +8,8 @@
 // it at x lands, d below, at x + d T(n(x)), T the tangent of the bent direction; if that displacement changes by less
 // than the way in x (Lipschitz), no two places x send light to one place.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "surface/surface.h"
@@ -23,6 +25,9 @@ class RefractingSheet {
   enum class Ways : uint8_t { none, one, unknown };
   // How many ways at most lead from a place to light of direction `to` (unit). index: behind the surface over in front.
   Ways ways(Vec3 place, Dir to, double index) const;
+  // m, below its nearest height, on either side; 0 between its heights.
+  double deep(Vec3 place) const { return std::max({0.0, low_ - dot(place, axis_), dot(place, axis_) - high_}); }
+  double steepness(Dir direction) const { return std::fabs(dot(direction, axis_)); }
   // In which direction flat water would have one leave; nothing at total reflection.
   std::optional<Dir> guess(Dir to, double index) const;
 

@@ -35,6 +35,12 @@ class FieldSpace {
   void emit_within(uint32_t p, std::span<float> emission) const;
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
+  // That of air without media in it, as a light of which matter hides all but what smooth interfaces pass; null: none.
+  const Light* hidden_sky() const { return plain_air_ ? air_->sky() : nullptr; }
+  // What comes along a ray from there; scratch and memory for spectra.
+  const float* sky_behind(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
+    return air_->sky_radiance(ray.origin, ray.direction, scratch, radiance);
+  }
   double sky_density(Dir) const { return 0; }
   const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   // The path goes through a surface to the other side.
