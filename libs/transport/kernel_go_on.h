@@ -146,7 +146,8 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, cons
     const NodeAt& node = nodes_[i];
     const Path& path = paths_[node.path];
     if (path.sky == Path::Sky::asked && on.dirac && !node.event &&
-        dot(on.in, hits_[node.slot].normal) * dot(path.direction, hits_[node.slot].normal) > 0)
+        dot(on.in, hits_[node.slot].normal) * dot(path.direction, hits_[node.slot].normal) > 0 &&
+        refracted_->sheet_ways(path.sky_place, on.in) != RefractingSheet::Ways::unknown)
       return kHeard;
     if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
   }
