@@ -81,8 +81,8 @@ Moves moves_in(const Mesh& mesh, const Affine3& place, uint32_t triangle) {
 }
 
 // Of interpolated normals of vertices that nothing else bends; false where the normal at the hit is another one.
-bool turn_of_vertices(const Mesh& mesh, const Affine3& place, const Hit& hit, const Interaction& at,
-                      const Moves& moves, NormalTurn& turn) {
+bool turn_of_vertices(const Mesh& mesh, const Affine3& place, const Hit& hit, const Interaction& at, const Moves& moves,
+                      NormalTurn& turn) {
   const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
   const Vec3 n0 = oct_decode(mesh.normals[i[0]]), du = oct_decode(mesh.normals[i[1]]) - n0,
              dv = oct_decode(mesh.normals[i[2]]) - n0;

@@ -32,7 +32,7 @@ inline constexpr uint32_t kPerSide = 2;                   // whether and where t
 inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
 inline constexpr uint32_t kPerChain = 3;                      // of one to the sun and one to the sky
-inline constexpr Blocks kChain{1232, 2 * kPerChain * kNodes};  // chains of scatterings before a surface
+inline constexpr Blocks kChain{1232, 2 * kPerChain* kNodes};  // chains of scatterings before a surface
 
 constexpr bool disjoint() {
   constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide, kChain};

@@ -195,7 +195,7 @@ class PathKernel final : public PathTracing {
   void shine_refracted(const RefractedQuestion& q, size_t knot);
   bool shine_along(const RefractedWay& way, const RefractedQuestion& q, size_t knot);
   std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
-  struct Reached {  // the beginning of a way
+  struct Reached {             // the beginning of a way
     std::span<float> through;  // what the node and what lies before make of the light
     double arrival;            // m, optical, from the node
     double scale;
@@ -371,7 +371,7 @@ class PathKernel final : public PathTracing {
   std::vector<Guide> guides_;  // of nodes; where nothing refracts none
   Chain chain_;
   std::vector<float> chain_through_;
-  std::vector<Side> sides_;    // the first side_count_ of them
+  std::vector<Side> sides_;  // the first side_count_ of them
   size_t side_count_ = 0;
   std::vector<Ray> side_rays_;
   std::vector<Hit> side_hits_;

@@ -9,14 +9,13 @@
 //   places: of m scatterings that are still to come the next one is put at a share x of the way up to the next surface,
 //     or to kReach L, with density e + (1 - e) m (1 - x)^(m-1): n places that are even on the whole way.
 // From the last place the light is asked for as from a node. The phase functions are those of the densities but for the
-// last one, of which the way may come from another direction than s; in the mean Poisson's law, places and transmittance
-// make one another's factors up as well, if matter scatters forwards. What is left varies little.
-// Such chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no
-// surface. What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere
-// beside the node, and let some light through unscattered (kDeepest).
-// Based on: paths drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance
-// sampling of low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
-// "Non-uniform random variate generation", 1986, chapter VI.
+// last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
+// transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
+// chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
+// What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere beside the
+// node, and let some light through unscattered (kDeepest). Based on: paths drawn from the light's end on a given number
+// of scatterings: I. Georgiev et al., "Joint importance sampling of low-order volumetric scattering", ACM TOG 32(6),
+// 2013; order statistics of Poisson's process: L. Devroye, "Non-uniform random variate generation", 1986, chapter VI.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -30,7 +29,7 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const RefractedQuestion& q, Dir toward,
                                                                           double length, size_t knot) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-        const NodeAt& node = nodes_[q.node];
+    const NodeAt& node = nodes_[q.node];
     if (branches_.empty() || !q.end.far || node.event || !space_.even_around(node.path)) return false;
     const Dir normal = hits_[node.slot].normal;
     if (dot(toward, normal) * dot(paths_[node.path].direction, normal) > 0) return false;  // other matter is there
@@ -66,20 +65,22 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       return p;
     };
     const std::array<double, 4> u = chain_numbers(path, sky, 0);
-    const auto of_some = [&](size_t k) {  // of any number but none over that of none
-      double sum = 0, p = 1;
+    const int least = sky ? 0 : 1;
+    const auto of_all = [&](size_t k) {
+      double sum = least == 0 ? 1 : 0, p = 1;
       for (int i = 1; i <= kMostLinks; ++i) sum += p *= depth[k] / i;
       return sum;
     };
-    double left = u[3] * of_some(own), p = depth[own];
-    chain.links = 1;
+    chain.links = least;
+    double left = u[3] * of_all(own), p = poisson(own, least);
     for (; chain.links < kMostLinks && left >= p; p *= depth[own] / chain.links) left -= p, ++chain.links;
-    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * poisson(k, chain.links) / of_some(k);
+    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * poisson(k, chain.links) / of_all(k);
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
       const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, sky, n - i);
-      if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
+      if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i]))
+        return false;
       float density[kMaxKnots];
       space_.densities(node.path, -chain.toward[i + 1], chain.toward[i], {density, knots()});
       chain.density[i] = density[own];
@@ -107,7 +108,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     const uint32_t p = node.path;
     const Path& path = paths_[p];
     const Chain& chain = chain_;
-    if (options_.max_scatterings > 0 && path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
+    if (options_.max_scatterings > 0 &&
+        path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
       return false;
     const Hit& hit = hits_[node.slot];
     if (!surfaces_.takes(p, hit, -path.direction, chain.toward[0])) return false;
@@ -237,18 +239,32 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node, size_t knot,
                                                                   const LightSample& sample, double deep) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    const RefractedQuestion q{static_cast<uint32_t>(&node - nodes_.data()), Space::kEmitter, false,
-                              {sample.direction, {}},                       1 / sample.density, nullptr, 0, true};
+    const RefractedQuestion q{static_cast<uint32_t>(&node - nodes_.data()),
+                              Space::kEmitter,
+                              false,
+                              {sample.direction, {}},
+                              1 / sample.density,
+                              nullptr,
+                              0,
+                              true};
     const Path& path = paths_[node.path];
     const auto toward = refracted_->sheet_guess(sample.direction, knot);
     if (!toward) return;
     const double length = deep / refracted_->steepness(*toward);
     constexpr uint64_t kPurpose = 0x736b79;
     const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), knot);
-    for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed)) shine_along(way, q, knot);
     double depth[kMaxKnots];
     for (size_t k = 0; k < knots(); ++k) depth[k] = space_.scattering(node.path, k) * length;
-    if (draw_chain(node, *toward, depth, true)) follow_chain(q, knot);
+    if (!draw_chain(node, *toward, depth, true)) return;
+    if (chain_.links > 0) {
+      follow_chain(q, knot);
+      return;
+    }
+    double shares = 0;
+    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain_.share[k];
+    RefractedQuestion alone = q;
+    alone.scale /= shares;
+    for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed)) shine_along(way, alone, knot);
   }
 }
 

@@ -196,9 +196,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
     path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
     const Hit& hit = hits_[node.slot];
     const bool passes = on.dirac && dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
-    path.sky = guide.sky                                    ? Path::Sky::asked
+    path.sky = guide.sky                                ? Path::Sky::asked
                : path.sky == Path::Sky::asked && passes ? Path::Sky::behind
-                                                            : Path::Sky::open;
+                                                        : Path::Sky::open;
     if (guide.sky) path.sky_place = hit.position;
   }
   if (refracted_) path.bends = bends_behind(node, on);

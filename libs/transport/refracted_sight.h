@@ -89,8 +89,8 @@ class RefractedSight {
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
   // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): how far a place lies below it, m,
-  // 0 elsewhere; ways through it at most; where flat water would have one leave a place below; the cosine of a direction
-  // to its axis.
+  // 0 elsewhere; ways through it at most; where flat water would have one leave a place below; the cosine of a
+  // direction to its axis.
   double below_sheet(Vec3 place) const { return sheet_ ? sheet_->deep(place) : 0; }
   RefractingSheet::Ways sheet_ways(Vec3 place, Dir to) const {
     return sheet_->ways(place, to, interfaces_.index(sheet_material_, 0));

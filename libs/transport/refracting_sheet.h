@@ -4,9 +4,9 @@
 // Let all normals of the surface, true and interpolated, lie within an angle a of an axis, and let it lie once over a
 // plane across the axis. Light from more than 3 a above that plane has come straight to where it passes the surface: a
 // ray that meets it from outside, or was mirrored there, runs less than a, or 3 a, above the plane; and one that has
-// gone in leaves no more, if it is bent to more than a below the plane (index). Behind the surface the light that passes
-// it at x lands, d below, at x + d T(n(x)), T the tangent of the bent direction; if that displacement changes by less
-// than the way in x (Lipschitz), no two places x send light to one place.
+// gone in leaves no more, if it is bent to more than a below the plane (index). Behind the surface the light that
+// passes it at x lands, d below, at x + d T(n(x)), T the tangent of the bent direction; if that displacement changes by
+// less than the way in x (Lipschitz), no two places x send light to one place.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -34,10 +34,10 @@ class RefractingSheet {
  private:
   bool add(const Mesh& mesh, const Affine3& place);
   bool lies_once(const Mesh& mesh, const Affine3& place) const;
-  Dir axis_{0, 0, 1};            // front
-  double low_ = 0, high_ = 0;    // along it, m
-  double least_cosine_ = 1;      // of normals to it
-  double turn_ = 0;              // of the normal, per m across the axis
+  Dir axis_{0, 0, 1};          // front
+  double low_ = 0, high_ = 0;  // along it, m
+  double least_cosine_ = 1;    // of normals to it
+  double turn_ = 0;            // of the normal, per m across the axis
 };
 
 }  // namespace suite
