@@ -234,7 +234,7 @@ class PathKernel final : public PathTracing {
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
   // kernel_chain.h: light scattered on its way.
   static constexpr int kMostLinks = 24;
-  static constexpr double kReach = 2, kDeepest = 8;
+  static constexpr double kReach = 2, kDeepest = 8, kTried = 0.3;
   struct Chain {
     int links;                   // scatterings
     Dir toward[kMostLinks + 1];  // from the node, and from each of them
@@ -243,7 +243,9 @@ class PathKernel final : public PathTracing {
   };
   bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
   bool draw_chain(const NodeAt& node, Dir toward, std::span<const double> depth, bool sky);
-  std::array<double, 4> chain_numbers(const Path& path, bool sky, size_t n) const;
+  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, size_t n) const;
+  void begin_chain(const NodeAt& node);
+  bool is_own(const NodeAt& node, Dir in) const;
   RefractedSight::Node from_node(const NodeAt& node) const;
   bool follow_chain(const RefractedQuestion& q, size_t knot);
   void scatter_along(uint32_t p, size_t i, Dir from, std::span<float> through, std::span<float> memory);

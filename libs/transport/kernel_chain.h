@@ -30,22 +30,30 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
                                                                           double length, size_t knot) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
     const NodeAt& node = nodes_[q.node];
-    if (branches_.empty() || !q.end.far || node.event || !space_.even_around(node.path)) return false;
+    const Path& path = paths_[node.path];
+    if (branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
+    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return false;
     const Dir normal = hits_[node.slot].normal;
-    if (dot(toward, normal) * dot(paths_[node.path].direction, normal) > 0) return false;  // other matter is there
+    if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
     Guide& guide = guides_[q.node];
     if (guide.chains != 0 && guide.light != q.light) return false;
-    space_.stand(node.path);
+    if (!node.event) space_.stand(node.path);
     if (!(space_.asymmetry(node.path) > kForwards)) return false;
     double depth[kMaxKnots];
     for (size_t k = 0; k < knots(); ++k) {
       depth[k] = space_.scattering(node.path, k) * length;
       if (!(depth[k] > 0 && depth[k] < kDeepest)) return false;
     }
+    if (guide.chains == 0) guide.toward = toward;
     guide.chains |= 1u << knot;
     guide.light = q.light;
     guide.reach = kReach * length;
-    if (draw_chain(node, toward, depth, false)) follow_chain(q, knot);
+    RefractedQuestion tried = q;
+    if (node.event) {
+      if (path.stream.hashed(path.sample, dimensions::roulette_of_side(path.order() - 1)) >= kTried) return true;
+      tried.scale /= kTried;
+    }
+    if (draw_chain(node, toward, depth, false) && !is_own(node, chain_.toward[0])) follow_chain(tried, knot);
     return true;
   }
   return false;
@@ -64,7 +72,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       for (int i = 1; i <= n; ++i) p *= depth[k] / i;
       return p;
     };
-    const std::array<double, 4> u = chain_numbers(path, sky, 0);
+    const std::array<double, 4> u = chain_numbers(path, node.event, sky, 0);
     const int least = sky ? 0 : 1;
     const auto of_all = [&](size_t k) {
       double sum = least == 0 ? 1 : 0, p = 1;
@@ -78,7 +86,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
-      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, sky, n - i);
+      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, node.event, sky, n - i);
       if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i]))
         return false;
       float density[kMaxKnots];
@@ -94,9 +102,10 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
 
 // The n-th set of numbers of the chain that the path draws at its last surface.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path, bool sky,
-                                                                                         size_t n) const {
-  return dimensions::of_chain(path.stream, path.sample, path.surfaces - 1, sky, static_cast<uint32_t>(n));
+std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path, bool event,
+                                                                                         bool sky, size_t n) const {
+  const uint32_t at = event ? dimensions::kNodes + path.flights : path.surfaces - 1;
+  return dimensions::of_chain(path.stream, path.sample, at, sky, static_cast<uint32_t>(n));
 }
 
 // To its places; false where it meets what it cannot pass.
@@ -112,21 +121,23 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
         path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
       return false;
     const Hit& hit = hits_[node.slot];
-    if (!surfaces_.takes(p, hit, -path.direction, chain.toward[0])) return false;
+    if (!node.event && !surfaces_.takes(p, hit, -path.direction, chain.toward[0])) return false;
+    chain_through_.resize(bins_);
     const std::span<float> through = chain_through_, memory = dense(p);
     const Factor factor = evaluate(node, chain.toward[0], memory);
     for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
     keep_bins_of(knot, through);
-    space_.begin_way(p, false, hit, surfaces_.material(p), -path.direction, chain.toward[0]);
+    begin_chain(node);
     double shares = 0, arrival = 0;
     for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
     double scale = 1 / shares;
-    Ray ray{surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time, path.draw};
+    Ray ray{node.event ? space_.place(p) : surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time,
+            path.draw};
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       const double m = static_cast<double>(chain.links) - static_cast<double>(i);
-      const std::array<double, 4> u = chain_numbers(path, q.sky, i == 0 ? 1 : kMostLinks + i);
+      const std::array<double, 4> u = chain_numbers(path, node.event, q.sky, i == 0 ? 1 : kMostLinks + i);
       const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
       scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
@@ -156,7 +167,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
       const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
       std::copy(chain_through_.begin(), chain_through_.end(), through.begin());
       scatter_along(p, links - 1, way.direction, through, memory);
-      space_.begin_way(p, false, hits_[node.slot], surfaces_.material(p), -path.direction, chain_.toward[0]);
+      begin_chain(node);
       shine_behind(way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
     }
     return true;
@@ -171,6 +182,19 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& 
   if (!environment_.earth) return way;
   const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
   return met ? std::min(way, met->distance) : way;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_chain(const NodeAt& node) {
+  const uint32_t p = node.path;
+  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -paths_[p].direction,
+                   chain_.toward[0]);
+}
+
+// Whether light from a direction is left to the continuation of a scattering that asks along chains.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_own(const NodeAt& node, Dir in) const {
+  return node.event && dot(in, paths_[node.path].direction) > dot(in, guide_of(node)->toward);
 }
 
 // What link i of the chain of path p makes of light that comes from a direction.
@@ -222,7 +246,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
       if (!(depth > 0 && depth < kDeepest)) return;
     }
     guide.sky = true, guide.reach = reach;
-    const std::array<double, 4> u = chain_numbers(path, true, 2);
+    const std::array<double, 4> u = chain_numbers(path, false, true, 2);
     const auto sample = sky->sample({}, {u[2], u[3], 0, 0}, path.time);
     if (!sample || !(sample->density > 0)) return;
     if (refracted_->sheet_ways(place, sample->direction) != RefractingSheet::Ways::one) return;

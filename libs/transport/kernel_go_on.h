@@ -190,6 +190,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const uint32_t p = node.path;
   Path& path = paths_[p];
   path.branch = on.branch, path.sided = on.sided;
+  if (kGuides && node.event && !guides_.empty())
+    if (const Guide& guide = *guide_of(node); guide.chains) {
+      path.quiet = is_own(node, on.in) ? 0 : guide.chains, path.quiet_light = guide.light;
+      path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
+    }
   if (kGuides && !node.event && !guides_.empty()) {
     const Guide& guide = *guide_of(node);
     path.quiet = guide.chains, path.quiet_light = guide.light;

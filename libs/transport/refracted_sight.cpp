@@ -14,10 +14,9 @@ namespace {
 constexpr int kMostBoundaries = 4096;  // index-matched ones on one leg
 constexpr size_t kMostFaces = 4096;    // across a straight ray
 constexpr int kMostSteps = 32, kMostHalvings = 8;
-constexpr int kMostStarts = 8;        // of a trial
-constexpr int kMostWalks = 3;         // of these: that pass an interface and run towards the light
-constexpr double kArrived = 1e-9;     // rad
-constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+constexpr int kMostStarts = 8;     // of a trial
+constexpr int kMostWalks = 3;      // of these: that pass an interface and run towards the light
+constexpr double kArrived = 1e-9;  // rad
 // rad, that Newton's next step would turn the start. Beside a fold of ways, where there is none, its steps end at small
 // distances from the light but with an endless spreading; they would still be long.
 constexpr double kSettled = 1e-4;
@@ -84,25 +83,6 @@ RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
   objects_.assign(1, {all});
 }
 
-// The only refracting object, if it is of one material everywhere, of which no map bends the normal.
-void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
-  const Tracer& tracer = surface_.tracer();
-  const TracedObject o = tracer.object(number);
-  std::vector<uint32_t> materials;
-  if (o.material_override != kNone)
-    materials = {o.material_override};
-  else if (o.primitive != kNone)
-    materials = {tracer.scene().primitives[o.primitive].material};
-  else
-    for (const Part& part : tracer.scene().meshes[o.mesh].parts) materials.push_back(part.material);
-  for (const uint32_t m : materials) {
-    if (m != materials[0] || !interfaces_.has(m)) return;
-    if (const auto& maps = optics.material(m).maps; maps && maps->bends()) return;
-  }
-  sheet_material_ = materials[0];
-  sheet_ = RefractingSheet::of(tracer, number, o);
-}
-
 // The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none.
 bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   double before = 0;
@@ -116,12 +96,6 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
     ray.origin = surface_.tracer().leave(hit, ray.direction);
   }
   return true;
-}
-
-double RefractedSight::free_way(const Ray& ray) {
-  Hit hit;
-  surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
-  return hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
 }
 
 std::optional<double> RefractedSight::unfound(Ray ray, double distance) {
@@ -379,23 +353,6 @@ void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay&
   way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));
   way.trials = 1;
   way.doubtful = false;
-}
-
-// The only way that there can be, where that is known; nothing where it is not, or not found at once.
-auto RefractedSight::find_only(const Search& s, RefractedWay& way) -> Found {
-  if (!sheet_ || !s.end.far) return Found::unknown;
-  const double index = interfaces_.index(sheet_material_, s.knot);
-  const RefractingSheet::Ways ways = sheet_->ways(s.node.place, s.end.direction, index);
-  if (ways == RefractingSheet::Ways::none) return Found::none;
-  if (ways == RefractingSheet::Ways::unknown) return Found::unknown;
-  const auto start = sheet_->guess(s.end.direction, index);
-  Chain once;
-  once.events = 1;
-  Traced probe, found;
-  if (!start || !trace(s, *start, once, probe)) return Found::unknown;
-  if (!walk(s, probe, once, found)) return found.off < kNearEnough && !found.open ? Found::none : Found::unknown;
-  set_way(s, found, way);
-  return Found::one;
 }
 
 // Of the ways with or without reflections.

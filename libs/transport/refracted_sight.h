@@ -104,7 +104,8 @@ class RefractedSight {
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
-  struct Search {  // what is looked for
+  static constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+  struct Search {                              // what is looked for
     const Node& node;
     const WayEnd& end;
     Dir straight;     // towards the light from the node
