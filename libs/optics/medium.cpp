@@ -46,6 +46,9 @@ BakedMedium::BakedMedium(const Medium& m, const SpectralState& state)
     const double mean = planck_band_radiance(b.low_um, b.high_um, m.temperature_k) / (b.high_um - b.low_um);
     blackbody.push_back(static_cast<float>(mean * index_squared[i]));
   }
+  // Water at 25 C sends out 1e-13 W/(m2 sr um) at 1 um: flights need not ask how much of it arrives.
+  constexpr float kDark = 1e-12f;
+  if (std::all_of(blackbody.begin(), blackbody.end(), [](float b) { return b < kDark; })) blackbody.clear();
 }
 
 BakedMedium::BakedMedium(std::vector<float> absorbs, std::vector<float> scatters_, std::vector<float> emits,

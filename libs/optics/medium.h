@@ -35,7 +35,8 @@ struct BakedMedium {
               std::unique_ptr<const PhaseFunction> phase);
   std::vector<float> absorption, scattering;  // 1/m at density 1
   std::vector<float> index_squared;
-  std::vector<float> blackbody;                // n^2 B(T), W/(m2 sr um); empty = does not emit at its own temperature
+  std::vector<float>
+      blackbody;  // n^2 B(T), W/(m2 sr um); empty = does not emit at its own temperature, or below 1e-12 everywhere
   std::unique_ptr<const PhaseFunction> phase;  // null when nothing scatters
   bool scatters() const { return phase != nullptr; }
   bool uniform() const;  // scatters alike at all wavelengths: the same coefficient and the same phase function

@@ -80,6 +80,27 @@ Moves moves_in(const Mesh& mesh, const Affine3& place, uint32_t triangle) {
   return {place.vector(vertex(i[1]) - vertex(i[0])), place.vector(vertex(i[2]) - vertex(i[0]))};
 }
 
+// Of interpolated normals of vertices that nothing else bends; false where the normal at the hit is another one.
+bool turn_of_vertices(const Mesh& mesh, const Affine3& place, const Hit& hit, const Interaction& at, const Moves& moves,
+                      NormalTurn& turn) {
+  const uint32_t* i = &mesh.indices[3 * size_t{hit.triangle}];
+  const Vec3 n0 = oct_decode(mesh.normals[i[0]]), du = oct_decode(mesh.normals[i[1]]) - n0,
+             dv = oct_decode(mesh.normals[i[2]]) - n0;
+  const Vec3 n = place.normal(n0 + du * double{hit.u} + dv * double{hit.v});
+  const double len = length(n), along = length(moves.du), across = length(moves.dv);
+  if (!(len > 0) || !(along > 0) || !(across > 0)) return false;
+  const double sign = dot(n, hit.normal) < 0 ? -1 : 1;
+  const Dir unit = n * (sign / len);
+  if (length(unit - at.frame.z) > 1e-12) return false;
+  const auto change = [&](Vec3 by, double over) {
+    const Vec3 d = place.normal(by) * (sign / (len * over));
+    return d - unit * dot(unit, d);
+  };
+  turn.tangent[0] = moves.du / along, turn.tangent[1] = moves.dv / across;
+  turn.per_m[0] = change(du, along), turn.per_m[1] = change(dv, across);
+  return true;
+}
+
 // Shares of two vectors in a third one of their plane.
 Vec2 shares(Vec3 a, Vec3 b, Vec3 of) {
   const double e = dot(a, a), f = dot(a, b), g = dot(b, b), det = e * g - f * f;
@@ -130,6 +151,7 @@ NormalTurn normal_turn(const Surface& surface, const Hit& hit, Dir out, const In
   const SurfaceTangents tangents = maps ? tangents_at(scene, place, object, hit) : SurfaceTangents{};
   const Moves moves =
       mesh ? moves_in(scene.meshes[object.mesh], place, hit.triangle) : Moves{tangents.dpdu, tangents.dpdv};
+  if (mesh && !maps && turn_of_vertices(scene.meshes[object.mesh], place, hit, at, moves, turn)) return turn;
   const double step = small_step(moves, mesh, maps, tangents);
   for (int i : {0, 1}) {
     const Vec2 share = shares(moves.du, moves.dv, turn.tangent[i] * step);

@@ -1,8 +1,9 @@
 // How the normal that light is reckoned with turns along a surface: its curvature, as ray differentials need it.
 //
-// Exact surfaces: from their equations. Vertex normals, bump and normal maps: central differences of Surface::interact
-// at hits beside, in the same triangle (extrapolated at its edges), so that the float steps of barycentrics cancel.
-// Based on: H. Igehy, "Tracing ray differentials", SIGGRAPH 1999 (derivatives of interpolated normals).
+// Exact surfaces and normals of vertices: from their equations. Bump and normal maps: central differences of
+// Surface::interact at hits beside, in the same triangle (extrapolated at its edges), so that the float steps of
+// barycentrics cancel. Based on: H. Igehy, "Tracing ray differentials", SIGGRAPH 1999 (derivatives of interpolated
+// normals).
 #pragma once
 #include "surface/surface.h"
 

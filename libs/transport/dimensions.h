@@ -31,8 +31,11 @@ inline constexpr Blocks kGuided{1136, kNodes};            // guided continuation
 inline constexpr uint32_t kPerSide = 2;                   // whether and where to, and the flight with a light
 inline constexpr Blocks kSide{1200, kPerSide* kFlights};  // side flights (kernel_side.h)
 
+inline constexpr uint32_t kPerChain = 3;                      // of one to the sun and one to the sky
+inline constexpr Blocks kChain{1232, 2 * kPerChain* kNodes};  // chains of scatterings before a surface
+
 constexpr bool disjoint() {
-  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide};
+  constexpr Blocks all[] = {kSensor, kScatter, kSecond, kSensorMore, kLight, kFlight, kPlace, kGuided, kSide, kChain};
   for (const Blocks& a : all)
     for (const Blocks& b : all)
       if (&a != &b && a.first < b.end() && b.first < a.end()) return false;
@@ -51,7 +54,8 @@ enum class Hashed : uint32_t {
   place = flight + kPerFlight,
   guided,
   side,
-  end = side + kPerSide
+  chain = side + kPerSide,
+  end
 };
 static_assert(static_cast<uint32_t>(Hashed::end) < (1u << 10), "kinds of hashed numbers do not fit into 32 bits");
 // Of Hashed::choices.
@@ -110,6 +114,14 @@ inline std::array<double, 4> of_place(const SampleStream& stream, uint32_t sampl
 inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t sample, uint32_t n) {
   if (n < kNodes) return stream.draw(sample, kGuided.first + n);
   return hashed(stream, sample, Hashed::guided, 0, n);
+}
+// Numbers of the chain to the sun or the sky before the n-th surface of a path, of which the first sets are stratified.
+inline constexpr uint32_t kMostPerChain = 64;
+inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sample, uint32_t n, bool sky,
+                                      uint32_t which) {
+  const uint32_t chain = 2 * n + (sky ? 1 : 0);
+  if (n < kNodes && which < kPerChain) return stream.draw(sample, kChain.first + kPerChain * chain + which);
+  return hashed(stream, sample, Hashed::chain, 0, chain * kMostPerChain + which);
 }
 // Numbers of the side flight from the scattering that ends the n-th flight. First: where to (two), by which scatterer,
 // whether at all; second: the flight (two), a light's direction (two).

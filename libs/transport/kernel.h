@@ -114,6 +114,7 @@ class PathKernel final : public PathTracing {
     double scale;           // far: times spectrum, over the density; else 1 / the density or probability of the place
     const float* spectrum;  // far
     size_t member;          // a point
+    bool sky = false;       // the air's
   };
   struct Sent {  // towards the last interface
     double scale;
@@ -154,6 +155,8 @@ class PathKernel final : public PathTracing {
     const auto met = environment_.earth->meet(path.origin, path.direction, kForever);
     return met ? met->distance : kForever;
   }
+  // Mean cosine: matter that scatters more evenly has no use for side flights or chains.
+  static constexpr double kForwards = 0.5;
   // kernel_side.h: flights aside of paths, from where media scatter forwards.
   struct Side {
     uint32_t node;       // in nodes_
@@ -192,7 +195,17 @@ class PathKernel final : public PathTracing {
   void shine_refracted(const RefractedQuestion& q, size_t knot);
   bool shine_along(const RefractedWay& way, const RefractedQuestion& q, size_t knot);
   std::optional<Sent> sent(const RefractedQuestion& q, const RefractedWay& way);
-  bool weaken(const NodeAt& node, const RefractedWay& way, size_t knot, std::span<float> through, double& arrival);
+  struct Reached {             // the beginning of a way
+    std::span<float> through;  // what the node and what lies before make of the light
+    double arrival;            // m, optical, from the node
+    double scale;
+    uint32_t scatterings;  // since the node
+    Dir first;             // from it
+  };
+  bool shine_behind(const RefractedWay& way, const RefractedQuestion& q, size_t knot, const Reached& reached);
+  void keep_bins_of(size_t knot, std::span<float> through) const;
+  bool weaken(const Path& path, const RefractedWay& way, size_t knot, bool sky, std::span<float> through,
+              double& arrival);
   uint8_t bends_behind(const NodeAt& node, const Continuation& on) const;
   double lost(const Question& q, size_t ray, double passes);
   static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
@@ -201,6 +214,11 @@ class PathKernel final : public PathTracing {
     double share = 0;  // of continuations that are drawn about `toward`; 0: none
     Dir toward;
     bool branch = false;  // beside the others
+    // Light that has been asked for along chains: for which knots' ways, a bit for each; m.
+    uint32_t chains = 0;
+    uint16_t light = 0;
+    double reach = 0;
+    bool sky = false;  // and that of the sky, with as long a reach
   };
   void guide(const RefractedQuestion& q, const RefractedWay& way);
   // Of continuations that are drawn as the node does.
@@ -214,6 +232,28 @@ class PathKernel final : public PathTracing {
   bool is_guided(const NodeAt& node) const { return !guides_.empty() && guide_of(node)->share > 0; }
   void share_with_guide(const NodeAt& node, bool forced, Continuation& on) const;
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
+  // kernel_chain.h: light scattered on its way.
+  static constexpr int kMostLinks = 24;
+  static constexpr double kReach = 2, kDeepest = 8, kTried = 0.3;
+  struct Chain {
+    int links;                   // scatterings
+    Dir toward[kMostLinks + 1];  // from the node, and from each of them
+    double density[kMostLinks];  // of each direction but the last one, at the path's knot
+    double share[kMaxKnots];     // r_k of it all, over the density that drew it
+  };
+  bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
+  bool draw_chain(const NodeAt& node, Dir toward, std::span<const double> depth, bool sky);
+  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, size_t n) const;
+  void begin_chain(const NodeAt& node);
+  bool is_own(const NodeAt& node, Dir in) const;
+  RefractedSight::Node from_node(const NodeAt& node) const;
+  bool follow_chain(const RefractedQuestion& q, size_t knot);
+  void scatter_along(uint32_t p, size_t i, Dir from, std::span<float> through, std::span<float> memory);
+  bool shine_behind_chain(const RefractedQuestion& q, size_t knot, Vec3 place, double scale, double arrival);
+  double free_way(const Ray& ray);
+  bool has_heard(Path& path, const Flight& flight, double flown, double length) const;
+  void ask_sky(const NodeAt& node);
+  void ask_sky(const NodeAt& node, size_t knot, const LightSample& sample, double deep);
   // kernel_branch.h: paths that go on in more than one way.
   void keep(uint32_t p, double share, uint32_t times);
   bool take_up(uint32_t p);
@@ -331,7 +371,9 @@ class PathKernel final : public PathTracing {
   std::vector<Question> questions_;
   std::vector<RefractedQuestion> refracted_questions_;
   std::vector<Guide> guides_;  // of nodes; where nothing refracts none
-  std::vector<Side> sides_;    // the first side_count_ of them
+  Chain chain_;
+  std::vector<float> chain_through_;
+  std::vector<Side> sides_;  // the first side_count_ of them
   size_t side_count_ = 0;
   std::vector<Ray> side_rays_;
   std::vector<Hit> side_hits_;

@@ -96,7 +96,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.events = 0;
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
-  path.share = 1;
+  path.quiet = 0, path.sky = Path::Sky::open, path.share = 1;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
   path.knot = 0;
@@ -195,10 +195,11 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::fly_one(size_t slot) {
   Contribution& c = contribution(p, Space::kEmitter);
   c.water = path.water;
   if constexpr (Space::kGoesBack) passed_[p].before = path;
+  const double before = path.length;
   const bool ends = hit.hit() || length < std::numeric_limits<double>::infinity() || meets_outside(path);
   flights_[slot] = space_.fly(p, path, records_[p], hit, rays_[slot], length, ends, through, emitted);
   const Flight& flight = flights_[slot];
-  c.radiance = flight.emitted;
+  c.radiance = has_heard(path, flight, path.length - before, length) ? nullptr : flight.emitted;
   if (flight.difference) c.light = kFromAir;
   // The sky of the air was asked for, too.
   if (const Light* sky = c.radiance && length == std::numeric_limits<double>::infinity() ? space_.sky() : nullptr)

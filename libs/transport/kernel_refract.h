@@ -89,23 +89,26 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted() {
         if (set[k] != k) continue;
         bool alive = false;  // else an interface on the path has parted it from these wavelengths
         for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
+        if (path.quiet >> k & 1 && nodes_[q.node].event && path.quiet_light == q.light) continue;
         if (alive) shine_refracted(q, k);
       }
     }
+    if (refracted_)
+      for (const NodeAt& node : nodes_) ask_sky(node);
   }
 }
 
-// What is left of light along a way, per bin, and its optical length. False: nothing.
+// Leaves the bins whose light takes the ways of a knot's.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& node, const RefractedWay& way,
-                                                                 size_t knot, std::span<float> through,
-                                                                 double& arrival) {
-  const uint32_t p = node.path;
-  const Path& path = paths_[p];
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::keep_bins_of(size_t knot, std::span<float> through) const {
   const std::vector<size_t>& set = refracted_->interfaces().set_of();
   for (size_t i = 0; i < bins_; ++i) through[i] *= set[static_cast<size_t>(knot_of_bin_[i])] == knot ? 1.0f : 0.0f;
-  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -path.direction,
-                   way.direction);
+}
+
+// What is left of light along a way that has been begun, per bin, and its optical length. False: nothing.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& path, const RefractedWay& way, size_t knot,
+                                                                 bool sky, std::span<float> through, double& arrival) {
   Ray ray{way.origin, way.direction, path.time, path.draw};
   for (int i = 0; i < way.events; ++i) {
     const RefractedEvent& at = way.at[i];
@@ -118,14 +121,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const NodeAt& n
     ray.direction = at.in;
   }
   if (is_behind_earth(ray, way.length)) return false;
+  if (sky) return true;
   const double index = space_.follow_way(ray, way.length, through, transmission_);
   if (std::isfinite(way.length)) arrival += way.length * index;  // far lights shine evenly in time
   return std::any_of(through.begin(), through.end(), [](float t) { return t != 0; });
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const RefractedQuestion& q, size_t knot) {
-  const NodeAt& node = nodes_[q.node];
+RefractedSight::Node PathKernel<Surfaces, Space, Throughputs, Estimator>::from_node(const NodeAt& node) const {
   const uint32_t p = node.path;
   const Path& path = paths_[p];
   RefractedSight::Node from;
@@ -139,10 +142,19 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const 
     from.hit = &hit;
     if (!at.two_sided) from.side = dot(path.direction, hit.normal) < 0 ? hit.normal : -hit.normal;
   }
+  return from;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_refracted(const RefractedQuestion& q, size_t knot) {
+  const NodeAt& node = nodes_[q.node];
+  const Path& path = paths_[node.path];
   constexpr uint64_t kPurpose = 0x62656e74;
   const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-  for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed))
-    if (shine_along(way, q, knot)) guide(q, way);
+  std::optional<RefractedWay> first;
+  for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed))
+    if (shine_along(way, q, knot) && kGuides && !first) first = way;
+  if (first && !ask_along_chain(q, first->direction, first->at[0].length, knot)) guide(q, *first);
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -151,20 +163,34 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
   const NodeAt& node = nodes_[q.node];
   const uint32_t p = node.path;
   const Path& path = paths_[p];
-  const auto most = static_cast<uint32_t>(options_.max_nodes);
-  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
   if (!node.event && !surfaces_.takes(p, hits_[node.slot], -path.direction, way.direction)) return false;
   const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
   const Factor factor = evaluate(node, way.direction, memory);
   for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
-  double arrival = 0;
-  if (!weaken(node, way, knot, through, arrival)) return false;
+  keep_bins_of(knot, through);
+  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -path.direction,
+                   way.direction);
+  return shine_behind(way, q, knot, {through, 0, 1, 0, way.direction});
+}
+
+// What comes along a way to where its beginning has been reached.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind(const RefractedWay& way,
+                                                                       const RefractedQuestion& q, size_t knot,
+                                                                       const Reached& reached) {
+  const NodeAt& node = nodes_[q.node];
+  const uint32_t p = node.path;
+  const Path& path = paths_[p];
+  const auto most = static_cast<uint32_t>(options_.max_nodes);
+  if (most > 0 && path.surfaces + static_cast<uint32_t>(way.events) >= most) return false;
+  double arrival = reached.arrival;
+  if (!weaken(path, way, knot, q.sky, reached.through, arrival)) return false;
   const auto from_light = sent(q, way);
   if (!from_light) return false;
-  const double scale = from_light->scale * way.spreading * way.trials;
   WaterSeen water = WaterSeen::nothing;
   if (waters_.any()) {
-    water = water_behind(node, way.direction);
+    water = water_behind(node, reached.first);
+    if (reached.scatterings > 0) water = Waters::behind_scattering(water);
     for (int i = 0; i < way.events; ++i)
       water = waters_.behind_surface(water, way.at[i].material, way.at[i].hit.normal, way.at[i].out, way.at[i].in);
     if (water == WaterSeen::mirrored && !q.end.far) water = WaterSeen::other;
@@ -173,13 +199,13 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
     if (doubtful && !way.doubtful) break;
     Contribution& c = contribution(p, q.light);
     c.events |= by_surface | by_dirac;
-    if (node.event) c.events |= by_medium;
-    c.asked = true;
+    if (node.event || reached.scatterings > 0) c.events |= by_medium;
+    c.asked = !q.sky;
     c.beam = q.beam;
     c.water = water;
-    c.order += static_cast<uint32_t>(way.events);
-    c.scale = static_cast<float>(scale);
-    c.factor = {1, through.data()};
+    c.order += static_cast<uint32_t>(way.events) + reached.scatterings;
+    c.scale = static_cast<float>(from_light->scale * way.spreading * way.trials * reached.scale);
+    c.factor = {1, reached.through.data()};
     c.radiance = from_light->spectrum;
     c.arrival += arrival;
     if (doubtful) c.missed = 0;  // there may be as much again
@@ -193,8 +219,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_along(const Refr
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 auto PathKernel<Surfaces, Space, Throughputs, Estimator>::sent(const RefractedQuestion& q, const RefractedWay& way)
     -> std::optional<Sent> {
-  const Light& light = *environment_.lights[q.light];
   const NodeAt& node = nodes_[q.node];
+  if (q.sky) {
+    const std::span<float> own = throughputs_.take(node.path);
+    return Sent{q.scale, space_.sky_behind({way.last, way.to, 0}, transmission_, own)};
+  }
+  const Light& light = *environment_.lights[q.light];
   const double when = time(node);
   if (q.end.far) {
     if (q.spectrum) return Sent{q.scale, q.spectrum};

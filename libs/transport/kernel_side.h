@@ -40,7 +40,6 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::choose_side_light() {
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_side(const NodeAt& node) const {
-  constexpr double kForwards = 0.5;  // mean cosine: matter that scatters more evenly has no use for them
   if constexpr (kGuides)
     return side_light_ && node.event &&
            (options_.max_scatterings == 0 || paths_[node.path].scatterings < options_.max_scatterings) &&

@@ -3,6 +3,7 @@
 #include "transport/estimators/standard.h"
 #include "transport/kernel_back.h"
 #include "transport/kernel_branch.h"
+#include "transport/kernel_chain.h"
 #include "transport/kernel_fly.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_guide.h"

@@ -39,6 +39,19 @@ struct Lane {
   double other[K];
   Branch branch = Branch::none;
   bool sided = false;
+  // What its last surface has asked for along chains (kernel_chain.h) is not asked for again: which knots' ways, a bit
+  // for each, of which light, up to how many scatterings more, on flights of how many m.
+  uint32_t quiet = 0;
+  uint16_t quiet_light = 0;
+  uint16_t quiet_events = 0;
+  double quiet_reach = 0;
+  // The same of the light of the air's sky that comes by one smooth interface, asked for from a place.
+  enum class Sky : uint8_t {
+    open,
+    asked,  // and nothing but scattered since
+    behind  // that interface
+  } sky = Sky::open;
+  Vec3 sky_place;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   double share = 1;          // of a path's light, where it goes on in parts

@@ -14,10 +14,9 @@ namespace {
 constexpr int kMostBoundaries = 4096;  // index-matched ones on one leg
 constexpr size_t kMostFaces = 4096;    // across a straight ray
 constexpr int kMostSteps = 32, kMostHalvings = 8;
-constexpr int kMostStarts = 8;        // of a trial
-constexpr int kMostWalks = 3;         // of these: that pass an interface and run towards the light
-constexpr double kArrived = 1e-9;     // rad
-constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+constexpr int kMostStarts = 8;     // of a trial
+constexpr int kMostWalks = 3;      // of these: that pass an interface and run towards the light
+constexpr double kArrived = 1e-9;  // rad
 // rad, that Newton's next step would turn the start. Beside a fold of ways, where there is none, its steps end at small
 // distances from the light but with an endless spreading; they would still be long.
 constexpr double kSettled = 1e-4;
@@ -67,12 +66,15 @@ RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
     return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return interfaces_.has(p.material); });
   };
   bool any_moves = false;
+  uint32_t only_number = kNone;
   tracer.each("smooth refracting surfaces", refracts, [&](uint32_t number, const TracedObject& o) {
     const Box3 own = own_bounds(scene, o);
     const bool moves = o.node != kNone && !own.empty();
     objects_.push_back(moves ? Refractor{own, number} : Refractor{placed(own, tracer.place(number))});
     any_moves = any_moves || moves;
+    only_number = number;
   });
+  if (objects_.size() == 1) set_sheet(optics, only_number);
   if (objects_.size() <= kMostObjects) return;
   Box3 all;
   for (const Refractor& o : objects_)
@@ -346,6 +348,13 @@ double RefractedSight::share(const RefractedWay& way, size_t knot) {
   return all;
 }
 
+void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay& way) {
+  way = found.way;
+  way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));
+  way.trials = 1;
+  way.doubtful = false;
+}
+
 // Of the ways with or without reflections.
 bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   constexpr double kWorthIt = 0.01;  // less light is followed up as rarely as it is weaker
@@ -353,10 +362,7 @@ bool RefractedSight::find(const Search& s, bool mirrored, RefractedWay& way) {
   if (!try_once(s, mirrored, first)) return false;
   const double kept = mirrored ? std::min(1.0, share(first.way, s.knot) / kWorthIt) : 1;
   if (kept < 1 && !(random() < kept)) return false;
-  way = first.way;
-  way.spreading = 1 / (std::fabs(first.det) * (s.end.far ? 1 : s.distance * s.distance));
-  way.trials = 1;
-  way.doubtful = false;
+  set_way(s, first, way);
   const auto same = [&] {
     const double near = std::max(kSame, 100 * (first.off + again.off)) * std::max(first.inverse, again.inverse);
     return again.way.events == way.events && again.way.mirrors() == way.mirrors() && again.det * first.det > 0 &&
@@ -377,6 +383,8 @@ std::span<const RefractedWay> RefractedSight::find(const Node& node, const WayEn
   if (!(distance > 0)) return {};
   const Search search{node, end, end.far ? end.direction : way / distance, distance, knot};
   seed_ = seed, counter_ = 0;
+  if (const Found only = find_only(search, found_[0]); only != Found::unknown)
+    return std::span(found_).first(only == Found::one ? 1 : 0);
   Dir direction;
   guessed_.reset();
   if (guess(search, direction)) guessed_ = direction;

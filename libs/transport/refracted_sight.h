@@ -10,7 +10,8 @@
 // Starts: the straight line, or what flat water at its first interface would make of it; directions about that; points
 // and directions of the refracting objects. Every direction that meets one has a chance. Ways that are only passed on
 // and ways with reflections are looked for one after the other, so that the rare second ones make no noise in the
-// first; which interfaces reflect is drawn with the start.
+// first; which interfaces reflect is drawn with the start. Where the scene's only refractor can tell that there is one
+// way at most (refracting_sheet.h), it is walked to from where flat water would have it.
 // Assumes: at most kMostEvents interfaces; longer ways, those that begin with a reflection and rough interfaces are
 // left to continuations that meet a light by chance. What longer ways bring is estimated (unfound, lost_light.h).
 // Based on: J. Hanika, M. Droske, L. Fascione, "Manifold next event estimation", EGSR 2015; T. Zeltner, I. Georgiev,
@@ -23,6 +24,7 @@
 
 #include "math/sampling.h"
 #include "transport/refracted_ray.h"
+#include "transport/refracting_sheet.h"
 
 namespace suite {
 
@@ -86,10 +88,24 @@ class RefractedSight {
   // kNothing. Nothing where something else is in its way: then it is not asked for there.
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
+  // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): how far a place lies below it, m,
+  // 0 elsewhere; ways through it at most; where flat water would have one leave a place below; the cosine of a
+  // direction to its axis.
+  double below_sheet(Vec3 place) const { return sheet_ ? sheet_->deep(place) : 0; }
+  RefractingSheet::Ways sheet_ways(Vec3 place, Dir to) const {
+    return sheet_->ways(place, to, interfaces_.index(sheet_material_, 0));
+  }
+  std::optional<Dir> sheet_guess(Dir to, size_t knot) const {
+    return sheet_->guess(to, interfaces_.index(sheet_material_, knot));
+  }
+  double steepness(Dir direction) const { return sheet_->steepness(direction); }
+  // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
+  double free_way(const Ray& ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
-  struct Search {  // what is looked for
+  static constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+  struct Search {                              // what is looked for
     const Node& node;
     const WayEnd& end;
     Dir straight;     // towards the light from the node
@@ -120,6 +136,10 @@ class RefractedSight {
   bool guess(const Search& s, Dir& direction);
   bool try_once(const Search& s, bool mirrored, Traced& found);
   bool find(const Search& s, bool mirrored, RefractedWay& way);
+  void set_sheet(const Optics& optics, uint32_t number);
+  enum class Found : uint8_t { none, one, unknown };
+  Found find_only(const Search& s, RefractedWay& way);
+  static void set_way(const Search& s, const Traced& found, RefractedWay& way);
   double share(const RefractedWay& way, size_t knot);
   Dir draw_start(const Node& node);
   Dir draw_at_object(const Node& node);
@@ -136,6 +156,8 @@ class RefractedSight {
     uint32_t moves = kNone;  // the object whose frame the box is in; kNone = ENU
   };
   std::vector<Refractor> objects_;
+  std::optional<RefractingSheet> sheet_;  // the only one of them, where it can tell how many ways there are
+  uint32_t sheet_material_ = kNone;
   Interaction at_, beside_;
   TraceStatistics statistics_;
   uint64_t seed_ = 0, counter_ = 0;

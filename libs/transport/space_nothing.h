@@ -69,6 +69,7 @@ class NothingSpace {
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }
   const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
+  const float* sky_behind(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   void cross(uint32_t, const Hit&, uint32_t, Dir) {}
   void clear_sight() {}
   Sight& sight() { return sight_; }

@@ -36,6 +36,12 @@ class FieldSpace {
   void emit_within(uint32_t p, std::span<float> emission) const;
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
+  // That of air without media in it, as a light of which matter hides all but what smooth interfaces pass; null: none.
+  const Light* hidden_sky() const { return plain_air_ ? air_->sky() : nullptr; }
+  // What comes along a ray from there; scratch and memory for spectra.
+  const float* sky_behind(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
+    return air_->sky_radiance(ray.origin, ray.direction, scratch, radiance);
+  }
   double sky_density(Dir) const { return 0; }
   const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   // The path goes through a surface to the other side.
@@ -54,11 +60,14 @@ class FieldSpace {
     return medium != kNone && optics_.media()[medium].scatters();
   }
 
+  // Whether it is a medium that is the same everywhere up to the next surface.
+  bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
+
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
   void stand(uint32_t p);
   // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at the reference.
   // Mean cosine of its scattering at the reference, over all that is there.
-  double scattering(uint32_t p) const { return events_[p].rate[0]; }
+  double scattering(uint32_t p, size_t knot = 0) const { return events_[p].rate[knot]; }
   double asymmetry(uint32_t p) const;
   Vec3 place(uint32_t p) const { return events_[p].place; }
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;

@@ -1,0 +1,295 @@
+// Definitions of kernel.h: light that comes to a surface through water that scatters it on its way.
+//
+// Water scatters forwards, several times on a way of some metres, and what comes to a place from a small sun is as
+// likely to have been scattered 0, 1, 2 or n times. A path that looks for it from the place draws directions without
+// knowing whether they will end near the sun's. So they are drawn from its end: where a node has found a way to the
+// light (kernel_refract.h), of direction s and length L in the matter beside the node, it also draws a chain of
+//   n scatterings, 1 <= n <= kMostLinks, with probability P_k(n) ~ t^n / n!, t = L times the scattering coefficient,
+//   directions d_n as matter scatters what comes along s, d_(n-1) what comes along d_n, ..., d_1 from the node, and
+//   places: of m scatterings that are still to come the next one is put at a share x of the way up to the next surface,
+//     or to kReach L, with density e + (1 - e) m (1 - x)^(m-1): n places that are even on the whole way.
+// From the last place the light is asked for as from a node. The phase functions are those of the densities but for the
+// last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
+// transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
+// chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
+// What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere beside the
+// node, and let some light through unscattered (kDeepest). Based on: paths drawn from the light's end on a given number
+// of scatterings: I. Georgiev et al., "Joint importance sampling of low-order volumetric scattering", ACM TOG 32(6),
+// 2013; order statistics of Poisson's process: L. Devroye, "Non-uniform random variate generation", 1986, chapter VI.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "transport/kernel.h"
+
+namespace suite {
+
+// Whether the light has been asked for so.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const RefractedQuestion& q, Dir toward,
+                                                                          double length, size_t knot) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    const NodeAt& node = nodes_[q.node];
+    const Path& path = paths_[node.path];
+    if (branches_.empty() || !q.end.far || !space_.even_around(node.path)) return false;
+    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return false;
+    const Dir normal = hits_[node.slot].normal;
+    if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
+    Guide& guide = guides_[q.node];
+    if (guide.chains != 0 && guide.light != q.light) return false;
+    if (!node.event) space_.stand(node.path);
+    if (!(space_.asymmetry(node.path) > kForwards)) return false;
+    double depth[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) {
+      depth[k] = space_.scattering(node.path, k) * length;
+      if (!(depth[k] > 0 && depth[k] < kDeepest)) return false;
+    }
+    if (guide.chains == 0) guide.toward = toward;
+    guide.chains |= 1u << knot;
+    guide.light = q.light;
+    guide.reach = kReach * length;
+    RefractedQuestion tried = q;
+    if (node.event) {
+      if (path.stream.hashed(path.sample, dimensions::roulette_of_side(path.order() - 1)) >= kTried) return true;
+      tried.scale /= kTried;
+    }
+    if (draw_chain(node, toward, depth, false) && !is_own(node, chain_.toward[0])) follow_chain(tried, knot);
+    return true;
+  }
+  return false;
+}
+
+// Number and directions of scatterings.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeAt& node, Dir toward,
+                                                                     std::span<const double> depth, bool sky) {
+  if constexpr (kGuides) {
+    const Path& path = paths_[node.path];
+    Chain& chain = chain_;
+    const auto own = static_cast<size_t>(path.knot);
+    const auto poisson = [&](size_t k, int n) {  // of n over that of none
+      double p = 1;
+      for (int i = 1; i <= n; ++i) p *= depth[k] / i;
+      return p;
+    };
+    const std::array<double, 4> u = chain_numbers(path, node.event, sky, 0);
+    const int least = sky ? 0 : 1;
+    const auto of_all = [&](size_t k) {
+      double sum = least == 0 ? 1 : 0, p = 1;
+      for (int i = 1; i <= kMostLinks; ++i) sum += p *= depth[k] / i;
+      return sum;
+    };
+    chain.links = least;
+    double left = u[3] * of_all(own), p = poisson(own, least);
+    for (; chain.links < kMostLinks && left >= p; p *= depth[own] / chain.links) left -= p, ++chain.links;
+    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * poisson(k, chain.links) / of_all(k);
+    const auto n = static_cast<size_t>(chain.links);
+    chain.toward[n] = toward;
+    for (size_t i = n; i-- > 0;) {
+      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, node.event, sky, n - i);
+      if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i]))
+        return false;
+      float density[kMaxKnots];
+      space_.densities(node.path, -chain.toward[i + 1], chain.toward[i], {density, knots()});
+      chain.density[i] = density[own];
+      if (!(density[own] > 0)) return false;
+      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= double{density[k]} / double{density[own]};
+    }
+    return true;
+  }
+  return false;
+}
+
+// The n-th set of numbers of the chain that the path draws at its last surface.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path, bool event,
+                                                                                         bool sky, size_t n) const {
+  const uint32_t at = event ? dimensions::kNodes + path.flights : path.surfaces - 1;
+  return dimensions::of_chain(path.stream, path.sample, at, sky, static_cast<uint32_t>(n));
+}
+
+// To its places; false where it meets what it cannot pass.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const RefractedQuestion& q, size_t knot) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    constexpr double kEvenly = 0.15;
+    const NodeAt& node = nodes_[q.node];
+    const uint32_t p = node.path;
+    const Path& path = paths_[p];
+    const Chain& chain = chain_;
+    if (options_.max_scatterings > 0 &&
+        path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
+      return false;
+    const Hit& hit = hits_[node.slot];
+    if (!node.event && !surfaces_.takes(p, hit, -path.direction, chain.toward[0])) return false;
+    chain_through_.resize(bins_);
+    const std::span<float> through = chain_through_, memory = dense(p);
+    const Factor factor = evaluate(node, chain.toward[0], memory);
+    for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
+    keep_bins_of(knot, through);
+    begin_chain(node);
+    double shares = 0, arrival = 0;
+    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
+    double scale = 1 / shares;
+    Ray ray{node.event ? space_.place(p) : surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time,
+            path.draw};
+    for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
+      ray.direction = chain.toward[i];
+      const double most = std::min(free_way(ray), guides_[q.node].reach);
+      const double m = static_cast<double>(chain.links) - static_cast<double>(i);
+      const std::array<double, 4> u = chain_numbers(path, node.event, q.sky, i == 0 ? 1 : kMostLinks + i);
+      const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
+      scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
+      arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
+      ray.origin += ray.direction * (x * most);
+      if (m > 1) scatter_along(p, i, chain.toward[i + 1], through, memory);
+    }
+    throughputs_.give_back(p);
+    return shine_behind_chain(q, knot, ray.origin, scale, arrival);
+  }
+  return false;
+}
+
+// Asks for the light from the last place.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(const RefractedQuestion& q, size_t knot,
+                                                                             Vec3 place, double scale, double arrival) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    constexpr uint64_t kPurpose = 0x636861696e;
+    const NodeAt& node = nodes_[q.node];
+    const uint32_t p = node.path;
+    const Path& path = paths_[p];
+    const auto links = static_cast<uint32_t>(chain_.links);
+    RefractedSight::Node from;
+    from.place = place, from.time = path.time, from.draw = path.draw;
+    const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
+    for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed)) {
+      const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
+      std::copy(chain_through_.begin(), chain_through_.end(), through.begin());
+      scatter_along(p, links - 1, way.direction, through, memory);
+      begin_chain(node);
+      shine_behind(way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
+    }
+    return true;
+  }
+  return false;
+}
+
+// From a ray's start to the next surface, m.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& ray) {
+  const double way = refracted_->free_way(ray);
+  if (!environment_.earth) return way;
+  const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
+  return met ? std::min(way, met->distance) : way;
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_chain(const NodeAt& node) {
+  const uint32_t p = node.path;
+  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -paths_[p].direction,
+                   chain_.toward[0]);
+}
+
+// Whether light from a direction is left to the continuation of a scattering that asks along chains.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_own(const NodeAt& node, Dir in) const {
+  return node.event && dot(in, paths_[node.path].direction) > dot(in, guide_of(node)->toward);
+}
+
+// What link i of the chain of path p makes of light that comes from a direction.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(uint32_t p, size_t i, Dir from,
+                                                                        std::span<float> through,
+                                                                        std::span<float> memory) {
+  if constexpr (kGuides) {
+    const Factor w = space_.evaluate(p, dot(chain_.toward[i], from), memory);
+    const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
+    for (size_t b = 0; b < bins_; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
+  }
+}
+
+// Whether the light that the air sends along a flight's way to infinity has been asked for already, before `flown` m of
+// it were flown. Tells the path what is not to be asked for where the flight has ended.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, const Flight& flight, double flown,
+                                                                    double length) const {
+  if constexpr (kGuides) {
+    if (path.quiet == 0 && path.sky == Path::Sky::open) return false;
+    const bool scattered = flight.arrival == Arrival::scattered;
+    const bool beyond = scattered && (flown > path.quiet_reach || path.quiet_events-- == 0);
+    if (!scattered || beyond) path.quiet = 0;
+    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered)
+      return refracted_->sheet_ways(path.sky_place, path.direction) != RefractingSheet::Ways::unknown;
+    if (beyond || flight.arrival == Arrival::onward) path.sky = Path::Sky::open;
+  }
+  return false;
+}
+
+// Asks for the light of the air's sky, which otherwise only chance would find, in one direction: unscattered and along
+// a chain.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    const Light* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
+    const Path& path = paths_[node.path];
+    if (!sky || branches_.empty() || node.event || !asks_through(node) || !space_.even_around(node.path)) return;
+    const Vec3 place = hits_[node.slot].position;
+    const double deep = refracted_->below_sheet(place);
+    if (!(deep > 0)) return;
+    space_.stand(node.path);
+    if (!(space_.asymmetry(node.path) > kForwards)) return;
+    Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
+    const double reach = guide.chains ? guide.reach : kReach * deep;
+    for (size_t k = 0; k < knots(); ++k) {
+      const double depth = space_.scattering(node.path, k) * deep;
+      if (!(depth > 0 && depth < kDeepest)) return;
+    }
+    guide.sky = true, guide.reach = reach;
+    const std::array<double, 4> u = chain_numbers(path, false, true, 2);
+    const auto sample = sky->sample({}, {u[2], u[3], 0, 0}, path.time);
+    if (!sample || !(sample->density > 0)) return;
+    if (refracted_->sheet_ways(place, sample->direction) != RefractingSheet::Ways::one) return;
+    const std::vector<size_t>& set = refracted_->interfaces().set_of();
+    for (size_t k = 0; k < knots(); ++k) {
+      bool alive = false;
+      for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
+      if (set[k] == k && alive) ask_sky(node, k, *sample, deep);
+    }
+  }
+}
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node, size_t knot,
+                                                                  const LightSample& sample, double deep) {
+  if constexpr (kGuides && Surfaces::kDense > 0) {
+    const RefractedQuestion q{static_cast<uint32_t>(&node - nodes_.data()),
+                              Space::kEmitter,
+                              false,
+                              {sample.direction, {}},
+                              1 / sample.density,
+                              nullptr,
+                              0,
+                              true};
+    const Path& path = paths_[node.path];
+    const auto toward = refracted_->sheet_guess(sample.direction, knot);
+    if (!toward) return;
+    const double length = deep / refracted_->steepness(*toward);
+    constexpr uint64_t kPurpose = 0x736b79;
+    const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), knot);
+    double depth[kMaxKnots];
+    for (size_t k = 0; k < knots(); ++k) depth[k] = space_.scattering(node.path, k) * length;
+    if (!draw_chain(node, *toward, depth, true)) return;
+    if (chain_.links > 0) {
+      follow_chain(q, knot);
+      return;
+    }
+    double shares = 0;
+    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain_.share[k];
+    RefractedQuestion alone = q;
+    alone.scale /= shares;
+    for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed)) shine_along(way, alone, knot);
+  }
+}
+
+}  // namespace suite

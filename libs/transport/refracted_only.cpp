@@ -1,0 +1,50 @@
+// Ways through the scene's only refracting surface (refracting_sheet.h).
+#include <limits>
+
+#include "transport/refracted_sight.h"
+
+namespace suite {
+
+// The only refracting object, if it is of one material everywhere, of which no map bends the normal.
+void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
+  const Tracer& tracer = surface_.tracer();
+  const TracedObject o = tracer.object(number);
+  std::vector<uint32_t> materials;
+  if (o.material_override != kNone)
+    materials = {o.material_override};
+  else if (o.primitive != kNone)
+    materials = {tracer.scene().primitives[o.primitive].material};
+  else
+    for (const Part& part : tracer.scene().meshes[o.mesh].parts) materials.push_back(part.material);
+  for (const uint32_t m : materials) {
+    if (m != materials[0] || !interfaces_.has(m)) return;
+    if (const auto& maps = optics.material(m).maps; maps && maps->bends()) return;
+  }
+  sheet_material_ = materials[0];
+  sheet_ = RefractingSheet::of(tracer, number, o);
+}
+
+double RefractedSight::free_way(const Ray& ray) {
+  Hit hit;
+  surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+  return hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+}
+
+// The only way that there can be, where that is known; nothing where it is not, or not found at once.
+auto RefractedSight::find_only(const Search& s, RefractedWay& way) -> Found {
+  if (!sheet_ || !s.end.far) return Found::unknown;
+  const double index = interfaces_.index(sheet_material_, s.knot);
+  const RefractingSheet::Ways ways = sheet_->ways(s.node.place, s.end.direction, index);
+  if (ways == RefractingSheet::Ways::none) return Found::none;
+  if (ways == RefractingSheet::Ways::unknown) return Found::unknown;
+  const auto start = sheet_->guess(s.end.direction, index);
+  Chain once;
+  once.events = 1;
+  Traced probe, found;
+  if (!start || !trace(s, *start, once, probe)) return Found::unknown;
+  if (!walk(s, probe, once, found)) return found.off < kNearEnough && !found.open ? Found::none : Found::unknown;
+  set_way(s, found, way);
+  return Found::one;
+}
+
+}  // namespace suite

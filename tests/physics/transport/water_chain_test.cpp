@@ -1,0 +1,100 @@
+// Water over a bed under the sun and real air, whose light is asked for through the calm surface along chains
+// (transport/kernel_chain.h), against paths that meet the sky by chance: a glass ball far away, which no path sees, is
+// enough for nobody to know how many ways lead through the surface (transport/refracting_sheet.h).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "air/air_spec.h"
+#include "tests/support/media_kit.h"
+#include "tests/support/radiometry_kit.h"
+#include "transport/refracting_sheet.h"
+
+namespace suite::test {
+namespace {
+
+constexpr double kIndex = 1.34, kDepth = 4;
+
+std::shared_ptr<Scene> bay(bool ball, double absorption = 0.05) {
+  auto scene = std::make_shared<Scene>();
+  scene->media = {medium(Curve::constant(absorption), Curve::constant(0.25), hg(0.9))};
+  scene->media[0].index = Curve::constant(kIndex);
+  Material surface = material("surface", {"dielectric", {}, {{"index", Curve::constant(kIndex)}}, {}, nullptr});
+  surface.inside = 0;
+  Material glass = surface;
+  glass.id = "glass", glass.inside = kNone;
+  scene->materials = {material("bed", lambert(0.3)), surface, glass};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kDepth}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 1);
+  if (ball) place(*scene, PrimitiveKind::sphere, {0.1}, 2, translation({3e4, 0, 3}));
+  check_scene(*scene, "bay");
+  return scene;
+}
+
+Repeated look(const std::shared_ptr<const Scene>& scene, uint32_t paths) {
+  AirSpec air;
+  air.profile = standard_profile("tropical");
+  air.aerosol = AirSpec::Aerosol{};
+  air.adjacency = false;
+  SourceSpecs sources;
+  sources.air = std::make_shared<const AirSpec>(air);
+  sources.add(SunSpec{dir_from_angles(40 * kDegree, 0.3), 0.27 * kDegree, Curve::constant(1)});
+  const Dir view = dir_from_angles(25 * kDegree, 2);
+  const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
+  auto r = render(scene, sources, std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02));
+  EXPECT_EQ(r.report.statistics.failures, 0u);
+  return over_problems(r.result, 0);
+}
+
+TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
+  const Repeated asked = look(bay(false), 128), chance = look(bay(true), 512);
+  const double error = std::hypot(asked.error, chance.error);
+  std::printf("asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %% of four times the paths\n", asked.mean,
+              100 * asked.error / asked.mean, chance.mean, 100 * chance.error / chance.mean);
+  EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error);  // p = 5e-4
+  EXPECT_LT(error, 0.01 * chance.mean);
+  EXPECT_LT(asked.error, 0.8 * 2 * chance.error) << "what it is for: 0.6 of the spread of a path";
+  // Negative control: water that absorbs a tenth more.
+  const Repeated darker = look(bay(false, 0.055), 128);
+  EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
+}
+
+// A grid of waves with vertex normals: one way through calm ones, unknown where they focus above the place, below the
+// horizon's light and on a steep sea; none from above.
+TEST(WaterChain, KnowsWhereThereIsOneWay) {
+  const auto sheet = [](double height, double length) {
+    constexpr uint32_t n = 65;
+    Mesh mesh;
+    std::vector<float> positions;
+    std::vector<uint32_t> indices, normals;
+    for (uint32_t j = 0; j < n; ++j)
+      for (uint32_t i = 0; i < n; ++i) {
+        const double k = 2 * kPi / length, x = 0.5 * i, y = 0.5 * j;
+        for (const double v : {x, y, height * std::sin(k * x)}) positions.push_back(static_cast<float>(v));
+        normals.push_back(oct_encode(normalized(Vec3{-height * k * std::cos(k * x), 0, 1})));
+        if (i + 1 == n || j + 1 == n) continue;
+        const uint32_t a = j * n + i;
+        for (const uint32_t v : {a, a + 1, a + n + 1, a, a + n + 1, a + n}) indices.push_back(v);
+      }
+    positions.push_back(0);
+    mesh.positions = std::move(positions), mesh.indices = std::move(indices), mesh.normals = std::move(normals);
+    mesh.parts = {{"all", 0, static_cast<uint32_t>(mesh.indices.size() / 3), 0}};
+    const auto scene = scene_of({mesh}, {material("surface", lambert(0))});
+    const Tracer tracer(scene);
+    return RefractingSheet::of(tracer, 0, tracer.object(0));
+  };
+  using Ways = RefractingSheet::Ways;
+  const Dir sun = dir_from_angles(35 * kDegree, 0), low = dir_from_angles(89 * kDegree, 0);
+  const auto calm = sheet(0.02, 8);
+  ASSERT_TRUE(calm.has_value());
+  EXPECT_EQ(calm->ways({16, 16, -8}, sun, kIndex), Ways::one);
+  EXPECT_EQ(calm->ways({16, 16, -800}, sun, kIndex), Ways::unknown) << "below where waves focus light";
+  EXPECT_EQ(calm->ways({16, 16, -8}, low, kIndex), Ways::unknown);
+  EXPECT_EQ(calm->ways({16, 16, 1}, sun, kIndex), Ways::none);
+  EXPECT_EQ(calm->ways({16, 16, 0}, sun, kIndex), Ways::unknown);
+  const auto steep = sheet(0.5, 4);
+  EXPECT_TRUE(!steep || steep->ways({16, 16, -8}, sun, kIndex) == Ways::unknown);
+}
+
+}  // namespace
+}  // namespace suite::test
