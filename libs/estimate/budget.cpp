@@ -12,7 +12,8 @@ Convergence goal_of(const Convergence& asked, const Budget& budget) {
   const bool fixed = goal.relative_error == 0 || goal.min_paths == goal.max_paths;
   if (budget.relative_error) goal.relative_error = *budget.relative_error;
   if (budget.absolute_floor) goal.absolute_floor = *budget.absolute_floor;
-  if (goal.relative_error > 0 && fixed && !budget.max_paths)
+  // A fixed count that is given a target on top has no say in how many paths that may take.
+  if (budget.relative_error && goal.relative_error > 0 && fixed && !budget.max_paths)
     goal.min_paths = std::min(goal.min_paths, kDefaultPilot), goal.max_paths = kDefaultMost;
   if (budget.min_paths) goal.min_paths = *budget.min_paths;
   if (budget.max_paths) goal.max_paths = *budget.max_paths;

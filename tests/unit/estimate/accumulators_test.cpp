@@ -184,6 +184,11 @@ TEST(Goal, budget_over_capture) {
   b.min_paths = 16, b.max_paths = 500;
   EXPECT_EQ(goal_of(c, b).min_paths, 16u);
   EXPECT_EQ(goal_of(c, b).max_paths, 500u);
+  // What a capture says of its maximum holds, though it has a target and as large a minimum.
+  c.convergence = {16, 16, 0.01, 0};
+  b = {};
+  EXPECT_EQ(goal_of(c, b).max_paths, 16u);
+  EXPECT_EQ(goal_of(c, b).min_paths, 16u);
 }
 
 }  // namespace
