@@ -1,4 +1,5 @@
 // Ways through the scene's only refracting surface (refracting_sheet.h).
+#include <cmath>
 #include <limits>
 
 #include "transport/refracted_sight.h"
@@ -26,8 +27,14 @@ void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
 
 double RefractedSight::free_way(const Ray& ray) {
   Hit hit;
-  surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
-  return hit.hit() ? hit.distance : std::numeric_limits<double>::infinity();
+  return hit_any(ray, hit) ? hit.distance : std::numeric_limits<double>::infinity();
+}
+
+void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay& way) {
+  way = found.way;
+  way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));
+  way.trials = 1;
+  way.doubtful = false;
 }
 
 // The only way that there can be, where that is known; nothing where it is not, or not found at once.

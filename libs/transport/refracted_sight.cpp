@@ -83,12 +83,16 @@ RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
   objects_.assign(1, {all});
 }
 
+bool RefractedSight::hit_any(const Ray& ray, Hit& hit) {
+  surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+  return hit.hit();
+}
+
 // The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none.
 bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   double before = 0;
   for (int n = 0; n < kMostBoundaries; ++n) {
-    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
-    if (!hit.hit()) return false;
+    if (!hit_any(ray, hit)) return false;
     hit.distance += before;
     const uint32_t material = surface_.material(hit);
     if (material == kNone || !passes_[material]) return true;
@@ -346,13 +350,6 @@ double RefractedSight::share(const RefractedWay& way, size_t knot) {
     all *= double{shares_[knot]};
   }
   return all;
-}
-
-void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay& way) {
-  way = found.way;
-  way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));
-  way.trials = 1;
-  way.doubtful = false;
 }
 
 // Of the ways with or without reflections.

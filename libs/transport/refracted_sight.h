@@ -128,6 +128,7 @@ class RefractedSight {
     Dir next;              // Newton's next direction
     double inverse = 0;    // norm of the inverse of the change
   };
+  bool hit_any(const Ray& ray, Hit& hit);
   bool hit_next(Ray& ray, Hit& hit);
   bool trace(const Search& s, Dir direction, const Chain& chain, Traced& traced);
   static void arrive(const Search& s, const Hit& hit, bool last, Traced& traced);
