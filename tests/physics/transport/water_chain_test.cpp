@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "air/air_spec.h"
 #include "tests/support/media_kit.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double kIndex = 1.34, kDepth = 4;
 
-std::shared_ptr<Scene> bay(bool ball, double absorption = 0.05) {
+std::shared_ptr<Scene> bay(bool ball, double absorption = 0.05, bool bed = true) {
   auto scene = std::make_shared<Scene>();
   scene->media = {medium(Curve::constant(absorption), Curve::constant(0.25), hg(0.9))};
   scene->media[0].index = Curve::constant(kIndex);
@@ -23,7 +24,7 @@ std::shared_ptr<Scene> bay(bool ball, double absorption = 0.05) {
   surface.inside = 0;
   Material glass = surface;
   glass.id = "glass", glass.inside = kNone;
-  scene->materials = {material("bed", lambert(0.3)), surface, glass};
+  scene->materials = {material("bed", lambert(bed ? 0.3 : 0)), surface, glass};
   place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kDepth}));
   place(*scene, PrimitiveKind::plane, {0, 0}, 1);
   if (ball) place(*scene, PrimitiveKind::sphere, {0.1}, 2, translation({3e4, 0, 3}));
@@ -57,6 +58,38 @@ TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
   // Negative control: water that absorbs a tenth more.
   const Repeated darker = look(bay(false, 0.055), 128);
   EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
+}
+
+// The sun itself, so wide that chance finds it often: with a bed, which asks along chains, and without one, where only
+// the water's own scatterings ask.
+TEST(WaterChain, FindsOfTheSunWhatChanceFinds) {
+  const auto look_up = [](const std::shared_ptr<const Scene>& scene, bool asked, uint32_t paths) {
+    SourceSpecs sources;
+    sources.add(SunSpec{dir_from_angles(40 * kDegree, 0.3), 20 * kDegree, Curve::constant(1)});
+    PipelineOptions options;
+    options.refracted_sources = asked;
+    const Dir view = dir_from_angles(25 * kDegree, 2);
+    const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
+    auto r = render(scene, sources, std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02),
+                    options);
+    return over_problems(r.result, 0);
+  };
+  // Seen once of 4096 times the paths asked for, 16 times those by chance: -0.08 % +- 0.07 with, +0.7 % +- 0.5 without.
+  const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
+  for (const bool bed : {true, false}) {
+    const Repeated asked = look_up(bay(false, 0.05, bed), true, 256 * times),
+                   chance = look_up(bay(false, 0.05, bed), false, 16384 * times);
+    const double error = std::hypot(asked.error, chance.error);
+    std::printf("%s: asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %% of 64 times the paths, %+.2f %%\n",
+                bed ? "bed" : "black bed", asked.mean, 100 * asked.error / asked.mean, chance.mean,
+                100 * chance.error / chance.mean, 100 * (asked.mean / chance.mean - 1));
+    EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error);
+    EXPECT_LT(error, (bed ? 0.01 : 0.05) * chance.mean);
+    if (!bed) continue;
+    // Negative control: water that absorbs a tenth more.
+    const Repeated darker = look_up(bay(false, 0.055), true, 256);
+    EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
+  }
 }
 
 // A grid of waves with vertex normals: one way through calm ones, unknown where they focus above the place, below the
