@@ -92,8 +92,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.time = ray.ray.time;
   path.length = path.arrival = path.last_density = 0;
   path.before = 1;
-  path.surfaces = path.scatterings = path.flights = 0;
-  path.events = 0;
+  path.surfaces = path.scatterings = path.flights = 0, path.events = 0;
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
   path.quiet = 0, path.sky = Path::Sky::open, path.share = 1;
