@@ -87,7 +87,7 @@ const float* SkyTable::floor(size_t index) const {
   return floors_[index].table.data();
 }
 
-double SkyTable::column(double azimuth) const {
+inline double SkyTable::column(double azimuth) const {
   if (columns_ == 1) return 0;
   double turn = azimuth - symmetric_.value_or(0);
   turn -= 2 * kPi * std::floor(turn / (2 * kPi));
@@ -95,9 +95,8 @@ double SkyTable::column(double azimuth) const {
   return turn * turns_;
 }
 
-SkyTable::Place SkyTable::place(double height, Dir d) const {
-  const double row = std::min(quick_polar_angle(d) * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)),
-               col = column(quick_azimuth(d));
+SkyTable::Place SkyTable::place(double height, double polar, double azimuth) const {
+  const double row = std::min(polar * ((kRows - 1) / (kPi / 2)), static_cast<double>(kRows - 1)), col = column(azimuth);
   const auto r = std::min(static_cast<size_t>(row), kRows - 2), c = std::min(static_cast<size_t>(col), columns_ - 1);
   const size_t next = c + 1 < columns_ ? c + 1 : symmetric_ || columns_ == 1 ? c : 0;
   const double above = (height - kLowest) / step_;
@@ -112,7 +111,7 @@ SkyTable::Place SkyTable::place(double height, Dir d) const {
 }
 
 void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
-  const auto [r, c, next, low, v, u, rise] = place(height, d);
+  const auto [r, c, next, low, v, u, rise] = place(height, quick_polar_angle(d), quick_azimuth(d));
   const float weight[4] = {(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u};
   const float* rows[8];
   float share[8];
@@ -132,7 +131,10 @@ void SkyTable::radiance(double height, Dir d, std::span<float> to) const {
 }
 
 const float* SkyTable::drawn(double height, Dir d) const {
-  const auto [r, c, next, low, v, u, rise] = place(height, d);
+  // What is drawn needs no more than single precision.
+  const auto x = static_cast<float>(d.x), y = static_cast<float>(d.y), z = static_cast<float>(d.z);
+  const float polar = quick_atan2(std::sqrt(x * x + y * y), z), azimuth = quick_atan2(y, x);
+  const auto [r, c, next, low, v, u, rise] = place(height, double{polar}, double{azimuth});
   const uint64_t by_chance =
       hash_of(std::bit_cast<uint64_t>(d.x), std::bit_cast<uint64_t>(d.y) ^ std::rotl(std::bit_cast<uint64_t>(d.z), 32));
   // Three numbers of 21 bits.

@@ -55,7 +55,7 @@ class SkyTable {
     size_t row, column, next, floor;
     float down, turn, rise;  // 0..1
   };
-  Place place(double height, Dir d) const;
+  Place place(double height, double polar, double azimuth) const;
   void fill(size_t index, size_t row) const;
 
   double step_;

@@ -42,7 +42,7 @@ class KnownWay {
   }
 
  private:
-  static constexpr int kOneIn = 8;
+  static constexpr int kOneIn = 16;
   static constexpr double kAlike = 0.01;    // of the depth, and of S
   static constexpr double kOpaque = 30;     // depth beyond which nothing counts
   static constexpr double kOutwards = 1e3;  // m over which ways out of the air change by their depth

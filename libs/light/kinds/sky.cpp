@@ -10,7 +10,15 @@ namespace suite {
 
 namespace {
 constexpr size_t kMaxTable = size_t{1} << 28;
+
+// Cosine and sine of an angle in 0..2 pi; small ones by series, to the last digit or so.
+Vec2 turned(double angle) {
+  if (angle > 0.1) return {std::cos(angle), std::sin(angle)};
+  const double q = angle * angle;
+  return {1 - q * (1 / 2.0 - q * (1 / 24.0 - q * (1 / 720.0 - q * (1 / 40320.0)))),
+          angle * (1 - q * (1 / 6.0 - q * (1 / 120.0 - q * (1 / 5040.0))))};
 }
+}  // namespace
 
 Sky::Sky(const SkySpec& spec, const SpectralState& state)
     : theta_max_(spec.full_sphere ? kPi : kPi / 2), full_sphere_(spec.full_sphere), cells_(spec.cells) {
@@ -137,6 +145,12 @@ void Sky::bake_density() {
   }
   for (double& v : cdf_) v /= sum;
   cdf_.back() = 1;
+  for (size_t cell = 0; cell < cdf_.size(); ++cell)
+    densities_.push_back((cdf_[cell] - (cell ? cdf_[cell - 1] : 0.0)) / cell_solid_angle(cell / columns_));
+  for (size_t c = 0; c < columns_; ++c) {
+    const double phi = 2 * kPi * static_cast<double>(c) / static_cast<double>(columns_);
+    turns_.push_back({std::cos(phi), std::sin(phi)});
+  }
   for (size_t i = 0, cell = 0; i < cdf_.size(); ++i) {
     while (cdf_[cell] * static_cast<double>(cdf_.size()) <= static_cast<double>(i)) ++cell;
     begins_.push_back(static_cast<uint32_t>(cell));
@@ -198,10 +212,7 @@ void Sky::add(Dir d, double, float scale, std::span<float> radiance) const {
   }
 }
 
-double Sky::density(Place place) const {
-  const size_t row = row_of(place), cell = row * columns_ + column_of(place);
-  return (cdf_[cell] - (cell ? cdf_[cell - 1] : 0.0)) / cell_solid_angle(row);
-}
+double Sky::density(Place place) const { return densities_[row_of(place) * columns_ + column_of(place)]; }
 
 double Sky::density(Dir d) const { return outside(d) ? 0 : density(place_of(d)); }
 
@@ -237,10 +248,9 @@ DirectionSample Sky::draw(Vec2 u) const {
   const size_t row = cell / columns_;
   // Uniform in solid angle inside the cell; what is left of u.x after choosing the cell is uniform again.
   const double x = std::clamp((u.x - before) / probability, 0.0, 1.0);
-  const double z = edges_[row] + (edges_[row + 1] - edges_[row]) * x,
-               phi = 2 * kPi * (static_cast<double>(cell % columns_) + u.y) / static_cast<double>(columns_);
-  const double s = std::sqrt(std::max(0.0, 1 - z * z));
-  return {{s * std::cos(phi), s * std::sin(phi), z}, probability / cell_solid_angle(row)};
+  const double z = edges_[row] + (edges_[row + 1] - edges_[row]) * x, s = std::sqrt(std::max(0.0, 1 - z * z));
+  const Vec2 edge = turns_[cell % columns_], on = turned(2 * kPi * u.y / static_cast<double>(columns_));
+  return {{s * (edge.x * on.x - edge.y * on.y), s * (edge.y * on.x + edge.x * on.y), z}, densities_[cell]};
 }
 
 }  // namespace suite

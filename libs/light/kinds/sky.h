@@ -96,6 +96,8 @@ class Sky final : public Light {
   std::vector<Mix> mix_;
   std::vector<double> cdf_;                       // over cells, row-major, last = 1
   std::vector<uint32_t> begins_;                  // the first cell whose cdf exceeds i / cells
+  std::vector<double> densities_;                 // 1/sr, of cells
+  std::vector<Vec2> turns_;                       // cosine and sine of the azimuths between columns of cells
   std::vector<double> edges_;                     // cosines of the zenith angles between rows of cells
   size_t rows_ = 0, columns_ = 0, channels_ = 1;  // cells: rows x columns
   double theta_max_ = kPi / 2;
