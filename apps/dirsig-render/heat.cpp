@@ -254,14 +254,19 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
 
 void tell_of_points(const Heating& heating) {
   const auto* found = dynamic_cast<const FoundField*>(heating.field.get());
-  if (!found || !found->points || found->points->points.asked() == 0) return;
+  if (!found || !found->points) return;
   const PointHeat& points = found->points->points;
+  const auto count = [](uint64_t n) { return human_count(static_cast<double>(n)); };
+  if (points.displaced() > 0)
+    warn(strf("heat: %s points lie on what stands elsewhere at other times: they have their elements' temperatures",
+              count(points.displaced()).c_str()));
+  if (points.asked() == 0) return;
   note(strf("heat: the temperatures of %s points took %.1f s of all threads together, %.0f us each",
-            human_count(static_cast<double>(points.asked())).c_str(), points.seconds(),
+            count(points.asked()).c_str(), points.seconds(),
             1e6 * points.seconds() / static_cast<double>(points.asked())));
   if (points.unsettled() > 0)
     warn(strf("heat: the temperatures of %s of them did not settle: they have their elements'",
-              human_count(static_cast<double>(points.unsettled())).c_str()));
+              count(points.unsettled()).c_str()));
 }
 
 namespace {

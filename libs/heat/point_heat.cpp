@@ -113,7 +113,10 @@ std::optional<double> PointHeat::above(uint32_t element, const HeatedPlace& plac
 std::optional<double> PointHeat::found(uint32_t element, const HeatedPlace& place, double time) const {
   const auto begun = std::chrono::steady_clock::now();
   const std::optional<Hit> hit = scene_.elements.hit_at(place);
-  if (!hit) return std::nullopt;
+  if (!hit) {
+    displaced_ += 1;
+    return std::nullopt;
+  }
   std::unique_ptr<SunlightWave> wave = take_wave();
   const size_t n = result_.moments;
   std::vector<float> more(n), kelvin(n);

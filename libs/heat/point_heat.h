@@ -4,7 +4,8 @@
 // its own) takes the place of that of its element; what it absorbs beyond the element's makes it warmer or colder as
 // its slab answers (point_response.h). Sunlight that comes by way of other surfaces or the sky, and infrared, are those
 // of the element.
-// Told of elements with layers and a closed back on which direct sun differs from place to place; of others nothing.
+// Told of elements with layers and a closed back on which direct sun differs from place to place, and that stand in one
+// place all the time; of others nothing.
 #pragma once
 #include <atomic>
 #include <map>
@@ -36,6 +37,8 @@ class PointHeat {
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
   // Places among them whose temperature did not settle: they have their element's.
   uint64_t unsettled() const { return unsettled_; }
+  // Places on what stands elsewhere at other times: they have their element's, too.
+  uint64_t displaced() const { return displaced_; }
 
  private:
   std::optional<double> found(uint32_t element, const HeatedPlace& place, double time) const;
@@ -50,7 +53,7 @@ class PointHeat {
   mutable Sunlight unused_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<SunlightWave>> waves_;  // that no thread works with
-  mutable std::atomic<uint64_t> asked_ = 0, nanoseconds_ = 0, unsettled_ = 0;
+  mutable std::atomic<uint64_t> asked_ = 0, nanoseconds_ = 0, unsettled_ = 0, displaced_ = 0;
 };
 
 // W/m2 that fronts absorb straight from the sun, [face][moment], of those that points can be told apart on; from the
