@@ -33,7 +33,8 @@ struct Solved {
   HeatResult result;
   // beam_alone: no light of the sky.
   Solved(size_t budget, uint32_t paths, const Weather& weather, double kelvin, bool beam_alone)
-      : kit(yard(kelvin), budget) {
+      : Solved(HeatKit(yard(kelvin), budget), paths, weather, beam_alone) {}
+  Solved(HeatKit made, uint32_t paths, const Weather& weather, bool beam_alone) : kit(std::move(made)) {
     spec.span = {0, 86400}, spec.step = 600, spec.paths = paths, spec.tolerance = 1e-3;
     loads = summer_loads(weather, spec);
     if (beam_alone) std::ranges::fill(loads.global, 0.0);
@@ -126,6 +127,36 @@ TEST(FinalGather, WhatDoesNotSettleHasTheErrorOfItsElement) {
     EXPECT_GT(told, 0u);
     EXPECT_EQ(points.asked(), told) << "the same place twice running";
     EXPECT_EQ(points.unsettled(), settles ? 0u : told);
+  }
+}
+
+// Half a yard that is driven away at noon: its points have their elements' temperatures and errors, and are counted.
+TEST(FinalGather, WhatStandsElsewhereHasTheTemperatureOfItsElement) {
+  const auto moving = [](bool moves) {
+    HeatedScene s = yard(295);
+    TemperatureSpec soil = heat({}, {{"convection", "mcadams"}});
+    soil.layers = {uniform(0.4, 1600, 900, 0.8)};
+    s.plane(kYard, kYard, s.heated(0.9, soil), shifted({0.3, 0, 0.4}));
+    const Pose here{{}, {0.3, 0, 0.4}}, there{{}, {300, 0, 0.4}};
+    if (moves) s.moves(keyframe_track({{0, here}, {43190, here}, {43210, there}, {86400, there}}));
+    return s;
+  };
+  for (const bool moves : {true, false}) {
+    Solved s(HeatKit(moving(moves), 32, {0, 86400}, {}, 600), 64, summer_weather(), false);
+    s.result.straight = straight_sunlight(s.scene(), s.loads, s.result, s.spec);
+    const PointHeat points(s.scene(), s.loads, s.result);
+    const double t = 11 * 3600;
+    size_t displaced = 0;
+    for (uint32_t e = 0; e < s.kit.elements->size(); ++e) {
+      if (!points.tells(e, t)) continue;
+      const Hit hit = s.kit.elements->point(e, {SampleStream(7, 0, e), 0, 0});
+      const HeatedPlace place{hit.position, hit.normal, s.kit.tracer->object(hit.object).instance, hit.triangle, 0};
+      const bool here = !s.kit.elements->changes_place(e);
+      displaced += here ? 0 : 1;
+      EXPECT_EQ(points.above(e, place, t).has_value(), here) << e;
+    }
+    EXPECT_EQ(displaced > 0, moves);
+    EXPECT_EQ(points.displaced(), displaced);
   }
 }
 
