@@ -234,6 +234,8 @@ class PathKernel final : public PathTracing {
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
   // kernel_chain.h: light scattered on its way.
   static constexpr int kMostLinks = 24;
+  static_assert(dimensions::of_link(kMostLinks, true) < dimensions::kMostPerChain &&
+                dimensions::of_link_place(kMostLinks) < dimensions::kMostPerChain);
   static constexpr double kReach = 2, kDeepest = 8, kTried = 0.3;
   struct Chain {
     int links;                   // scatterings
@@ -243,7 +245,7 @@ class PathKernel final : public PathTracing {
   };
   bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
   bool draw_chain(const NodeAt& node, Dir toward, std::span<const double> depth, bool sky);
-  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, size_t n) const;
+  std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
   void begin_chain(const NodeAt& node);
   bool is_own(const NodeAt& node, Dir in) const;
   RefractedSight::Node from_node(const NodeAt& node) const;

@@ -72,7 +72,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
       for (int i = 1; i <= n; ++i) p *= depth[k] / i;
       return p;
     };
-    const std::array<double, 4> u = chain_numbers(path, node.event, sky, 0);
+    const std::array<double, 4> u = chain_numbers(path, node.event, sky, dimensions::of_link(0, sky));
     const int least = sky ? 0 : 1;
     const auto of_all = [&](size_t k) {
       double sum = least == 0 ? 1 : 0, p = 1;
@@ -86,7 +86,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
-      const std::array<double, 4> v = i + 1 == n ? u : chain_numbers(path, node.event, sky, n - i);
+      const std::array<double, 4> v =
+          i + 1 == n ? u : chain_numbers(path, node.event, sky, dimensions::of_link(n - 1 - i, sky));
       if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i]))
         return false;
       float density[kMaxKnots];
@@ -100,12 +101,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
   return false;
 }
 
-// The n-th set of numbers of the chain that the path draws at its last surface.
+// A set of numbers of the chain that the path draws at its last surface.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain_numbers(const Path& path, bool event,
-                                                                                         bool sky, size_t n) const {
+                                                                                         bool sky, uint32_t set) const {
   const uint32_t at = event ? dimensions::kNodes + path.flights : path.surfaces - 1;
-  return dimensions::of_chain(path.stream, path.sample, at, sky, static_cast<uint32_t>(n));
+  return dimensions::of_chain(path.stream, path.sample, at, sky, set);
 }
 
 // To its places; false where it meets what it cannot pass.
@@ -137,7 +138,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       const double m = static_cast<double>(chain.links) - static_cast<double>(i);
-      const std::array<double, 4> u = chain_numbers(path, node.event, q.sky, i == 0 ? 1 : kMostLinks + i);
+      const std::array<double, 4> u = chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i));
       const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
       scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
@@ -246,7 +247,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
       if (!(depth > 0 && depth < kDeepest)) return;
     }
     guide.sky = true, guide.reach = reach;
-    const std::array<double, 4> u = chain_numbers(path, false, true, 2);
+    const std::array<double, 4> u = chain_numbers(path, false, true, dimensions::kOfChainsSky);
     const auto sample = sky->sample({}, {u[2], u[3], 0, 0}, path.time);
     if (!sample || !(sample->density > 0)) return;
     if (refracted_->sheet_ways(place, sample->direction) != RefractingSheet::Ways::one) return;
