@@ -19,6 +19,11 @@ class Contacts {
   void settle(const Ray& ray, Hit& hit, TraceStatistics& statistics) {
     if (any_ && hit.hit()) look(ray, hit, statistics);
   }
+  // Whether there is one.
+  bool covers(const Ray& ray, Hit hit, TraceStatistics& statistics) {
+    settle(ray, hit, statistics);
+    return any_ && kind(hit) == Kind::opaque;
+  }
 
  private:
   enum class Kind : uint8_t { other, face, opaque };

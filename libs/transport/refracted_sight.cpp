@@ -54,10 +54,7 @@ uint32_t RefractedWay::mirrors() const {
 }
 
 RefractedSight::RefractedSight(const Surface& surface, const Optics& optics)
-    : surface_(surface),
-      contacts_(surface, optics),
-      interfaces_(surface.tracer().scene(), optics),
-      shares_(optics.state().knots.size()) {
+    : surface_(surface), interfaces_(surface.tracer().scene(), optics), shares_(optics.state().knots.size()) {
   const Tracer& tracer = surface.tracer();
   const Scene& scene = tracer.scene();
   for (const Material& m : scene.materials) passes_.push_back(!optics.media().empty() && m.is_boundary());
@@ -97,7 +94,6 @@ bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
   for (int n = 0; n < kMostBoundaries; ++n) {
     if (!hit_any(ray, hit)) return false;
     hit.distance += before;
-    contacts_.settle(ray, hit, statistics_);
     const uint32_t material = surface_.material(hit);
     if (material == kNone || !passes_[material]) return true;
     before = hit.distance;

@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "math/sampling.h"
-#include "transport/contacts.h"
 #include "transport/refracted_ray.h"
 #include "transport/refracting_sheet.h"
 
@@ -151,7 +150,6 @@ class RefractedSight {
   double random() { return unit_double(mix64(seed_ + counter_++)); }
 
   const Surface& surface_;
-  Contacts contacts_;
   SmoothInterfaces interfaces_;
   std::vector<uint8_t> passes_;  // per material: bounds a medium and bends nothing
   struct Refractor {
