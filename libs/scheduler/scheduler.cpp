@@ -16,6 +16,7 @@
 #include "scheduler/primed.h"
 #include "scheduler/result.h"
 #include "scheduler/stored.h"
+#include "scheduler/surroundings.h"
 #include "surface/cut_out.h"
 
 namespace suite {
@@ -192,10 +193,12 @@ class Job {
     if (options_.begun) options_.begun(work);
   }
 
-  void warn_of_lost_light(const Item& item, const Kit& kit) {
+  void warn_beforehand(const Item& item, const Kit& kit) {
     if (!options_.warn) return;
     for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline,
                                            goals_of(item).all.max_paths, options_.periodic.has_value()))
+      if (told_.insert(s).second) options_.warn(s);
+    for (const std::string& s : wrong_surroundings(*tracer_, *kit.optics))
       if (told_.insert(s).second) options_.warn(s);
   }
 
@@ -276,7 +279,7 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
-    warn_of_lost_light(item, kit);
+    warn_beforehand(item, kit);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;
     primed_.push_back(

@@ -208,7 +208,7 @@ World::World(std::shared_ptr<const Scene> given, std::optional<Periodic> cell, s
       meshes(new MeshEntry[scene->meshes.size()]),
       groups(new GroupEntry[flat.groups.size()]),
       all_hits(std::any_of(scene->materials.begin(), scene->materials.end(),
-                           [](const Material& m) { return m.bounds_medium(); })) {
+                           [](const Material& m) { return m.bounds_medium() || m.surface.curves.count("index"); })) {
   const FlushDenormals flush;
   if (limit.bytes) memory = std::make_unique<TileMemory>(limit, *this);
   measure_meshes();

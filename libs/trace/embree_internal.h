@@ -223,7 +223,7 @@ struct World {
   std::vector<uint32_t> unbounded;       // exact surfaces without bounds at rest, met in double one by one
   Box3 bounds;                           // of what is at rest
   size_t triangles = 0;
-  bool all_hits = false;           // some surface bounds a medium: Tracer::all may be asked
+  bool all_hits = false;           // some surface bounds a medium or may refract: Tracer::all may be asked
   std::vector<char> may_pass;      // objects with holes; empty without a filter
   std::vector<char> holed_meshes;  // meshes that some such object shows; empty without a filter
 

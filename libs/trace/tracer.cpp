@@ -279,6 +279,8 @@ void Tracer::add_all(const Ray& ray, double length, std::vector<Hit>& hits, Trac
   if (moving_) trace(moving_->tiles, moving_->unbounded, moving_.get());
 }
 
+bool Tracer::tells_all() const { return world_->all_hits; }
+
 // Rays that end on the far side of a cell meet what stands at the near side of the next one, too.
 void Tracer::all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& s) const {
   SUITE_CHECK(world_->all_hits);

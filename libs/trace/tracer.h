@@ -129,6 +129,9 @@ class Tracer {
   // nearest(). Replaces the contents of hits.
   void all(const Ray& ray, double length, std::vector<Hit>& hits, TraceStatistics& statistics) const;
 
+  // Whether all() may be asked: some surface bounds a medium or has an index of refraction.
+  bool tells_all() const;
+
   // The surfaces that a place lies on: those that it is closer to than a quarter of what rays start off them. Time and
   // draw are those of `at`, its direction is not asked. Hits, with distance: m that the place lies in front of the
   // surface. Of surfaces that lie in each other one may be left out. Replaces the contents of hits.

@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "transport/contacts.h"
 #include "transport/dimensions.h"
 #include "transport/path_tracing.h"
 #include "transport/refracted_sight.h"
@@ -51,6 +52,8 @@ class PathKernel final : public PathTracing {
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }
   TraceStatistics take_statistics() override {
     TraceStatistics all = space_.take_statistics();
+    const TraceStatistics touching = std::exchange(touching_, {});
+    all.rays += touching.rays, all.cycles += touching.cycles;
     if (refracted_) {
       const TraceStatistics ways = refracted_->take_statistics();
       all.rays += ways.rays, all.cycles += ways.cycles;
@@ -313,6 +316,7 @@ class PathKernel final : public PathTracing {
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;
   std::unique_ptr<RefractedSight> refracted_;  // null where nothing refracts
+  Contacts contacts_;
   const Waters waters_;
   std::vector<Asked> asked_;
   std::vector<Asked> outside_, glowing_;  // lights that rays meet by chance: leaving the scene, at surfaces
@@ -384,6 +388,7 @@ class PathKernel final : public PathTracing {
   size_t pending_ = 0;  // of them
   std::vector<float> transmission_;
   uint64_t nodes_met_ = 0;
+  TraceStatistics touching_;
 };
 
 }  // namespace suite

@@ -23,6 +23,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       draws_(c.surface.tracer().has_holes() || may_lose(c)),
       lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
       refracted_(Surfaces::kDense > 0 && refracts(c) ? std::make_unique<RefractedSight>(c.surface, c.optics) : nullptr),
+      contacts_(c.surface, c.optics),
       waters_(c),
       surfaces_(c.surface, c.optics, width, c.keep_first),
       space_(SpaceContext{c.surface, c.optics, c.environment, c.options, width,
@@ -259,7 +260,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_first_surface(uint3
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::meet(uint32_t p, uint32_t slot) {
   Path& path = paths_[p];
-  const Hit& hit = hits_[slot];
+  Hit& hit = hits_[slot];
+  if constexpr (Surfaces::kDense > 0) contacts_.settle({{}, path.direction, path.time, path.draw}, hit, touching_);
   const bool first = is_first_surface(p);
   path.length += hit.distance;
   path.arrival += space_.index(p) * hit.distance;

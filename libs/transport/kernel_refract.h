@@ -112,6 +112,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::weaken(const Path& pat
   Ray ray{way.origin, way.direction, path.time, path.draw};
   for (int i = 0; i < way.events; ++i) {
     const RefractedEvent& at = way.at[i];
+    if (contacts_.covers(ray, at.hit, touching_)) return false;
     arrival += at.length * space_.follow_way(ray, at.length, through, transmission_);
     at.model->delta_weight(at.out_local, refracted_->interfaces().lobe(at.material, at.reflected),
                            static_cast<int>(knot), transmission_);

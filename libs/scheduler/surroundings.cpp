@@ -1,0 +1,144 @@
+#include "scheduler/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "math/sampling.h"
+#include "scene/scene.h"
+#include "transport/lost_light.h"
+#include "transport/media/bodies.h"
+
+namespace suite {
+
+namespace {
+
+constexpr int kRays = 64;         // through each object
+constexpr size_t kObjects = 256;  // of all, the first ones
+constexpr int kMostHits = 64;     // on one of them
+constexpr double kOff = 3;        // where the surroundings are asked for, in steps of rays that leave the surface
+constexpr uint64_t kPurpose = 0x77657473;
+
+class Look {
+ public:
+  Look(const Tracer& tracer, const Optics& optics)
+      : tracer_(tracer),
+        scene_(tracer.scene()),
+        surface_(tracer, optics),
+        bodies_(surface_),
+        um_(optics.state().reference_um) {
+    for (uint32_t i = 0; i < scene_.materials.size(); ++i) {
+      const Material& m = scene_.materials[i];
+      refracts_.push_back(m.surface.curves.count("index") && !m.is_boundary() && optics.material(i).model &&
+                          !optics.material(i).model->opaque());
+    }
+  }
+
+  std::vector<std::string> all() {
+    if (std::find(refracts_.begin(), refracts_.end(), true) == refracts_.end()) return {};
+    size_t seen = 0;
+    tracer_.each(
+        "refracting surfaces", [&](const TracedObject& o) { return any_refracts(o); },
+        [&](uint32_t number, const TracedObject& o) {
+          if (seen++ < kObjects) shoot(box_of(number, o), seen);
+        });
+    return {told_.begin(), told_.end()};
+  }
+
+ private:
+  bool any_refracts(const TracedObject& o) const {
+    const auto has = [&](uint32_t material) { return material != kNone && refracts_[material]; };
+    if (o.material_override != kNone) return has(o.material_override);
+    if (o.primitive != kNone) return has(scene_.primitives[o.primitive].material);
+    const auto& parts = scene_.meshes[o.mesh].parts;
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return has(p.material); });
+  }
+
+  // ENU; of what has no bounds that of all other things, and something around the origin.
+  Box3 box_of(uint32_t number, const TracedObject& o) const {
+    Box3 box = tracer_.local_box(number);
+    if (!box.empty()) box = o.node == kNone ? transformed(box, tracer_.place(number)) : Box3{};
+    if (box.empty()) box = tracer_.bounds();
+    if (box.empty()) box.grow(Vec3{-1, -1, -1}), box.grow(Vec3{1, 1, 1});
+    return box;
+  }
+
+  void shoot(const Box3& box, uint64_t object) {
+    for (uint64_t r = 0; r < kRays; ++r) {
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i))); };
+      const Vec3 size = box.size();
+      const double z = 2 * u(3) - 1, s = std::sqrt(1 - z * z), phi = 2 * kPi * u(4);
+      const Dir d{s * std::cos(phi), s * std::sin(phi), z};
+      Ray ray{box.low + Vec3{u(0) * size.x, u(1) * size.y, u(2) * size.z} - d * length(size), d, 0,
+              static_cast<uint32_t>(hash_of(object, r))};
+      Hit hit;
+      for (int n = 0; n < kMostHits; ++n) {
+        tracer_.nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+        if (!hit.hit()) break;
+        const uint32_t material = surface_.material(hit);
+        if (material != kNone && refracts_[material]) look_at(hit, material);
+        ray.origin = tracer_.leave(hit, d);
+      }
+    }
+  }
+
+  void look_at(const Hit& hit, uint32_t material) {
+    const std::string id = scene_.materials[material].id;
+    const double step = double{hit.step};
+    tracer_.all({hit.position - hit.normal * (0.5 * step), hit.normal, hit.time}, step, beside_, statistics_);
+    for (const Hit& h : beside_) {
+      const uint32_t other = surface_.material(h);
+      if (other == kNone || !refracts_[other] ||
+          tracer_.object(h.object).instance == tracer_.object(hit.object).instance)
+        continue;
+      const auto [a, b] = std::minmax(id, scene_.materials[other].id);
+      told_.insert(
+          "refracting surfaces ('" + a + "', '" + b +
+          "') lie in each other: only one of them bends light there, and what it goes on through is wrong. Give "
+          "the common face one surface with `inside` and `outside`, or leave a gap");
+      return;
+    }
+    if (bodies_.any()) compare(hit, material);
+  }
+
+  double index_at(Vec3 place, double time, std::string& name) {
+    const uint32_t medium = bodies_.around(place, time, statistics_).medium(scene_.ambient);
+    name = medium == kNone ? "nothing" : "'" + scene_.media[medium].id + "'";
+    return index_of(medium);
+  }
+  double index_of(uint32_t medium) const { return medium == kNone ? 1 : scene_.media[medium].index.at(um_); }
+
+  // An index that suits what is on both sides is right, whatever the material names.
+  void compare(const Hit& hit, uint32_t material) {
+    const Material& m = scene_.materials[material];
+    std::string in_front, behind;
+    const double off = kOff * double{hit.step}, front = index_at(hit.position + hit.normal * off, hit.time, in_front),
+                 back = index_at(hit.position - hit.normal * off, hit.time, behind);
+    const auto apart = [](double a, double b) { return std::fabs(a - b) > kApart * b; };
+    const double made_for = index_of(m.outside), own = m.surface.curves.at("index").at(um_);
+    if (!apart(front, made_for) || !apart(own * front, back)) return;
+    told_.insert(
+        strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
+             "needs a material with `outside`, or to end",
+             m.id.c_str(), in_front.c_str(), front, made_for));
+  }
+
+  const Tracer& tracer_;
+  const Scene& scene_;
+  const Surface surface_;
+  Bodies bodies_;
+  double um_;
+  std::vector<bool> refracts_;
+  std::vector<Hit> beside_;
+  std::set<std::string> told_;
+  TraceStatistics statistics_;
+};
+
+}  // namespace
+
+std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& optics) {
+  return tracer.tells_all() ? Look(tracer, optics).all() : std::vector<std::string>{};
+}
+
+}  // namespace suite

@@ -1,0 +1,20 @@
+// What surfaces that refract are surrounded by, against what they refract for.
+//
+// A surface bends light by one index, of its back over its front, from the two media that its material names; what a
+// scene puts in front of it is not asked. Glass in water whose material names no `outside` bends light as in air. And
+// of two refracting faces that lie in each other, a path takes the first and starts beyond the second.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "surface/surface.h"
+
+namespace suite {
+
+// Sentences about refracting surfaces with another index in front than they are made for (by more than kApart), and
+// about those that lie in each other. Looked for along a few rays through each refracting object, so that what is small
+// may be missed.
+constexpr double kApart = 0.02;
+std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& optics);
+
+}  // namespace suite

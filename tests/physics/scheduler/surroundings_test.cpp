@@ -1,0 +1,65 @@
+// Refracting surfaces whose surroundings are not those that they are made for are told before paths are run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scheduler/surroundings.h"
+#include "tests/support/media_kit.h"
+#include "tests/support/pipeline_kit.h"
+
+namespace suite::test {
+namespace {
+
+constexpr double kGlass = 1.5, kWater = 1.34;
+
+Medium clear(const char* id, double index, int priority = 0) {
+  Medium m = medium(Curve::constant(0.1), Curve::constant(0));
+  m.id = id;
+  m.index = Curve::constant(index);
+  m.priority = priority;
+  return m;
+}
+Material interface_of(const char* id, double index, uint32_t inside, uint32_t outside = kNone) {
+  Material m = material(id, {"dielectric", {}, {{"index", Curve::constant(index)}}, {}, nullptr});
+  m.inside = inside, m.outside = outside;
+  return m;
+}
+
+// A box of glass, its lower face at `low`, in or above water that fills z < 0.
+std::vector<std::string> told(double low, Material glass) {
+  auto scene = std::make_shared<Scene>();
+  scene->media = {clear("water", kWater), clear("glass", kGlass, 1)};
+  scene->materials = {interface_of("surface", kWater, 0), std::move(glass)};
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0);
+  place(*scene, PrimitiveKind::box, {-1, -1, low, 1, 1, low + 0.5}, 1);
+  check_scene(*scene, "glass and water");
+  const Tracer tracer(scene);
+  const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
+  const Optics optics(*scene, sensor.states()[0]);
+  return wrong_surroundings(tracer, optics);
+}
+
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
+
+TEST(Surroundings, GlassInWaterThatIsMadeForAir) {
+  EXPECT_THAT(told(-2, interface_of("pane", kGlass, 1)),
+              ElementsAre(AllOf(HasSubstr("'pane' has 'water'"), HasSubstr("1.34"), HasSubstr("`outside`"))));
+  EXPECT_THAT(told(-2, interface_of("pane", kGlass / kWater, 1, 0)), IsEmpty());
+  EXPECT_THAT(told(-2, interface_of("pane", kGlass / kWater, 1)), IsEmpty()) << "its index suits";
+}
+
+// The surface of the water goes on within the glass.
+TEST(Surroundings, GlassHalfInWater) {
+  EXPECT_THAT(told(-0.25, interface_of("pane", kGlass, 1)),
+              ElementsAre(HasSubstr("'pane' has 'water'"), HasSubstr("'surface' has 'glass'")));
+  EXPECT_THAT(told(-0.25, interface_of("pane", kGlass / kWater, 1, 0)),
+              ElementsAre(HasSubstr("'pane' has nothing"), HasSubstr("'surface' has 'glass'")));
+}
+
+TEST(Surroundings, GlassOnWater) {
+  EXPECT_THAT(told(0, interface_of("pane", kGlass, 1)),
+              ElementsAre(HasSubstr("('pane', 'surface') lie in each other")));
+  EXPECT_THAT(told(0.01, interface_of("pane", kGlass, 1)), IsEmpty());
+}
+
+}  // namespace
+}  // namespace suite::test
