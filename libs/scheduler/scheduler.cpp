@@ -37,10 +37,8 @@ class Job {
       std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& options)
       : scene_(scene), sources_(sources), sensors_(sensors), options_(options) {
     for (const Sensors all : {sensors_, options.prepasses})
-      for (const auto& sensor : all) {
-        report_.shortfalls.push_back({sensor->name(), {}});
-        report_.quality.push_back({sensor->name(), {}});
-      }
+      for (const auto& sensor : all)
+        report_.shortfalls.push_back({sensor->name(), {}}), report_.quality.push_back({sensor->name(), {}});
     outcomes_.resize(report_.quality.size());
   }
 
@@ -194,11 +192,10 @@ class Job {
   }
 
   void warn_beforehand(const Item& item, const Kit& kit) {
-    if (!options_.warn) return;
-    for (const std::string& s : lost_light(*scene_, sources_, *kit.optics, options_.pipeline,
-                                           goals_of(item).all.max_paths, options_.periodic.has_value()))
-      if (told_.insert(s).second) options_.warn(s);
-    for (const std::string& s : wrong_surroundings(*tracer_, *kit.optics))
+    std::vector<std::string> all = lost_light(*scene_, sources_, *kit.optics, options_.pipeline,
+                                              goals_of(item).all.max_paths, options_.periodic.has_value());
+    for (std::string& s : wrong_surroundings(*tracer_, *kit.optics)) all.push_back(std::move(s));
+    for (const std::string& s : all)
       if (told_.insert(s).second) options_.warn(s);
   }
 
@@ -279,7 +276,7 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
-    warn_beforehand(item, kit);
+    if (options_.warn) warn_beforehand(item, kit);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;
     primed_.push_back(

@@ -2,7 +2,7 @@
 // of water. Both faces stand in one place, and a ray that had been let through the first would start beyond the second.
 // What is opaque ends whatever lies on it, whichever of the two the tracer names: glass or water that lies on something
 // touches it, without air between.
-// Of two faces that both pass light, one that lies on the other is not seen (told: refracting_contacts.h).
+// Of two faces that both pass light, one that lies on the other is not seen (told: scheduler/surroundings.h).
 #pragma once
 #include <vector>
 

@@ -85,11 +85,9 @@ template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, const SensorRay& ray,
                                                                 const SampleStream& stream, uint32_t sample) {
   Path& path = paths_[p];
-  path.stream = stream;
-  path.sample = sample;
+  path.stream = stream, path.sample = sample;
   if (draws_) path.draw = static_cast<uint32_t>(hash_of(stream.key(), sample));
-  path.origin = ray.ray.origin;
-  path.direction = ray.ray.direction;
+  path.origin = ray.ray.origin, path.direction = ray.ray.direction;
   path.time = ray.ray.time;
   path.length = path.arrival = path.last_density = 0;
   path.before = 1;

@@ -31,8 +31,9 @@ places "surfaces that shine" 2 '(\.|->)met_surface\(' libs/transport
 places "explicit light"      2 'Estimator::asked\(' libs/transport
 places "continuations"       1 'throughputs_\.scatter\(' libs/transport
 places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
-# Beside a stage's own rays: which media a place lies in, and ways through interfaces, whose rays follow from each other.
-places "calls of the tracer" 6 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
+# Beside a stage's own rays: which media a place lies in, what lies in one place with an interface, and ways through
+# interfaces, whose rays follow from each other.
+places "calls of the tracer" 7 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
 places "kinds of lights"     11 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # The list would notice a second one: this test's own text has one of each pattern more.
