@@ -26,6 +26,7 @@ class Look {
       : tracer_(tracer),
         scene_(tracer.scene()),
         surface_(tracer, optics),
+        optics_(optics),
         bodies_(surface_),
         um_(optics.state().reference_um) {
     for (uint32_t i = 0; i < scene_.materials.size(); ++i) {
@@ -43,6 +44,7 @@ class Look {
         [&](uint32_t number, const TracedObject& o) {
           if (seen++ < kObjects) shoot(box_of(number, o), seen);
         });
+    if (!skipping_.empty()) told_.insert(skipping_);
     return {told_.begin(), told_.end()};
   }
 
@@ -102,36 +104,59 @@ class Look {
     if (bodies_.any()) compare(hit, material);
   }
 
-  double index_at(Vec3 place, double time, std::string& name) {
-    const uint32_t medium = bodies_.around(place, time, statistics_).medium(scene_.ambient);
-    name = medium == kNone ? "nothing" : "'" + scene_.media[medium].id + "'";
-    return index_of(medium);
+  uint32_t medium_at(Vec3 place, double time) {
+    return bodies_.around(place, time, statistics_).medium(scene_.ambient);
+  }
+  std::string name_of(uint32_t medium) const {
+    return medium == kNone ? "nothing" : "'" + scene_.media[medium].id + "'";
   }
   double index_of(uint32_t medium) const { return medium == kNone ? 1 : scene_.media[medium].index.at(um_); }
 
   // An index that suits what is on both sides is right, whatever the material names.
   void compare(const Hit& hit, uint32_t material) {
     const Material& m = scene_.materials[material];
-    std::string in_front, behind;
-    const double off = kOff * double{hit.step}, front = index_at(hit.position + hit.normal * off, hit.time, in_front),
-                 back = index_at(hit.position - hit.normal * off, hit.time, behind);
+    const double off = kOff * double{hit.step};
+    const uint32_t front = medium_at(hit.position + hit.normal * off, hit.time),
+                   back = medium_at(hit.position - hit.normal * off, hit.time);
+    for (const uint32_t medium : {front, back}) tell_skipped(hit, m, medium);
     const auto apart = [](double a, double b) { return std::fabs(a - b) > kApart * b; };
     const double made_for = index_of(m.outside), own = m.surface.curves.at("index").at(um_);
-    if (!apart(front, made_for) || !apart(own * front, back)) return;
+    if (!apart(index_of(front), made_for) || !apart(own * index_of(front), index_of(back))) return;
     told_.insert(
         strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
              "needs a material with `outside`, or to end",
-             m.id.c_str(), in_front.c_str(), front, made_for));
+             m.id.c_str(), name_of(front).c_str(), index_of(front), made_for));
+  }
+
+  // Rays leave a surface from a step off it, so that they do not meet it again where float places are coarse; what
+  // fills that step is left out. The worst case is told once.
+  void tell_skipped(const Hit& hit, const Material& m, uint32_t medium) {
+    if (medium == kNone) return;
+    const BakedMedium& baked = optics_.media()[medium];
+    double densest = 0;
+    for (size_t i = 0; i < baked.absorption.size(); ++i)
+      densest = std::max(densest, double{baked.absorption[i]} + double{baked.scattering[i]});
+    const double lost = densest * double{hit.step};
+    if (lost < kSkipped || lost <= skipped_) return;
+    skipped_ = lost;
+    skipping_ = strf(
+        "paths in '%s' begin %.2g m off '%s' (places of so large an object are that coarse) and skip what "
+        "is there: at %.3g 1/m some %.1g %% too much light wherever they leave it, and more at an angle; "
+        "smaller parts are met more exactly",
+        scene_.media[medium].id.c_str(), double{hit.step}, m.id.c_str(), densest, 100 * lost);
   }
 
   const Tracer& tracer_;
   const Scene& scene_;
   const Surface surface_;
+  const Optics& optics_;
   Bodies bodies_;
   double um_;
   std::vector<bool> refracts_;
   std::vector<Hit> beside_;
   std::set<std::string> told_;
+  double skipped_ = 0;  // the most
+  std::string skipping_;
   TraceStatistics statistics_;
 };
 

@@ -5,6 +5,7 @@
 #include "scheduler/surroundings.h"
 #include "tests/support/media_kit.h"
 #include "tests/support/pipeline_kit.h"
+#include "tests/support/radiometry_kit.h"
 
 namespace suite::test {
 namespace {
@@ -59,6 +60,26 @@ TEST(Surroundings, GlassOnWater) {
   EXPECT_THAT(told(0, interface_of("pane", kGlass, 1)),
               ElementsAre(HasSubstr("('pane', 'surface') lie in each other")));
   EXPECT_THAT(told(0.01, interface_of("pane", kGlass, 1)), IsEmpty());
+}
+
+// Dense water of a large mesh, of which places are coarse; a small one, or clear water, is met exactly.
+TEST(Surroundings, DenseMatterOfALargeObject) {
+  const auto told_of = [](double side, double absorption) {
+    const auto scene = scene_of(
+        {mesh_of({{-side, -side, 0}, {side, -side, 0}, {side, side, 0}, {-side, side, 0}}, {0, 1, 2, 0, 2, 3}, 0)},
+        {material("surface", lambert(0))});
+    scene->media = {clear("water", kWater)};
+    scene->media[0].absorption = Curve::constant(absorption);
+    scene->materials = {interface_of("surface", kWater, 0)};
+    check_scene(*scene, "large water");
+    const Tracer tracer(scene);
+    const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
+    const Optics optics(*scene, sensor.states()[0]);
+    return wrong_surroundings(tracer, optics);
+  };
+  EXPECT_THAT(told_of(2e4, 3), ElementsAre(AllOf(HasSubstr("paths in 'water'"), HasSubstr("'surface'"))));
+  EXPECT_THAT(told_of(2e4, 1e-3), IsEmpty());
+  EXPECT_THAT(told_of(10, 3), IsEmpty());
 }
 
 }  // namespace
