@@ -141,7 +141,8 @@ class Look {
     skipped_ = lost;
     skipping_ = strf(
         "paths in '%s' begin %.2g m off '%s' (places of so large an object are that coarse) and skip what "
-        "is there: at %.3g 1/m some %.1g %% too much light wherever they leave it, and more at an angle; "
+        "is there: at the wavelength where it is densest, %.3g 1/m, some %.1g %% too much light wherever they leave "
+        "it, and more at an angle; "
         "smaller parts are met more exactly",
         scene_.media[medium].id.c_str(), double{hit.step}, m.id.c_str(), densest, 100 * lost);
   }
