@@ -19,6 +19,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "transport/kernel.h"
 
@@ -180,9 +181,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& ray) {
   const double way = refracted_->free_way(ray);
-  if (!environment_.earth) return way;
+  if (!environment_.earth || way < std::numeric_limits<double>::infinity()) return way;
   const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
-  return met ? std::min(way, met->distance) : way;
+  return met ? met->distance : way;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
