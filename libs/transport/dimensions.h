@@ -118,13 +118,12 @@ inline std::array<double, 4> of_guided(const SampleStream& stream, uint32_t samp
 // Numbers of the chain to the sun or the sky before the n-th surface of a path, of which the first sets are stratified.
 inline constexpr uint32_t kMostPerChain = 64;
 // Its sets: where the link comes from before which k others stand on the light's side, with the number of links in the
-// first; at what share of its way link i stands, seen from the surface; and whence the sky's light comes.
+// first; at what share of its way link i stands, seen from the surface; and whence the sky's light comes. most: links.
 inline constexpr uint32_t kOfChainsSky = 2;
-constexpr uint32_t of_link(size_t k, bool sky) {
-  if (k == 0) return 0;
-  return k == 1 && !sky ? kOfChainsSky : 1 + 2 * static_cast<uint32_t>(k);
+constexpr uint32_t of_link(size_t k, bool sky) { return k == 0 ? 0 : static_cast<uint32_t>(k) + (sky ? 2 : 1); }
+constexpr uint32_t of_link_place(size_t i, size_t most, bool sky) {
+  return i == 0 ? 1 : static_cast<uint32_t>(most + i) + (sky ? 1 : 0);
 }
-constexpr uint32_t of_link_place(size_t i) { return i == 0 ? 1 : 2 + 2 * static_cast<uint32_t>(i); }
 inline std::array<double, 4> of_chain(const SampleStream& stream, uint32_t sample, uint32_t n, bool sky,
                                       uint32_t which) {
   const uint32_t chain = 2 * n + (sky ? 1 : 0);

@@ -237,8 +237,8 @@ class PathKernel final : public PathTracing {
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
   // kernel_chain.h: light scattered on its way.
   static constexpr int kMostLinks = 24;
-  static_assert(dimensions::of_link(kMostLinks, true) < dimensions::kMostPerChain &&
-                dimensions::of_link_place(kMostLinks) < dimensions::kMostPerChain);
+  static_assert(dimensions::of_link(kMostLinks - 1, true) < dimensions::of_link_place(1, kMostLinks, true) &&
+                dimensions::of_link_place(kMostLinks, kMostLinks, true) < dimensions::kMostPerChain);
   static constexpr double kReach = 2, kDeepest = 8, kTried = 0.3;
   struct Chain {
     int links;                   // scatterings

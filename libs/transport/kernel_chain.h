@@ -139,7 +139,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       const double m = static_cast<double>(chain.links) - static_cast<double>(i);
-      const std::array<double, 4> u = chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i));
+      const std::array<double, 4> u =
+          chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
       const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
       scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
