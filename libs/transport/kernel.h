@@ -214,9 +214,8 @@ class PathKernel final : public PathTracing {
   static constexpr bool kGuides = Space::kScatters && !Space::kGoesBack;  // places are scattered at in what fills space
   // kernel_guide.h: continuations towards where media scatter such lights forwards.
   struct Guide {
-    double share = 0;  // of continuations that are drawn about `toward`; 0: none
+    bool branch = false;  // a continuation is drawn about `toward`, beside the others
     Dir toward;
-    bool branch = false;  // beside the others
     // Light that has been asked for along chains: for which knots' ways, a bit for each; m.
     uint32_t chains = 0;
     uint16_t light = 0;
@@ -224,15 +223,10 @@ class PathKernel final : public PathTracing {
     bool sky = false;  // and that of the sky, with as long a reach
   };
   void guide(const RefractedQuestion& q, const RefractedWay& way);
-  // Of continuations that are drawn as the node does.
-  double own_share(const NodeAt& node) const {
-    const Guide* const guide = guide_of(node);
-    return guide && !guide->branch ? 1 - guide->share : 1;
-  }
   const Guide* guide_of(const NodeAt& node) const {
     return guides_.empty() ? nullptr : &guides_[static_cast<size_t>(&node - nodes_.data())];
   }
-  bool is_guided(const NodeAt& node) const { return !guides_.empty() && guide_of(node)->share > 0; }
+  bool is_guided(const NodeAt& node) const { return !guides_.empty() && guide_of(node)->branch; }
   void share_with_guide(const NodeAt& node, bool forced, Continuation& on) const;
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
   // kernel_chain.h: light scattered on its way.

@@ -27,7 +27,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on() {
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::go_on(size_t i) {
   records_[nodes_[i].path].end = PathEnd::absorbed;
-  if (is_guided(nodes_[i]) && guide_of(nodes_[i])->branch) branch_guided(i);
+  if (is_guided(nodes_[i])) branch_guided(i);
   if (at_first_interface(nodes_[i])) branch_mirrored(i);
   Continuation on;
   return draw(i, on) && go_on(i, on);
@@ -108,14 +108,10 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
   const Path& path = paths_[node.path];
   const Vec2 u{path.u[0], path.u[1]};
   if constexpr (Space::kScatters) {
-    const std::array<double, 4> more =
-        node.event ? dimensions::of_flight(path.stream, path.sample, path.flights) : std::array<double, 4>{};
-    if (const double share = 1 - own_share(node); more[3] < share) {
-      if (!draw_guided(node, u, more[3] / share, memory, on)) return false;
-      share_with_guide(node, true, on);
-      return true;
+    if (node.event) {
+      const double who = dimensions::of_flight(path.stream, path.sample, path.flights)[2];
+      return space_.sample(node.path, path, u, who, memory, on) && share_with_side(node, on);
     }
-    if (node.event) return space_.sample(node.path, path, u, more[2], memory, on) && share_with_side(node, on);
   }
   const double lobe_u = surfaces_.needs_lobe(node.path) ? numbers(node, dimensions::kOfSecond)[0] : 0;
   if constexpr (Surfaces::kDense > 0)

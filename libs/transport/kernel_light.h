@@ -122,7 +122,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
   double sum = 0;
   for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];
-  return kGuides ? sum * own_share(node) : sum;
+  return sum;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
