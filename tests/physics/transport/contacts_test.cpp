@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "tests/support/even_within.h"
 #include "tests/support/media_kit.h"
 #include "tests/support/pipeline_kit.h"
 
@@ -43,25 +44,15 @@ std::shared_ptr<Scene> glass_on_floor(const Laid& laid) {
   return scene;
 }
 
-// Reflectance of the upper face for even light from within.
-double within() {
-  double sum = 0;
-  constexpr int n = 20000;
-  for (int i = 0; i < n; ++i) {
-    const double c = (i + 0.5) / n;
-    sum += 2 * c * fresnel_dielectric(c, 1 / kIndex).reflectance / n;
-  }
-  return sum;
-}
-
 // Flux through the upper face is conserved, floor and face throw it to and fro.
 double under_sky(double view) {
-  const double r = within(), t = fresnel_dielectric(view, kIndex).transmittance;
+  const double r = reflected_within(kIndex), t = fresnel_dielectric(view, kIndex).transmittance;
   return 1 - t + t * kReflectance * (1 - r) / (1 - kReflectance * r);
 }
 double under_sun(double view, double sun) {
   return kReflectance / kPi * sun * fresnel_dielectric(sun, kIndex).transmittance *
-         fresnel_dielectric(view, kIndex).transmittance / (kIndex * kIndex * (1 - kReflectance * within()));
+         fresnel_dielectric(view, kIndex).transmittance /
+         (kIndex * kIndex * (1 - kReflectance * reflected_within(kIndex)));
 }
 
 const double kView = 20 * kDegree, kSun = 35 * kDegree;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "tests/support/even_within.h"
 #include "tests/support/lamps_kit.h"
 #include "tests/support/media_kit.h"
 
@@ -50,12 +51,7 @@ bool unresolved(const Rendered& r) { return r.result.quality[0] & quality_unreso
 // L = (rho / pi) E cos(z) T(z) T(v) / (n^2 (1 - rho r)) with r the reflectance of the surface for diffuse light from
 // below: flux through the flat surface is conserved, the bed and the surface reflect it to and fro.
 double closed_form() {
-  double inside = 0;
-  constexpr int n = 20000;
-  for (int i = 0; i < n; ++i) {
-    const double c = (i + 0.5) / n;
-    inside += 2 * c * fresnel_dielectric(c, 1 / kIndex).reflectance / n;
-  }
+  const double inside = reflected_within(kIndex);
   const double down = fresnel_dielectric(std::cos(kSunZenith), kIndex).transmittance,
                up = fresnel_dielectric(std::cos(kViewZenith), kIndex).transmittance;
   return kReflectance / kPi * std::cos(kSunZenith) * down * up / (kIndex * kIndex * (1 - kReflectance * inside));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "optics/fresnel.h"
+#include "tests/support/even_within.h"
 #include "tests/support/media_kit.h"
 #include "tests/support/radiometry_kit.h"
 
@@ -62,11 +63,7 @@ double transmitted(double c) { return fresnel_dielectric(c, kIndex).transmittanc
 // Of a bed that gets `irradiance` through flat water: flux is conserved there, radiance goes by the index squared, bed
 // and surface reflect to and fro.
 double from_bed(double irradiance, double view) {
-  double inside = 0, n = 20000;
-  for (int i = 0; i < n; ++i) {
-    const double c = (i + 0.5) / n;
-    inside += 2 * c * fresnel_dielectric(c, 1 / kIndex).reflectance / n;
-  }
+  const double inside = reflected_within(kIndex);
   return kBed / kPi * irradiance * transmitted(view) / (kIndex * kIndex * (1 - kBed * inside));
 }
 // Of a sky of radiance 1, W/m2.
