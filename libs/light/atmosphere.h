@@ -23,6 +23,8 @@
 
 namespace suite {
 
+class SkyThroughWater;
+
 struct AtmosphereSpec {
   // Ascending heights above sea level, m, that bound the layers; the lowest layer goes on below the first.
   std::vector<double> heights = {0,    1e3,  2e3,  3e3,  4e3,  5e3,  6e3,  8e3,  10e3,
@@ -102,6 +104,8 @@ class Atmosphere {
   // What the air sends from outside, as a light that can be asked for: only its directions and their densities, the
   // radiance is that of path() to infinity. Null = met by chance only.
   virtual const Light* sky() const { return nullptr; }
+  // For places under water; null where sky() is.
+  virtual const SkyThroughWater* sky_through_water() const { return nullptr; }
   // 1/sr, with which sky() draws a direction.
   virtual double sky_density(Dir) const { return 0; }
   // Where its light is that over an even ground: places in the air for paths that find what the scene makes of it

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "math/quick_angle.h"
@@ -151,29 +152,10 @@ const float* SkyTable::drawn(double height, Dir d) const {
 }
 
 void SkyTable::make_light() {
-  const auto ground = static_cast<size_t>(-kLowest / step_);
-  const auto at = [&](size_t row, size_t column) { return floor(ground) + (row * columns_ + column) * bins_; };
-  SkySpec density;
-  density.radiance = Curve::constant(1);
-  density.zeniths = kRows;
-  density.azimuths = columns_ == 1 ? 1 : kAzimuths;
-  density.table.assign(density.zeniths * density.azimuths, 0.0);
-  // Each bin counts alike: divided by its flux.
-  std::vector<double> flux(bins_, 0.0);
-  for (size_t r = 0; r < kRows; ++r)
-    for (size_t c = 0; c < columns_; ++c)
-      for (size_t i = 0; i < bins_; ++i) flux[i] += std::sin(static_cast<double>(r) * kPi / 180) * at(r, c)[i];
-  double sum = 0;
-  for (size_t r = 0; r < kRows; ++r)
-    for (size_t c = 0; c < density.azimuths; ++c) {
-      const double phi = static_cast<double>(c) * 2 * kPi / static_cast<double>(density.azimuths);
-      const auto from = std::min(static_cast<size_t>(std::lround(column(phi))), columns_ - 1);
-      double mean = 0;
-      for (size_t i = 0; i < bins_; ++i)
-        if (flux[i] > 0) mean += at(r, from)[i] / flux[i];
-      sum += density.table[r * density.azimuths + c] = mean;
-    }
-  if (!(sum > 0)) return;
+  std::vector<size_t> all(bins_);
+  std::iota(all.begin(), all.end(), size_t{0});
+  const SkySpec density = weights(all, [](double) { return 1.0; });
+  if (std::all_of(density.table.begin(), density.table.end(), [](double v) { return !(v > 0); })) return;
   SpectralState one;
   one.low_um = 1, one.high_um = 1.1, one.reference_um = 1.05;
   one.bins = {{1, 1.1}};
@@ -181,6 +163,48 @@ void SkyTable::make_light() {
   auto light = std::make_unique<const AskedSky>(density, one);
   density_ = [asked = light.get()](Dir d) { return asked->density(d); };
   light_ = std::move(light);
+}
+
+const SkyThroughWater& SkyTable::through_water(std::span<const size_t> knots) const {
+  std::call_once(water_once_, [&] {
+    std::vector<SkySpec> specs;
+    // What water lets through; its reflectance at normal incidence is next to nothing. C. Schlick, "An inexpensive BRDF
+    // model for physically-based rendering", Computer Graphics Forum 13(3), 1994.
+    for (const size_t bin : knots)
+      specs.push_back(weights({&bin, 1}, [](double cosine) { return cosine * (1 - std::pow(1 - cosine, 5)); }));
+    through_water_ = std::make_unique<const SkyThroughWater>(specs);
+  });
+  return *through_water_;
+}
+
+// Of directions at height 0: the mean of some bins, each of which counts alike, that is divided by its flux, times a
+// weight of the zenith angle's cosine.
+SkySpec SkyTable::weights(std::span<const size_t> bins, const std::function<double(double)>& weight) const {
+  const auto ground = static_cast<size_t>(-kLowest / step_);
+  const auto at = [&](size_t row, size_t column) { return floor(ground) + (row * columns_ + column) * bins_; };
+  const auto weight_of = [&](size_t row) {
+    return weight(std::max(0.0, std::cos(static_cast<double>(row) * kPi / 180)));
+  };
+  SkySpec spec;
+  spec.radiance = Curve::constant(1);
+  spec.zeniths = kRows;
+  spec.azimuths = columns_ == 1 ? 1 : kAzimuths;
+  spec.table.assign(spec.zeniths * spec.azimuths, 0.0);
+  std::vector<double> flux(bins.size(), 0.0);
+  for (size_t r = 0; r < kRows; ++r)
+    for (size_t c = 0; c < columns_; ++c)
+      for (size_t i = 0; i < bins.size(); ++i)
+        flux[i] += weight_of(r) * std::sin(static_cast<double>(r) * kPi / 180) * double{at(r, c)[bins[i]]};
+  for (size_t r = 0; r < kRows; ++r)
+    for (size_t c = 0; c < spec.azimuths; ++c) {
+      const double phi = static_cast<double>(c) * 2 * kPi / static_cast<double>(spec.azimuths);
+      const auto from = std::min(static_cast<size_t>(std::lround(column(phi))), columns_ - 1);
+      double mean = 0;
+      for (size_t i = 0; i < bins.size(); ++i)
+        if (flux[i] > 0) mean += double{at(r, from)[bins[i]]} / flux[i];
+      spec.table[r * spec.azimuths + c] = weight_of(r) * mean;
+    }
+  return spec;
 }
 
 }  // namespace suite

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "light/kinds/sky.h"
+#include "light/sky_through_water.h"
 
 namespace suite {
 
@@ -36,6 +37,8 @@ class SkyTable {
   // As a light to ask (Atmosphere::sky): one density for all bins, that of height 0. Null before make_light(), and
   // where the sky is black.
   const Light* light() const { return light_.get(); }
+  // To places under water, made when first asked for. knots: their bins, always the same.
+  const SkyThroughWater& through_water(std::span<const size_t> knots) const;
   // 1/sr, with which light() draws a direction; 0 without it.
   double density(Dir d) const { return light_ ? density_(d) : 0; }
   void make_light();
@@ -57,6 +60,7 @@ class SkyTable {
   };
   Place place(double height, double polar, double azimuth) const;
   void fill(size_t index, size_t row) const;
+  SkySpec weights(std::span<const size_t> bins, const std::function<double(double)>& weight) const;
 
   double step_;
   size_t bins_, columns_;
@@ -66,6 +70,8 @@ class SkyTable {
   mutable std::vector<Floor> floors_;
   std::unique_ptr<const Light> light_;
   std::function<double(Dir)> density_;
+  mutable std::once_flag water_once_;
+  mutable std::unique_ptr<const SkyThroughWater> through_water_;
 };
 
 }  // namespace suite

@@ -26,7 +26,7 @@ class StratifiedAir final : public Atmosphere {
  public:
   StratifiedAir(const AirSpec& spec, std::shared_ptr<const AirColumn> column, const SpectralState& state,
                 std::vector<Beam> beams)
-      : made_(std::move(column)), column_(*made_), beams_(std::move(beams)), bins_(column_.bins) {
+      : made_(std::move(column)), column_(*made_), beams_(std::move(beams)), bins_(column_.bins), knots_(state.knots) {
     const std::span<const double> heights = column_.shells.heights();
     bounds_.assign(heights.begin(), heights.end());
     std::vector<AirBeam> from;
@@ -200,6 +200,9 @@ class StratifiedAir final : public Atmosphere {
   }
   bool bends() const override { return bent(std::numeric_limits<double>::infinity()); }
   const Light* sky() const override { return sky_->light(); }
+  const SkyThroughWater* sky_through_water() const override {
+    return sky_->light() ? &sky_->through_water(knots_) : nullptr;
+  }
   double sky_density(Dir d) const override { return sky_->density(d); }
   const AirVertices* vertices() const override { return vertices_.get(); }
 
@@ -326,6 +329,7 @@ class StratifiedAir final : public Atmosphere {
   std::vector<Beam> beams_;
   std::shared_ptr<const DiffuseSource> diffuse_;
   size_t bins_;
+  std::vector<size_t> knots_;
   Row dark_ = Row(bins_, 0.0f);
   std::vector<double> bounds_;
   std::vector<BeamTable> tables_;

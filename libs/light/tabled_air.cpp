@@ -51,6 +51,7 @@ class TabledAir final : public Atmosphere {
         world_(spec.world(sun ? std::optional(normalized(sun->beam.direction)) : std::nullopt)),
         from_(spec.from),
         bins_(state.size()),
+        knots_(state.knots),
         sights_(over_bins(spec.sights, state, where_)),
         sky_(over_bins(spec.sky, state, where_)),
         two_way_(spec.two_way()) {
@@ -82,6 +83,7 @@ class TabledAir final : public Atmosphere {
     std::fill(S.begin(), S.end(), 0.0f);
   }
   const Light* sky() const override { return table_ ? table_->light() : nullptr; }
+  const SkyThroughWater* sky_through_water() const override { return sky() ? &table_->through_water(knots_) : nullptr; }
   double sky_density(Dir d) const override { return table_ ? table_->density(d) : 0; }
 
   const Shells& shells() const override { no_layers(); }
@@ -186,6 +188,7 @@ class TabledAir final : public Atmosphere {
   SightWorld world_;
   std::optional<TabledAirSpec::Places> from_;
   size_t bins_;
+  std::vector<size_t> knots_;
   std::optional<SightTable> sights_, sky_;
   bool two_way_;
   double sun_radius_ = 0;

@@ -4,10 +4,10 @@
 // way has ended, the last branch that was kept goes on in the same lane, and its light is added to the same sums: all
 // branches of a path are one sample. Three events branch:
 //   The first smooth interface of a path is passed and mirrors: what it mirrors is weak, but in dark bands all there
-//   is. A path that first enters a medium that scatters goes on from there n times with 1 / n of its light, so that
-//   what
+// is. A path that first enters a medium that scatters goes on from there n times with 1 / n of its light, so that what
 // lies before, a flight through air and the light of a sky, is paid once. Each draws its knot anew: what has drawn the
-// path so far, among the knots by P_k r_k, draws the rest; and numbers are those of sample n i + j of n times as many.
+// path so far, among the knots by P_k r_k, does not draw the rest; and numbers are those of sample n i + j of n times
+// as many.
 //   A surface in a medium that scatters light of the sun forwards (kernel_guide.h) is left twice: as it comes (density
 // p_k of directions at knot k), and guided (g_k), to be scattered on the next flight for certain. With t_k(s) the
 // density of being scattered after s m and F_k the probability of it on the whole flight, both share
@@ -50,24 +50,37 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::take_up(uint32_t p) {
     space_.put(p, from.around);
     if (!last_.empty()) last_[p] = from.last;
     throughputs_.resume(p, from.throughput);
-    if (from.times > 0) draw_part(paths_[p], --from.times);
+    if (from.times > 0) draw_part(p, --from.times);
     if (from.times == 0) --kept.size;
     return true;
   }
   return false;
 }
 
-// Part j of a path that goes on in parts, as kept before it was parted.
+// Part j of a path that goes on in parts, as kept before it was parted. What its directions and flights are drawn from
+// is chosen anew: knot k with probability q_k, for which its light matters there, so that r_k = q_k / P_k.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_part(Path& path, uint32_t j) {
-  double left = (j + path.stream.hashed(path.sample, dimensions::kKnot)) / kParts;
-  for (size_t k = 0; k < knots(); ++k) {
-    const double share = probability_[k] * path.relative[k];
-    if (!(share > 0)) continue;
-    path.knot = static_cast<int>(k);
-    if ((left -= share) < 0) break;
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_part(uint32_t p, uint32_t j) {
+  if constexpr (kGuides) {
+    // Where matter absorbs all light, hardly any comes back that has been scattered in it.
+    constexpr double kLeast = 0.02;
+    Path& path = paths_[p];
+    double chosen[kMaxKnots], sum = 0;
+    for (size_t k = 0; k < knots(); ++k) {
+      const double albedo = space_.albedo_around(p, k);
+      sum += chosen[k] = probability_[k] * path.relative[k] * std::max(kLeast, albedo * albedo);
+    }
+    double left = (j + path.stream.hashed(path.sample, dimensions::kKnot)) / kParts;
+    bool drawn = false;
+    for (size_t k = 0; k < knots(); ++k) {
+      chosen[k] /= sum;
+      path.relative[k] = chosen[k] / probability_[k];
+      if (drawn || !(chosen[k] > 0)) continue;
+      path.knot = static_cast<int>(k);
+      drawn = (left -= chosen[k]) < 0;
+    }
+    path.sample = path.sample * kParts + j;
   }
-  path.sample = path.sample * kParts + j;
 }
 
 // The lane's next path: the last branch kept of each that has ended.

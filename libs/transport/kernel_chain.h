@@ -13,14 +13,23 @@
 // transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
 // chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
 // What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere beside the
-// node, and let some light through unscattered (kDeepest). Based on: paths drawn from the light's end on a given number
-// of scatterings: I. Georgiev et al., "Joint importance sampling of low-order volumetric scattering", ACM TOG 32(6),
-// 2013; order statistics of Poisson's process: L. Devroye, "Non-uniform random variate generation", 1986, chapter VI.
+// node, and let some light through unscattered (kDeepest).
+//
+// The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
+// drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
+// several ways; the one that Newton's method finds first is asked for, and what chance finds of it left out
+// (has_asked_sky). Both lights are asked for by scatterings as well, for what comes from more than half way round
+// towards the light: a path that runs away from it would have to turn round by chance, which forward scattering does
+// rarely. What comes from further ahead (is_own) is left to where the path goes on. Based on: paths drawn from the
+// light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of low-order volumetric
+// scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye, "Non-uniform random variate
+// generation", 1986, chapter VI.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "light/sky_through_water.h"
 #include "transport/kernel.h"
 
 namespace suite {
@@ -49,12 +58,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
     guide.chains |= 1u << knot;
     guide.light = q.light;
     guide.reach = kReach * length;
-    RefractedQuestion tried = q;
-    if (node.event) {
-      if (path.stream.hashed(path.sample, dimensions::roulette_of_side(path.order() - 1)) >= kTried) return true;
-      tried.scale /= kTried;
-    }
-    if (draw_chain(node, toward, depth, false) && !is_own(node, chain_.toward[0])) follow_chain(tried, knot);
+    if (draw_chain(node, toward, depth, false) && !is_own(node, chain_.toward[0])) follow_chain(q, knot);
     return true;
   }
   return false;
@@ -166,7 +170,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
     RefractedSight::Node from;
     from.place = place, from.time = path.time, from.draw = path.draw;
     const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), q.light, knot);
-    for (const RefractedWay& way : refracted_->find(from, q.end, knot, seed)) {
+    const auto ways = q.sky ? refracted_->first_through_sheet(from, q.end.direction, knot)
+                            : refracted_->find(from, q.end, knot, seed);
+    for (const RefractedWay& way : ways) {
       const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
       std::copy(chain_through_.begin(), chain_through_.end(), through.begin());
       scatter_along(p, links - 1, way.direction, through, memory);
@@ -222,9 +228,29 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, 
     const bool scattered = flight.arrival == Arrival::scattered;
     const bool beyond = scattered && (flown > path.quiet_reach || path.quiet_events-- == 0);
     if (!scattered || beyond) path.quiet = 0;
-    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered)
-      return refracted_->sheet_ways(path.sky_place, path.direction) != RefractingSheet::Ways::unknown;
+    if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered) return true;
     if (beyond || flight.arrival == Arrival::onward) path.sky = Path::Sky::open;
+  }
+  return false;
+}
+
+// Whether the light of the air's sky that a path meets if it passes the surface of node i has been asked for.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_asked_sky(size_t i, const Continuation& on) {
+  if constexpr (kGuides) {
+    const NodeAt& node = nodes_[i];
+    const Path& path = paths_[node.path];
+    const Dir normal = hits_[node.slot].normal;
+    if (path.sky != Path::Sky::asked || !on.dirac || node.event) return false;
+    if (!(dot(on.in, normal) * dot(path.direction, normal) > 0)) return false;
+    double density[kMaxKnots], any = 0;  // below the horizon it is never drawn
+    space_.hidden_sky()->densities(on.in, {density, knots()});
+    for (size_t k = 0; k < knots(); ++k) any += path.relative[k] * density[k];
+    if (!(any > 0)) return false;
+    RefractedSight::Node from;
+    from.place = path.origin, from.time = path.time, from.draw = path.draw;
+    const size_t knot = refracted_->interfaces().set_of()[static_cast<size_t>(path.knot)];
+    return refracted_->is_first_through_sheet(from, path.direction, on.in, knot);
   }
   return false;
 }
@@ -234,13 +260,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    const Light* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
+    const SkyThroughWater* const sky = options_.explicit_sources ? space_.hidden_sky() : nullptr;
     const Path& path = paths_[node.path];
-    if (!sky || branches_.empty() || node.event || !asks_through(node) || !space_.even_around(node.path)) return;
-    const Vec3 place = hits_[node.slot].position;
+    if (!sky || branches_.empty() || !asks_through(node) || !space_.even_around(node.path)) return;
+    if (node.event && (path.quiet != 0 || path.sky == Path::Sky::asked)) return;
+    const Vec3 place = from_node(node).place;
     const double deep = refracted_->below_sheet(place);
     if (!(deep > 0)) return;
-    space_.stand(node.path);
+    if (!node.event) space_.stand(node.path);
     if (!(space_.asymmetry(node.path) > kForwards)) return;
     Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
     const double reach = guide.chains ? guide.reach : kReach * deep;
@@ -249,49 +276,44 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
       if (!(depth > 0 && depth < kDeepest)) return;
     }
     guide.sky = true, guide.reach = reach;
-    const std::array<double, 4> u = chain_numbers(path, false, true, dimensions::kOfChainsSky);
-    const auto sample = sky->sample({}, {u[2], u[3], 0, 0}, path.time);
-    if (!sample || !(sample->density > 0)) return;
-    if (refracted_->sheet_ways(place, sample->direction) != RefractingSheet::Ways::one) return;
+    if (guide.chains == 0) guide.toward = refracted_->sheet_axis();
+    const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
+    const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
+    if (!(sample.density > 0)) return;
     const std::vector<size_t>& set = refracted_->interfaces().set_of();
     for (size_t k = 0; k < knots(); ++k) {
       bool alive = false;
       for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
-      if (set[k] == k && alive) ask_sky(node, k, *sample, deep);
+      if (set[k] == k && alive) ask_sky(node, k, *sky, sample.direction, deep);
     }
   }
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node, size_t knot,
-                                                                  const LightSample& sample, double deep) {
+                                                                  const SkyThroughWater& sky, Dir to, double deep) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    const RefractedQuestion q{static_cast<uint32_t>(&node - nodes_.data()),
-                              Space::kEmitter,
-                              false,
-                              {sample.direction, {}},
-                              1 / sample.density,
-                              nullptr,
-                              0,
-                              true};
-    const Path& path = paths_[node.path];
-    const auto toward = refracted_->sheet_guess(sample.direction, knot);
+    const RefractedQuestion q{
+        static_cast<uint32_t>(&node - nodes_.data()), Space::kEmitter, false, {to, {}}, 1, nullptr, 0, true};
+    const auto toward = refracted_->sheet_guess(to, knot);
     if (!toward) return;
     const double length = deep / refracted_->steepness(*toward);
-    constexpr uint64_t kPurpose = 0x736b79;
-    const uint64_t seed = hash_of(hash_of(path.stream.key(), kPurpose, path.sample), path.order(), knot);
     double depth[kMaxKnots];
     for (size_t k = 0; k < knots(); ++k) depth[k] = space_.scattering(node.path, k) * length;
     if (!draw_chain(node, *toward, depth, true)) return;
+    double density[kMaxKnots];
+    sky.densities(to, {density, knots()});
+    for (size_t k = 0; k < knots(); ++k) chain_.share[k] *= density[k];
     if (chain_.links > 0) {
-      follow_chain(q, knot);
+      if (!is_own(node, chain_.toward[0])) follow_chain(q, knot);
       return;
     }
     double shares = 0;
     for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain_.share[k];
     RefractedQuestion alone = q;
     alone.scale /= shares;
-    for (const RefractedWay& way : refracted_->find(from_node(node), q.end, knot, seed)) shine_along(way, alone, knot);
+    for (const RefractedWay& way : refracted_->first_through_sheet(from_node(node), to, knot))
+      if (!is_own(node, way.direction)) shine_along(way, alone, knot);
   }
 }
 

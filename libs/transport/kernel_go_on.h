@@ -99,6 +99,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, Continu
   if (!draw(i, memory, on)) return false;
   if (kDraws && on.weight.spectrum != memory.data()) throughputs_.give_back(node.path);
   if (kGuides && is_guided(node) && on.branch == Branch::none) share_with_guide(node, false, on);
+  on.heard = has_asked_sky(i, on);
   return true;
 }
 
@@ -138,13 +139,7 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::ahead(size_t i, cons
   if constexpr (kGuides) {
     constexpr double kLeaves = 6, kHeard = 0.1;
     const double index = space_.index(nodes_[i].path);
-    // What the last surface has asked for is not worth while.
-    const NodeAt& node = nodes_[i];
-    const Path& path = paths_[node.path];
-    if (path.sky == Path::Sky::asked && on.dirac && !node.event &&
-        dot(on.in, hits_[node.slot].normal) * dot(path.direction, hits_[node.slot].normal) > 0 &&
-        refracted_->sheet_ways(path.sky_place, on.in) != RefractingSheet::Ways::unknown)
-      return kHeard;
+    if (on.heard) return kHeard;  // what has been asked for is not worth while
     if (!branches_.empty() && on.dirac && index > 1) return kLeaves * index * index;
   }
   return 1;
@@ -187,20 +182,17 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   Path& path = paths_[p];
   path.branch = on.branch, path.sided = on.sided;
   if (kGuides && node.event && !guides_.empty())
-    if (const Guide& guide = *guide_of(node); guide.chains) {
-      path.quiet = is_own(node, on.in) ? 0 : guide.chains, path.quiet_light = guide.light;
+    if (const Guide& guide = *guide_of(node); guide.chains || guide.sky) {
+      const bool own = is_own(node, on.in);
+      path.quiet = own ? 0 : guide.chains, path.quiet_light = guide.light;
       path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
+      path.sky = guide.sky && !own ? Path::Sky::asked : Path::Sky::open;
     }
   if (kGuides && !node.event && !guides_.empty()) {
     const Guide& guide = *guide_of(node);
     path.quiet = guide.chains, path.quiet_light = guide.light;
     path.quiet_events = kMostLinks, path.quiet_reach = guide.reach;
-    const Hit& hit = hits_[node.slot];
-    const bool passes = on.dirac && dot(on.in, hit.normal) * dot(path.direction, hit.normal) > 0;
-    path.sky = guide.sky                                ? Path::Sky::asked
-               : path.sky == Path::Sky::asked && passes ? Path::Sky::behind
-                                                        : Path::Sky::open;
-    if (guide.sky) path.sky_place = hit.position;
+    path.sky = guide.sky ? Path::Sky::asked : on.heard ? Path::Sky::behind : Path::Sky::open;
   }
   if (refracted_) path.bends = bends_behind(node, on);
   if (waters_.any()) path.water = water_behind(node, on.in);

@@ -45,13 +45,12 @@ struct Lane {
   uint16_t quiet_light = 0;
   uint16_t quiet_events = 0;
   double quiet_reach = 0;
-  // The same of the light of the air's sky that comes by one smooth interface, asked for from a place.
+  // The same of the light of the air's sky that comes by one smooth interface.
   enum class Sky : uint8_t {
     open,
     asked,  // and nothing but scattered since
-    behind  // that interface
+    behind  // that interface, on the way that was asked along
   } sky = Sky::open;
-  Vec3 sky_place;
   double last_density = 0;   // p_h of the last event, without roulette; 0 after a Dirac event or none
   int knot = 0;              // whose shapes draw this path
   double share = 1;          // of a path's light, where it goes on in parts

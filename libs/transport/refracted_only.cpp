@@ -44,14 +44,37 @@ auto RefractedSight::find_only(const Search& s, RefractedWay& way) -> Found {
   const RefractingSheet::Ways ways = sheet_->ways(s.node.place, s.end.direction, index);
   if (ways == RefractingSheet::Ways::none) return Found::none;
   if (ways == RefractingSheet::Ways::unknown) return Found::unknown;
-  const auto start = sheet_->guess(s.end.direction, index);
-  Chain once;
-  once.events = 1;
-  Traced probe, found;
-  if (!start || !trace(s, *start, once, probe)) return Found::unknown;
-  if (!walk(s, probe, once, found)) return found.off < kNearEnough && !found.open ? Found::none : Found::unknown;
+  Traced found;
+  if (!walk_through_sheet(s, found))
+    return found.off < kNearEnough && !found.open && found.way.events > 0 ? Found::none : Found::unknown;
   set_way(s, found, way);
   return Found::one;
+}
+
+// From where flat water would have the way leave the node.
+bool RefractedSight::walk_through_sheet(const Search& s, Traced& found) {
+  const auto start = sheet_->guess(s.end.direction, interfaces_.index(sheet_material_, s.knot));
+  Chain once;
+  once.events = 1;
+  Traced probe;
+  return start && trace(s, *start, once, probe) && walk(s, probe, once, found);
+}
+
+std::span<const RefractedWay> RefractedSight::first_through_sheet(const Node& node, Dir to, size_t knot) {
+  const WayEnd end{to, {}};
+  const Search s{node, end, to, std::numeric_limits<double>::infinity(), knot};
+  Traced found;
+  if (!walk_through_sheet(s, found)) return {};
+  set_way(s, found, found_[0]);
+  return std::span(found_).first(1);
+}
+
+bool RefractedSight::is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot) {
+  const WayEnd end{to, {}};
+  const Search s{node, end, to, std::numeric_limits<double>::infinity(), knot};
+  Traced found;
+  return walk_through_sheet(s, found) &&
+         length(found.way.direction - from) <= std::max(kSame, 100 * found.off) * found.inverse;
 }
 
 }  // namespace suite

@@ -20,7 +20,6 @@ constexpr double kArrived = 1e-9;  // rad
 // rad, that Newton's next step would turn the start. Beside a fold of ways, where there is none, its steps end at small
 // distances from the light but with an endless spreading; they would still be long.
 constexpr double kSettled = 1e-4;
-constexpr double kSame = 1e-4;         // rad at the light: ways as near as this are one
 constexpr size_t kMostObjects = 4096;  // beyond, starts take them all together
 constexpr double kLongestTurn = 0.5;   // rad, of one of Newton's steps
 

@@ -89,22 +89,25 @@ class RefractedSight {
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
   // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): how far a place lies below it, m,
-  // 0 elsewhere; ways through it at most; where flat water would have one leave a place below; the cosine of a
-  // direction to its axis.
+  // 0 elsewhere; where flat water would have one leave a place below; the cosine of a direction to its axis; the axis,
+  // towards its front.
   double below_sheet(Vec3 place) const { return sheet_ ? sheet_->deep(place) : 0; }
-  RefractingSheet::Ways sheet_ways(Vec3 place, Dir to) const {
-    return sheet_->ways(place, to, interfaces_.index(sheet_material_, 0));
-  }
   std::optional<Dir> sheet_guess(Dir to, size_t knot) const {
     return sheet_->guess(to, interfaces_.index(sheet_material_, knot));
   }
   double steepness(Dir direction) const { return sheet_->steepness(direction); }
+  Dir sheet_axis() const { return sheet_->axis(); }
+  // The way through it to a far light in direction `to` that Newton's method finds from there: none or one, and always
+  // the same of a place and a direction, however many there are. And whether it is the one that leaves in a direction.
+  std::span<const RefractedWay> first_through_sheet(const Node& node, Dir to, size_t knot);
+  bool is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot);
   // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
   double free_way(const Ray& ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:
   static constexpr double kNearEnough = 2e-5;  // rad: where float places of meshes leave no better
+  static constexpr double kSame = 1e-4;        // rad at the light: ways as near as this are one
   struct Search {                              // what is looked for
     const Node& node;
     const WayEnd& end;
@@ -140,6 +143,7 @@ class RefractedSight {
   void set_sheet(const Optics& optics, uint32_t number);
   enum class Found : uint8_t { none, one, unknown };
   Found find_only(const Search& s, RefractedWay& way);
+  bool walk_through_sheet(const Search& s, Traced& found);
   static void set_way(const Search& s, const Traced& found, RefractedWay& way);
   double share(const RefractedWay& way, size_t knot);
   Dir draw_start(const Node& node);

@@ -28,6 +28,7 @@ class RefractingSheet {
   // m, below its nearest height, on either side; 0 between its heights.
   double deep(Vec3 place) const { return std::max({0.0, low_ - dot(place, axis_), dot(place, axis_) - high_}); }
   double steepness(Dir direction) const { return std::fabs(dot(direction, axis_)); }
+  Dir axis() const { return axis_; }  // towards its front
   // In which direction flat water would have one leave; nothing at total reflection.
   std::optional<Dir> guess(Dir to, double index) const;
 

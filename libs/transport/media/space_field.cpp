@@ -138,6 +138,13 @@ void FieldSpace::stand(uint32_t p) {
   set_rates(e);
 }
 
+double FieldSpace::albedo_around(uint32_t p, size_t knot) const {
+  const BakedMedium& medium = optics_.media()[stacks_[p].medium(ambient_)];
+  const size_t bin = optics_.state().knots[knot];
+  const double scattering = double{medium.scattering[bin]}, all = scattering + double{medium.absorption[bin]};
+  return all > 0 ? scattering / all : 0;
+}
+
 double FieldSpace::asymmetry(uint32_t p) const {
   const ScatterPlace& e = events_[p];
   double sum = 0;

@@ -36,8 +36,8 @@ class FieldSpace {
   void emit_within(uint32_t p, std::span<float> emission) const;
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
-  // That of air without media in it, as a light of which matter hides all but what smooth interfaces pass; null: none.
-  const Light* hidden_sky() const { return plain_air_ ? air_->sky() : nullptr; }
+  // That of air without media in it, of which matter hides all but what smooth interfaces pass; null: none.
+  const SkyThroughWater* hidden_sky() const { return plain_air_ ? air_->sky_through_water() : nullptr; }
   // What comes along a ray from there; scratch and memory for spectra.
   const float* sky_behind(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
     return air_->sky_radiance(ray.origin, ray.direction, scratch, radiance);
@@ -59,6 +59,8 @@ class FieldSpace {
     const uint32_t medium = stacks_[p].medium(ambient_);
     return medium != kNone && optics_.media()[medium].scatters();
   }
+  // Single-scattering albedo of the medium around, at a knot.
+  double albedo_around(uint32_t p, size_t knot) const;
 
   // Whether it is a medium that is the same everywhere up to the next surface.
   bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
