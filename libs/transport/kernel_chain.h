@@ -17,13 +17,13 @@
 //
 // The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
 // drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
-// several ways; the one that Newton's method finds first is asked for, and what chance finds of it left out
-// (has_asked_sky). Both lights are asked for by scatterings as well, for what comes from more than half way round
-// towards the light: a path that runs away from it would have to turn round by chance, which forward scattering does
-// rarely. What comes from further ahead (is_own) is left to where the path goes on. Based on: paths drawn from the
-// light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of low-order volumetric
-// scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye, "Non-uniform random variate
-// generation", 1986, chapter VI.
+// several ways; the one that Newton's method finds first is asked for, unless it is much focused, and what chance finds
+// of it left out (has_asked_sky). Both lights are asked for by scatterings as well, for what comes from more than half
+// way round towards the light: a path that runs away from it would have to turn round by chance, which forward
+// scattering does rarely. What comes from further ahead (is_own) is left to where the path goes on. Based on: paths
+// drawn from the light's end on a given number of scatterings: I. Georgiev et al., "Joint importance sampling of
+// low-order volumetric scattering", ACM TOG 32(6), 2013; order statistics of Poisson's process: L. Devroye,
+// "Non-uniform random variate generation", 1986, chapter VI.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -60,20 +60,28 @@ bool RefractedSight::walk_through_sheet(const Search& s, Traced& found) {
   return start && trace(s, *start, once, probe) && walk(s, probe, once, found);
 }
 
-std::span<const RefractedWay> RefractedSight::first_through_sheet(const Node& node, Dir to, size_t knot) {
+// Its light is not focused much more than by flat water, and so makes no noise.
+bool RefractedSight::find_first(const Node& node, Dir to, size_t knot, Traced& found) {
+  constexpr double kFocused = 4;
   const WayEnd end{to, {}};
   const Search s{node, end, to, std::numeric_limits<double>::infinity(), knot};
+  if (!walk_through_sheet(s, found)) return false;
+  const double index = interfaces_.index(sheet_material_, knot),
+               behind = dot(to, sheet_->axis()) > 0 ? index : 1 / index;
+  return std::fabs(found.det) * kFocused > behind * behind;
+}
+
+std::span<const RefractedWay> RefractedSight::first_through_sheet(const Node& node, Dir to, size_t knot) {
+  const WayEnd end{to, {}};
   Traced found;
-  if (!walk_through_sheet(s, found)) return {};
-  set_way(s, found, found_[0]);
+  if (!find_first(node, to, knot, found)) return {};
+  set_way({node, end, to, std::numeric_limits<double>::infinity(), knot}, found, found_[0]);
   return std::span(found_).first(1);
 }
 
 bool RefractedSight::is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot) {
-  const WayEnd end{to, {}};
-  const Search s{node, end, to, std::numeric_limits<double>::infinity(), knot};
   Traced found;
-  return walk_through_sheet(s, found) &&
+  return find_first(node, to, knot, found) &&
          length(found.way.direction - from) <= std::max(kSame, 100 * found.off) * found.inverse;
 }
 

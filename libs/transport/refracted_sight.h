@@ -98,7 +98,8 @@ class RefractedSight {
   double steepness(Dir direction) const { return sheet_->steepness(direction); }
   Dir sheet_axis() const { return sheet_->axis(); }
   // The way through it to a far light in direction `to` that Newton's method finds from there: none or one, and always
-  // the same of a place and a direction, however many there are. And whether it is the one that leaves in a direction.
+  // the same of a place and a direction, however many there are; none where waves focus its light to more than four
+  // times what flat water makes of it. And whether it is the one that leaves in a direction.
   std::span<const RefractedWay> first_through_sheet(const Node& node, Dir to, size_t knot);
   bool is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot);
   // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
@@ -144,6 +145,7 @@ class RefractedSight {
   enum class Found : uint8_t { none, one, unknown };
   Found find_only(const Search& s, RefractedWay& way);
   bool walk_through_sheet(const Search& s, Traced& found);
+  bool find_first(const Node& node, Dir to, size_t knot, Traced& found);
   static void set_way(const Search& s, const Traced& found, RefractedWay& way);
   double share(const RefractedWay& way, size_t knot);
   Dir draw_start(const Node& node);

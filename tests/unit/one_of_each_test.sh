@@ -2,7 +2,7 @@
 # one_of_each_test.sh SOURCES
 # The decisions of transport stand once: where paths end by chance, what contributions share, where lights are asked,
 # which numbers are drawn, and where the tracer is called. Kinds of lights are named by their own files, by the table that
-# collects their rows, and by the suns that a capture brings itself, by the sky of the air (sky_table), which
+# collects their rows, and by the suns that a capture brings itself, by the sky of the air (sky_table, sky_through_water), which
 # is drawn as a table is; the solar spectrum, which decks are lit by, is no light but stands among them, as does the
 # spectrum of clear skies; the balance of heat weighs with both. What is outside is asked for its light, and once before whether
 # there is any; surfaces that shine, where paths meet them and where ways through smooth interfaces end. Prints the list.
@@ -34,7 +34,7 @@ places "cut at max_nodes"    1 'most == 0 \|\|' libs/transport
 # Beside a stage's own rays: which media a place lies in, what lies in one place with an interface, and ways through
 # interfaces, whose rays follow from each other.
 places "calls of the tracer" 7 'tracer(\(\))?\.(nearest|occluded|all)\(' libs/transport
-places "kinds of lights"     11 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
+places "kinds of lights"     19 'light/kinds/|\b(Sun|Moon|Sky|ClearSky|Lamp)Spec\b' \
   libs/[a-km-z]* libs/light/*.h libs/light/*.cpp apps formats
 # The list would notice a second one: this test's own text has one of each pattern more.
 extra=$(grep -cE 'std::clamp\(brightness, kLeast, 1\.0\)' <<<'  return std::clamp(brightness, kLeast, 1.0);')
