@@ -19,7 +19,7 @@ constexpr float kSame = 0.002f;    // of a step of heights
 // Draws from the table of a sky, and leaves the radiance to the air.
 class AskedSky final : public Light {
  public:
-  AskedSky(const SkySpec& density, const SpectralState& one) : sky_(density, one) {
+  explicit AskedSky(const SkySpec& density) : sky_(density) {
     nature_.far = nature_.wide = true;
     nature_.drawn = sky_.tabulated();
   }
@@ -156,11 +156,7 @@ void SkyTable::make_light() {
   std::iota(all.begin(), all.end(), size_t{0});
   const SkySpec density = weights(all, [](double) { return 1.0; });
   if (std::all_of(density.table.begin(), density.table.end(), [](double v) { return !(v > 0); })) return;
-  SpectralState one;
-  one.low_um = 1, one.high_um = 1.1, one.reference_um = 1.05;
-  one.bins = {{1, 1.1}};
-  one.knots = {0};
-  auto light = std::make_unique<const AskedSky>(density, one);
+  auto light = std::make_unique<const AskedSky>(density);
   density_ = [asked = light.get()](Dir d) { return asked->density(d); };
   light_ = std::move(light);
 }

@@ -37,11 +37,11 @@ class SkyTable {
   // As a light to ask (Atmosphere::sky): one density for all bins, that of height 0. Null before make_light(), and
   // where the sky is black.
   const Light* light() const { return light_.get(); }
-  // To places under water, made when first asked for. knots: their bins, always the same.
-  const SkyThroughWater& through_water(std::span<const size_t> knots) const;
   // 1/sr, with which light() draws a direction; 0 without it.
   double density(Dir d) const { return light_ ? density_(d) : 0; }
   void make_light();
+  // To places under water, made when first asked for. knots: their bins, always the same.
+  const SkyThroughWater& through_water(std::span<const size_t> knots) const;
 
  private:
   static constexpr double kLowest = -6000, kHighest = 12000;  // m

@@ -3,11 +3,7 @@
 namespace suite {
 
 SkyThroughWater::SkyThroughWater(const std::vector<SkySpec>& knots) {
-  SpectralState one;
-  one.low_um = 1, one.high_um = 1.1, one.reference_um = 1.05;
-  one.bins = {{1, 1.1}};
-  one.knots = {0};
-  for (const SkySpec& knot : knots) knots_.emplace_back(knot, one);
+  for (const SkySpec& knot : knots) knots_.emplace_back(knot);
 }
 
 DirectionSample SkyThroughWater::draw(size_t knot, Vec2 u) const {

@@ -142,6 +142,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
+      if (!(most > 0)) return throughputs_.give_back(p), false;
       const double m = static_cast<double>(chain.links) - static_cast<double>(i);
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
@@ -184,11 +185,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
   return false;
 }
 
-// From a ray's start to the next surface, m.
+// How far along a ray the matter of the chain reaches at most, m: to the next surface; 0 where a path that meets none
+// has left that matter, a body with a hole.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& ray) {
   const double way = refracted_->free_way(ray);
-  if (!environment_.earth || way < std::numeric_limits<double>::infinity()) return way;
+  if (way < std::numeric_limits<double>::infinity()) return way;
+  if (!space_.fills_outside()) return 0;
+  if (!environment_.earth) return way;
   const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
   return met ? met->distance : way;
 }

@@ -18,7 +18,17 @@ Vec2 turned(double angle) {
   return {1 - q * (1 / 2.0 - q * (1 / 24.0 - q * (1 / 720.0 - q * (1 / 40320.0)))),
           angle * (1 - q * (1 / 6.0 - q * (1 / 120.0 - q * (1 / 5040.0))))};
 }
+
+SpectralState one_wavelength() {
+  SpectralState one;
+  one.low_um = 1, one.high_um = 1.1, one.reference_um = 1.05;
+  one.bins = {{1, 1.1}};
+  one.knots = {0};
+  return one;
+}
 }  // namespace
+
+Sky::Sky(const SkySpec& directions) : Sky(directions, one_wavelength()) {}
 
 Sky::Sky(const SkySpec& spec, const SpectralState& state)
     : theta_max_(spec.full_sphere ? kPi : kPi / 2), full_sphere_(spec.full_sphere), cells_(spec.cells) {

@@ -45,6 +45,8 @@ class Sky final : public Light {
  public:
   // Error: table of the wrong size, negative or not finite; layers without temperature or with negative depth.
   Sky(const SkySpec& spec, const SpectralState& state);
+  // For its directions alone: of one wavelength.
+  explicit Sky(const SkySpec& directions);
   std::optional<LightSample> sample(const LightReceiver& at, const std::array<double, 4>& u,
                                     double time) const override;
   std::optional<LightMet> met_outside(Dir direction, double time) const override;

@@ -263,6 +263,12 @@ void FieldSpace::begin_way(uint32_t p, bool event, const Hit& hit, uint32_t mate
   if (!event && dot(in, hit.normal) * dot(out, hit.normal) < 0) bodies_.transmit(way_, hit, material, in, statistics_);
 }
 
+bool FieldSpace::fills_outside() const {
+  MediumStack outside = way_;
+  bodies_.leave_scene(outside);
+  return outside.medium(ambient_) == way_.medium(ambient_);
+}
+
 double FieldSpace::follow_way(const Ray& from, double length, std::span<float> through, std::span<float> scratch) {
   const double index = index_of(way_.medium(ambient_));
   const bool airless = is_airless(way_.medium(ambient_));

@@ -100,6 +100,8 @@ class FieldSpace {
   double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
   void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in);
   double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch);
+  // Whether what fills it there goes on where no surface is met any more.
+  bool fills_outside() const;
   void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   TraceStatistics take_statistics();
 

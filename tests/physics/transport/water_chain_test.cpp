@@ -15,6 +15,7 @@ namespace suite::test {
 namespace {
 
 constexpr double kIndex = 1.34, kDepth = 4;
+const Affine3 kUpright = rotation({0, 1, 0}, kPi / 2);  // what looked up looks along x
 
 // Waves along x with vertex normals: n x n vertices, 0.5 m apart, from a corner.
 Mesh waves(uint32_t n, double from, double height, double length, uint32_t material) {
@@ -36,29 +37,39 @@ Mesh waves(uint32_t n, double from, double height, double length, uint32_t mater
   return mesh;
 }
 
-// high: of waves 4 m long, m; 0 = flat water.
-std::shared_ptr<Scene> bay(bool ball, double absorption = 0.05, bool bed = true, double high = 0) {
+struct Bay {
+  double absorption = 0.05;
+  bool bed = true;
+  double high = 0;  // of waves 4 m long, m; 0 = flat water, without an end
+  double wide = 200;
+  bool upright = false;  // the surface faces the horizon
+};
+
+// ball: nobody knows how many ways there are.
+std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   auto scene = std::make_shared<Scene>();
-  scene->media = {medium(Curve::constant(absorption), Curve::constant(0.25), hg(0.9))};
+  scene->media = {medium(Curve::constant(bay.absorption), Curve::constant(0.25), hg(0.9))};
   scene->media[0].index = Curve::constant(kIndex);
   Material surface = material("surface", {"dielectric", {}, {{"index", Curve::constant(kIndex)}}, {}, nullptr});
   surface.inside = 0;
   Material glass = surface;
   glass.id = "glass", glass.inside = kNone;
-  scene->materials = {material("bed", lambert(bed ? 0.3 : 0)), surface, glass};
+  scene->materials = {material("bed", lambert(bay.bed ? 0.3 : 0)), surface, glass};
   place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kDepth}));
-  if (high > 0) {
-    scene->meshes = {waves(401, -100, high, 4, 1)};
+  if (bay.high > 0) {
+    scene->meshes = {waves(static_cast<uint32_t>(2 * bay.wide) + 1, -bay.wide / 2, bay.high, 4, 1)};
     scene->groups[0].placements.push_back({{}, TargetKind::mesh, 0, kNone, kNone});
   } else {
     place(*scene, PrimitiveKind::plane, {0, 0}, 1);
   }
+  if (bay.upright)
+    for (Placement& p : scene->groups[0].placements) p.to_parent = kUpright * p.to_parent;
   if (ball) place(*scene, PrimitiveKind::sphere, {0.1}, 2, translation({3e4, 0, 3}));
   check_scene(*scene, "bay");
   return scene;
 }
 
-Repeated look(const std::shared_ptr<const Scene>& scene, uint32_t paths) {
+Repeated look(const Bay& bay, bool ball, uint32_t paths) {
   AirSpec air;
   air.profile = standard_profile("tropical");
   air.aerosol = AirSpec::Aerosol{};
@@ -66,40 +77,53 @@ Repeated look(const std::shared_ptr<const Scene>& scene, uint32_t paths) {
   SourceSpecs sources;
   sources.air = std::make_shared<const AirSpec>(air);
   sources.add(SunSpec{dir_from_angles(40 * kDegree, 0.3), 0.27 * kDegree, Curve::constant(1)});
-  const Dir view = dir_from_angles(25 * kDegree, 2);
+  Dir view = dir_from_angles(25 * kDegree, 2);
+  if (bay.upright) view = kUpright.vector(view);
   const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
-  auto r = render(scene, sources, std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02));
+  auto r = render(scene_with(bay, ball), sources,
+                  std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02));
   EXPECT_EQ(r.report.statistics.failures, 0u);
   return over_problems(r.result, 0);
 }
 
-// Over a bed, which asks; where only the water's own scatterings do; and under waves that focus on the bed, through
-// which light from there comes in one way, in several, or in ways that are not found.
+void print(const char* name, const Repeated& asked, const Repeated& chance) {
+  std::printf("%s: asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %%, %+.2f %%\n", name, asked.mean,
+              100 * asked.error / asked.mean, chance.mean, 100 * chance.error / chance.mean,
+              100 * (asked.mean / chance.mean - 1));
+}
+
+// Over a bed, which asks; where only the water's own scatterings do; under waves that focus on the bed, through
+// which light from there comes in one way, in several, or in ways that are not found; a sheet so small that most light
+// comes in beside it, where water has no surface and so does not scatter; and one that stands upright, before which
+// there is air below the horizon as well: of the sky only what is above is drawn, so what chance brings from below must
+// not count as asked for.
 TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
   const struct {
     const char* name;
-    bool bed;
-    double high;
-    uint32_t paths;
+    Bay bay;
+    uint32_t paths, by_chance;
     double bound;
-  } cases[] = {{"bed", true, 0, 128, 0.01}, {"black bed", false, 0, 32, 0.03}, {"waves", true, 0.3, 48, 0.02}};
+    bool quieter = false;  // than by chance, four times: what it is for; waves that focus make noise of the sun
+    double darker = 0;     // negative control: water that absorbs more
+  } cases[] = {{"bed", {}, 128, 512, 0.01, true, 0.055},
+               {"black bed", {.bed = false}, 32, 128, 0.03, true},
+               {"waves", {.high = 0.3}, 48, 192, 0.02, false, 0.06},
+               {"small sheet", {.high = 0.01, .wide = 6}, 64, 256, 0.01},
+               {"upright", {.upright = true}, 64, 256, 0.02}};
   const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
   for (const auto& c : cases) {
-    const Repeated asked = look(bay(false, 0.05, c.bed, c.high), c.paths * times),
-                   chance = look(bay(true, 0.05, c.bed, c.high), 4 * c.paths * times);
+    const Repeated asked = look(c.bay, false, c.paths * times), chance = look(c.bay, true, c.by_chance * times);
     const double error = std::hypot(asked.error, chance.error);
-    std::printf("%s: asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %% of four times the paths, %+.2f %%\n", c.name,
-                asked.mean, 100 * asked.error / asked.mean, chance.mean, 100 * chance.error / chance.mean,
-                100 * (asked.mean / chance.mean - 1));
+    print(c.name, asked, chance);
     EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error) << c.name;  // p = 5e-4
     EXPECT_LT(error, c.bound * chance.mean) << c.name;
-    // Waves that focus make noise of the sun, which is asked for in both.
-    if (c.high == 0) {
-      EXPECT_LT(asked.error, 0.8 * 2 * chance.error) << c.name << ": what it is for";
+    if (c.quieter) {
+      EXPECT_LT(asked.error, 0.8 * 2 * chance.error) << c.name;
     }
-    if (!c.bed) continue;
-    // Negative control: water that absorbs a tenth more, or a fifth.
-    const Repeated darker = look(bay(false, c.high == 0 ? 0.055 : 0.06, true, c.high), c.paths);
+    if (c.darker == 0) continue;
+    Bay dark = c.bay;
+    dark.absorption = c.darker;
+    const Repeated darker = look(dark, false, c.paths);
     EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error)) << c.name;
   }
 }
@@ -107,31 +131,29 @@ TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
 // The sun itself, so wide that chance finds it often: with a bed, which asks along chains, and without one, where only
 // the water's own scatterings ask.
 TEST(WaterChain, FindsOfTheSunWhatChanceFinds) {
-  const auto look_up = [](const std::shared_ptr<const Scene>& scene, bool asked, uint32_t paths) {
+  const auto look_up = [](const Bay& bay, bool asked, uint32_t paths) {
     SourceSpecs sources;
     sources.add(SunSpec{dir_from_angles(40 * kDegree, 0.3), 20 * kDegree, Curve::constant(1)});
     PipelineOptions options;
     options.refracted_sources = asked;
     const Dir view = dir_from_angles(25 * kDegree, 2);
     const std::vector<Band> blue{Band::rectangular("blue", 0.45, 0.002)};
-    auto r = render(scene, sources, std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02),
-                    options);
+    auto r = render(scene_with(bay), sources,
+                    std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02), options);
     return over_problems(r.result, 0);
   };
   // Seen once of 4096 times the paths asked for, 16 times those by chance: -0.08 % +- 0.07 with, +0.7 % +- 0.5 without.
   const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
   for (const bool bed : {true, false}) {
-    const Repeated asked = look_up(bay(false, 0.05, bed), true, 384 * times),
-                   chance = look_up(bay(false, 0.05, bed), false, 16384 * times);
+    const Repeated asked = look_up({.bed = bed}, true, 384 * times),
+                   chance = look_up({.bed = bed}, false, 16384 * times);
     const double error = std::hypot(asked.error, chance.error);
-    std::printf("%s: asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %% of 43 times the paths, %+.2f %%\n",
-                bed ? "bed" : "black bed", asked.mean, 100 * asked.error / asked.mean, chance.mean,
-                100 * chance.error / chance.mean, 100 * (asked.mean / chance.mean - 1));
+    print(bed ? "bed" : "black bed", asked, chance);
     EXPECT_NEAR(asked.mean, chance.mean, 3.5 * error);
     EXPECT_LT(error, (bed ? 0.01 : 0.05) * chance.mean);
     if (!bed) continue;
     // Negative control: water that absorbs a tenth more.
-    const Repeated darker = look_up(bay(false, 0.055), true, 256);
+    const Repeated darker = look_up({.absorption = 0.055}, true, 256);
     EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
   }
 }
