@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "transport/chain_laws.h"
 #include "transport/contacts.h"
 #include "transport/dimensions.h"
 #include "transport/path_tracing.h"
@@ -247,6 +248,7 @@ class PathKernel final : public PathTracing {
   bool is_own(const NodeAt& node, Dir in) const;
   RefractedSight::Node from_node(const NodeAt& node) const;
   bool follow_chain(const RefractedQuestion& q, size_t knot);
+  LinkPlace link_place(const RefractedQuestion& q, size_t i, double most, size_t k) const;
   void scatter_along(uint32_t p, size_t i, Dir from, std::span<float> through, std::span<float> memory);
   bool shine_behind_chain(const RefractedQuestion& q, size_t knot, Vec3 place, double scale, double arrival);
   double free_way(const Ray& ray);

@@ -4,10 +4,11 @@
 // likely to have been scattered 0, 1, 2 or n times. A path that looks for it from the place draws directions without
 // knowing whether they will end near the sun's. So they are drawn from its end: where a node has found a way to the
 // light (kernel_refract.h), of direction s and length L in the matter beside the node, it also draws a chain of
-//   n scatterings, 1 <= n <= kMostLinks, with probability P_k(n) ~ t^n / n!, t = L times the scattering coefficient,
+//   n scatterings, 1 <= n <= kMostLinks, with probability P_k(n), most of it ~ t^n / n!, t = L times the scattering
+//     coefficient (chain_laws.h),
 //   directions d_n as matter scatters what comes along s, d_(n-1) what comes along d_n, ..., d_1 from the node, and
-//   places: of m scatterings that are still to come the next one is put at a share x of the way up to the next surface,
-//     or to kReach L, with density e + (1 - e) m (1 - x)^(m-1): n places that are even on the whole way.
+//   places: the next scattering is put at a share x of the way up to the next surface, or to kReach L, with a density
+//     that makes n places even on a way as steep as the light's, and that falls as light does on flatter ones.
 // From the last place the light is asked for as from a node. The phase functions are those of the densities but for the
 // last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
 // transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
@@ -72,22 +73,13 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
     const Path& path = paths_[node.path];
     Chain& chain = chain_;
     const auto own = static_cast<size_t>(path.knot);
-    const auto poisson = [&](size_t k, int n) {  // of n over that of none
-      double p = 1;
-      for (int i = 1; i <= n; ++i) p *= depth[k] / i;
-      return p;
-    };
     const std::array<double, 4> u = chain_numbers(path, node.event, sky, dimensions::of_link(0, sky));
     const int least = sky ? 0 : 1;
-    const auto of_all = [&](size_t k) {
-      double sum = least == 0 ? 1 : 0, p = 1;
-      for (int i = 1; i <= kMostLinks; ++i) sum += p *= depth[k] / i;
-      return sum;
+    const auto count = [&](size_t k) {
+      return LinkCount(depth[k], space_.albedo_around(node.path, k), least, kMostLinks);
     };
-    chain.links = least;
-    double left = u[3] * of_all(own), p = poisson(own, least);
-    for (; chain.links < kMostLinks && left >= p; p *= depth[own] / chain.links) left -= p, ++chain.links;
-    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * poisson(k, chain.links) / of_all(k);
+    chain.links = count(own).draw(u[3]);
+    for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * count(k).probability(chain.links);
     const auto n = static_cast<size_t>(chain.links);
     chain.toward[n] = toward;
     for (size_t i = n; i-- > 0;) {
@@ -118,11 +110,10 @@ std::array<double, 4> PathKernel<Surfaces, Space, Throughputs, Estimator>::chain
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const RefractedQuestion& q, size_t knot) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
-    constexpr double kEvenly = 0.15;
     const NodeAt& node = nodes_[q.node];
     const uint32_t p = node.path;
     const Path& path = paths_[p];
-    const Chain& chain = chain_;
+    Chain& chain = chain_;
     if (options_.max_scatterings > 0 &&
         path.scatterings + static_cast<uint32_t>(chain.links) > options_.max_scatterings)
       return false;
@@ -134,28 +125,48 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
     keep_bins_of(knot, through);
     begin_chain(node);
-    double shares = 0, arrival = 0;
-    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
-    double scale = 1 / shares;
+    double ways = 1, arrival = 0;
     Ray ray{node.event ? space_.place(p) : surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time,
             path.draw};
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       if (!(most > 0)) return throughputs_.give_back(p), false;
-      const double m = static_cast<double>(chain.links) - static_cast<double>(i);
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
-      const double x = u[1] < kEvenly ? u[0] : 1 - std::pow(1 - u[0], 1 / m);
-      scale *= most / (kEvenly + (1 - kEvenly) * m * std::pow(1 - x, m - 1));
+      const double x = link_place(q, i, most, static_cast<size_t>(path.knot)).draw({u[0], u[1]});
+      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= link_place(q, i, most, k).density(x);
+      ways *= most;
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
       ray.origin += ray.direction * (x * most);
-      if (m > 1) scatter_along(p, i, chain.toward[i + 1], through, memory);
+      if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(p, i, chain.toward[i + 1], through, memory);
     }
     throughputs_.give_back(p);
-    return shine_behind_chain(q, knot, ray.origin, scale, arrival);
+    double shares = 0;
+    for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
+    return shine_behind_chain(q, knot, ray.origin, ways / shares, arrival);
   }
   return false;
+}
+
+// By what scattering i of the chain is put on its way of `most` m, at knot k.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+LinkPlace PathKernel<Surfaces, Space, Throughputs, Estimator>::link_place(const RefractedQuestion& q, size_t i,
+                                                                          double most, size_t k) const {
+  if constexpr (kGuides) {
+    constexpr double kFlattest = 0.05, kSteep = 2;
+    const uint32_t p = nodes_[q.node].path;
+    const auto n = static_cast<size_t>(chain_.links);
+    const Dir light = chain_.toward[n], up = refracted_->has_sheet() ? refracted_->sheet_axis() : light;
+    const double steep = dot(light, up), rise = std::copysign(std::max(kFlattest, std::fabs(steep)), steep),
+                 extinction = space_.scattering(p, k) / space_.albedo_around(p, k),
+                 height = guides_[q.node].reach / kReach;
+    const auto more = [&](size_t j) { return extinction * (1 - dot(chain_.toward[j], up) / rise); };  // 1/m
+    int others = 0;
+    for (size_t j = i + 1; j < n; ++j) others += std::fabs(more(j)) * height < kSteep;
+    return {more(i) * most, others};
+  }
+  return {0, 0};
 }
 
 // Asks for the light from the last place.

@@ -88,9 +88,10 @@ class RefractedSight {
   // kNothing. Nothing where something else is in its way: then it is not asked for there.
   static constexpr double kNothing = 1e-5;
   std::optional<double> unfound(Ray ray, double distance);
-  // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): how far a place lies below it, m,
-  // 0 elsewhere; where flat water would have one leave a place below; the cosine of a direction to its axis; the axis,
-  // towards its front.
+  // Of the scene's only refracting surface, where it is a sheet (refracting_sheet.h): whether it is; how far a place
+  // lies below it, m, 0 elsewhere; where flat water would have one leave a place below; the cosine of a direction to
+  // its axis; the axis, towards its front.
+  bool has_sheet() const { return sheet_.has_value(); }
   double below_sheet(Vec3 place) const { return sheet_ ? sheet_->deep(place) : 0; }
   std::optional<Dir> sheet_guess(Dir to, size_t knot) const {
     return sheet_->guess(to, interfaces_.index(sheet_material_, knot));
