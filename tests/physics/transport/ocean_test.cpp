@@ -3,8 +3,8 @@
 // A solution by matrices (tests/support/ocean_reference.h) is compared with the published means, and the renderer with
 // that solution, of two layers and of a profile of seven (problem 3's kind) as well: within 1 % of irradiances and 2 %
 // of the nadir radiance and three standard errors; in the run under the label `long` (SUITE_LONG) within these bounds,
-// with a noise of a third of them, where kMostRounds make it as small. They do not for the sun over particles that
-// absorb little (upward light at b / c of 0.9, all of the profile), where the error bars stay part of the bound.
+// with a noise of a third of them, where kMostRounds make it as small. They do not for the sun over the profile, whose
+// layers chains of scatterings do not leave (transport/kernel_chain.h): there the error bars stay part of the bound.
 #include <gtest/gtest.h>
 
 #include <array>
