@@ -125,7 +125,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
     keep_bins_of(knot, through);
     begin_chain(node);
-    double ways = 1, arrival = 0;
+    double arrival = 0;
     Ray ray{node.event ? space_.place(p) : surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time,
             path.draw};
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
@@ -134,9 +134,11 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
       if (!(most > 0)) return throughputs_.give_back(p), false;
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
-      const double x = link_place(q, i, most, static_cast<size_t>(path.knot)).draw({u[0], u[1]});
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= link_place(q, i, most, k).density(x);
-      ways *= most;
+      const LinkPlace own = link_place(q, i, most, static_cast<size_t>(path.knot));
+      const double x = own.draw({u[0], u[1]}), density = own.density(x);
+      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= link_place(q, i, most, k).density(x) / density;
+      // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
+      for (size_t b = 0; b < bins_; ++b) through[b] *= static_cast<float>(most / density);
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
       ray.origin += ray.direction * (x * most);
       if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(p, i, chain.toward[i + 1], through, memory);
@@ -144,7 +146,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     throughputs_.give_back(p);
     double shares = 0;
     for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
-    return shine_behind_chain(q, knot, ray.origin, ways / shares, arrival);
+    return shine_behind_chain(q, knot, ray.origin, 1 / shares, arrival);
   }
   return false;
 }

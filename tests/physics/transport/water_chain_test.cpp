@@ -14,7 +14,7 @@
 namespace suite::test {
 namespace {
 
-constexpr double kIndex = 1.34, kDepth = 4;
+constexpr double kIndex = 1.34;
 const Affine3 kUpright = rotation({0, 1, 0}, kPi / 2);  // what looked up looks along x
 
 // Waves along x with vertex normals: n x n vertices, 0.5 m apart, from a corner.
@@ -38,7 +38,8 @@ Mesh waves(uint32_t n, double from, double height, double length, uint32_t mater
 }
 
 struct Bay {
-  double absorption = 0.05;
+  double absorption = 0.05, scattering = 0.25;  // 1/m
+  double depth = 4;                             // m
   bool bed = true;
   double high = 0;  // of waves 4 m long, m; 0 = flat water, without an end
   double wide = 200;
@@ -48,14 +49,14 @@ struct Bay {
 // ball: nobody knows how many ways there are.
 std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   auto scene = std::make_shared<Scene>();
-  scene->media = {medium(Curve::constant(bay.absorption), Curve::constant(0.25), hg(0.9))};
+  scene->media = {medium(Curve::constant(bay.absorption), Curve::constant(bay.scattering), hg(0.9))};
   scene->media[0].index = Curve::constant(kIndex);
   Material surface = material("surface", {"dielectric", {}, {{"index", Curve::constant(kIndex)}}, {}, nullptr});
   surface.inside = 0;
   Material glass = surface;
   glass.id = "glass", glass.inside = kNone;
   scene->materials = {material("bed", lambert(bay.bed ? 0.3 : 0)), surface, glass};
-  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -kDepth}));
+  place(*scene, PrimitiveKind::plane, {0, 0}, 0, translation({0, 0, -bay.depth}));
   if (bay.high > 0) {
     scene->meshes = {waves(static_cast<uint32_t>(2 * bay.wide) + 1, -bay.wide / 2, bay.high, 4, 1)};
     scene->groups[0].placements.push_back({{}, TargetKind::mesh, 0, kNone, kNone});
@@ -94,9 +95,9 @@ void print(const char* name, const Repeated& asked, const Repeated& chance) {
 
 // Over a bed, which asks; where only the water's own scatterings do; under waves that focus on the bed, through
 // which light from there comes in one way, in several, or in ways that are not found; a sheet so small that most light
-// comes in beside it, where water has no surface and so does not scatter; and one that stands upright, before which
+// comes in beside it, where water has no surface and so does not scatter; one that stands upright, before which
 // there is air below the horizon as well: of the sky only what is above is drawn, so what chance brings from below must
-// not count as asked for.
+// not count as asked for; and deep clear water, where the product of a chain's ways does not fit into a float.
 TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
   const struct {
     const char* name;
@@ -109,7 +110,8 @@ TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
                {"black bed", {.bed = false}, 32, 128, 0.03, true},
                {"waves", {.high = 0.3}, 48, 192, 0.02, false, 0.06},
                {"small sheet", {.high = 0.01, .wide = 6}, 64, 256, 0.01},
-               {"upright", {.upright = true}, 64, 256, 0.02}};
+               {"upright", {.upright = true}, 64, 256, 0.02},
+               {"deep", {.absorption = 0.0005, .scattering = 0.004, .depth = 800}, 48, 192, 0.02}};
   const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
   for (const auto& c : cases) {
     const Repeated asked = look(c.bay, false, c.paths * times), chance = look(c.bay, true, c.by_chance * times);
