@@ -40,7 +40,7 @@ class LinkCount {
   }
 
  private:
-  // In the ocean of particles of b / c = 0.9 (physics_transport_ocean) 0.1 to 0.3 and 0.8 to 1 make little difference.
+  // In the ocean of particles of b / c = 0.9 (physics_transport_ocean) 0.2 or 0.3 and 0.9 to 1 are alike.
   static constexpr double kTail = 0.2, kFalls = 0.95;
   double depth_, falls_, first_ = 0, tail_;
   int least_, most_;
