@@ -239,23 +239,25 @@ class PathKernel final : public PathTracing {
     int links;                   // scatterings
     Dir toward[kMostLinks + 1];  // from the node, and from each of them
     double density[kMostLinks];  // of each direction but the last one, at the path's knot
+    uint32_t mean;               // the event that stands for all matter up to the light's interface
     double share[kMaxKnots];     // r_k of it all, over the density that drew it
   };
   bool ask_along_chain(const RefractedQuestion& q, Dir toward, double length, size_t knot);
-  bool draw_chain(const NodeAt& node, Dir toward, std::span<const double> depth, bool sky);
+  uint32_t mean_toward(const NodeAt& node, Dir toward, double length);
+  bool draw_chain(const NodeAt& node, Dir toward, double length, uint32_t mean, bool sky);
   std::array<double, 4> chain_numbers(const Path& path, bool event, bool sky, uint32_t set) const;
-  void begin_chain(const NodeAt& node);
   bool is_own(const NodeAt& node, Dir in) const;
   RefractedSight::Node from_node(const NodeAt& node) const;
+  Ray ray_from(const NodeAt& node, Dir toward) const;
   bool follow_chain(const RefractedQuestion& q, size_t knot);
   LinkPlace link_place(const RefractedQuestion& q, size_t i, double most, size_t k) const;
-  void scatter_along(uint32_t p, size_t i, Dir from, std::span<float> through, std::span<float> memory);
+  void scatter_along(size_t i, Dir from, std::span<float> through, std::span<float> memory);
   bool shine_behind_chain(const RefractedQuestion& q, size_t knot, Vec3 place, double scale, double arrival);
   double free_way(const Ray& ray);
   bool has_asked_sky(size_t i, const Continuation& on);
   bool has_heard(Path& path, const Flight& flight, double flown, double length) const;
   void ask_sky(const NodeAt& node);
-  void ask_sky(const NodeAt& node, size_t knot, const SkyThroughWater& sky, Dir to, double deep);
+  void ask_sky(const NodeAt& node, size_t knot, const SkyThroughWater& sky, Dir to, double deep, uint32_t mean);
   // kernel_branch.h: paths that go on in more than one way.
   void keep(uint32_t p, double share, uint32_t times);
   bool take_up(uint32_t p);

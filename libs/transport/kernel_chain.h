@@ -13,8 +13,9 @@
 // last one, of which the way may come from another direction than s; in the mean Poisson's law, places and
 // transmittance make one another's factors up as well, if matter scatters forwards. What is left varies little. Such
 // chains take all light of its kind: up to kMostLinks scatterings on flights of kReach L at most that meet no surface.
-// What continuations of the node find of it is left out (Lane::quiet). Matter must be the same everywhere beside the
-// node, and let some light through unscattered (kDeepest).
+// What continuations of the node find of it is left out (Lane::quiet). Matter must let some light through unscattered
+// (kDeepest) and be the same everywhere beside the node, or in layers: boundaries that bend nothing are passed, chains
+// are drawn from the mean of what lies on the light's way, and count with what is there.
 //
 // The sky of the air is asked for in the same way, 0 <= n, towards a direction above the water that the path's knot has
 // drawn (sky_through_water.h), where the scene's only refractor is a sheet. Light from there may come through waves in
@@ -48,35 +49,48 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_along_chain(const 
     if (!node.event && dot(toward, normal) * dot(path.direction, normal) > 0) return false;  // other matter is there
     Guide& guide = guides_[q.node];
     if (guide.chains != 0 && guide.light != q.light) return false;
-    if (!node.event) space_.stand(node.path);
-    if (!(space_.asymmetry(node.path) > kForwards)) return false;
-    double depth[kMaxKnots];
-    for (size_t k = 0; k < knots(); ++k) {
-      depth[k] = space_.scattering(node.path, k) * length;
-      if (!(depth[k] > 0 && depth[k] < kDeepest)) return false;
-    }
+    const uint32_t mean = mean_toward(node, toward, length);
+    if (mean == kNone) return false;
     if (guide.chains == 0) guide.toward = toward;
     guide.chains |= 1u << knot;
     guide.light = q.light;
     guide.reach = kReach * length;
-    if (draw_chain(node, toward, depth, false) && !is_own(node, chain_.toward[0])) follow_chain(q, knot);
+    if (draw_chain(node, toward, length, mean, false) && !is_own(node, chain_.toward[0])) follow_chain(q, knot);
     return true;
   }
   return false;
 }
 
+// The mean of the matter on `length` m towards the light as an event; kNone where it is of no use for chains.
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+uint32_t PathKernel<Surfaces, Space, Throughputs, Estimator>::mean_toward(const NodeAt& node, Dir toward,
+                                                                          double length) {
+  if constexpr (kGuides) {
+    space_.begin_way(node.path, true, {}, kNone, {}, {});
+    const uint32_t mean = space_.mean_of_way(ray_from(node, toward), length);
+    if (!(space_.asymmetry(mean) > kForwards)) return kNone;
+    for (size_t k = 0; k < knots(); ++k) {
+      const double depth = space_.scattering(mean, k) * length;
+      if (!(depth > 0 && depth < kDeepest)) return kNone;
+    }
+    return mean;
+  }
+  return kNone;
+}
+
 // Number and directions of scatterings.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeAt& node, Dir toward,
-                                                                     std::span<const double> depth, bool sky) {
+bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeAt& node, Dir toward, double length,
+                                                                     uint32_t mean, bool sky) {
   if constexpr (kGuides) {
     const Path& path = paths_[node.path];
     Chain& chain = chain_;
+    chain.mean = mean;
     const auto own = static_cast<size_t>(path.knot);
     const std::array<double, 4> u = chain_numbers(path, node.event, sky, dimensions::of_link(0, sky));
     const int least = sky ? 0 : 1;
     const auto count = [&](size_t k) {
-      return LinkCount(depth[k], space_.albedo_around(node.path, k), least, kMostLinks);
+      return LinkCount(space_.scattering(mean, k) * length, space_.albedo(mean, k), least, kMostLinks);
     };
     chain.links = count(own).draw(u[3]);
     for (size_t k = 0; k < knots(); ++k) chain.share[k] = path.relative[k] * count(k).probability(chain.links);
@@ -85,10 +99,9 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw_chain(const NodeA
     for (size_t i = n; i-- > 0;) {
       const std::array<double, 4> v =
           i + 1 == n ? u : chain_numbers(path, node.event, sky, dimensions::of_link(n - 1 - i, sky));
-      if (!space_.scatter(node.path, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i]))
-        return false;
+      if (!space_.scatter(mean, -chain.toward[i + 1], path.knot, {v[0], v[1]}, v[2], chain.toward[i])) return false;
       float density[kMaxKnots];
-      space_.densities(node.path, -chain.toward[i + 1], chain.toward[i], {density, knots()});
+      space_.densities(mean, -chain.toward[i + 1], chain.toward[i], {density, knots()});
       chain.density[i] = density[own];
       if (!(density[own] > 0)) return false;
       for (size_t k = 0; k < knots(); ++k) chain.share[k] *= double{density[k]} / double{density[own]};
@@ -124,26 +137,32 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::follow_chain(const Ref
     const Factor factor = evaluate(node, chain.toward[0], memory);
     for (size_t i = 0; i < bins_; ++i) through[i] = factor.scale * (factor.spectrum ? factor.spectrum[i] : 1.0f);
     keep_bins_of(knot, through);
-    begin_chain(node);
+    space_.begin_way(p, node.event, hit, node.event ? kNone : surfaces_.material(p), -path.direction, chain.toward[0]);
     double arrival = 0;
-    Ray ray{node.event ? space_.place(p) : surface_.tracer().leave(hit, chain.toward[0]), chain.toward[0], path.time,
-            path.draw};
+    Ray ray = ray_from(node, chain.toward[0]);
     for (size_t i = 0; i < static_cast<size_t>(chain.links); ++i) {
       ray.direction = chain.toward[i];
       const double most = std::min(free_way(ray), guides_[q.node].reach);
       if (!(most > 0)) return throughputs_.give_back(p), false;
       const std::array<double, 4> u =
           chain_numbers(path, node.event, q.sky, dimensions::of_link_place(i, kMostLinks, q.sky));
-      const LinkPlace own = link_place(q, i, most, static_cast<size_t>(path.knot));
-      const double x = own.draw({u[0], u[1]}), density = own.density(x);
-      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= link_place(q, i, most, k).density(x) / density;
+      const auto own = static_cast<size_t>(path.knot);
+      const double x = space_.share_of_way(link_place(q, i, most, own).draw({u[0], u[1]}), most, own);
+      const auto density_at = [&](size_t k) {
+        const auto at = space_.share_of_depth(x, most, k);
+        return link_place(q, i, most, k).density(at.share) * at.change;
+      };
+      const double density = density_at(own);
+      if (!(density > 0)) return throughputs_.give_back(p), false;
+      for (size_t k = 0; k < knots(); ++k) chain.share[k] *= density_at(k) / density;
       // At once: 24 ways of 100 m each, and as many coefficients of 0.01 1/m, do not fit into floats.
       for (size_t b = 0; b < bins_; ++b) through[b] *= static_cast<float>(most / density);
       arrival += x * most * space_.follow_way(ray, x * most, through, transmission_);
       ray.origin += ray.direction * (x * most);
-      if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(p, i, chain.toward[i + 1], through, memory);
+      if (i + 1 < static_cast<size_t>(chain.links)) scatter_along(i, chain.toward[i + 1], through, memory);
     }
     throughputs_.give_back(p);
+    space_.hold_way();
     double shares = 0;
     for (size_t k = 0; k < knots(); ++k) shares += probability_[k] * chain.share[k];
     return shine_behind_chain(q, knot, ray.origin, 1 / shares, arrival);
@@ -157,16 +176,16 @@ LinkPlace PathKernel<Surfaces, Space, Throughputs, Estimator>::link_place(const 
                                                                           double most, size_t k) const {
   if constexpr (kGuides) {
     constexpr double kFlattest = 0.05, kSteep = 2;
-    const uint32_t p = nodes_[q.node].path;
     const auto n = static_cast<size_t>(chain_.links);
     const Dir light = chain_.toward[n], up = refracted_->has_sheet() ? refracted_->sheet_axis() : light;
     const double steep = dot(light, up), rise = std::copysign(std::max(kFlattest, std::fabs(steep)), steep),
-                 extinction = space_.scattering(p, k) / space_.albedo_around(p, k),
+                 albedo = space_.albedo(chain_.mean, k), extinction = space_.scattering(chain_.mean, k) / albedo,
                  height = guides_[q.node].reach / kReach;
     const auto more = [&](size_t j) { return extinction * (1 - dot(chain_.toward[j], up) / rise); };  // 1/m
     int others = 0;
     for (size_t j = i + 1; j < n; ++j) others += std::fabs(more(j)) * height < kSteep;
-    return {more(i) * most, others};
+    const double depth = space_.depth_of_way(most, k) / albedo;
+    return {depth - extinction * dot(chain_.toward[i], up) / rise * most, others};
   }
   return {0, 0};
 }
@@ -189,8 +208,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
     for (const RefractedWay& way : ways) {
       const std::span<float> through = dense(p, 3), memory = throughputs_.take(p);
       std::copy(chain_through_.begin(), chain_through_.end(), through.begin());
-      scatter_along(p, links - 1, way.direction, through, memory);
-      begin_chain(node);
+      space_.resume_way();
+      scatter_along(links - 1, way.direction, through, memory);
       shine_behind(way, q, knot, {through, arrival, scale, links, chain_.toward[0]});
     }
     return true;
@@ -198,23 +217,21 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::shine_behind_chain(con
   return false;
 }
 
-// How far along a ray the matter of the chain reaches at most, m: to the next surface; 0 where a path that meets none
-// has left that matter, a body with a hole.
+// How far along a ray a flight of the chain may reach, m: to the next surface, or to where a path that meets none has
+// left the body around it, which has a hole.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 double PathKernel<Surfaces, Space, Throughputs, Estimator>::free_way(const Ray& ray) {
-  const double way = refracted_->free_way(ray);
-  if (way < std::numeric_limits<double>::infinity()) return way;
-  if (!space_.fills_outside()) return 0;
-  if (!environment_.earth) return way;
+  const double way = space_.free_way(ray);
+  if (way < std::numeric_limits<double>::infinity() || !environment_.earth) return way;
   const auto met = environment_.earth->meet(ray.origin, ray.direction, way);
   return met ? met->distance : way;
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::begin_chain(const NodeAt& node) {
-  const uint32_t p = node.path;
-  space_.begin_way(p, node.event, hits_[node.slot], node.event ? kNone : surfaces_.material(p), -paths_[p].direction,
-                   chain_.toward[0]);
+Ray PathKernel<Surfaces, Space, Throughputs, Estimator>::ray_from(const NodeAt& node, Dir toward) const {
+  const Path& path = paths_[node.path];
+  return {node.event ? space_.place(node.path) : surface_.tracer().leave(hits_[node.slot], toward), toward, path.time,
+          path.draw};
 }
 
 // Whether light from a direction is left to the continuation of a scattering that asks along chains.
@@ -223,13 +240,12 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::is_own(const NodeAt& n
   return node.event && dot(in, paths_[node.path].direction) > dot(in, guide_of(node)->toward);
 }
 
-// What link i of the chain of path p makes of light that comes from a direction.
+// What link i of the chain, where its way has come to, makes of light that comes from a direction.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
-void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(uint32_t p, size_t i, Dir from,
-                                                                        std::span<float> through,
+void PathKernel<Surfaces, Space, Throughputs, Estimator>::scatter_along(size_t i, Dir from, std::span<float> through,
                                                                         std::span<float> memory) {
   if constexpr (kGuides) {
-    const Factor w = space_.evaluate(p, dot(chain_.toward[i], from), memory);
+    const Factor w = space_.evaluate(space_.stand_on_way(), dot(chain_.toward[i], from), memory);
     const auto scale = static_cast<float>(double{w.scale} / chain_.density[i]);
     for (size_t b = 0; b < bins_; ++b) through[b] *= scale * (w.spectrum ? w.spectrum[b] : 1.0f);
   }
@@ -243,10 +259,14 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_heard(Path& path, 
   if constexpr (kGuides) {
     if (path.quiet == 0 && path.sky == Path::Sky::open) return false;
     const bool scattered = flight.arrival == Arrival::scattered;
-    const bool beyond = scattered && (flown > path.quiet_reach || path.quiet_events-- == 0);
+    if (flight.arrival == Arrival::onward) {
+      path.passed += flown;
+      return false;
+    }
+    const bool beyond = scattered && (path.passed + flown > path.quiet_reach || path.quiet_events-- == 0);
     if (!scattered || beyond) path.quiet = 0;
     if (path.sky == Path::Sky::behind && length == std::numeric_limits<double>::infinity() && !scattered) return true;
-    if (beyond || flight.arrival == Arrival::onward) path.sky = Path::Sky::open;
+    if (beyond) path.sky = Path::Sky::open;
   }
   return false;
 }
@@ -265,7 +285,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::has_asked_sky(size_t i
     for (size_t k = 0; k < knots(); ++k) any += path.relative[k] * density[k];
     if (!(any > 0)) return false;
     RefractedSight::Node from;
-    from.place = path.origin, from.time = path.time, from.draw = path.draw;
+    from.place = path.origin - path.direction * path.passed, from.time = path.time, from.draw = path.draw;
     const size_t knot = refracted_->interfaces().set_of()[static_cast<size_t>(path.knot)];
     return refracted_->is_first_through_sheet(from, path.direction, on.in, knot);
   }
@@ -284,16 +304,13 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     const Vec3 place = from_node(node).place;
     const double deep = refracted_->below_sheet(place);
     if (!(deep > 0)) return;
-    if (!node.event) space_.stand(node.path);
-    if (!(space_.asymmetry(node.path) > kForwards)) return;
+    const Dir up = refracted_->sheet_axis();
+    const uint32_t mean = mean_toward(node, up, deep);
+    if (mean == kNone) return;
     Guide& guide = guides_[static_cast<size_t>(&node - nodes_.data())];
     const double reach = guide.chains ? guide.reach : kReach * deep;
-    for (size_t k = 0; k < knots(); ++k) {
-      const double depth = space_.scattering(node.path, k) * deep;
-      if (!(depth > 0 && depth < kDeepest)) return;
-    }
     guide.sky = true, guide.reach = reach;
-    if (guide.chains == 0) guide.toward = refracted_->sheet_axis();
+    if (guide.chains == 0) guide.toward = up;
     const std::array<double, 4> u = chain_numbers(path, node.event, true, dimensions::kOfChainsSky);
     const DirectionSample sample = sky->draw(static_cast<size_t>(path.knot), {u[2], u[3]});
     if (!(sample.density > 0)) return;
@@ -301,23 +318,21 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& 
     for (size_t k = 0; k < knots(); ++k) {
       bool alive = false;
       for (size_t other = k; other < knots(); ++other) alive = alive || (set[other] == k && path.relative[other] > 0);
-      if (set[k] == k && alive) ask_sky(node, k, *sky, sample.direction, deep);
+      if (set[k] == k && alive) ask_sky(node, k, *sky, sample.direction, deep, mean);
     }
   }
 }
 
 template <class Surfaces, class Space, class Throughputs, class Estimator>
 void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask_sky(const NodeAt& node, size_t knot,
-                                                                  const SkyThroughWater& sky, Dir to, double deep) {
+                                                                  const SkyThroughWater& sky, Dir to, double deep,
+                                                                  uint32_t mean) {
   if constexpr (kGuides && Surfaces::kDense > 0) {
     const RefractedQuestion q{
         static_cast<uint32_t>(&node - nodes_.data()), Space::kEmitter, false, {to, {}}, 1, nullptr, 0, true};
     const auto toward = refracted_->sheet_guess(to, knot);
     if (!toward) return;
-    const double length = deep / refracted_->steepness(*toward);
-    double depth[kMaxKnots];
-    for (size_t k = 0; k < knots(); ++k) depth[k] = space_.scattering(node.path, k) * length;
-    if (!draw_chain(node, *toward, depth, true)) return;
+    if (!draw_chain(node, *toward, deep / refracted_->steepness(*toward), mean, true)) return;
     double density[kMaxKnots];
     sky.densities(to, {density, knots()});
     for (size_t k = 0; k < knots(); ++k) chain_.share[k] *= density[k];

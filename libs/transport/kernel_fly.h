@@ -94,7 +94,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.surfaces = path.scatterings = path.flights = 0, path.events = 0;
   path.bends = Path::kUnasked;
   path.branch = Branch::none, path.sided = false;
-  path.quiet = 0, path.sky = Path::Sky::open, path.share = 1;
+  path.quiet = 0, path.sky = Path::Sky::open, path.share = 1, path.passed = 0;
   if (!branches_.empty()) branches_[p].surfaces = 0;
   path.water = WaterSeen::nothing;
   path.knot = 0;

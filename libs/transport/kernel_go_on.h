@@ -181,6 +181,7 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::leave(size_t i, const 
   const uint32_t p = node.path;
   Path& path = paths_[p];
   path.branch = on.branch, path.sided = on.sided;
+  path.passed = 0;
   if (kGuides && node.event && !guides_.empty())
     if (const Guide& guide = *guide_of(node); guide.chains || guide.sky) {
       const bool own = is_own(node, on.in);

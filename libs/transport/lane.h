@@ -45,6 +45,7 @@ struct Lane {
   uint16_t quiet_light = 0;
   uint16_t quiet_events = 0;
   double quiet_reach = 0;
+  double passed = 0;  // m from its last node to `origin`, boundaries of media on the way
   // The same of the light of the air's sky that comes by one smooth interface.
   enum class Sky : uint8_t {
     open,

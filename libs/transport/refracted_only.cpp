@@ -25,11 +25,6 @@ void RefractedSight::set_sheet(const Optics& optics, uint32_t number) {
   sheet_ = RefractingSheet::of(tracer, number, o);
 }
 
-double RefractedSight::free_way(const Ray& ray) {
-  Hit hit;
-  return hit_any(ray, hit) ? hit.distance : std::numeric_limits<double>::infinity();
-}
-
 void RefractedSight::set_way(const Search& s, const Traced& found, RefractedWay& way) {
   way = found.way;
   way.spreading = 1 / (std::fabs(found.det) * (s.end.far ? 1 : s.distance * s.distance));

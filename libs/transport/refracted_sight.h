@@ -103,8 +103,6 @@ class RefractedSight {
   // times what flat water makes of it. And whether it is the one that leaves in a direction.
   std::span<const RefractedWay> first_through_sheet(const Node& node, Dir to, size_t knot);
   bool is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot);
-  // To the next surface on a ray, those that part media alike included, m; infinity: there is none.
-  double free_way(const Ray& ray);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
  private:

@@ -27,7 +27,7 @@ FieldSpace::FieldSpace(const SpaceContext& c)
       sight_(c.surface, bodies_, flights_, c.optics.media().size(), c.lost),
       stacks_(c.width),
       ways_(c.width),
-      events_(2 * c.width),
+      events_(2 * c.width + 2),
       phase_(c.optics.state().size()) {
   for (const BakedMedium& m : c.optics.media()) {
     const size_t reference = c.optics.state().knots[0];
@@ -36,6 +36,9 @@ FieldSpace::FieldSpace(const SpaceContext& c)
     asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
     one_phase_.push_back(m.scatters() && m.phase->spectrally_uniform());
   }
+  for (const Material& m : c.surface.tracer().scene().materials)
+    for (const uint32_t medium : {m.outside, m.inside})
+      hazy_ = hazy_ || (m.is_boundary() && medium != kNone && !is_airless(medium));
 }
 
 void FieldSpace::start(uint32_t p, const LivePath& live) {
@@ -131,10 +134,9 @@ void FieldSpace::emit_within(uint32_t p, std::span<float> emission) const {
   for (size_t i = 0; i < emission.size(); ++i) emission[i] *= squared[i];
 }
 
-void FieldSpace::stand(uint32_t p) {
-  ScatterPlace& e = events_[p];
+void FieldSpace::stand(ScatterPlace& e, const MediumStack& stack) const {
   e.contents.clear();
-  if (const uint32_t medium = stacks_[p].medium(ambient_); medium != kNone) e.contents.push_back({medium, 1, 0});
+  if (const uint32_t medium = stack.medium(ambient_); medium != kNone) e.contents.push_back({medium, 1, 0});
   set_rates(e);
 }
 
@@ -143,6 +145,14 @@ double FieldSpace::albedo_around(uint32_t p, size_t knot) const {
   const size_t bin = optics_.state().knots[knot];
   const double scattering = double{medium.scattering[bin]}, all = scattering + double{medium.absorption[bin]};
   return all > 0 ? scattering / all : 0;
+}
+
+double FieldSpace::albedo(uint32_t p, size_t knot) const {
+  const ScatterPlace& e = events_[p];
+  const size_t bin = optics_.state().knots[knot];
+  double all = e.rate[knot];
+  for (const Constituent& c : e.contents) all += c.density * double{optics_.media()[c.medium].absorption[bin]};
+  return all > 0 ? e.rate[knot] / all : 0;
 }
 
 double FieldSpace::asymmetry(uint32_t p) const {
@@ -263,36 +273,107 @@ void FieldSpace::begin_way(uint32_t p, bool event, const Hit& hit, uint32_t mate
   if (!event && dot(in, hit.normal) * dot(out, hit.normal) < 0) bodies_.transmit(way_, hit, material, in, statistics_);
 }
 
-bool FieldSpace::fills_outside() const {
-  MediumStack outside = way_;
+template <class Stretch>
+double FieldSpace::run(MediumStack& stack, Ray ray, double length, bool to_surface, const Stretch& stretch) {
+  constexpr double kShort = 1 - 1e-9;  // of a way to a surface, which itself is not met
+  double left = length, gone = 0, gap = 0;
+  while (true) {
+    Hit hit;
+    if (to_surface || bodies_.any_boundary()) surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+    if (gap > 0) bodies_.settle(hit, ray, gap);
+    const bool met = hit.hit() && hit.distance < left * kShort,
+               passed = met && bodies_.is_boundary(surface_.material(hit));
+    const double way = passed || (met && to_surface) ? hit.distance : left;
+    if (!passed && !to_surface && left == std::numeric_limits<double>::infinity()) bodies_.leave_scene(stack);
+    ray.origin -= ray.direction * gap;
+    stretch(ray, way);
+    gone += way;
+    if (!passed) return gone;
+    const auto onward = bodies_.pass(stack, hit, ray, way - gap, statistics_);
+    if (!onward) return gone;
+    left -= way;
+    gap = onward->gap;
+    ray.origin = onward->start;
+  }
+}
+
+double FieldSpace::free_way(const Ray& ray) {
+  MediumStack stack = way_;
+  double within = 0;
+  layers_.clear();
+  const double way = run(stack, ray, std::numeric_limits<double>::infinity(), true, [&](const Ray&, double m) {
+    layers_.push_back({m, stack.medium(ambient_)});
+    if (std::isfinite(m)) within += m;
+  });
+  if (std::isfinite(way)) return way;
+  MediumStack outside = stack;
   bodies_.leave_scene(outside);
-  return outside.medium(ambient_) == way_.medium(ambient_);
+  return outside.medium(ambient_) == stack.medium(ambient_) ? way : within;
+}
+
+double FieldSpace::depth_of_way(double most, size_t knot) const {
+  double depth = 0, left = most;
+  for (const Layer& s : layers_) {
+    depth += std::min(s.length, left) * scattering_in(s.medium, knot);
+    if ((left -= s.length) <= 0) break;
+  }
+  return depth;
+}
+
+double FieldSpace::share_of_way(double share, double most, size_t knot) const {
+  const double depth = layers_.size() > 1 ? depth_of_way(most, knot) : 0;
+  if (!(depth > 0)) return share;
+  double left = share * depth, gone = 0;
+  for (const Layer& s : layers_) {
+    const double length = std::min(s.length, most - gone), rate = scattering_in(s.medium, knot);
+    if (rate * length >= left && rate > 0) return std::min(1.0, (gone + left / rate) / most);
+    left -= rate * length, gone += length;
+  }
+  return 1;
+}
+
+auto FieldSpace::share_of_depth(double way, double most, size_t knot) const -> DepthShare {
+  const double depth = layers_.size() > 1 ? depth_of_way(most, knot) : 0;
+  if (!(depth > 0)) return {way, 1};
+  double left = way * most, passed = 0, rate = 0;
+  for (const Layer& s : layers_) {
+    rate = scattering_in(s.medium, knot);
+    passed += rate * std::min(s.length, left);
+    if ((left -= s.length) <= 0) break;
+  }
+  return {passed / depth, rate * most / depth};
+}
+
+uint32_t FieldSpace::mean_of_way(const Ray& ray, double length) {
+  ScatterPlace& e = events_[mean_event()];
+  e.contents.clear();
+  MediumStack stack = way_;
+  run(stack, ray, length, false, [&](const Ray&, double m) {
+    const uint32_t medium = stack.medium(ambient_);
+    if (medium == kNone) return;
+    const auto known =
+        std::find_if(e.contents.begin(), e.contents.end(), [&](const Constituent& c) { return c.medium == medium; });
+    if (known == e.contents.end())
+      e.contents.push_back({medium, m / length, 0});
+    else
+      known->density += m / length;
+  });
+  set_rates(e);
+  return mean_event();
+}
+
+uint32_t FieldSpace::stand_on_way() {
+  ScatterPlace& e = events_[mean_event() + 1];
+  stand(e, way_);
+  return mean_event() + 1;
 }
 
 double FieldSpace::follow_way(const Ray& from, double length, std::span<float> through, std::span<float> scratch) {
   const double index = index_of(way_.medium(ambient_));
   const bool airless = is_airless(way_.medium(ambient_));
   depths_.assign(optics_.media().size(), 0);
-  // Index-matched boundaries lie on it at most, short of its end.
-  constexpr double kShort = 1 - 1e-9;
-  Ray ray = from;
-  double left = length, gap = 0;
-  while (true) {
-    Hit hit;
-    if (bodies_.any_boundary()) surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics_);
-    if (gap > 0) bodies_.settle(hit, ray, gap);
-    const bool met = hit.hit() && hit.distance < left * kShort && bodies_.is_boundary(surface_.material(hit));
-    if (!met && left == std::numeric_limits<double>::infinity()) bodies_.leave_scene(way_);
-    const double way = met ? hit.distance : left;
-    ray.origin -= ray.direction * gap;
-    flights_.add_depths(ray, way, way_.medium(ambient_), depths_);
-    if (!met) break;
-    const auto onward = bodies_.pass(way_, hit, ray, way - gap, statistics_);
-    if (!onward) break;
-    left -= way;
-    gap = onward->gap;
-    ray.origin = onward->start;
-  }
+  run(way_, from, length, false,
+      [&](const Ray& ray, double way) { flights_.add_depths(ray, way, way_.medium(ambient_), depths_); });
   const auto weaken = [&] {
     for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
   };

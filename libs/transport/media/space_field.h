@@ -37,7 +37,7 @@ class FieldSpace {
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
   // That of air without media in it, of which matter hides all but what smooth interfaces pass; null: none.
-  const SkyThroughWater* hidden_sky() const { return plain_air_ ? air_->sky_through_water() : nullptr; }
+  const SkyThroughWater* hidden_sky() const { return plain_air_ && !hazy_ ? air_->sky_through_water() : nullptr; }
   // What comes along a ray from there; scratch and memory for spectra.
   const float* sky_behind(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
     return air_->sky_radiance(ray.origin, ray.direction, scratch, radiance);
@@ -62,15 +62,16 @@ class FieldSpace {
   // Single-scattering albedo of the medium around, at a knot.
   double albedo_around(uint32_t p, size_t knot) const;
 
-  // Whether it is a medium that is the same everywhere up to the next surface.
+  // Whether it is a medium that is the same everywhere up to the next surface, that of another such medium included.
   bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
 
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
-  void stand(uint32_t p);
-  // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at the reference.
-  // Mean cosine of its scattering at the reference, over all that is there.
+  void stand(uint32_t p) { stand(events_[p], stacks_[p]); }
+  // The event that ended the last flight of path p, or that of stand(). scattering: 1/m, at a knot.
+  // Mean cosine of its scattering at the reference, over all that is there; its albedo at a knot.
   double scattering(uint32_t p, size_t knot = 0) const { return events_[p].rate[knot]; }
   double asymmetry(uint32_t p) const;
+  double albedo(uint32_t p, size_t knot) const;
   Vec3 place(uint32_t p) const { return events_[p].place; }
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // v; dense: memory for a spectrum.
@@ -100,8 +101,23 @@ class FieldSpace {
   double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
   void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in);
   double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch);
-  // Whether what fills it there goes on where no surface is met any more.
-  bool fills_outside() const;
+  // How far a ray from where the way has come to runs, boundaries passed, to a surface: infinity where it meets none in
+  // matter that goes on there; else, out of a body with a hole, up to where it is in that for certain.
+  double free_way(const Ray& ray);
+  // On the first `most` m of that ray, at a knot: scattering depth; the share of the way at which a share of it has
+  // been passed; and the reverse, with the change of this by that.
+  double depth_of_way(double most, size_t knot) const;
+  double share_of_way(double depth, double most, size_t knot) const;
+  struct DepthShare {
+    double share, change;
+  };
+  DepthShare share_of_depth(double way, double most, size_t knot) const;
+  // Events like those of scatter(): the mean of what fills `length` m of such a ray; what fills the place come to.
+  uint32_t mean_of_way(const Ray& ray, double length);
+  uint32_t stand_on_way();
+  // Keeps where the way has come to, and goes back there.
+  void hold_way() { held_ = way_; }
+  void resume_way() { way_ = held_; }
   void cross_way(const Hit& hit, uint32_t material, Dir in) { bodies_.transmit(way_, hit, material, in, statistics_); }
   TraceStatistics take_statistics();
 
@@ -116,6 +132,19 @@ class FieldSpace {
     double rate[kMaxKnots];  // scattering coefficient
   };
   void remember(uint32_t event, Vec3 place);
+  void stand(ScatterPlace& e, const MediumStack& stack) const;
+  // Runs through boundaries, in `stack`, over `length` m or until it meets a surface, where that counts. Calls
+  // stretch(ray, m) for each medium, which is then around `stack`. Returns m in all.
+  template <class Stretch>
+  double run(MediumStack& stack, Ray ray, double length, bool to_surface, const Stretch& stretch);
+  struct Layer {
+    double length;  // m
+    uint32_t medium;
+  };
+  double scattering_in(uint32_t medium, size_t knot) const {  // 1/m
+    return medium == kNone ? 0 : double{optics_.media()[medium].scattering[optics_.state().knots[knot]]};
+  }
+  uint32_t mean_event() const { return 2 * static_cast<uint32_t>(stacks_.size()); }
   void set_rates(ScatterPlace& e) const;
   // Matter that is denser than the air, such as water, holds none of it.
   bool is_airless(uint32_t medium) const { return index_of(medium) != 1; }
@@ -127,6 +156,7 @@ class FieldSpace {
   uint32_t ambient_;
   VolumeField field_;
   const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
+  bool hazy_ = false;     // boundaries part media as thin as air from it
   KnownWay seen_;         // of sensors' rays in it
   Bodies bodies_;
   Flights flights_;
@@ -136,9 +166,10 @@ class FieldSpace {
   std::vector<uint8_t> one_phase_;  // the same phase function at all wavelengths, per medium
   std::vector<MediumStack> stacks_;
   std::vector<Way> ways_;
-  std::vector<ScatterPlace> events_;  // of paths, and of their side flights
+  std::vector<ScatterPlace> events_;  // of paths, of their side flights, and two of the way
   std::vector<float> phase_;
-  MediumStack way_;  // that interfaces bend, as it stands
+  MediumStack way_, held_;     // that interfaces bend, as it stands
+  std::vector<Layer> layers_;  // on the last free_way()
   std::vector<double> depths_;
   TraceStatistics statistics_;  // of short rays at boundaries
 };

@@ -44,7 +44,32 @@ struct Bay {
   double high = 0;  // of waves 4 m long, m; 0 = flat water, without an end
   double wide = 200;
   bool upright = false;  // the surface faces the horizon
+  bool layers = false;   // murkier from 1 to 2.5 m, dark below
+  bool haze = false;     // a body of it over the water
 };
+
+// Media that nothing parts from what is above but their boundaries.
+void add_layers(Scene& scene, const Bay& bay) {
+  const double tops[] = {1, 2.5}, scattering[] = {2.4, 0.5}, absorption[] = {1, 2}, g[] = {0.85, 0.9};
+  for (uint32_t i = 0; i < 2; ++i) {
+    Medium m = medium(Curve::constant(absorption[i] * bay.absorption), Curve::constant(scattering[i] * bay.scattering),
+                      hg(g[i]));
+    m.id = strf("layer %u", i), m.index = Curve::constant(kIndex), m.priority = static_cast<int>(i) + 1;
+    scene.media.push_back(m);
+    scene.materials.push_back(boundary(i + 1));
+    scene.materials.back().id = strf("border %u", i);
+    place(scene, PrimitiveKind::plane, {0, 0}, static_cast<uint32_t>(scene.materials.size()) - 1,
+          translation({0, 0, -tops[i]}));
+  }
+}
+
+void add_haze(Scene& scene) {
+  scene.media.push_back(medium(Curve::constant(0.05), Curve::constant(0.1), hg(0.7)));
+  scene.media.back().id = "haze";
+  scene.materials.push_back(boundary(static_cast<uint32_t>(scene.media.size()) - 1));
+  scene.materials.back().id = "haze";
+  place(scene, PrimitiveKind::box, {-20, -20, 5, 20, 20, 8}, static_cast<uint32_t>(scene.materials.size()) - 1);
+}
 
 // ball: nobody knows how many ways there are.
 std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
@@ -63,6 +88,8 @@ std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   } else {
     place(*scene, PrimitiveKind::plane, {0, 0}, 1);
   }
+  if (bay.layers) add_layers(*scene, bay);
+  if (bay.haze) add_haze(*scene);
   if (bay.upright)
     for (Placement& p : scene->groups[0].placements) p.to_parent = kUpright * p.to_parent;
   if (ball) place(*scene, PrimitiveKind::sphere, {0.1}, 2, translation({3e4, 0, 3}));
@@ -97,7 +124,8 @@ void print(const char* name, const Repeated& asked, const Repeated& chance) {
 // which light from there comes in one way, in several, or in ways that are not found; a sheet so small that most light
 // comes in beside it, where water has no surface and so does not scatter; one that stands upright, before which
 // there is air below the horizon as well: of the sky only what is above is drawn, so what chance brings from below must
-// not count as asked for; and deep clear water, where the product of a chain's ways does not fit into a float.
+// not count as asked for; deep clear water, where the product of a chain's ways does not fit into a float; layers,
+// which chains pass; and a body of haze over the water, which the sky's light passes.
 TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
   const struct {
     const char* name;
@@ -111,7 +139,9 @@ TEST(WaterChain, FindsOfTheSkyWhatChanceFinds) {
                {"waves", {.high = 0.3}, 48, 192, 0.02, false, 0.06},
                {"small sheet", {.high = 0.01, .wide = 6}, 64, 256, 0.01},
                {"upright", {.upright = true}, 64, 256, 0.02},
-               {"deep", {.absorption = 0.0005, .scattering = 0.004, .depth = 800}, 48, 192, 0.02}};
+               {"deep", {.absorption = 0.0005, .scattering = 0.004, .depth = 800}, 48, 192, 0.02},
+               {"layers", {.layers = true}, 64, 256, 0.01, true},
+               {"haze", {.haze = true}, 64, 256, 0.025}};
   const uint32_t times = std::getenv("SUITE_LONG") ? 16 : 1;
   for (const auto& c : cases) {
     const Repeated asked = look(c.bay, false, c.paths * times), chance = look(c.bay, true, c.by_chance * times);
