@@ -34,6 +34,7 @@ Json json_of(const RunStatistics& s) {
   j.set("share_in_sensor", share(s.sensor_cycles));
   j.set("rejected_samples", s.failures);
   j.set("truncated", s.paths ? s.truncated / static_cast<double>(s.paths) : 0.0);
+  j.set("strayed", s.paths ? s.strayed / static_cast<double>(s.paths) : 0.0);
   return j;
 }
 

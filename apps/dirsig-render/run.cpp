@@ -139,7 +139,7 @@ void check_memory(const Simulation& sim, const JobOptions& options) {
                 "fewer columns or rows, or fewer lines_per_capture");
 }
 
-void tell(const JobReport& r) {
+void tell(const JobReport& r, const Scene& scene) {
   const double paths = static_cast<double>(r.statistics.paths);
   note(strf("%s paths, %s rays, %.2f nodes a path, %.1f %% of the CPU time inside the ray tracer",
             human_count(paths).c_str(), human_count(static_cast<double>(r.statistics.trace.rays)).c_str(),
@@ -157,14 +157,15 @@ void tell(const JobReport& r) {
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
               100 * r.statistics.truncated / paths));
+  if (const std::string sentence = strayed(r.statistics, scene); !sentence.empty()) warn(sentence);
   for (const JobReport::SensorShortfall& s : r.shortfalls)
     for (const std::string& sentence : sentences(s.sensor, s.shortfall)) warn(sentence);
 }
 
-void tell(const JobReport& r, const JobOptions& options, const std::string& folder) {
+void tell(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
   tell_of_points(options.heating);
   if (options.share && (options.share->runs() || r.captures_waiting)) return tell_share(r, *options.share, folder);
-  tell(r);
+  tell(r, scene);
 }
 
 // Runs the job so that a signal ends it in good order and a result that cannot be written tells what there is.
@@ -197,7 +198,7 @@ void write_sensor_logs(const Simulation& sim, OutputWriter& writer) {
 // What is told and written of a whole run.
 void conclude(const JobReport& report, const JobOptions& options, const std::string& folder, const Simulation& sim,
               const LoadedScene& loaded, OutputWriter& writer) {
-  tell(report, options, folder);
+  tell(report, *loaded.scene, options, folder);
   for (const auto& reads : loaded.later) note(reads->text());
   write_log(in_folder(folder, "render.json"), report, options);
   if (!report.captures_waiting) write_sensor_logs(sim, writer);

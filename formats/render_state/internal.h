@@ -8,7 +8,7 @@
 namespace suite::render_state {
 
 inline constexpr const char* kFormat = "dirsig-render state";
-inline constexpr const char* kVersion = "5";
+inline constexpr const char* kVersion = "6";
 inline constexpr const char* kHint =
     "only the run that made a state can go on with it: start anew, or give another folder";
 

@@ -41,6 +41,7 @@ class ExactSum {
 struct RunStatistics {
   uint64_t paths = 0, nodes = 0, failures = 0;
   ExactSum truncated;  // sum over paths of the throughput cut at max_nodes
+  ExactSum strayed;    // and of that which left bodies of media where they have no surface
   TraceStatistics trace;
   uint64_t cycles = 0;         // all cycles spent in run(), all threads; of these:
   uint64_t sensor_cycles = 0;  // asking the sensor for rays
@@ -51,6 +52,7 @@ struct RunStatistics {
     nodes += o.nodes;
     failures += o.failures;
     truncated += o.truncated;
+    strayed += o.strayed;
     trace.rays += o.trace.rays;
     trace.cycles += o.trace.cycles;
     cycles += o.cycles;
@@ -59,12 +61,15 @@ struct RunStatistics {
     shade_cycles += o.shade_cycles;
   }
   // All but the cycles, to be stored or sent.
-  static constexpr size_t kCounts = 5;
-  std::array<uint64_t, kCounts> counts() const { return {paths, nodes, failures, truncated.grains(), trace.rays}; }
+  static constexpr size_t kCounts = 6;
+  std::array<uint64_t, kCounts> counts() const {
+    return {paths, nodes, failures, truncated.grains(), trace.rays, strayed.grains()};
+  }
   void add_counts(std::span<const uint64_t, kCounts> c) {
     paths += c[0], nodes += c[1], failures += c[2];
     truncated += ExactSum::of_grains(c[3]);
     trace.rays += c[4];
+    strayed += ExactSum::of_grains(c[5]);
   }
 };
 

@@ -1,5 +1,6 @@
 #include "scheduler/shortfall.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "transport/lost_light.h"
@@ -64,6 +65,22 @@ std::vector<std::string> sentences(const std::string& sensor, const Shortfall& s
     said.push_back(of(s.rejecting) + strf("rejected %llu samples that were not finite or negative",
                                           static_cast<unsigned long long>(s.rejected)));
   return said;
+}
+
+std::string strayed(const RunStatistics& statistics, const Scene& scene) {
+  const double share = statistics.paths ? statistics.strayed / static_cast<double>(statistics.paths) : 0;
+  if (!(share > kStrays)) return {};
+  std::vector<std::string> bounded;
+  for (const Material& m : scene.materials)
+    for (const uint32_t medium : {m.outside, m.inside})
+      if (medium != kNone &&
+          std::find(bounded.begin(), bounded.end(), "'" + scene.media[medium].id + "'") == bounded.end())
+        bounded.push_back("'" + scene.media[medium].id + "'");
+  return strf(
+      "paths with %.3g %% of the throughput at the reference wavelength left bodies of media (%s) where these "
+      "have no surface, and went on as if outside: light comes in there, and goes out, that a surface would bend or "
+      "stop. Close the body, or let its surface and what lies below reach so far that no light from there counts",
+      100 * share, listed(bounded).c_str());
 }
 
 std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,

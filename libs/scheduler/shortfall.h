@@ -57,6 +57,11 @@ Shortfall shortfall_of(std::span<const Lack> problems);
 // problem is flagged for its noise, but the mean of all lacks as much as flags one.
 std::vector<std::string> sentences(const std::string& sensor, const Shortfall& shortfall);
 
+// What is said of paths that left bodies of media where they have no surface, as out of a sheet of water that ends in
+// the open: nothing where that is less than kStrays of their throughput, more than rounding at edges of meshes makes.
+inline constexpr double kStrays = 1e-4;
+std::string strayed(const RunStatistics& statistics, const Scene& scene);
+
 // Sentences about sources whose light paths of a state will not find: behind smooth refracting surfaces, which is
 // estimated, and by way of mirrors, which is not. paths: that a problem takes at most; disks that these meet often
 // enough are left out. repeats: the scene does.

@@ -104,7 +104,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   PathRecord& record = records_[p];
   record.time = ray.ray.time;
   record.end = PathEnd::absorbed;
-  record.truncated = 0;
+  record.truncated = record.strayed = 0;
   record.scattered_first = record.met = false;
   record.received = ray.receiver != SensorRay::Receiver::none;
   path.received = record.received;

@@ -83,6 +83,7 @@ struct PathRecord {
   Dir escape;  // direction in which it left the scene
   // Throughput at the reference that was cut at the maximum number of nodes, for light in air: times the squared index.
   double truncated = 0;
+  double strayed = 0;            // likewise, that left bodies of media where they have no surface
   uint32_t size = 0;             // nodes: surfaces, the receiver included
   bool received = false;         // node 0 is the sensor's own receiver, no surface
   bool scattered_first = false;  // a medium scattered it before it met anything

@@ -51,7 +51,7 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
                        bool ends, std::span<float> through, std::span<float> emitted) {
   Way& way = ways_[p];
   if (way.gap > 0) bodies_.settle(hit, ray, way.gap);
-  if (!hit.hit()) bodies_.leave_scene(stacks_[p]);
+  if (!hit.hit() && !stacks_[p].empty()) leave_scene(p, live, record);
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
   const uint32_t medium = stacks_[p].medium(ambient_);
@@ -99,6 +99,14 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
   way = {onward->start, onward->gap};
   flight.arrival = Arrival::onward;
   return flight;
+}
+
+// Out of bodies that no surface ends there, which is told.
+void FieldSpace::leave_scene(uint32_t p, const LivePath& live, PathRecord& record) {
+  const uint32_t medium = stacks_[p].medium(ambient_);
+  bodies_.leave_scene(stacks_[p]);
+  if (stacks_[p].medium(ambient_) != medium && live.branch != Branch::forced)
+    record.strayed += live.throughput[0] * live.share * index_of(medium) * index_of(medium);
 }
 
 void FieldSpace::remember(uint32_t event, Vec3 place) {

@@ -131,6 +131,7 @@ class FieldSpace {
     std::vector<Constituent> contents;
     double rate[kMaxKnots];  // scattering coefficient
   };
+  void leave_scene(uint32_t p, const LivePath& live, PathRecord& record);
   void remember(uint32_t event, Vec3 place);
   void stand(ScatterPlace& e, const MediumStack& stack) const;
   // Runs through boundaries, in `stack`, over `length` m or until it meets a surface, where that counts. Calls

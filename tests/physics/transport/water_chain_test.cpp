@@ -1,12 +1,14 @@
 // Water over a bed under the sun and real air, whose light is asked for through the calm surface along chains
 // (transport/kernel_chain.h), against paths that meet the sky by chance: a glass ball far away, which no path sees, is
 // enough for nobody to know how many ways lead through the surface (transport/refracting_sheet.h).
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 
 #include "air/air_spec.h"
+#include "scheduler/shortfall.h"
 #include "tests/support/media_kit.h"
 #include "tests/support/radiometry_kit.h"
 #include "transport/refracting_sheet.h"
@@ -97,7 +99,7 @@ std::shared_ptr<Scene> scene_with(const Bay& bay, bool ball = false) {
   return scene;
 }
 
-Repeated look(const Bay& bay, bool ball, uint32_t paths) {
+Rendered run_of(const Bay& bay, bool ball, uint32_t paths) {
   AirSpec air;
   air.profile = standard_profile("tropical");
   air.aerosol = AirSpec::Aerosol{};
@@ -111,8 +113,10 @@ Repeated look(const Bay& bay, bool ball, uint32_t paths) {
   auto r = render(scene_with(bay, ball), sources,
                   std::make_unique<RaySensor>(repeated({view * 20, -view, 0}), blue, paths, 0.02));
   EXPECT_EQ(r.report.statistics.failures, 0u);
-  return over_problems(r.result, 0);
+  return r;
 }
+
+Repeated look(const Bay& bay, bool ball, uint32_t paths) { return over_problems(run_of(bay, ball, paths).result, 0); }
 
 void print(const char* name, const Repeated& asked, const Repeated& chance) {
   std::printf("%s: asked for %.5g +- %.2f %%, by chance %.5g +- %.2f %%, %+.2f %%\n", name, asked.mean,
@@ -188,6 +192,16 @@ TEST(WaterChain, FindsOfTheSunWhatChanceFinds) {
     const Repeated darker = look_up({.absorption = 0.055}, true, 256);
     EXPECT_GT(chance.mean - darker.mean, 3.5 * std::hypot(darker.error, chance.error));
   }
+}
+
+// What leaves water beside its surface is told; nothing is where planes go on for ever.
+TEST(WaterChain, TellsOfASheetThatEndsInTheOpen) {
+  const Bay open{.high = 0.01, .wide = 6}, endless{.layers = true};
+  const std::string said = strayed(run_of(open, false, 16).report.statistics, *scene_with(open));
+  EXPECT_THAT(said, testing::HasSubstr("have no surface")) << said;
+  const RunStatistics whole = run_of(endless, false, 16).report.statistics;
+  EXPECT_EQ(whole.strayed, 0.0);
+  EXPECT_EQ(strayed(whole, *scene_with(endless)), "");
 }
 
 // A grid of waves with vertex normals: one way through calm ones, unknown where they focus above the place, below the

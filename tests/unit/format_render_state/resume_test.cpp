@@ -122,7 +122,7 @@ TEST(RenderState, refuses_an_older_version) {
     old.close();
   }
   EXPECT_THAT(message_of([&] { read_state_head(path, kIdentity); }),
-              testing::HasSubstr("has version '1', this program reads 5"));
+              testing::HasSubstr("has version '1', this program reads 6"));
 }
 
 TEST(RenderState, refuses_what_is_no_state) {
