@@ -55,12 +55,12 @@ bool RefractedSight::walk_through_sheet(const Search& s, Traced& found) {
   return start && trace(s, *start, once, probe) && walk(s, probe, once, found);
 }
 
-// Its light is not focused much more than by flat water, and so makes no noise.
+// Its light is not focused much more than by flat water, and so makes no noise; and it comes as the sky sends it.
 bool RefractedSight::find_first(const Node& node, Dir to, size_t knot, Traced& found) {
   constexpr double kFocused = 4;
   const WayEnd end{to, {}};
   const Search s{node, end, to, std::numeric_limits<double>::infinity(), knot};
-  if (!walk_through_sheet(s, found)) return false;
+  if (!walk_through_sheet(s, found) || found.veiled) return false;
   const double index = interfaces_.index(sheet_material_, knot),
                behind = dot(to, sheet_->axis()) > 0 ? index : 1 / index;
   return std::fabs(found.det) * kFocused > behind * behind;

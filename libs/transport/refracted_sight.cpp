@@ -87,14 +87,16 @@ bool RefractedSight::hit_any(const Ray& ray, Hit& hit) {
   return hit.hit();
 }
 
-// The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none.
-bool RefractedSight::hit_next(Ray& ray, Hit& hit) {
+// The next surface on a ray that bounds more than a medium; its distance from the ray's origin. False: none. passed:
+// whether one that does not was passed.
+bool RefractedSight::hit_next(Ray& ray, Hit& hit, bool* passed) {
   double before = 0;
   for (int n = 0; n < kMostBoundaries; ++n) {
     if (!hit_any(ray, hit)) return false;
     hit.distance += before;
     const uint32_t material = surface_.material(hit);
     if (material == kNone || !passes_[material]) return true;
+    if (passed) *passed = true;
     before = hit.distance;
     ray.origin = surface_.tracer().leave(hit, ray.direction);
   }
@@ -146,7 +148,8 @@ bool RefractedSight::trace(const Search& s, Dir direction, const Chain& chain, T
   Ray ray{way.origin, direction, node.time, node.draw};
   while (!(chain.blind && way.events == most)) {
     Hit hit;
-    const bool met = hit_next(ray, hit);
+    traced.veiled = false;
+    const bool met = hit_next(ray, hit, &traced.veiled);
     const uint32_t material = met ? surface_.material(hit) : kNone;
     const bool last = way.events == most || !interfaces_.has(material);
     if (way.events > 0) arrive(s, hit, last, traced);

@@ -100,7 +100,7 @@ class RefractedSight {
   Dir sheet_axis() const { return sheet_->axis(); }
   // The way through it to a far light in direction `to` that Newton's method finds from there: none or one, and always
   // the same of a place and a direction, however many there are; none where waves focus its light to more than four
-  // times what flat water makes of it. And whether it is the one that leaves in a direction.
+  // times what flat water makes of it, and none through bodies of other matter behind it. And whether it is the one that leaves in a direction.
   std::span<const RefractedWay> first_through_sheet(const Node& node, Dir to, size_t knot);
   bool is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
@@ -124,6 +124,7 @@ class RefractedSight {
     RefractedWay way;
     BentRay end;
     bool open = false;     // nothing between the last interface and the light
+    bool veiled = false;   // but what boundaries part from the rest
     uint32_t may_end = 0;  // a bit for each number of interfaces behind which a lamp may come
     double det = 0;        // of the change of the end with the direction of the start
     double off = 0;        // how far the end is off: sine of its direction from the light's, 2 - sine where it runs
@@ -132,7 +133,7 @@ class RefractedSight {
     double inverse = 0;    // norm of the inverse of the change
   };
   bool hit_any(const Ray& ray, Hit& hit);
-  bool hit_next(Ray& ray, Hit& hit);
+  bool hit_next(Ray& ray, Hit& hit, bool* passed = nullptr);
   bool trace(const Search& s, Dir direction, const Chain& chain, Traced& traced);
   static void arrive(const Search& s, const Hit& hit, bool last, Traced& traced);
   bool pass(const Search& s, const Hit& hit, uint32_t material, bool reflected, Traced& traced);

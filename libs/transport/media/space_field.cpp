@@ -36,9 +36,6 @@ FieldSpace::FieldSpace(const SpaceContext& c)
     asymmetry_.push_back(m.scatters() ? double{phase_[reference]} : 0);
     one_phase_.push_back(m.scatters() && m.phase->spectrally_uniform());
   }
-  for (const Material& m : c.surface.tracer().scene().materials)
-    for (const uint32_t medium : {m.outside, m.inside})
-      hazy_ = hazy_ || (m.is_boundary() && medium != kNone && !is_airless(medium));
 }
 
 void FieldSpace::start(uint32_t p, const LivePath& live) {

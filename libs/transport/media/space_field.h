@@ -37,7 +37,7 @@ class FieldSpace {
   // Flights bring all light of the air: media on the way dim it in parts.
   const Light* sky() const { return nullptr; }
   // That of air without media in it, of which matter hides all but what smooth interfaces pass; null: none.
-  const SkyThroughWater* hidden_sky() const { return plain_air_ && !hazy_ ? air_->sky_through_water() : nullptr; }
+  const SkyThroughWater* hidden_sky() const { return plain_air_ ? air_->sky_through_water() : nullptr; }
   // What comes along a ray from there; scratch and memory for spectra.
   const float* sky_behind(const Ray& ray, std::span<float> scratch, std::span<float> radiance) const {
     return air_->sky_radiance(ray.origin, ray.direction, scratch, radiance);
@@ -157,7 +157,6 @@ class FieldSpace {
   uint32_t ambient_;
   VolumeField field_;
   const bool plain_air_;  // outside bodies there is nothing but air that does not scatter paths
-  bool hazy_ = false;     // boundaries part media as thin as air from it
   KnownWay seen_;         // of sensors' rays in it
   Bodies bodies_;
   Flights flights_;
