@@ -33,24 +33,28 @@ class Look {
       const Material& m = scene_.materials[i];
       refracts_.push_back(m.surface.curves.count("index") && !m.is_boundary() && optics.material(i).model &&
                           !optics.material(i).model->opaque());
+      const auto bends = [&](uint32_t medium) { return medium != kNone && std::fabs(index_of(medium) - 1) > kApart; };
+      looked_at_.push_back(refracts_.back() || (m.is_boundary() && (bends(m.inside) || bends(m.outside))));
     }
   }
 
   std::vector<std::string> all() {
-    if (std::find(refracts_.begin(), refracts_.end(), true) == refracts_.end()) return {};
+    if (std::find(looked_at_.begin(), looked_at_.end(), true) == looked_at_.end()) return {};
     size_t seen = 0;
     tracer_.each(
-        "refracting surfaces", [&](const TracedObject& o) { return any_refracts(o); },
+        "refracting surfaces", [&](const TracedObject& o) { return matters(o); },
         [&](uint32_t number, const TracedObject& o) {
-          if (seen++ < kObjects) shoot(box_of(number, o), seen);
+          if (seen++ >= kObjects) return;
+          shoot(box_of(number, o), seen);
+          drop(box_of(number, o), seen);
         });
     if (!skipping_.empty()) told_.insert(skipping_);
     return {told_.begin(), told_.end()};
   }
 
  private:
-  bool any_refracts(const TracedObject& o) const {
-    const auto has = [&](uint32_t material) { return material != kNone && refracts_[material]; };
+  bool matters(const TracedObject& o) const {
+    const auto has = [&](uint32_t material) { return material != kNone && looked_at_[material]; };
     if (o.material_override != kNone) return has(o.material_override);
     if (o.primitive != kNone) return has(scene_.primitives[o.primitive].material);
     const auto& parts = scene_.meshes[o.mesh].parts;
@@ -85,13 +89,33 @@ class Look {
     }
   }
 
+  // From above all things down to what is opaque: boundaries go on below the ground where they matter to nobody.
+  void drop(const Box3& box, uint64_t object) {
+    for (uint64_t r = 0; r < kRays; ++r) {
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i + 8))); };
+      const double phi = 2 * kPi * u(2), top = std::max(box.high.z, tracer_.bounds().high.z);
+      const Dir d = normalized(Dir{0.1 * std::cos(phi), 0.1 * std::sin(phi), -1});
+      const Vec3 size = box.size(), in{box.low.x + u(0) * size.x, box.low.y + u(1) * size.y, box.high.z};
+      Ray ray{in - d * ((top - in.z + 1) / -d.z), d, 0, static_cast<uint32_t>(hash_of(object, r))};
+      Hit hit;
+      for (int n = 0; n < kMostHits; ++n) {
+        tracer_.nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+        const uint32_t material = hit.hit() ? surface_.material(hit) : kNone;
+        if (material == kNone || !(refracts_[material] || scene_.materials[material].is_boundary())) break;
+        if (looked_at_[material] && !refracts_[material]) look_at(hit, material);
+        ray.origin = tracer_.leave(hit, d);
+      }
+    }
+  }
+
   void look_at(const Hit& hit, uint32_t material) {
     const std::string id = scene_.materials[material].id;
     const double step = double{hit.step};
     tracer_.all({hit.position - hit.normal * (0.5 * step), hit.normal, hit.time}, step, beside_, statistics_);
     for (const Hit& h : beside_) {
       const uint32_t other = surface_.material(h);
-      if (other == kNone || !refracts_[other] ||
+      if (!refracts_[material] && other != kNone && !scene_.materials[other].is_boundary()) return;  // that bends
+      if (other == kNone || !refracts_[material] || !refracts_[other] ||
           tracer_.object(h.object).instance == tracer_.object(hit.object).instance)
         continue;
       const auto [a, b] = std::minmax(id, scene_.materials[other].id);
@@ -101,7 +125,25 @@ class Look {
           "the common face one surface with `inside` and `outside`, or leave a gap");
       return;
     }
-    if (bodies_.any()) compare(hit, material);
+    if (!refracts_[material])
+      compare_sides(hit, material);
+    else if (bodies_.any())
+      compare(hit, material);
+  }
+
+  // Of a boundary, which bends nothing.
+  void compare_sides(const Hit& hit, uint32_t material) {
+    const double off = kOff * double{hit.step};
+    const uint32_t front = medium_at(hit.position + hit.normal * off, hit.time),
+                   back = medium_at(hit.position - hit.normal * off, hit.time);
+    const double there = index_of(front), here = index_of(back);
+    if (std::fabs(here - there) <= kApart * there) return;
+    told_.insert(
+        strf("'%s' parts %s (index %.4g) from %s (index %.4g) and bends nothing, as a material without a `model` "
+             "does: light goes straight on and none is reflected there. Give it `model: dielectric` with "
+             "`index: %.4g`, or the media one index",
+             scene_.materials[material].id.c_str(), name_of(back).c_str(), here, name_of(front).c_str(), there,
+             here / there));
   }
 
   uint32_t medium_at(Vec3 place, double time) {
@@ -153,7 +195,7 @@ class Look {
   const Optics& optics_;
   Bodies bodies_;
   double um_;
-  std::vector<bool> refracts_;
+  std::vector<bool> refracts_, looked_at_;  // per material
   std::vector<Hit> beside_;
   std::set<std::string> told_;
   double skipped_ = 0;  // the most

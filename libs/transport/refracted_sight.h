@@ -100,7 +100,8 @@ class RefractedSight {
   Dir sheet_axis() const { return sheet_->axis(); }
   // The way through it to a far light in direction `to` that Newton's method finds from there: none or one, and always
   // the same of a place and a direction, however many there are; none where waves focus its light to more than four
-  // times what flat water makes of it, and none through bodies of other matter behind it. And whether it is the one that leaves in a direction.
+  // times what flat water makes of it, and none through bodies of other matter behind it. And whether it is the one
+  // that leaves in a direction.
   std::span<const RefractedWay> first_through_sheet(const Node& node, Dir to, size_t knot);
   bool is_first_through_sheet(const Node& node, Dir from, Dir to, size_t knot);
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }

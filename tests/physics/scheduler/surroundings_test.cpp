@@ -62,6 +62,33 @@ TEST(Surroundings, GlassOnWater) {
   EXPECT_THAT(told(0.01, interface_of("pane", kGlass, 1)), IsEmpty());
 }
 
+// Water whose side has no model, in air; a layer in it, which goes on beyond it below an opaque bed; matter like air.
+TEST(Surroundings, BoundariesThatShouldBend) {
+  const auto told_of = [](double index, bool surface) {
+    auto scene = std::make_shared<Scene>();
+    scene->media = {clear("water", kWater), clear("layer", index, 1)};
+    scene->materials = {interface_of("surface", kWater, 0), boundary(1), material("bed", lambert(0.3))};
+    scene->materials[1].id = "side";
+    if (surface) {
+      place(*scene, PrimitiveKind::box, {-2, -2, -1.9, 2, 2, 0}, 0);
+      place(*scene, PrimitiveKind::plane, {0, 0}, 2, translation({0, 0, -2}));
+      place(*scene, PrimitiveKind::plane, {0, 0}, 1, translation({0, 0, -2.5}));
+      place(*scene, PrimitiveKind::box, {-1, -1, -1.5, 1, 1, -1}, 1);
+    } else {
+      place(*scene, PrimitiveKind::box, {-1, -1, 0, 1, 1, 0.5}, 1);
+    }
+    check_scene(*scene, "boundaries");
+    const Tracer tracer(scene);
+    const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
+    return wrong_surroundings(tracer, Optics(*scene, sensor.states()[0]));
+  };
+  EXPECT_THAT(told_of(kWater, false), ElementsAre(AllOf(HasSubstr("'side' parts 'layer' (index 1.34)"),
+                                                        HasSubstr("bends nothing"), HasSubstr("dielectric"))));
+  EXPECT_THAT(told_of(1, false), IsEmpty());
+  EXPECT_THAT(told_of(kWater, true), IsEmpty());
+  EXPECT_THAT(told_of(kGlass, true), ElementsAre(HasSubstr("'side' parts 'layer' (index 1.5) from 'water'")));
+}
+
 // Dense water of a large mesh, of which places are coarse; a small one, or clear water, is met exactly.
 TEST(Surroundings, DenseMatterOfALargeObject) {
   const auto told_of = [](double side, double absorption) {
