@@ -77,8 +77,9 @@ std::string strayed(const RunStatistics& statistics, const Scene& scene) {
           std::find(bounded.begin(), bounded.end(), "'" + scene.media[medium].id + "'") == bounded.end())
         bounded.push_back("'" + scene.media[medium].id + "'");
   return strf(
-      "paths with %.3g %% of the throughput at the reference wavelength left bodies of media (%s) where these "
-      "have no surface, and went on as if outside: light comes in there, and goes out, that a surface would bend or "
+      "paths with %.3g %% of the throughput at the reference wavelength left bodies of media (among %s) where "
+      "these have no surface, and went on as if outside: light comes in there, and goes out, that a surface would bend "
+      "or "
       "stop. Close the body, or let its surface and what lies below reach so far that no light from there counts",
       100 * share, listed(bounded).c_str());
 }

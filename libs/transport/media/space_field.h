@@ -62,7 +62,7 @@ class FieldSpace {
   // Single-scattering albedo of the medium around, at a knot.
   double albedo_around(uint32_t p, size_t knot) const;
 
-  // Whether it is a medium that is the same everywhere up to the next surface, that of another such medium included.
+  // Whether it is a medium that is the same everywhere, and so are all that boundaries part from it.
   bool even_around(uint32_t p) const { return scatters_around(p) && !field_.has_grids() && !optics_.air(); }
 
   // Makes the place where path p stands at a surface an event of what fills space there, for scatter(), densities().
