@@ -42,6 +42,10 @@ std::vector<Feature> all_features() {
                           "Sun, moon and lamps asked for through smooth interfaces (water, panes, lenses) from every "
                           "node. Where no material passes light smoothly nothing of it is made; one null pointer is "
                           "asked at a node."},
+                         {"gloss guide",
+                          "Photons of sun, moon and lamps that glossy surfaces throw on others, and continuations of "
+                          "paths that are drawn to where they come from. Where no material has a narrow lobe, or none "
+                          "of the light lands, no photon is kept, and one null pointer is asked at a node."},
                          {"earth", "The ellipsoid under the scene, which rays that miss the scene may meet."},
                          {"truth", "What else is recorded of a pixel. Only collectors that a sensor names are made."},
                          {"bands", "Spectral bins are carried only where a band of the state responds."}});
@@ -92,6 +96,23 @@ FeatureUse refraction(const Scene& scene, const SourceSpecs& sources, const Pipe
   return {"refracted light", !missing, missing ? missing : strf("%zu smooth materials", static_cast<size_t>(smooth))};
 }
 
+// Whether it is glossy enough to matter photons find out, which are sent when a state is begun.
+FeatureUse gloss(const Scene& scene, const SourceSpecs& sources, const PipelineOptions& options) {
+  const auto other = std::count_if(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
+    return !m.surface.model.empty() && m.surface.model != "lambert" && m.surface.model != "dielectric";
+  });
+  const bool small = std::any_of(sources.lights.begin(), sources.lights.end(), [](const LightSpecPtr& light) {
+    return light->in_scene() || !light->hardly_met(1).empty();
+  });
+  const char* missing = other == 0                        ? "all materials are matte or smooth interfaces"
+                        : !small                          ? "no sun, moon or lamp in the simulation"
+                        : options.method == Method::paper ? "the paper's estimator"
+                        : !options.explicit_sources       ? "lights are not asked"
+                        : !options.gloss_guide            ? "`guide_to_gloss: false`"
+                                                          : nullptr;
+  return {"gloss guide", !missing, missing ? missing : strf("%zu materials may be glossy", static_cast<size_t>(other))};
+}
+
 }  // namespace
 
 std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sources,
@@ -117,6 +138,7 @@ std::vector<FeatureUse> features_of(const Scene& scene, const SourceSpecs& sourc
   all.push_back(source("atmosphere", sources.has_air()));
   all.push_back(adjacency(scene, sources.air.get(), options));
   all.push_back(refraction(scene, sources, options));
+  all.push_back(gloss(scene, sources, options));
   all.push_back(source("earth", sources.earth.has_value()));
   all.push_back({"truth", !truth.empty(), truth.empty() ? "no sensor asks for any" : names});
   all.push_back({"bands", true, strf("%zu in %zu spectral states", bands, states)});

@@ -18,6 +18,7 @@
 #include "transport/chain_laws.h"
 #include "transport/contacts.h"
 #include "transport/dimensions.h"
+#include "transport/gloss_guide.h"
 #include "transport/path_tracing.h"
 #include "transport/refracted_sight.h"
 #include "transport/shares.h"
@@ -51,16 +52,7 @@ class PathKernel final : public PathTracing {
   }
   const FirstMeeting& first(uint32_t p) const override { return firsts_[p]; }
   uint64_t take_nodes() override { return std::exchange(nodes_met_, 0); }
-  TraceStatistics take_statistics() override {
-    TraceStatistics all = space_.take_statistics();
-    const TraceStatistics touching = std::exchange(touching_, {});
-    all.rays += touching.rays, all.cycles += touching.cycles;
-    if (refracted_) {
-      const TraceStatistics ways = refracted_->take_statistics();
-      all.rays += ways.rays, all.cycles += ways.cycles;
-    }
-    return all;
-  }
+  TraceStatistics take_statistics() override;
 
   // For estimators: the nodes of the stage, what they may ask, and how.
   struct NodeAt {
@@ -230,6 +222,14 @@ class PathKernel final : public PathTracing {
   bool is_guided(const NodeAt& node) const { return !guides_.empty() && guide_of(node)->branch; }
   void share_with_guide(const NodeAt& node, bool forced, Continuation& on) const;
   bool draw_guided(const NodeAt& node, Vec2 u, double who, std::span<float> memory, Continuation& on);
+  // kernel_gloss.h: continuations towards light that glossy surfaces throw.
+  void find_gloss();
+  GlossShare gloss_at(const NodeAt& node) const;
+  GlossShare gloss_of(const NodeAt& node) const {
+    return gloss_ ? gloss_of_node_[static_cast<size_t>(&node - nodes_.data())] : GlossShare{};
+  }
+  void share_with_gloss(const NodeAt& node, Dir in, std::span<float> density) const;
+  bool draw_with_gloss(size_t i, Vec2 u, double lobe_u, std::span<float> memory, Continuation& on);
   // kernel_chain.h: light scattered on its way.
   static constexpr int kMostLinks = 24;
   static_assert(dimensions::of_link(kMostLinks - 1, true) < dimensions::of_link_place(1, kMostLinks, true) &&
@@ -315,6 +315,7 @@ class PathKernel final : public PathTracing {
   const bool draws_;  // something decides by Ray::draw
   std::unique_ptr<LostLight> lost_;
   std::unique_ptr<RefractedSight> refracted_;  // null where nothing refracts
+  const GlossGuide* const gloss_;              // null: nothing glossy throws light, or other guides are at work
   Contacts contacts_;
   const Waters waters_;
   std::vector<Asked> asked_;
@@ -376,6 +377,7 @@ class PathKernel final : public PathTracing {
   std::vector<Question> questions_;
   std::vector<RefractedQuestion> refracted_questions_;
   std::vector<Guide> guides_;  // of nodes; where nothing refracts none
+  std::vector<GlossShare> gloss_of_node_;
   Chain chain_;
   std::vector<float> chain_through_;
   std::vector<Side> sides_;  // the first side_count_ of them

@@ -23,6 +23,7 @@ PathKernel<Surfaces, Space, Throughputs, Estimator>::PathKernel(const KernelCont
       draws_(c.surface.tracer().has_holes() || may_lose(c)),
       lost_(may_lose(c) ? std::make_unique<LostLight>(c.surface, c.optics) : nullptr),
       refracted_(Surfaces::kDense > 0 && refracts(c) ? std::make_unique<RefractedSight>(c.surface, c.optics) : nullptr),
+      gloss_(Surfaces::kDense > 0 && !(kGuides && refracted_) ? c.gloss : nullptr),
       contacts_(c.surface, c.optics),
       waters_(c),
       surfaces_(c.surface, c.optics, width, c.keep_first),
@@ -96,8 +97,7 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::start(uint32_t p, cons
   path.branch = Branch::none, path.sided = false;
   path.quiet = 0, path.sky = Path::Sky::open, path.share = 1, path.passed = 0;
   if (!branches_.empty()) branches_[p].surfaces = 0;
-  path.water = WaterSeen::nothing;
-  path.knot = 0;
+  path.water = WaterSeen::nothing, path.knot = 0;
   std::fill_n(path.relative, knots(), 1.0);
   std::fill_n(path.throughput, knots(), 1.0);
   if (knots() > 1) path.knot = Estimator::draw_knot(stream.hashed(sample, dimensions::kKnot), static_cast<int>(knots_));

@@ -2,10 +2,23 @@
 #pragma once
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "transport/kernel.h"
 
 namespace suite {
+
+template <class Surfaces, class Space, class Throughputs, class Estimator>
+TraceStatistics PathKernel<Surfaces, Space, Throughputs, Estimator>::take_statistics() {
+  TraceStatistics all = space_.take_statistics();
+  const TraceStatistics touching = std::exchange(touching_, {});
+  all.rays += touching.rays, all.cycles += touching.cycles;
+  if (refracted_) {
+    const TraceStatistics ways = refracted_->take_statistics();
+    all.rays += ways.rays, all.cycles += ways.cycles;
+  }
+  return all;
+}
 
 // Draws where all paths of the stage go on.
 template <class Surfaces, class Space, class Throughputs, class Estimator>
@@ -128,6 +141,8 @@ bool PathKernel<Surfaces, Space, Throughputs, Estimator>::draw(size_t i, std::sp
         return surfaces_.sample_way(node.path, out, mirror, all, path.knot, memory, on);
       }
     }
+  if constexpr (Surfaces::kDense > 0)
+    if (gloss_of(node).cell) return draw_with_gloss(i, u, lobe_u, memory, on);
   return surfaces_.sample(i, node.path, hits_[node.slot], -path.direction, u, lobe_u, path.knot, memory, on);
 }
 

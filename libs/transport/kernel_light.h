@@ -26,6 +26,8 @@ void PathKernel<Surfaces, Space, Throughputs, Estimator>::ask() {
   sight_rays_.clear(), space_.clear_sight(), refracted_questions_.clear();
   sight_rays_.first = first_stage_;
   points_.clear();
+  if constexpr (Surfaces::kDense > 0)
+    if (gloss_) find_gloss();
   for (const NodeAt& node : nodes_) {
     Path& path = paths_[node.path];
     const uint32_t block = Space::kScatters && node.event
@@ -118,7 +120,10 @@ double PathKernel<Surfaces, Space, Throughputs, Estimator>::chance(const NodeAt&
   float density[kMaxKnots] = {};
   if constexpr (Space::kScatters)
     if (node.event) space_.densities(node.path, -path.direction, in, {density, knots()});
-  if (!node.event) surfaces_.densities(node.path, -path.direction, in, {density, knots()});
+  if (!node.event) {
+    surfaces_.densities(node.path, -path.direction, in, {density, knots()});
+    if constexpr (Surfaces::kDense > 0) share_with_gloss(node, in, {density, knots()});
+  }
   if constexpr (Surfaces::kKnots == 1) return density[0] * reach[0];
   double sum = 0;
   for (size_t k = 0; k < knots(); ++k) sum += probability_[k] * path.relative[k] * density[k] * reach[k];

@@ -13,6 +13,8 @@
 
 namespace suite {
 
+class GlossGuide;
+
 class PathTracing {
  public:
   virtual ~PathTracing() = default;
@@ -34,10 +36,11 @@ struct KernelContext {
   const Optics& optics;
   const Environment& environment;
   const PipelineOptions& options;
-  bool keep_first = false;  // truth wants to know the first surfaces
-  bool receivers = false;   // rays may start at receivers
-  bool branches = true;     // paths may go on in more than one way (kernel_branch.h): their light is one sum
-  bool waters = false;      // contributions are to tell what they have to do with water
+  bool keep_first = false;            // truth wants to know the first surfaces
+  bool receivers = false;             // rays may start at receivers
+  bool branches = true;               // paths may go on in more than one way (kernel_branch.h): their light is one sum
+  bool waters = false;                // contributions are to tell what they have to do with water
+  const GlossGuide* gloss = nullptr;  // null: no continuation is drawn towards light that glossy surfaces throw
 };
 
 // Whether light may be lost (lost_light.h): a light that continuations hardly find, and surfaces that bend it.

@@ -38,6 +38,7 @@ Pipeline::Pipeline(const Surface& surface, const Optics& optics, const Environme
   check(options_);
   if (options_.method == Method::paper && options_.max_nodes == 0) options_.max_nodes = kPaperNodes;
   choice_ = choose_kernel(context(environment_));
+  gloss_ = make_gloss();
 }
 
 Pipeline::~Pipeline() = default;
@@ -60,8 +61,24 @@ std::unique_ptr<const Environment> suns_of(const Capture& capture, const Spectra
 
 }  // namespace
 
+// Suns of a capture of their own are other lights than those that photons have been sent by.
 KernelContext Pipeline::context(const Environment& environment) const {
-  return {surface_, optics_, environment, options_, truth_.wanted(), false, true, channels_.of_water()};
+  return {surface_,
+          optics_,
+          environment,
+          options_,
+          truth_.wanted(),
+          false,
+          true,
+          channels_.of_water(),
+          &environment == &environment_ ? gloss_.get() : nullptr};
+}
+
+std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {
+  if (choice_.matte || !options_.gloss_guide || !options_.explicit_sources || options_.method != Method::standard)
+    return nullptr;
+  std::vector<GlossPhoton> photons = gloss_photons(surface_, optics_, environment_);
+  return photons.empty() ? nullptr : std::make_unique<GlossGuide>(std::move(photons));
 }
 
 bool Pipeline::may_miss(const Capture& capture) const {

@@ -10,6 +10,7 @@
 #include "estimate/statistics.h"
 #include "sensor/sensor.h"
 #include "transport/channels.h"
+#include "transport/gloss_guide.h"
 #include "transport/path_tracing.h"
 #include "transport/truth/truth.h"
 
@@ -39,6 +40,7 @@ class Pipeline {
   friend class BlockRun;
   struct Workspace;
   KernelContext context(const Environment& environment) const;
+  std::unique_ptr<const GlossGuide> make_gloss() const;
   std::unique_ptr<Workspace> borrow(const Capture& capture) const;
 
   const Surface& surface_;
@@ -51,6 +53,7 @@ class Pipeline {
   const ChannelPlan& channels_;
   PipelineOptions options_;
   KernelChoice choice_;
+  std::unique_ptr<const GlossGuide> gloss_;  // null: nothing to be guided to
   // Working memory goes from block to block; as many as threads have been at work at once. All that are idle were made
   // for captures alike.
   mutable std::mutex mutex_;

@@ -51,6 +51,8 @@ class AnySurfaces {
   void densities(uint32_t p, Dir out, Dir in, std::span<float> density) const;
   // Whether sample() uses lobe_u.
   bool needs_lobe(uint32_t p) const { return !at_[p]->baked->model->single_lobe(); }
+  // Whether some of it is as sharp as a mirror.
+  bool is_sharp(uint32_t p) const { return at_[p]->baked->model->has_delta(); }
   // Draws where path p, node i of the stage, goes on; false when it ends there.
   bool sample(size_t i, uint32_t p, const Hit& hit, Dir out, Vec2 u, double lobe_u, int knot, std::span<float> dense,
               Continuation& on) const;

@@ -112,3 +112,31 @@ def row_of(runs, scene, reference, edge):
     _, error, cpu_s = points[-1]
     return {"scene": runs[0]["scene"], "program": runs[0]["program"], "paths": budgets[-1], "cpu_s": cpu_s,
             "mpaths_per_cpu_s": edge * edge * budgets[-1] / cpu_s / 1e6, "error": error, "error_spread": spread, "cpu_s_to_1_percent": to_one_percent(points)}
+
+
+def quartiles(values):
+    ordered = sorted(values)
+    at = [(len(ordered) - 1) * q for q in (0, 0.25, 0.5, 0.75, 1)]
+    return [ordered[int(x)] + (x - int(x)) * (ordered[min(int(x) + 1, len(ordered) - 1)] - ordered[int(x)]) for x in at]
+
+
+def pairs_of(runs, scene, reference):
+    """Runs of kind "pair" of one scene -> quartiles of ours : Mitsuba over the pairs: CPU seconds to 1 %, and paths per CPU second. None
+    when some run has no noise."""
+    import numpy as np
+    first = [r["program"] for r in runs][0]
+    ratios, speeds = [], []
+    for seed in sorted({r["seed"] for r in runs}):
+        to_one, speed = {}, {}
+        for r in sorted((r for r in runs if r["seed"] == seed), key=lambda r: r["paths"]):
+            square = max(0.0, float(np.mean((image_of(r, scene) - reference.image) ** 2)) - reference.noise)
+            ours = r["program"].startswith("ours")
+            to_one.setdefault(ours, []).append((r["paths"], math.sqrt(square) / reference.mean, r["cpu_s"]))
+            speed[ours] = r["paths"] / r["cpu_s"]
+        seconds = {ours: to_one_percent(points) for ours, points in to_one.items()}
+        if not all(seconds.values()):
+            return None
+        ratios.append(seconds[True] / seconds[False])
+        speeds.append(speed[True] / speed[False])
+    return {"pairs": len(ratios), "to_1_percent": quartiles(ratios), "paths_per_cpu_s": quartiles(speeds), "paths": max(r["paths"] for r in runs),
+            "with": next(r["program"] for r in runs if not r["program"].startswith("ours")) if first else None}

@@ -4,6 +4,7 @@ import re
 import resource
 import subprocess
 import sys
+import time
 
 from peers.scenes import ROOT
 
@@ -30,15 +31,22 @@ class Ours:
             sys.exit(f"{' '.join(command)}: {done.stderr or done.stdout}")
         return cpu(resource.RUSAGE_CHILDREN) - start
 
-    def _whole(self, paths, seed):
+    def command(self, paths, seed):
         base = f"{self.folder}/{self.scene.name}"
-        return self._run(f"{BIN}/dirsig-render", f"{base}_sim.yaml", "-o", f"{base}_out", "--threads", "2", "--paths", str(paths), "--seed", str(seed), "-q")
+        return [f"{BIN}/dirsig-render", f"{base}_sim.yaml", "-o", f"{base}_out", "--threads", "2", "--paths", str(paths), "--seed", str(seed), "-q"]
+
+    def _whole(self, paths, seed):
+        return self._run(*self.command(paths, seed))
 
     def prepare(self):
         base = f"{self.folder}/{self.scene.name}"
         for name, *options in self.scene.fitted:
             self._run(f"{BIN}/sqt-fit", *options, "--swap", "-o", f"{self.folder}/{name}.sqt", "-q", "--report", f"{self.folder}/{name}_fit.json")
         self._run(f"{BIN}/scene-prep", base + "_scene.yaml", "-o", base + ".h5", "--no-crossing-check")
+        self.measure_before()
+
+    def measure_before(self):
+        """Needs the prepared scene."""
         self.before = min(self._whole(1, 5) for _ in range(3))  # loading and building, and one path
         self.seconds_of_path = None
 
@@ -105,6 +113,32 @@ def measure(program, scene, plan, folder, results, **also):
             file = f"{folder}/images/{scene}-{re.sub('[^A-Za-z0-9_.]+', '-', program.name)}-{kind}-{paths}-{seed}.npy"
             np.save(file, image)
             results.append({"scene": scene, "program": program.name, "kind": kind, "paths": paths, "seed": seed, "cpu_s": cpu_s, "image": file, "holes": holes, **also})
+
+
+def run_pairs(folder, scenes, edge, chosen, variant, plan):
+    """chosen: scene -> sampler. plan: numbers of paths, seeds. Ours and Mitsuba in turn, in this process's calls. -> runs, of kind "pair"."""
+    import mitsuba as mi
+    mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)
+    results = []
+    for scene in scenes:
+        ours, peer = Ours(folder, scene, edge), Mitsuba(folder, scene.name, variant, chosen[scene.name])
+        ours.measure_before()
+        for seed in plan[1]:
+            for program in (ours, peer) if seed % 2 else (peer, ours):
+                measure(program, scene.name, [("pair", paths, [seed]) for paths in plan[0]], folder, results)
+    return results
+
+
+def whole_program(command):
+    """-> seconds on the wall, CPU seconds, and the most memory (MB) of a process that is run to its end."""
+    start = time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, use = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        sys.exit(f"{' '.join(command)} ends with {process.returncode}")
+    return time.monotonic() - start, use.ru_utime + use.ru_stime, use.ru_maxrss / 1024
 
 
 def run_mitsuba(folder, chosen, variant, plan, most_before):

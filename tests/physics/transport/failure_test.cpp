@@ -7,6 +7,7 @@
 #include "transport/kernel_branch.h"
 #include "transport/kernel_chain.h"
 #include "transport/kernel_fly.h"
+#include "transport/kernel_gloss.h"
 #include "transport/kernel_go_on.h"
 #include "transport/kernel_guide.h"
 #include "transport/kernel_light.h"
