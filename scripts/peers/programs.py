@@ -1,10 +1,10 @@
 """Runs of each program: CPU seconds of all threads without what a run of one path takes (loading, building), and the image. Images lie as .npy in the folder."""
+import json
 import os
 import re
 import resource
 import subprocess
 import sys
-import time
 
 from peers.scenes import ROOT
 
@@ -57,7 +57,7 @@ class Ours:
         if whole <= 2 * self.before:
             # What loading and building take hides the paths: one run of many tells what a path takes.
             if self.seconds_of_path is None:
-                self.seconds_of_path = max(1e-9, (self._whole(MANY, 6) - self.before) / (MANY - 1))
+                self.seconds_of_path = sorted((self._whole(MANY, 6) - self.before) / (MANY - 1) for _ in range(3))[1]
                 self._whole(paths, seed)  # the image again
             seconds = self.seconds_of_path * paths
         image = np.fromfile(f"{self.folder}/{self.scene.name}_out/camera.img", dtype="<f4").astype(np.float64)
@@ -74,7 +74,7 @@ class Mitsuba:
         self.name = f"Mitsuba {mi.__version__} {variant}, {sampler}"
         self._whole(1, 5)  # what is compiled is compiled now
         # Of every call: tracing the kernel of a scene of many emitters or instances takes seconds; and one path.
-        self.before = min(self._whole(1, 5)[1] for _ in range(2))
+        self.before = min(self._whole(1, 5)[1] for _ in range(4))
         self.seconds_of_path = None
 
     def _whole(self, paths, seed):
@@ -89,7 +89,11 @@ class Mitsuba:
             return image, (whole - self.before) * paths / (paths - 1)
         # What every call takes hides the paths: one call of many tells what a path takes.
         if self.seconds_of_path is None:
-            self.seconds_of_path = max(1e-9, (self._whole(MANY, 6)[1] - self.before) / (MANY - 1))
+            # What a scene before this one left to be freed may have been in it.
+            self.before = min(self.before, *(self._whole(1, 5)[1] for _ in range(4)))
+            self.seconds_of_path = sorted((self._whole(MANY, 6)[1] - self.before) / (MANY - 1) for _ in range(3))[1]
+            if not self.seconds_of_path > 0:
+                sys.exit(f"{self.name} on {self.scene}: {MANY} paths took no more time than one")
         return image, self.seconds_of_path * paths
 
 
@@ -130,15 +134,20 @@ def run_pairs(folder, scenes, edge, chosen, variant, plan):
     return results
 
 
+WATCH = """import json, resource, subprocess, sys, time
+start = time.monotonic()
+code = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+use = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(json.dumps([code, time.monotonic() - start, use.ru_utime + use.ru_stime, use.ru_maxrss / 1024]))"""
+
+
 def whole_program(command):
-    """-> seconds on the wall, CPU seconds, and the most memory (MB) of a process that is run to its end."""
-    start = time.monotonic()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, use = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        sys.exit(f"{' '.join(command)} ends with {process.returncode}")
-    return time.monotonic() - start, use.ru_utime + use.ru_stime, use.ru_maxrss / 1024
+    """-> seconds on the wall, CPU seconds, and the most memory (MB) of a process that is run to its end. Watched by a small process: a
+    child's memory counts what its parent held when it was started."""
+    code, *told = json.loads(subprocess.run([sys.executable, "-c", WATCH, *command], capture_output=True, text=True, check=True).stdout)
+    if code:
+        sys.exit(f"{' '.join(command)} ends with {code}")
+    return told
 
 
 def run_mitsuba(folder, chosen, variant, plan, most_before):
