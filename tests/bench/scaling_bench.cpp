@@ -2,7 +2,8 @@
 // long its scene takes to load; as CSV on standard output: bench, x, unit, value (seconds of CPU of this process),
 // extra (Mrays/s, share of Embree). Usage: scaling_bench
 // [bands|bands_sqt_maps_media|bands_general_kernel|triangles|instances|lamps|media|load|threads|seconds_to_1_percent]...
-// (default: all)
+// (default: all) or bands_in_turn: 224 bands and one in ten alternating pairs, at 16, 64 and 256 paths a pixel;
+// quartiles of the ratios of a path's time.
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,20 +60,40 @@ enum class Kernel { matte, general };
 constexpr size_t kMore = 4;
 // CPU microseconds a path in that kernel: what some captures more take, for which everything is built and warm
 // (captures run beside each other, and have no time of their own).
-void per_path(const char* bench, double x, Kernel kernel, const std::shared_ptr<Scene>& scene, uint32_t edge,
-              uint32_t paths, size_t bands, const SourceSpecs& sources = terrain_sources(), bool specialise = true,
-              size_t more = kMore) {
+double per_path(const char* bench, double x, Kernel kernel, const std::shared_ptr<Scene>& scene, uint32_t edge,
+                uint32_t paths, size_t bands, const SourceSpecs& sources = terrain_sources(), bool specialise = true,
+                size_t more = kMore) {
   const double before = render(scene, edge, paths, bands, 1, sources, 1, specialise).cpu;
   const Run run = render(scene, edge, paths, bands, 1, sources, 1 + more, specialise);
   if (!run.report.log.back().kernel.starts_with(kernel == Kernel::matte ? "matte" : "general"))
     throw Bug(std::string(bench) + " ran in the " + run.report.log.back().kernel + " kernel");
-  print(bench, x, "us/path (CPU)", 1e6 * (run.cpu - before) / (static_cast<double>(more) * edge * edge * paths), run);
+  const double microseconds = 1e6 * (run.cpu - before) / (static_cast<double>(more) * edge * edge * paths);
+  print(bench, x, "us/path (CPU)", microseconds, run);
+  return microseconds;
 }
 
 void bands() {
   const auto scene = terrain_scene(240);
   for (const size_t n : {1u, 4u, 16u, 64u, 224u})
     per_path("bands", static_cast<double>(n), Kernel::matte, scene, 96, 16, n);
+}
+// The ratio falls with the paths of a pixel: results, their errors and the memory for both are there once a pixel.
+void bands_in_turn() {
+  const auto scene = terrain_scene(240);
+  for (const uint32_t paths : {16u, 64u, 256u}) {
+    std::vector<double> ratios;
+    for (int pair = 0; pair < 10; ++pair) {
+      const auto time = [&](size_t bands) {
+        return per_path("bands_in_turn", static_cast<double>(bands), Kernel::matte, scene, 96, paths, bands);
+      };
+      const double first = time(pair % 2 ? 224 : 1), second = time(pair % 2 ? 1 : 224);
+      ratios.push_back(pair % 2 ? first / second : second / first);
+    }
+    std::sort(ratios.begin(), ratios.end());
+    std::printf("bands_in_turn,%u,224 : 1 median %.3f (%.3f to %.3f),%.3f,,\n", paths, (ratios[4] + ratios[5]) / 2,
+                ratios[2], ratios[7], (ratios[4] + ratios[5]) / 2);
+    std::fflush(stdout);
+  }
 }
 void triangles() {
   // Building ten millions takes seconds that differ from run to run, so that many captures have to stand against them.
@@ -237,7 +258,9 @@ int main(int argc, char** argv) {
                                                     {"load", load},
                                                     {"threads", thread_counts},
                                                     {"seconds_to_1_percent", seconds_to_1_percent}};
+  const bool in_turn = argc == 2 && std::string(argv[1]) == "bands_in_turn";
   std::puts("bench,x,unit,value,Mrays_per_s,share_in_embree");
+  if (in_turn) bands_in_turn();
   for (const auto& [name, run] : all)
     if (argc == 1 ||
         std::any_of(argv + 1, argv + argc, [&](const char* wanted) { return std::string(wanted) == name; }))
