@@ -107,7 +107,7 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
   sim.pipeline.max_nodes = static_cast<int>(root.integer("max_nodes", 0, 1'000'000, 0));
   sim.pipeline.max_scatterings = static_cast<uint32_t>(root.integer("max_scatterings", 0, 10'000'000, 0));
   sim.pipeline.refracted_sources = root.boolean("light_through_refraction", true);
-  sim.pipeline.gloss_guide = root.boolean("guide_to_gloss", true);
+  if (!root.boolean("guide_to_gloss", true)) sim.pipeline.gloss_photons = 0;
   std::vector<AskedCurve> asked;
   sim.sources = read_sources(root, asked);
   if (const auto p = root.find("periodic")) {

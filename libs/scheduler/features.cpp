@@ -108,7 +108,7 @@ FeatureUse gloss(const Scene& scene, const SourceSpecs& sources, const PipelineO
                         : !small                          ? "no sun, moon or lamp in the simulation"
                         : options.method == Method::paper ? "the paper's estimator"
                         : !options.explicit_sources       ? "lights are not asked"
-                        : !options.gloss_guide            ? "`guide_to_gloss: false`"
+                        : options.gloss_photons == 0      ? "`guide_to_gloss: false`"
                                                           : nullptr;
   return {"gloss guide", !missing, missing ? missing : strf("%zu materials may be glossy", static_cast<size_t>(other))};
 }

@@ -1,12 +1,24 @@
 // What the core is primed with for a capture (paper, section III-C): a tracer, a kit, and the pipeline over them.
 // Captures that share them all share the pipeline with its working memory.
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "scheduler/kits.h"
 
 namespace suite {
+
+// Of what a user chooses, what suits a sensor: photons are sent for every state, and where things move that is for
+// every line of a scanner; eight for each problem of its largest capture.
+inline PipelineOptions suited(const Sensor& sensor, PipelineOptions options) {
+  constexpr size_t kEach = 8;
+  size_t most = 1;
+  for (const Task& task : sensor.tasks())
+    for (const Capture& capture : task.captures) most = std::max(most, capture.problems());
+  options.gloss_photons = static_cast<uint32_t>(std::min<size_t>(options.gloss_photons, kEach * most));
+  return options;
+}
 
 struct Primed {
   Primed(std::shared_ptr<const Tracer> t, Kit k, const Sensor& sensor, size_t sensor_state,
@@ -18,7 +30,7 @@ struct Primed {
               {*tracer, state(), sensor_state, sensor.bands(sensor_state), projection(), *kit.environment}),
         channels(sensor.channels()),
         pipeline(surface, *kit.optics, *kit.environment, state(), projection(), kit.bands->reference, truth, channels,
-                 options) {}
+                 suited(sensor, options)) {}
   Primed(const Primed&) = delete;
 
   const SpectralState& state() const { return kit.optics->state(); }

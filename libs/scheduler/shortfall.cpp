@@ -89,7 +89,7 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
   if (!options.explicit_sources) return {};
   // Lights are asked for through smooth interfaces; their mirrored light is not.
   const bool asked = options.refracted_sources && options.method == Method::standard;
-  const bool guided = options.gloss_guide && options.method == Method::standard;
+  const bool guided = options.gloss_photons > 0 && options.method == Method::standard;
   constexpr double kNever = 1e-12;
   std::vector<std::string> lights, bent, unguided, refracting, mirrors;
   for (const LightSpecPtr& light : sources.lights) {

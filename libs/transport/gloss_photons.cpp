@@ -11,8 +11,7 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kWave = 2048;  // photons that are traced side by side
-constexpr size_t kWaves = 16;
+constexpr size_t kWave = 2048;     // photons that are traced side by side
 constexpr size_t kWorthwhile = 8;  // of the first wave; where fewer land no more are sent
 constexpr int kMostTurns = 6;
 constexpr size_t kMostObjects = size_t{1} << 22;
@@ -31,11 +30,11 @@ class Sender {
     list_balls();
   }
 
-  std::vector<GlossPhoton> send() {
+  std::vector<GlossPhoton> send(size_t most) {
     std::vector<GlossPhoton> landed;
     size_t sent = 0;
     if (!balls_.empty())
-      for (; sent < kWaves * kWave; sent += kWave) {
+      for (; sent < most; sent += kWave) {
         send_wave(sent, landed);
         if (sent == 0 && landed.size() < kWorthwhile) return {};
       }
@@ -218,8 +217,9 @@ class Sender {
 
 }  // namespace
 
-std::vector<GlossPhoton> gloss_photons(const Surface& surface, const Optics& optics, const Environment& environment) {
-  return Sender(surface, optics, environment).send();
+std::vector<GlossPhoton> gloss_photons(const Surface& surface, const Optics& optics, const Environment& environment,
+                                       size_t most) {
+  return Sender(surface, optics, environment).send(most);
 }
 
 }  // namespace suite

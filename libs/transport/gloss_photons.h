@@ -22,7 +22,9 @@ struct GlossPhoton {
   float irradiance = 0;  // of its light where it was aimed at, W/(m2 um)
 };
 
-// Empty where nothing throws such light. Deterministic: the same on every thread, rank and in every run.
-std::vector<GlossPhoton> gloss_photons(const Surface& surface, const Optics& optics, const Environment& environment);
+// most: photons that are sent; more, up to a whole wave of 2048, for less. Empty where nothing throws such light.
+// Deterministic: the same on every thread, rank and in every run.
+std::vector<GlossPhoton> gloss_photons(const Surface& surface, const Optics& optics, const Environment& environment,
+                                       size_t most);
 
 }  // namespace suite

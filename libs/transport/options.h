@@ -31,7 +31,8 @@ struct PipelineOptions {
   bool explicit_sources = true;   // ask lights at every node (off only for comparisons)
   bool refracted_sources = true;  // ask lights through smooth interfaces, too (refracted_sight.h)
   bool side_flights = true;       // flights aside in media that scatter forwards (kernel_side.h; off for comparisons)
-  bool gloss_guide = true;        // continuations towards light that glossy surfaces throw (gloss_guide.h)
+  // Photons that look for light which glossy surfaces throw (gloss_photons.h); 0: none, and nobody is guided there.
+  uint32_t gloss_photons = 32768;
   Method method = Method::standard;
   int lamp_draws = LightNature::kMostDraws;  // 1..kMostDraws: samples of a light at the first node of a path
   StopRule stop = StopRule::plan;

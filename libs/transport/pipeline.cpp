@@ -75,9 +75,9 @@ KernelContext Pipeline::context(const Environment& environment) const {
 }
 
 std::unique_ptr<const GlossGuide> Pipeline::make_gloss() const {
-  if (choice_.matte || !options_.gloss_guide || !options_.explicit_sources || options_.method != Method::standard)
+  if (choice_.matte || options_.gloss_photons == 0 || !options_.explicit_sources || options_.method != Method::standard)
     return nullptr;
-  std::vector<GlossPhoton> photons = gloss_photons(surface_, optics_, environment_);
+  std::vector<GlossPhoton> photons = gloss_photons(surface_, optics_, environment_, options_.gloss_photons);
   return photons.empty() ? nullptr : std::make_unique<GlossGuide>(std::move(photons));
 }
 

@@ -115,7 +115,7 @@ using Bands = std::vector<Repeated>;
 // Of the ground on the lit side of the ball.
 Bands run(const std::shared_ptr<Scene>& scene, const SourceSpecs& sources, bool guided, uint32_t paths, uint64_t seed) {
   PipelineOptions options;
-  options.gloss_guide = guided;
+  if (!guided) options.gloss_photons = 0;
   options.seed = seed;
   std::vector<Band> bands;
   for (const double center : {0.42, 0.6, 0.88}) bands.push_back(Band::rectangular("b", center, 0.01));
@@ -179,7 +179,7 @@ TEST(GlossGuide, MirrorsThrowLightOfADisk) {
   EXPECT_NEAR(seen.mean, kRho / kPi * 3 * to_sun.z * (1 + kR), kSigmas * seen.error);
   EXPECT_LT(seen.error, 0.003 * seen.mean);
   PipelineOptions off;
-  off.gloss_guide = false;
+  off.gloss_photons = 0;
   EXPECT_GT(over_problems(render(scene, sources, look(), off).result, 0).error, 5 * seen.error);
 }
 
@@ -190,7 +190,8 @@ TEST(GlossGuide, NothingWhereNothingIsGlossy) {
     const Tracer tracer(scene);
     const Optics optics(*scene, state);
     const Surface surface(tracer, optics);
-    return gloss_photons(surface, optics, bake_environment(sun_and_sky(0), tracer, false, optics.state())).size();
+    return gloss_photons(surface, optics, bake_environment(sun_and_sky(0), tracer, false, optics.state()), 32768)
+        .size();
   };
   EXPECT_EQ(count(lambert(0.5)), 0u);
   EXPECT_EQ(count(lambert(0.4, 0.4)), 0u);
