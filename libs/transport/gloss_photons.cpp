@@ -15,6 +15,7 @@ constexpr size_t kWave = 2048;     // photons that are traced side by side
 constexpr size_t kWorthwhile = 8;  // of the first wave; where fewer land no more are sent
 constexpr int kMostTurns = 6;
 constexpr size_t kMostObjects = size_t{1} << 22;
+constexpr size_t kMostGlossy = size_t{1} << 15;  // of more objects too few photons come from each to say anything
 struct Ball {
   Vec3 centre;
   double radius;  // m
@@ -75,6 +76,7 @@ class Sender {
     tracer.each(
         "glossy objects", [&](const TracedObject& o) { return is_glossy(o); },
         [&](uint32_t number, const TracedObject& o) {
+          if (balls_.size() > kMostGlossy) return;
           const Box3 box = tracer.local_box(number);
           if (box.empty() || !tracer.there(number, time_)) return;
           const Affine3 to_world = tracer.to_world(number, time_);
@@ -93,6 +95,7 @@ class Sender {
           // By their radii: large objects get more, but small ones are not forgotten beside them.
           chances_.push_back(sum += std::sqrt(radius2));
         });
+    if (balls_.size() > kMostGlossy) balls_.clear();
   }
 
   // Aims a photon; false when its light does not reach the ball.
