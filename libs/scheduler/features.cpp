@@ -109,7 +109,9 @@ FeatureUse gloss(const Scene& scene, const SourceSpecs& sources, const PipelineO
                         : options.method == Method::paper ? "the paper's estimator"
                         : !options.explicit_sources       ? "lights are not asked"
                         : options.gloss_photons == 0      ? "`guide_to_gloss: false`"
-                                                          : nullptr;
+                        : !scene.media.empty() && refraction(scene, sources, options).used
+                            ? "paths in media behind refracting surfaces have guides of their own"
+                            : nullptr;
   return {"gloss guide", !missing, missing ? missing : strf("%zu materials may be glossy", static_cast<size_t>(other))};
 }
 

@@ -89,19 +89,22 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
   if (!options.explicit_sources) return {};
   // Lights are asked for through smooth interfaces; their mirrored light is not.
   const bool asked = options.refracted_sources && options.method == Method::standard;
-  const bool guided = options.gloss_photons > 0 && options.method == Method::standard;
+  std::vector<std::string> lights, bent, by_photons, unguided, refracting, mirrors;
+  for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
+  // Where media scatter behind refracting surfaces paths have other guides.
+  const bool guided =
+      options.gloss_photons > 0 && options.method == Method::standard && (optics.media().empty() || refracting.empty());
   constexpr double kNever = 1e-12;
-  std::vector<std::string> lights, bent, unguided, refracting, mirrors;
   for (const LightSpecPtr& light : sources.lights) {
     const std::vector<std::string> unmet = light->hardly_met(kNever);
     for (const std::string& part : light->hardly_met(Accumulators::kEnoughMeetings / paths)) {
       lights.push_back(part);
       if (!asked || (repeats && light->in_scene())) bent.push_back(part);
-      if (!guided || std::find(unmet.begin(), unmet.end(), part) != unmet.end()) unguided.push_back(part);
+      const bool never = std::find(unmet.begin(), unmet.end(), part) != unmet.end();
+      (guided && !never ? by_photons : unguided).push_back(part);
     }
   }
   if (lights.empty()) return {};
-  for (const uint32_t i : LostLight::refracting(scene, optics)) refracting.push_back("'" + scene.materials[i].id + "'");
   for (uint32_t i = 0; i < scene.materials.size(); ++i)
     if (const ScatterModel* m = optics.material(i).model; m && m->has_delta())
       mirrors.push_back("'" + scene.materials[i].id + "'");
@@ -111,11 +114,12 @@ std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sourc
                    listed(refracting) +
                    "): only asking for it finds it, and they bend it away. What is missing is estimated, enlarges "
                    "standard errors and flags problems as not resolved");
-  if (!mirrors.empty() && unguided.empty())
+  if (!mirrors.empty() && !by_photons.empty())
     said.push_back(
-        "light of " + listed(lights) + " that smooth surfaces (" + listed(mirrors) +
+        "light of " + listed(by_photons) + " that smooth surfaces (" + listed(mirrors) +
         ") reflect to others is found where photons say so that are sent when a state is begun; what those of "
-        "small ones among many do not reach is left to chance, and no standard error or flag tells of it");
+        "surfaces without bounds, and of small ones among many, do not reach is left to chance, and no standard error "
+        "or flag tells of it");
   if (!mirrors.empty() && !unguided.empty())
     said.push_back("light of " + listed(unguided) + " that smooth surfaces (" + listed(mirrors) +
                    ") reflect to others is not found and not estimated: no standard error and no flag tells of it. A "

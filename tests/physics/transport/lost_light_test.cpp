@@ -258,6 +258,13 @@ TEST(LostLight, IsToldBeforeThePathsAreRun) {
   EXPECT_THAT(warnings(sun(0.27), smooth(kIndex), 4), ElementsAre(HasSubstr("one path in"), HasSubstr("one path in")));
   EXPECT_THAT(warnings(sun(0), {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr}, 4),
               ElementsAre(HasSubstr("reflect to others")));
+  // Photons look for a disk in mirrors, never for what no path can meet.
+  SourceSpecs both = sun(0);
+  both.add(SunSpec{dir_from_angles(0.2, 0), 0.27 * kDegree, Curve::constant(1)});
+  const ModelSpec mirror{"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr};
+  EXPECT_THAT(warnings(sun(0.27), mirror, 4), ElementsAre(HasSubstr("found where photons say so")));
+  EXPECT_THAT(warnings(both, mirror, 4),
+              ElementsAre(HasSubstr("found where photons say so"), HasSubstr("is not found and not estimated")));
   EXPECT_THAT(warnings(sun(5), smooth(kIndex), 4096), IsEmpty());
   EXPECT_THAT(warnings(sun(0), lambert(0.1), 4), IsEmpty());
 }
