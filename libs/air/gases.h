@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "air/continuum.h"
+#include "air/gas_limits.h"
 #include "air/profile.h"
 
 namespace suite {
@@ -32,6 +33,8 @@ class GasProvider {
   virtual double high_um() const = 0;
   // Source and stated error, a sentence.
   virtual std::string note() const = 0;
+  // Ranges where it is less sure than the note says; none: nothing is known of it.
+  virtual std::vector<GasLimit> limits() const { return {}; }
 
   // A part of the spectrum within which a distribution holds, cm-1. index: the provider's own.
   struct Band {

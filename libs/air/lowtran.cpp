@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "air/gas_limits.h"
 #include "air/gases.h"
+#include "air/lowtran_limits.h"
 
 namespace suite {
 
@@ -204,11 +204,12 @@ class Lowtran final : public GasProvider {
   std::string note() const override {
     return "LOWTRAN 7 band functions, 20 cm-1; vertical transmittance against line-by-line: rms 0.03, at most 0.1 in "
            "10 nm and "
-           "0.14 in 20 cm-1; water from 4.2 to 5.6 um rms 0.08, at most 0.25, where its continuum of 1988 is too "
-           "strong";
+           "0.14 in 20 cm-1";
   }
 
-  const WaterContinuum* continuum() const { return continuum_ ? &*continuum_ : nullptr; }
+  std::vector<GasLimit> limits() const override {
+    return limits_of_lowtran(continuum_ ? WaterOf::mt_ckd : WaterOf::lowtran);
+  }
 
   std::vector<Band> bands(double low_cm, double high_cm) const override {
     std::vector<Band> out;
@@ -243,20 +244,6 @@ const GasProvider& builtin_gases() {
 }
 std::unique_ptr<GasProvider> builtin_gases(WaterContinuum continuum) {
   return std::make_unique<Lowtran>(std::move(continuum));
-}
-
-std::vector<WeakGases> weak_gases(const GasProvider& provider) {
-  const auto* const lowtran = dynamic_cast<const Lowtran*>(&provider);
-  if (!lowtran) return {};
-  return {{1e4 / 3440, 1e4 / 2930, "transmittance off by 0.04 rms in 30 cm-1 (water)"},
-          lowtran->continuum()
-              ? WeakGases{1e4 / 2400, 1e4 / 1800, "transmittance off by 0.04 rms in 30 cm-1 (water)"}
-              : WeakGases{1e4 / 2400, 1e4 / 1800,
-                          "transmittance off by 0.07 rms, up to 0.18 in 30 cm-1 (water's continuum of 1988; with "
-                          "`water_continuum: FILE` of MT_CKD 0.04 rms)"},
-          {1e4 / 1075, 1e4 / 985, "up to 5.3 K off from space over a ground of 300 K (ozone)"},
-          {1e4 / 805, 1e4 / 775, "up to 2.3 K too cold from space over a ground of 300 K (carbon dioxide)"},
-          {1e4 / 775, 1e4 / 715, "up to 5.3 K off from space over a ground of 300 K (carbon dioxide)"}};
 }
 
 WaterContinuum builtin_continuum() {

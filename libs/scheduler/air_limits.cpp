@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "air/gas_limits.h"
 #include "scene/primitives.h"
 #include "scheduler/air_left_out.h"
 #include "scheduler/doubts.h"
@@ -122,19 +121,29 @@ std::optional<std::string> left_out(const AirSpec& air, const Scene& scene, cons
       sensor.name().c_str(), out->um, out->depth, out->contrast, out->adjacency, out->shadows);
 }
 
+// The bands of a sensor that meet a range: each, or the first and the last of many.
+std::string bands_within(const Sensor& sensor, const GasLimit& limit) {
+  std::vector<std::string> names;
+  for (size_t s = 0; s < sensor.states().size(); ++s)
+    for (const Band& band : sensor.bands(s))
+      if (band.high_um() > limit.low_um && band.low_um() < limit.high_um) names.push_back("'" + band.name + "'");
+  if (names.empty()) return {};
+  constexpr size_t kEach = 4;
+  std::string text;
+  if (names.size() > kEach) text = strf("%s to %s (%zu)", names.front().c_str(), names.back().c_str(), names.size());
+  if (names.size() <= kEach)
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text + " of '" + sensor.name() + "'";
+}
+
 // Bands that lie where gases are less sure than in general, range by range.
-void tell_weak_gases(const GasProvider& gases, Sensors sensors, std::vector<std::string>& said) {
-  for (const WeakGases& weak : weak_gases(gases)) {
+void report_gas_limits(const GasProvider& gases, Sensors sensors, std::vector<std::string>& said) {
+  for (const GasLimit& limit : gases.limits()) {
     std::string names;
     for (const auto& sensor : sensors)
-      for (size_t s = 0; s < sensor->states().size(); ++s)
-        for (const Band& band : sensor->bands(s))
-          if (band.high_um() > weak.low_um && band.low_um() < weak.high_um)
-            names += strf("%s'%s' of '%s'", names.empty() ? "" : ", ", band.name.c_str(), sensor->name().c_str());
-    if (!names.empty())
-      said.push_back(
-          strf("gases: from %.4g to %.4g um %s; there look bands ", weak.low_um, weak.high_um, weak.size.c_str()) +
-          names);
+      if (const std::string bands = bands_within(*sensor, limit); !bands.empty())
+        names += (names.empty() ? "" : ", ") + bands;
+    if (!names.empty()) said.push_back("gases: " + limit.text() + "; bands there: " + names);
   }
 }
 
@@ -165,7 +174,7 @@ std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene
                                   const JobOptions& job) {
   std::vector<std::string> said;
   if (!written.air) return said;
-  if (written.air->gases) tell_weak_gases(*written.air->gases, sensors, said);
+  if (written.air->gases) report_gas_limits(*written.air->gases, sensors, said);
   if (written.air->scattering == AirScattering::traced)
     if (const auto sentence = open_below(written, scene, job)) said.push_back(*sentence);
   if (written.air->scattering != AirScattering::diffuse) return said;

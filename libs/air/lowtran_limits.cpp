@@ -1,0 +1,54 @@
+#include "air/lowtran_limits.h"
+
+namespace suite {
+
+std::vector<GasLimit> limits_of_lowtran(WaterOf continuum) {
+  const GasLimit foot{14.0, 18.7, {0, 0}, 0, {3.4, 7}, {0, 0}, "carbon dioxide, water"};
+  if (continuum == WaterOf::mt_ckd)
+    return {{1.1, 1.35, {0.022, 0.092}, 0.004, {}, {}, "water, oxygen"},
+            {2.0, 2.4, {0.034, 0.115}, -0.025, {}, {}, "water, methane"},
+            {2.9, 3.4, {0.032, 0.084}, 0.01, {1.1, 2.6}, {1.5, 4.0}, "water"},
+            {3.4,
+             4.15,
+             {0.048, 0.13},
+             -0.023,
+             {1.6, 3.2},
+             {3.7, 9.7},
+             "too opaque; the air glows up to 3.5 times too brightly on short paths"},
+            {4.15, 4.6, {0.027, 0.096}, -0.005, {2.3, 7.9}, {2.0, 7.9}, "carbon dioxide"},
+            {4.6, 5.3, {0.024, 0.088}, -0.008, {1.3, 2.9}, {1.7, 4.9}, "water"},
+            {5.3, 7.2, {0.025, 0.18}, -0.007, {2.2, 5.2}, {1.9, 5.2}, "water"},
+            {7.2, 8.2, {0.029, 0.11}, -0.007, {1.8, 4.9}, {2.5, 6.9}, "water, methane"},
+            {8.2, 9.3, {0.036, 0.084}, 0.03, {1.1, 2.8}, {2.4, 6.2}, "water"},
+            {9.3, 10.15, {0.043, 0.11}, 0.031, {1.8, 4.9}, {2.7, 7.2}, "ozone"},
+            {10.15, 12.4, {0.032, 0.066}, 0.026, {1.3, 2.8}, {2.3, 6.7}, "water's continuum, aerosol"},
+            {12.4, 14.0, {0.024, 0.067}, 0.011, {2.2, 5.9}, {4.1, 11.7}, "carbon dioxide"},
+            foot};
+  return {{1.1, 1.35, {0.025, 0.089}, 0, {}, {}, "water, oxygen"},
+          {2.0, 2.4, {0.046, 0.13}, -0.038, {}, {}, "water's continuum of 1988 is too strong, methane"},
+          {3.4,
+           4.15,
+           {0.067, 0.18},
+           -0.056,
+           {1.8, 3.4},
+           {3.8, 9.6},
+           "water's continuum of 1988 is too strong, `water_continuum: FILE` of MT_CKD has 0.042 rms; the air glows up "
+           "to 3.7 times too brightly on short paths"},
+          {4.15, 4.6, {0.028, 0.1}, -0.007, {2.3, 7.9}, {2.0, 7.9}, "carbon dioxide"},
+          {4.6,
+           5.3,
+           {0.046, 0.15},
+           -0.032,
+           {1.8, 4.5},
+           {2.5, 5.7},
+           "water's continuum of 1988 is too strong, `water_continuum: FILE` of MT_CKD has 0.024 rms"},
+          {5.3, 7.2, {0.027, 0.18}, -0.008, {2.2, 5.1}, {1.9, 5.1}, "water"},
+          {7.2, 8.2, {0.043, 0.11}, -0.025, {2.1, 4.7}, {3.1, 8.7}, "water, methane"},
+          {8.2, 9.3, {0.025, 0.046}, -0.02, {1.4, 3.2}, {2.8, 7.1}, "water"},
+          {9.3, 10.15, {0.032, 0.085}, 0.007, {1.9, 4.7}, {2.8, 8.2}, "ozone"},
+          {10.15, 12.4, {0.027, 0.058}, 0.022, {1.3, 3.0}, {2.4, 7.9}, "water's continuum, aerosol"},
+          {12.4, 14.0, {0.02, 0.054}, 0.006, {2.2, 6.0}, {4.1, 11.7}, "carbon dioxide"},
+          foot};
+}
+
+}  // namespace suite
