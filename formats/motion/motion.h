@@ -20,7 +20,8 @@ namespace suite {
 struct MotionContext {
   std::optional<SceneFrame> frame;
   std::optional<Clock> clock;
-  double dut1 = 0;  // s
+  double dut1 = 0;          // s, UT1 - UTC at second 0
+  bool dut1_given = false;  // else a satellite's track says what that may cost
   // Mean elements of a satellite (catalogue number or title) from a file; the application passes the reader of
   // formats/tle.
   std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
