@@ -206,8 +206,9 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
       break;
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
-      const MotionContext inside{std::nullopt,       context.clock,           context.dut1,    context.dut1_given,
-                                 context.satellites, context.satellite_lines, context.resolve, false};
+      const MotionContext inside{
+          std::nullopt,    context.clock, context.dut1,      context.satellites, context.satellite_lines,
+          context.resolve, false,         context.dut1_given};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }
