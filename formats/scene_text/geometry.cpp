@@ -120,8 +120,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
     g.terrain.georeferenced = true;
     const auto system = map_system_of_epsg(ref.epsg);
     if (!system || system->zone.has_value() == ref.geographic)
-      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg),
-                  "WGS84 or ETRS89, geographic or UTM, are", "SP504");
+      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg), known_systems(), "SP504");
     g.terrain.place = georeferenced_grid(ref, on_earth(*system, rule));
   }
   read_heights(p, g.terrain);

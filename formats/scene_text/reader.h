@@ -88,6 +88,7 @@ class Reader {
   void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
+  void forget_temperatures(const Params& p, SourceMesh& mesh);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);
   VoxelData read_point_voxels(const Params& p, const Params& file);
@@ -99,6 +100,7 @@ class Reader {
     std::optional<double> separation_m;  // none: by the origin's grid
   };
   GeoidRule read_heights_rule(const Params& p);
+  std::string known_systems() const;
   std::function<Vec3(Vec3)> map_place(const Params& p, const std::string& system, const Params& file,
                                       bool longitude_first);
   std::function<Vec3(Vec3)> on_earth(const MapSystem& system, const GeoidRule& rule) const;
