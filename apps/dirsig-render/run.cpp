@@ -101,6 +101,7 @@ void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& 
 
 void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
              const RenderOptions& o) {
+  check_optics(scene, sim);
   tell_forecast(scene, sim, options);
   if (sees_heat(sim, o)) std::fputs(heat_forecast(scene, sim).c_str(), stdout);
   for (const auto& sensor : sim.sensors) {
@@ -350,10 +351,9 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   // What can be refused is refused before rendering starts.
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
-  if (o.dry_run) dry_run(scene, sim, options, o);
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene, options);
-  if (o.dry_run) check_optics(scene, sim);
+  if (o.dry_run) dry_run(scene, sim, options, o);
   if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
