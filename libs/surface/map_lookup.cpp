@@ -85,6 +85,8 @@ uint32_t class_at(const ClassMap& map, const MapPlace& place) {
   return map.classes[static_cast<size_t>(row) * map.width + static_cast<size_t>(column)];
 }
 
+// False in a gap (NaN), too. Between pixel centres a gap is where the nearest pixel is one; other gaps count as the
+// nearest pixel.
 bool values_at(const PropertyMap& map, const MapPlace& place, std::span<float> out) {
   Taps taps;
   const bool linear = map.filter == PropertyMap::Filter::linear && map.kind != MapKind::curve_index;

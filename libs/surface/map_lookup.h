@@ -29,8 +29,7 @@ long extended(double position, uint32_t size, Drape::Extend rule);
 // The class at a place, as an index into ClassMap::materials; kNone outside a map that does not extend.
 uint32_t class_at(const ClassMap& map, const MapPlace& place);
 
-// All channels at a place under the map's filter; false in a gap and outside a map that does not extend. Between pixel
-// centres a gap is where the nearest pixel is one; other gaps count as the nearest pixel. out: map.channels values.
+// All channels at a place under the map's filter; false outside a map that does not extend. out: map.channels values.
 bool values_at(const PropertyMap& map, const MapPlace& place, std::span<float> out);
 // The first channel only.
 std::optional<float> value_at(const PropertyMap& map, const MapPlace& place);
