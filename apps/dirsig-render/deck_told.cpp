@@ -18,6 +18,7 @@ namespace suite {
 namespace {
 
 constexpr size_t kMostIntervals = 50;
+constexpr double kLevel = 2e3;     // m, of a horizontal path; a straight line rises by 0.3 m
 constexpr double kNarrowest = 20;  // 1/cm: below it our bands of gases have no structure
 
 // What a run is told of: one value an interval, empty where its mode has none.
@@ -111,8 +112,9 @@ Line line_of(const Tape5Run& run, double radius) {
   const double h1 = run.observer_height, h2 = run.end_height;
   if (run.path_type == 1) {
     if (!run.range) throw Error(run.where, "a horizontal path without a range", "columns 31 to 40 of card 3");
-    if (zenith == 0) zenith = kPi / 2;
-    distance = *run.range;
+    // A part of it, which is nearly level: see along_level.
+    distance = std::min(*run.range, kLevel);
+    zenith = kPi / 2;
   } else if (run.path_type == 2 && run.range) {
     distance = *run.range;
     // Angles of zero are blanks where the two heights and the range say the angle.
@@ -161,6 +163,16 @@ std::vector<double> means(const BandProjection& projection, std::span<const floa
   return sums;
 }
 
+// A path at one pressure is as any part of it: transmittances multiply, and each part's radiance passes those before
+// it.
+void along_level(double parts, std::vector<float>& T, std::vector<float>& S) {
+  for (size_t i = 0; i < T.size(); ++i) {
+    const double one = double{T[i]}, all = std::pow(one, parts), lost = 1 - one;
+    S[i] = static_cast<float>(double{S[i]} * (lost > 1e-6 ? (1 - all) / lost : parts));
+    T[i] = static_cast<float>(all);
+  }
+}
+
 Spectra ours(const Tape5Run& run, std::span<const Band> bands) {
   const AirSpec air = air_of(run);
   const SpectralState state = bins_in_air(air, make_state(bands, 0.01), bands).state;
@@ -183,6 +195,7 @@ Spectra ours(const Tape5Run& run, std::span<const Band> bands) {
     return s;
   }
   atmosphere->path(line.from, line.direction, line.distance, T, S);
+  if (run.path_type == 1) along_level(*run.range / line.distance, T, S);
   s.transmittance = means(projection, T);
   if (run.mode > 0) s.radiance = means(projection, S);
   if (run.mode < 2 || !std::isfinite(line.distance)) return s;
@@ -238,13 +251,20 @@ std::string compared(const Shown& shown, std::span<const Band> bands, const std:
 
 std::string head_of(const Tape5Run& run, size_t number) {
   const Line line = line_of(run, AirSpec{}.radius);
-  std::string text = strf("run %zu: %s, %s, from %g m at %.4g degrees from the zenith", number,
-                          kProfiles[run.model - 1], run.haze ? strf("haze %d", run.haze).c_str() : "no haze",
-                          run.observer_height, run.zenith.value_or(0) / kDegree);
-  if (run.mode != 3) text += std::isfinite(line.distance) ? strf(" over %.6g m", line.distance) : " into space";
+  const bool level = run.path_type == 1 && run.mode != 3;
+  std::string text = strf("run %zu: %s, %s, from %g m ", number, kProfiles[run.model - 1],
+                          run.haze ? strf("haze %d", run.haze).c_str() : "no haze", run.observer_height);
+  text +=
+      level ? "along its level (ITYPE 1)" : strf("at %.4g degrees from the zenith", run.zenith.value_or(0) / kDegree);
+  const double distance = level ? *run.range : line.distance;
+  if (run.mode != 3) text += std::isfinite(distance) ? strf(" over %.6g m", distance) : " into space";
   if (const auto sun = sun_of(run); sun && run.mode == 2)
     text += strf(", the Sun at %.4g degrees", polar_angle(sun->direction) / kDegree);
-  return text + (run.many_scatterings ? "; scattered often\n" : "; scattered once\n");
+  text += run.many_scatterings ? "; scattered often\n" : "; scattered once\n";
+  if (run.unread.empty()) return text;
+  text += "  not followed here:";
+  for (size_t i = 0; i < run.unread.size(); ++i) text += (i ? ", " : " ") + run.unread[i];
+  return text + "\n";
 }
 
 void check_same(const Tape5Run& run, const Tape7Block& other) {
@@ -253,7 +273,8 @@ void check_same(const Tape5Run& run, const Tape7Block& other) {
   if (mode != run.mode && !(run.mode == 2 && other.mode == Tape7Mode::thermal_radiance))
     throw Error(other.header, strf("this run is of mode %d, that of the deck of mode %d", mode, run.mode),
                 "the output of the deck");
-  if (other.wavenumber.front() > run.first * (1 + 1e-6) || other.wavenumber.back() < run.last * (1 - 1e-6))
+  // The last row may be one step short of the end that card 4 gives.
+  if (other.wavenumber.front() > run.first * (1 + 1e-6) || other.wavenumber.back() < (run.last - run.step) * (1 - 1e-6))
     throw Error(other.header,
                 strf("this run reaches from %g to %g 1/cm, the deck's from %g to %g", other.wavenumber.front(),
                      other.wavenumber.back(), run.first, run.last),
@@ -269,14 +290,17 @@ bool is_deck(const std::string& path) {
 }
 
 std::string deck_text(const std::string& deck, const std::string& against) {
-  const std::vector<Tape5Run> runs = read_tape5(deck);
+  std::vector<Tape5Run> runs = read_tape5(deck);
   std::vector<Tape7Block> others;
   if (!against.empty()) others = against.ends_with(".json") ? read_modtran6(against) : read_tape7(against);
   if (!others.empty() && others.size() != runs.size())
     throw Error(Where{against, 0, 0, {}, -1},
                 strf("%zu runs stand beside the %zu of the deck", others.size(), runs.size()),
                 "the output of the deck");
-  for (size_t i = 0; i < others.size(); ++i) check_same(runs[i], others[i]);
+  for (size_t i = 0; i < others.size(); ++i) {
+    check_same(runs[i], others[i]);
+    runs[i].last = std::min(runs[i].last, others[i].wavenumber.back());
+  }
   std::string text;
   for (size_t i = 0; i < runs.size(); ++i) {
     std::vector<Band> bands = intervals_of(runs[i]);

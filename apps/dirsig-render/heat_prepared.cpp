@@ -10,6 +10,7 @@
 #include "heat/day_sun.h"
 #include "heat_left_out.h"
 #include "motion/scene_frame.h"
+#include "motion/ut1.h"
 #include "surface/cut_out.h"
 
 namespace suite {
@@ -66,7 +67,9 @@ HeatWeather weather_of(const Simulation& sim, const Scene& scene) {
   const auto frame = std::make_shared<const SceneFrame>(
       o.given ? Geodetic{o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m} : weather.site());
   return {weather, [&weather, clock](double t) { return weather.clock().seconds(clock.at(t)); },
-          [frame, clock, dut1 = sim.dut1](double t) { return sun_at(*frame, {}, clock.at(t), dut1); }};
+          [frame, clock, dut1 = sim.dut1](double t) {
+            return sun_at(*frame, {}, clock.at(t), dut1_at(clock.at(t), clock.at(0), dut1));
+          }};
 }
 
 namespace {

@@ -50,7 +50,8 @@ void declare_parts(Cli& cli, RenderOptions& o) {
 
 // What is told instead of a picture.
 void declare_questions(Cli& cli, RenderOptions& o) {
-  cli.flag("--dry-run", o.dry_run, "print tasks, captures, states and the number of paths, and stop");
+  cli.flag("--dry-run", o.dry_run,
+           "print tasks, captures, states and the number of paths, refuse what a run would refuse, and stop");
   cli.option("--ranks", o.ranks,
              "with --dry-run: run a few blocks and forecast the seconds and the efficiency of the job on so many ranks",
              "N,N,...");

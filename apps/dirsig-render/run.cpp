@@ -14,6 +14,7 @@
 #include "continued.h"
 #include "deck_told.h"
 #include "dirsig_import.h"
+#include "dry_checks.h"
 #include "flags_told.h"
 #include "formats/scene_hdf/scene_hdf.h"
 #include "formats/sim_text/sim_text.h"
@@ -100,6 +101,7 @@ void tell_forecast(const std::shared_ptr<const Scene>& scene, const Simulation& 
 
 void dry_run(const std::shared_ptr<const Scene>& scene, const Simulation& sim, const JobOptions& options,
              const RenderOptions& o) {
+  check_optics(scene, sim);
   tell_forecast(scene, sim, options);
   if (sees_heat(sim, o)) std::fputs(heat_forecast(scene, sim).c_str(), stdout);
   for (const auto& sensor : sim.sensors) {
@@ -349,10 +351,10 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   // What can be refused is refused before rendering starts.
   const LoadedScene loaded = load_scenes(sim, options, o, ranks);
   const std::shared_ptr<Scene>& scene = loaded.scene;
-  if (o.dry_run) dry_run(scene, sim, options, o);
-  if (o.dry_run && forecast.empty()) return 0;
   if (sim.epoch) set_epoch(*scene, to_iso8601(*sim.epoch, 9));
   check_sensors(sim, *scene, options);
+  if (o.dry_run) dry_run(scene, sim, options, o);
+  if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
   find_beforehand(scene, sim, options, o, facts, ranks);

@@ -23,13 +23,11 @@ HeliosGrid grid_of(const std::string& path) {
 }
 
 HeliosHeights heights_of(const std::string& path) {
-  const Raster raster = read_raster(path);
+  Raster raster = read_raster(path);
   HeliosHeights made{grid_of(path), raster.width, raster.height, {}};
-  made.heights.reserve(size_t{raster.width} * raster.height);
-  for (size_t i = 0; i < raster.values.size(); i += raster.channels) {
-    const float h = raster.values[i];
-    made.heights.push_back(made.no_data && h == static_cast<float>(*made.no_data) ? NAN : h);
-  }
+  const size_t step = raster.channels;
+  const std::vector<float> heights = values_of(std::move(raster), Numbers::scaled);
+  for (size_t i = 0; i < heights.size(); i += step) made.heights.push_back(heights[i]);
   return made;
 }
 

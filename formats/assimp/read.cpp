@@ -6,6 +6,7 @@
 #include "base/late_part.h"
 #include "formats/assimp/apart.h"
 #include "formats/assimp/assimp.h"
+#include "formats/assimp/long_numbers.h"
 #include "formats/assimp/pack.h"
 
 namespace suite {
@@ -234,6 +235,7 @@ SourceModel parse_assimp(std::span<const std::byte> bytes, const std::string& fi
   static const auto* const calls = static_cast<const AssimpCalls*>(late_symbol("assimp", "suite_assimp_calls"));
   const Where whole{file, 0, 0, {}, -1};
   const std::string extension = extension_of(file);
+  check_long_numbers(bytes, file, extension);
   const std::string made = apart(file, bytes.size(), [&] {
     return packed(calls->read(bytes.data(), bytes.size(), extension.c_str(), y_up != nullptr));
   });

@@ -47,6 +47,18 @@ std::optional<double> level_in(std::string_view name) {
   return std::nullopt;
 }
 
+// Properties that hold surfaces, or refer to them.
+bool holds_surfaces(std::string_view name) {
+  return name == "surfaceMember" || name == "baseSurface" || name == "solidMember" || name == "exterior" ||
+         name == "interior" || level_in(name);
+}
+
+// What an element refers to within the document; empty = nothing.
+std::string reference_of(const XmlElement& e) {
+  const auto to = attribute_of(e, "href");
+  return to && to->size() > 1 && to->front() == '#' ? to->substr(1) : std::string();
+}
+
 class Reader {
  public:
   Reader(const std::string& file, const std::optional<std::string>& lod, Report& report) : lod_(lod), report_(report) {
@@ -67,7 +79,15 @@ class Reader {
     double level;
     CityModel::Surface surface;
   };
+  // A surface that others refer to, and the object that it is part of.
+  struct Shared {
+    XmlElement surface;
+    size_t object;
+    std::string kind;  // of what it stands in there; may be empty
+  };
   void references(const XmlElement& e, const std::string& kind);
+  void find_shared(const XmlElement& e, size_t object, const std::string& kind);
+  void refer(const XmlElement& e, const std::string& id, const Around& around, std::vector<Found>& to);
   void walk(const XmlElement& e, Around around, std::vector<Found>& to);
   void polygon(const XmlElement& e, const Around& around, std::vector<Found>& to);
   void implicit(const XmlElement& e, const Around& around, std::vector<Found>& to);
@@ -79,6 +99,9 @@ class Reader {
   CityModel model_;
   std::map<std::string, std::string> kinds_;  // of polygons that are elsewhere than what says their kind
   std::map<std::string, XmlElement> prototypes_;
+  std::set<std::string, std::less<>> wanted_;  // ids that properties of surfaces refer to
+  std::map<std::string, Shared, std::less<>> shared_;
+  size_t references_ = 0, nested_ = 0, lost_ = 0;
   size_t implicit_ = 0, depth_ = 0, placed_ = 0, lines_ = 0, none_ = 0, other_systems_ = 0;
 };
 
@@ -86,11 +109,40 @@ class Reader {
 void Reader::look(const XmlElement& e) {
   if (local(e.name()) != "CityModel") throw e.fault("'" + printable(e.name()) + "' is no CityModel");
   references(e, "");
-  e.each_child([&](const XmlElement& child) {
-    const std::string_view name = local(child.name());
-    if (name == "cityObjectMember" || name == "featureMember")
-      child.each_child([&](const XmlElement& object) { member(object); });
-  });
+  const auto each_object = [&](const auto& visit) {
+    e.each_child([&](const XmlElement& child) {
+      const std::string_view name = local(child.name());
+      if (name == "cityObjectMember" || name == "featureMember") child.each_child(visit);
+    });
+  };
+  size_t object = 0;
+  if (!wanted_.empty()) each_object([&](const XmlElement& o) { find_shared(o, object++, ""); });
+  each_object([&](const XmlElement& o) { member(o); });
+}
+
+void Reader::find_shared(const XmlElement& e, size_t object, const std::string& kind) {
+  const std::string_view name = local(e.name());
+  const std::string within = is_kind(name) ? std::string(name) : kind;
+  if (const auto id = attribute_of(e, "id"); id && wanted_.count(*id)) shared_.emplace(*id, Shared{e, object, within});
+  e.each_child([&](const XmlElement& child) { find_shared(child, object, within); });
+}
+
+// A surface of another object is a surface of this one, too; what the object has itself it has already.
+void Reader::refer(const XmlElement& e, const std::string& id, const Around& around, std::vector<Found>& to) {
+  const auto found = shared_.find(id);
+  if (found == shared_.end()) {
+    ++lost_;
+    return;
+  }
+  if (found->second.object == model_.objects.size()) return;
+  constexpr size_t kMost = 10'000'000, kNested = 20;
+  if (nested_ >= kNested) throw e.fault("references to references without end", "at most 20 may follow each other");
+  if (++references_ > kMost) throw e.fault(strf("more than %zu references to surfaces", kMost));
+  ++nested_;
+  Around here = around;
+  if (!is_kind(here.kind) && !found->second.kind.empty()) here.kind = found->second.kind;
+  walk(found->second.surface, here, to);
+  --nested_;
 }
 
 void Reader::references(const XmlElement& e, const std::string& kind) {
@@ -102,9 +154,10 @@ void Reader::references(const XmlElement& e, const std::string& kind) {
     else
       other_systems_ += *system != model_.system;
   }
-  if (!within.empty())
-    if (const auto to = attribute_of(e, "href"); to && to->size() > 1 && to->front() == '#')
-      kinds_[to->substr(1)] = within;
+  if (const std::string to = reference_of(e); !to.empty()) {
+    if (!within.empty()) kinds_[to] = within;
+    if (holds_surfaces(name)) wanted_.insert(to);
+  }
   if (name == "relativeGMLGeometry")
     e.each_child([&](const XmlElement& child) {
       if (const auto id = attribute_of(child, "id")) prototypes_.emplace(*id, child);
@@ -147,7 +200,7 @@ void Reader::ring(const XmlElement& e, std::vector<std::vector<Vec3>>& to) const
 
 void Reader::polygon(const XmlElement& e, const Around& around, std::vector<Found>& to) {
   CityModel::Surface made{around.kind, {}, e.where().line};
-  if (const auto id = attribute_of(e, "id"))
+  if (const auto id = attribute_of(e, "id"); id && !is_kind(made.kind))
     if (const auto kind = kinds_.find(*id); kind != kinds_.end()) made.kind = kind->second;
   e.each_child([&](const XmlElement& child) {
     if (local(child.name()) == "exterior") ring(child, made.rings);
@@ -210,6 +263,8 @@ void Reader::walk(const XmlElement& e, Around around, std::vector<Found>& to) {
   }
   if (name == "Polygon" || name == "PolygonPatch" || name == "Triangle" || name == "Rectangle")
     return polygon(e, around, to);
+  if (holds_surfaces(name))
+    if (const std::string id = reference_of(e); !id.empty()) return refer(e, id, around, to);
   e.each_child([&](const XmlElement& child) { walk(child, around, to); });
 }
 
@@ -237,6 +292,7 @@ CityModel Reader::finish() {
   tell("SP205", lines_, "geometries of points or lines");
   tell("SP705", none_, "objects have no geometry of the level of detail that is asked for");
   tell("SP705", implicit_, "implicit geometries are in files of their own, or nowhere, and left out");
+  tell("SP705", lost_, "references to surfaces that are not in the file");
   tell("SP705", other_systems_, "elements name another reference system than the first, which is taken for all");
   return std::move(model_);
 }

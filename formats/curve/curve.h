@@ -17,6 +17,8 @@ struct CurveOptions {
   int column = 0;        // 1 = first value column after the wavelength; 0 = the only one, or the first
   double scale = 1;      // factor on the values, after percent became shares
   std::string spectrum;  // of a library: a spectrum's name or its number from 1; empty = the first
+  // Called with what is left out of a curve; may be empty.
+  std::function<void(const std::string& path, const std::string& what)> tell = {};
 };
 
 // Reads one curve; wavelengths become micron, percent becomes shares. Error with file and line otherwise.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "base/files.h"
 #include "formats/curve/internal.h"
@@ -79,6 +80,7 @@ struct SliHeader {
   std::vector<double> wavelength_um;
   std::vector<std::string> names;
   double scale = 1;
+  std::optional<double> mark;  // of missing values
 };
 
 SliHeader read_sli_header(const std::string& path) {
@@ -125,6 +127,7 @@ SliHeader read_sli_header(const std::string& path) {
   double factor = 1;
   if (keys.count("reflectance scale factor") && number(keys.at("reflectance scale factor"), factor) && factor > 0)
     h.scale = 1 / factor;
+  if (double mark = 0; keys.count("data ignore value") && number(keys.at("data ignore value"), mark)) h.mark = mark;
   return h;
 }
 
@@ -140,7 +143,7 @@ double decode(const std::byte* at, bool big_endian) {
 
 }  // namespace
 
-std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& options) {
+std::vector<NamedRows> read_sli(const std::string& path, const CurveOptions& options) {
   std::string header = path + ".hdr";
   if (!file_exists(header)) header = path.substr(0, path.size() - 4) + ".hdr";
   const SliHeader h = read_sli_header(header);
@@ -148,20 +151,24 @@ std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& op
   const Where where{path, 0, 0, {}, -1};
   if (size != expected) throw Error(where, strf("has %zu bytes, its header declares %zu", size, expected));
   const std::vector<std::byte> bytes = read_bytes(path);
-  std::vector<NamedCurve> out;
+  std::vector<NamedRows> out;
   for (size_t line = 0; line < h.lines; ++line) {
     std::vector<double> x = h.wavelength_um, y(h.samples);
     for (size_t k = 0; k < h.samples; ++k) {
       const std::byte* at = bytes.data() + h.offset + (line * h.samples + k) * width;
-      y[k] = (width == 4 ? decode<uint32_t, float>(at, h.big_endian) : decode<uint64_t, double>(at, h.big_endian)) *
-             h.scale * options.scale;
+      const double stored =
+          width == 4 ? decode<uint32_t, float>(at, h.big_endian) : decode<uint64_t, double>(at, h.big_endian);
+      const bool mark = is_mark(stored) || (h.mark && static_cast<float>(stored) == static_cast<float>(*h.mark));
+      y[k] = mark ? NAN : stored * h.scale * options.scale;
+      if (!mark && !std::isfinite(stored))
+        throw Error(where, strf("value %zu of spectrum %zu is not finite", k + 1, line + 1));
     }
-    out.push_back({h.names.empty() ? "" : h.names[line], Curve(std::move(x), std::move(y), options.outside, where)});
+    out.push_back({h.names.empty() ? "" : h.names[line], std::move(x), std::move(y), where});
   }
   return out;
 }
 
-std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& options) {
+std::vector<NamedRows> read_ems(const std::string& path, const CurveOptions& options) {
   const std::string text = read_text(path, size_t{1} << 30);
   std::vector<std::string> lines;
   for (size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0; at < text.size();) {
@@ -190,7 +197,7 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
     if (double weight = 0; at >= lines.size() || !number(lines[at], weight))
       throw fault("one of 91 angular weights is missing");
   }
-  std::vector<NamedCurve> out;
+  std::vector<NamedRows> out;
   while (out.size() < static_cast<size_t>(count)) {
     while (at < lines.size() && (lines[at].empty() || lines[at] == "CURVE_END")) ++at;
     if (at >= lines.size()) throw fault(strf("%zu curves, %g are declared", out.size(), count));
@@ -208,45 +215,53 @@ std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& op
         throw fault("a row that is not 'wavelength value'");
       if (!(e >= -1e-9 && e <= 1 + 1e-9)) throw fault(strf("emissivity %g is not between 0 and 1", e));
       x.push_back(newer ? w : 1e4 / w);  // the older layout counts wavenumbers in 1/cm
-      y.push_back((1 - e) * options.scale);
+      y.push_back(std::clamp(1 - e, 0.0, 1.0) * options.scale);
     }
     if (!newer && x.size() != 396) throw fault(strf("%zu of 396 rows", x.size()));
     if (x.empty()) throw fault("a curve without rows");
-    out.push_back(
-        {strf("%zu", out.size() + 1), Curve(std::move(x), std::move(y), options.outside, Where{path, 0, 0, {}, -1})});
+    out.push_back({strf("%zu", out.size() + 1), std::move(x), std::move(y), Where{path, 0, 0, {}, -1}});
   }
   return out;
 }
 
 namespace {
 
-std::vector<NamedCurve> read_named(const std::string& path, const CurveOptions& options) {
+// The rows of each curve of a library; nothing where the file is none.
+std::vector<NamedRows> read_named(const std::string& path, const CurveOptions& options) {
   if (ends_with(path, ".sli")) return read_sli(path, options);
   if (ends_with(path, ".ems")) return read_ems(path, options);
-  return {{"", read_table(path, options)}};
+  return {};
+}
+
+Curve curve_of(NamedRows&& rows, const CurveOptions& options) {
+  return curve_of(std::move(rows.um), std::move(rows.value), options, rows.where);
 }
 
 }  // namespace
 
 std::vector<Curve> read_curve_family(const std::string& path, const CurveOptions& options) {
   std::vector<Curve> out;
-  for (NamedCurve& c : read_named(path, options)) out.push_back(std::move(c.curve));
+  for (NamedRows& rows : read_named(path, options)) out.push_back(curve_of(std::move(rows), options));
+  if (out.empty()) out.push_back(read_table(path, options));
   return out;
 }
 
 Curve read_curve(const std::string& path, const CurveOptions& options) {
-  std::vector<NamedCurve> all = read_named(path, options);
-  if (options.spectrum.empty()) return std::move(all.front().curve);
+  std::vector<NamedRows> all = read_named(path, options);
+  if (all.empty() && options.spectrum.empty()) return read_table(path, options);
+  if (options.spectrum.empty()) return curve_of(std::move(all.front()), options);
   std::vector<std::string> names;
-  for (NamedCurve& c : all) {
-    if (c.name == options.spectrum) return std::move(c.curve);
-    names.push_back(c.name);
+  for (NamedRows& rows : all) {
+    if (rows.name == options.spectrum) return curve_of(std::move(rows), options);
+    names.push_back(rows.name);
   }
+  if (all.empty() && options.spectrum == "1") return read_table(path, options);
   double k = 0;
   if (number(options.spectrum, k) && k >= 1 && k <= static_cast<double>(all.size()) && k == std::floor(k))
-    return std::move(all[static_cast<size_t>(k) - 1].curve);
-  throw Error(Where{path, 0, 0, {}, -1}, "has no spectrum '" + options.spectrum + "'",
-              names.size() > 1 ? name_hint(options.spectrum, names) : strf("it holds %zu", all.size()));
+    return curve_of(std::move(all[static_cast<size_t>(k) - 1]), options);
+  throw Error(
+      Where{path, 0, 0, {}, -1}, "has no spectrum '" + options.spectrum + "'",
+      names.size() > 1 ? name_hint(options.spectrum, names) : strf("it holds %zu", std::max<size_t>(1, all.size())));
 }
 
 }  // namespace suite

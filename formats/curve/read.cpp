@@ -97,7 +97,7 @@ Curve read_table(const std::string& path, const CurveOptions& options) {
     std::string_view line(text.data() + start, end - start);
     start = end + (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n' ? 2 : 1);
     const Where where{path, line_no, 1, std::string(line.substr(0, 200)), -1};
-    while (!line.empty() && separator(line.front())) line.remove_prefix(1);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t,\r"), line.size()));
     if (line.empty()) continue;
     const bool comment = std::string_view("#;!%").find(line.front()) != std::string_view::npos;
     if (const size_t mark = line.find_first_of("#!"); mark != line.npos && !comment) line = line.substr(0, mark);
@@ -115,11 +115,12 @@ Curve read_table(const std::string& path, const CurveOptions& options) {
       throw Error(where, strf("a row of %zu numbers, column %zu was asked for", row.size(), column),
                   "rows are 'wavelength value'");
     if (x.size() >= kMaxRows) throw Error(where, strf("more than %zu rows", kMaxRows));
-    const double um = row[0] * header.to_um, value = row[column] * header.to_share * options.scale;
+    const double um = row[0] * header.to_um,
+                 value = is_mark(row[column]) ? NAN : row[column] * header.to_share * options.scale;
     if (!(um >= 0.01 && um <= 10000))
       throw Error(where, strf("wavelength %g um is not between 0.01 and 10000 um", um),
                   "nanometres need a header with 'nm'");
-    if (!std::isfinite(value)) throw Error(where, "the value is not finite");
+    if (!std::isfinite(value) && !is_mark(row[column])) throw Error(where, "the value is not finite");
     if (!x.empty() && um == x.back()) throw Error(where, strf("wavelength %g um is given twice", um), "give each once");
     if (x.size() > 1 && (um > x.back()) != (x[1] > x[0]))
       throw Error(where, strf("wavelengths are not monotonic: %g um follows %g um", um, x.back()), "sort the rows");
@@ -127,7 +128,34 @@ Curve read_table(const std::string& path, const CurveOptions& options) {
     y.push_back(value);
   }
   if (x.empty()) throw Error(Where{path, 0, 0, {}, -1}, "holds no rows of numbers", "rows are 'wavelength value'");
-  return Curve(std::move(x), std::move(y), options.outside, Where{path, 0, 0, {}, -1});
+  return curve_of(std::move(x), std::move(y), options, Where{path, 0, 0, {}, -1});
+}
+
+Curve curve_of(std::vector<double> um, std::vector<double> value, const CurveOptions& options, const Where& where) {
+  const auto missing =
+      static_cast<size_t>(std::count_if(value.begin(), value.end(), [](double v) { return std::isnan(v); }));
+  if (missing == 0) return Curve(std::move(um), std::move(value), options.outside, where);
+  if (missing == value.size()) throw Error(where, "every value is the mark of a deleted channel (-1.23e34)");
+  const bool open = std::isnan(value.front()) || std::isnan(value.back());
+  std::string gaps;
+  std::vector<double> x, y;
+  for (size_t i = 0; i < value.size(); ++i) {
+    if (!std::isnan(value[i])) {
+      x.push_back(um[i]), y.push_back(value[i]);
+      continue;
+    }
+    size_t last = i;
+    while (last + 1 < value.size() && std::isnan(value[last + 1])) ++last;
+    if (gaps.size() < 80) gaps += strf("%s%.4g to %.4g", gaps.empty() ? "" : ", ", um[i], um[last]);
+    i = last;
+  }
+  if (options.tell)
+    options.tell(
+        where.file,
+        strf("%zu of %zu values are marks of deleted channels (-1.23e34; %s um): the curve is linear "
+             "across them%s",
+             missing, value.size(), gaps.c_str(), open ? ", and nothing is held beyond an end that is marked" : ""));
+  return Curve(std::move(x), std::move(y), open ? Outside::error : options.outside, where);
 }
 
 }  // namespace suite

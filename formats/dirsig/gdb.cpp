@@ -35,8 +35,8 @@ class GdbReader {
         throw fault("'" + std::string(word.substr(0, 60)) + "' is no keyword here", "OBJECT, PART, FACE or END");
       }
     }
-    if (!facets_) throw fault("there is no facet");
     tell_part();
+    if (!facets_) throw fault("there is no facet");
     return std::move(made_);
   }
 
@@ -95,7 +95,7 @@ class GdbReader {
     entry(to, "material name", many, Fate::ignored, "the ID decides");
     entry(to, "FACET", many, Fate::ignored, "unused");
     if (warm_)
-      entry(to, "temperature", strf("%zu facets", warm_), Fate::unsupported, "temperatures of single facets");
+      entry(to, "temperature", strf("%zu facets", warm_), Fate::exact, "degrees Celsius, of materials of their own");
     else
       entry(to, "temperature", many, Fate::ignored, "none is given");
     entry(to, "thickness", many, Fate::ignored, "THERM's alone, which the materials' entries tell");
@@ -112,8 +112,11 @@ class GdbReader {
     line("the facet's name"), line("the facet's id"), line("the material's name");
     const std::string id(line("the material's ID"));
     line("the facet's unused name");
-    const double kelvin = number("the temperature");
-    warm_ += kelvin != 0 && kelvin != -1;
+    // -1: by the material's solver; 0 is what files have that say nothing.
+    const double celsius = number("the temperature");
+    const bool warm = celsius != 0 && celsius != -1;
+    if (warm && !(celsius > -273.15 && celsius < 1e5)) throw fault(strf("a facet of %g degrees Celsius", celsius));
+    warm_ += warm;
     number("the thickness");
     for (const char* unused : {"the power", "the area", "a field", "a field", "a field"}) line(unused);
     const double count = number("the number of vertices");
@@ -123,7 +126,7 @@ class GdbReader {
     for (size_t i = 0; i < static_cast<size_t>(count); ++i) corners.push_back(triple("a vertex"));
     const Vec3 normal = triple("the normal");
     for (const char* rest : {"the zenith angle", "the azimuth angle", "an unused number"}) line(rest);
-    put(id, corners, normal);
+    put(warm ? warm_name(id, celsius) : id, corners, normal);
   }
 
   void put(const std::string& id, const std::vector<Vec3>& corners, Vec3 normal) {
@@ -158,6 +161,16 @@ class GdbReader {
 };
 
 }  // namespace
+
+std::string warm_name(const std::string& id, double celsius) { return id + strf("@%.9gC", celsius); }
+
+std::optional<WarmName> warm_name_of(std::string_view name) {
+  const size_t at = name.rfind('@');
+  if (at == name.npos || !name.ends_with('C')) return std::nullopt;
+  const auto celsius = number_in_text(name.substr(at + 1, name.size() - at - 2));
+  if (!celsius) return std::nullopt;
+  return WarmName{std::string(name.substr(0, at)), *celsius};
+}
 
 Gdb parse_gdb(std::string_view text, const std::string& file) {
   std::string how;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/files.h"
+#include "formats/dirsig/gdb.h"
 #include "formats/dirsig/scene_writer.h"
 
 namespace suite::dirsig {
@@ -26,16 +27,25 @@ std::string named(const Item& in, const char* key) {
 }  // namespace
 
 std::string SceneWriter::material(const std::string& asked, const Scope& scope) {
-  const auto replaced = scope.assigned.find(asked);
-  const std::string& id = replaced == scope.assigned.end() ? asked : replaced->second;
+  const std::optional<WarmName> warm = warm_name_of(asked);
+  const std::string& plain = warm ? warm->id : asked;
+  const auto replaced = scope.assigned.find(plain);
+  const std::string& id = replaced == scope.assigned.end() ? plain : replaced->second;
   for (size_t i = 0; i < scope.databases.size(); ++i) {
     const Item* entry = entry_of(*scope.databases[i], id);
     if (!entry) continue;
-    const std::string mine = scope.prefixes[i] + id;
+    std::string mine = scope.prefixes[i] + id;
+    std::optional<double> kelvin;
+    if (warm) {
+      kelvin = warm->celsius + 273.15;
+      mine += strf("_at_%.9gK", *kelvin);
+      std::replace(mine.begin() + static_cast<std::ptrdiff_t>(scope.prefixes[i].size() + id.size()), mine.end(), '.',
+                   '_');
+    }
     if (uses_.count(mine)) return mine;
     entry->mark(Fate::exact);
     Folders folders = scope.material_folders[i];
-    uses_[mine] = {entry, folders, scope};
+    uses_[mine] = {entry, folders, scope, kelvin};
     open_.push_back(mine);
     return mine;
   }
@@ -63,7 +73,16 @@ Tree SceneWriter::material_tree(const MaterialUse& use) {
   }
   reach_um_.reset();
   read_surface(use, made);
-  read_solvers(entry, made);
+  if (!use.kelvin) {
+    read_solvers(entry, made);
+    return made;
+  }
+  // What the solver would say is looked at, so that nothing of the entry is left over, and put aside.
+  const bool heat = heat_;
+  Tree aside = Tree::map(entry.where);
+  read_solvers(entry, aside);
+  heat_ = heat;
+  made.set("temperature_k", Tree::number(*use.kelvin, entry.where));
   return made;
 }
 

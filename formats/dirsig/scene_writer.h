@@ -24,7 +24,8 @@ struct Scope {
 struct MaterialUse {
   const Item* entry;
   Folders folders;
-  Scope scope;  // in which its own maps name materials
+  Scope scope;                        // in which its own maps name materials
+  std::optional<double> kelvin = {};  // of facets, in place of the entry's solver
 };
 
 // Whether a reflectance of this name (in lower case) has parameters of facets: Shell, NEF, Priest & Germer.

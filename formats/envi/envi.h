@@ -69,6 +69,15 @@ EnviHeader read_envi_header(const std::string& path);
 // The same from text; file_name is for messages.
 EnviHeader parse_envi_header(std::string_view text, const std::string& file_name);
 
+// What the stored numbers stand for, as keys among the others say: stored * gain + offset, and whether a band is any
+// good ("data gain values", "data offset values", "reflectance scale factor", "bbl").
+struct EnviNumbers {
+  std::vector<double> gain, offset;  // empty or one per band
+  std::vector<bool> bad;             // empty or one per band
+};
+// file: for messages. Error: lists of a wrong length, not numbers, a gain of 0, both gains and a factor.
+EnviNumbers numbers_of(const EnviHeader& header, const std::string& file);
+
 // An image opened for reading. The constructor checks that the file has exactly
 // header_offset + samples * lines * bands * size_of(type) bytes; Error otherwise.
 class EnviImage {

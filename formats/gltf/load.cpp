@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/files.h"
+#include "base/run_app.h"
 
 namespace tinygltf {
 std::string base64_decode(std::string const& text);  // declared beside its body only
@@ -27,6 +28,42 @@ uint32_t word(std::span<const std::byte> bytes, size_t at) {
   uint32_t w;
   std::memcpy(&w, bytes.data() + at, sizeof w);
   return w;
+}
+
+// Compressed geometry, named before the library says less: meshes by Draco, buffers by meshopt.
+void refuse_compression(std::string_view json, const std::string& file) {
+  for (const auto& [name, what] : {std::pair{"KHR_draco_mesh_compression", "Draco"},
+                                   {"EXT_meshopt_compression", "meshopt"},
+                                   {"KHR_meshopt_compression", "meshopt"}})
+    if (json.find("\"" + std::string(name) + "\"") != json.npos)
+      throw Error(Where{file, 0, 0, {}, -1},
+                  strf("its geometry is compressed by %s (%s), which is not read", what, name),
+                  "write it without: 'gltf-transform copy IN.glb OUT.glb', or export it uncompressed");
+}
+
+// Chunks of a GLB begin at multiples of 4 bytes (section 4.4.3.1), the JSON is padded by blanks to that; some writers
+// do not. A copy that does is made of such a file.
+std::vector<std::byte> aligned(std::span<const std::byte> bytes) {
+  std::vector<std::byte> made(bytes.begin(), bytes.begin() + 12);
+  const size_t length = word(bytes, 8);
+  for (size_t at = 12; at < length;) {
+    const size_t size = word(bytes, at), padded = (size + 3) / 4 * 4;
+    const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+    made.insert(made.end(), from, from + static_cast<std::ptrdiff_t>(8 + size));
+    const auto size_now = static_cast<uint32_t>(padded);
+    std::memcpy(made.data() + made.size() - size - 8, &size_now, sizeof size_now);
+    made.insert(made.end(), padded - size, static_cast<std::byte>(at == 12 ? ' ' : '\0'));
+    at += 8 + size;
+  }
+  const auto length_now = static_cast<uint32_t>(made.size());
+  std::memcpy(made.data() + 8, &length_now, sizeof length_now);
+  return made;
+}
+
+bool is_aligned(std::span<const std::byte> bytes) {
+  for (size_t at = 12, length = word(bytes, 8); at < length; at += 8 + word(bytes, at))
+    if (word(bytes, at) % 4) return false;
+  return true;
 }
 
 // The JSON of a GLB, whose chunks must lie within it.
@@ -139,6 +176,12 @@ tinygltf::Model load(std::span<const std::byte> bytes, const std::string& file, 
   const std::string_view json = binary ? json_of_container(bytes, file)
                                        : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   check_nesting(json, file, binary ? 20 : 0);
+  std::vector<std::byte> copy;
+  if (binary && !is_aligned(bytes)) {
+    warn(file + ": the chunks of this GLB are not aligned to 4 bytes, as they are to be; it is read nonetheless");
+    copy = aligned(bytes);
+    bytes = copy;
+  }
   tinygltf::Model model;
   tinygltf::TinyGLTF reader;
   Files files{resolve, Where{file, 0, 0, {}, -1}, {}};
@@ -156,6 +199,7 @@ tinygltf::Model load(std::span<const std::byte> bytes, const std::string& file, 
   }
   if (files.fault) throw *files.fault;
   errors = without_skins(std::move(errors));
+  if (!whole || !errors.empty()) refuse_compression(json, file);
   if (!whole || !errors.empty())
     throw Error(Where{file, 0, 0, {}, -1}, "cannot be read as glTF: " + one_line(printable(one_line(errors))));
   if (!model.asset.version.empty() && model.asset.version.substr(0, 2) != "2.")

@@ -49,10 +49,14 @@ std::vector<double> ascending(Numbers& in, size_t n, const char* what, double lo
 
 bool is(double a, double b) { return std::fabs(a - b) < 1e-3; }
 
-void check_ranges(const IesLuminaire& l, const Numbers& in) {
+void check_ranges(const IesLuminaire& l, const std::string& file, const Numbers& in) {
   const double v0 = l.vertical.front(), v1 = l.vertical.back(), h0 = l.horizontal.front(), h1 = l.horizontal.back();
-  if (l.vertical.size() < 2 || !(is(v0, 0) || is(v0, 90)) || !(is(v1, 90) || is(v1, 180)))
-    throw in.error(strf("vertical angles reach from %g to %g deg", v0, v1), "0 or 90 to 90 or 180");
+  if (l.vertical.size() < 2) throw in.error(strf("one vertical angle, %g deg", v0), "two or more, 0 to 180");
+  // Files of cut-off luminaires end where their light does.
+  if (!(is(v0, 0) || is(v0, 90)) || !(is(v1, 90) || is(v1, 180)))
+    warn(
+        strf("%s: vertical angles reach from %g to %g degrees, not from 0 or 90 to 90 or 180; there is no light beyond",
+             file.c_str(), v0, v1));
   const bool fits = (is(h0, 0) && (l.horizontal.size() == 1 || is(h1, 90) || is(h1, 180) || is(h1, 360))) ||
                     (is(h0, 90) && is(h1, 270));
   if (!fits)
@@ -177,7 +181,7 @@ IesLuminaire parse_ies(std::string_view text, const std::string& file_name) {
   l.watts = in.next("the watts", 0, 1e9);
   l.vertical = ascending(in, verticals, "vertical angles", 0, 180.001);
   l.horizontal = ascending(in, horizontals, "horizontal angles", 0, 360.001);
-  check_ranges(l, in);
+  check_ranges(l, file_name, in);
   for (size_t i = 0; i < verticals * horizontals; ++i) l.candela.push_back(factor * in.next("candela", 0, 1e12));
   tell_lumens(l, file_name);
   return l;
@@ -186,11 +190,11 @@ IesLuminaire parse_ies(std::string_view text, const std::string& file_name) {
 IesLuminaire read_ies(const std::string& path) { return parse_ies(read_text(path, size_t{1} << 26), path); }
 
 IntensityTable intensity_table(const IesLuminaire& l, double& lost) {
-  // Light that ends at the horizon at once needs a fine step to end nearly there.
+  // Light that ends at an angle at once needs a fine step to end nearly there.
   bool cliff = false;
   for (size_t j = 0; j < l.horizontal.size(); ++j)
-    cliff = cliff || (is(l.vertical.back(), 90) && l.candela[(j + 1) * l.vertical.size() - 1] > 0) ||
-            (is(l.vertical.front(), 90) && l.candela[j * l.vertical.size()] > 0);
+    cliff = cliff || (!is(l.vertical.back(), 180) && l.candela[(j + 1) * l.vertical.size() - 1] > 0) ||
+            (!is(l.vertical.front(), 0) && l.candela[j * l.vertical.size()] > 0);
   const double dv = cliff ? kFinest : step_of(l.vertical, 180),
                dh = l.horizontal.size() == 1 ? 360 : step_of(l.horizontal, 360);
   IntensityTable t;

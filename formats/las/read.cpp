@@ -1,6 +1,8 @@
 // Based on: ASPRS, "LAS Specification" 1.4-R15, 2019, and 1.2, 2008; OGC 19-008r4 for the keys of the reference system.
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <optional>
 
 #include "base/files.h"
@@ -39,12 +41,14 @@ class Reader {
   void keys(size_t at, size_t size);
   void well_known_text(size_t at, size_t size);
   void points();
+  void check_header();
 
   std::span<const std::byte> bytes_;
   const std::string& file_;
   Report& report_;
   Header head_;
   PointCloud cloud_;
+  Box3 all_;  // of all points, withheld ones, too
 };
 
 void Reader::read_header() {
@@ -119,25 +123,64 @@ void Reader::keys(size_t at, size_t size) {
   if (projected || geographic) cloud_.system = strf("EPSG:%u", projected ? projected : geographic);
 }
 
-// The code of the projected (else the geographic) system: the last one within its brackets.
+namespace {
+// The first bracket of these names, with its content: NAME [ ... ]; empty = none. Blanks may stand before brackets.
+std::string_view bracket(std::string_view text, std::initializer_list<std::string_view> names) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    const bool starts = at == 0 || !(std::isalnum(static_cast<unsigned char>(text[at - 1])) || text[at - 1] == '_');
+    for (const std::string_view name : names) {
+      if (!starts || text.substr(at, name.size()) != name) continue;
+      const size_t open = text.find_first_not_of(" \t\r\n", at + name.size());
+      if (open == text.npos || text[open] != '[') continue;
+      bool quoted = false;
+      for (size_t end = open, depth = 0; end < text.size(); ++end) {
+        if (text[end] == '"') quoted = !quoted;
+        if (quoted) continue;
+        depth += (text[end] == '[') - (text[end] == ']');
+        if (depth == 0) return text.substr(open + 1, end - open - 1);
+      }
+      return text.substr(open + 1);
+    }
+  }
+  return {};
+}
+
+// The code that a system's bracket itself has, not one of those within: AUTHORITY["EPSG","32610"], ID["EPSG",32610].
+std::string own_code(std::string_view within) {
+  size_t depth = 0;
+  for (size_t at = 0; at < within.size(); ++at) {
+    if (within[at] == ']') depth -= depth > 0;
+    if (within[at] != '[') continue;
+    if (++depth != 1) continue;
+    const size_t name_end = within.find_last_not_of(" \t\r\n", at ? at - 1 : 0) + 1;
+    const std::string_view before = within.substr(0, name_end);
+    if (!before.ends_with("AUTHORITY") && !before.ends_with("ID")) continue;
+    const std::string_view inside = within.substr(at + 1, within.find(']', at) - at - 1);
+    const size_t epsg = inside.find("\"EPSG\"");
+    if (epsg == inside.npos) continue;
+    const size_t first = inside.find_first_of("0123456789", epsg);
+    if (first == inside.npos) continue;
+    const size_t stop = std::min(inside.find_first_not_of("0123456789", first), inside.size());
+    if (stop - first <= 6) return std::string(inside.substr(first, stop - first));
+  }
+  return {};
+}
+}  // namespace
+
+// The code of the projected (else the geographic) system. A projected one without a code of its own stays nameless: the
+// codes within are those of its datum, its unit of length, its geographic system.
 void Reader::well_known_text(size_t at, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(bytes_.data()) + at, size);
-  size_t begin = text.npos;
-  for (const char* name : {"PROJCS[", "PROJCRS[", "GEOGCS[", "GEOGCRS["})
-    if (begin == text.npos) begin = text.find(name);
-  if (begin == text.npos) return;
-  size_t end = begin;
-  for (int depth = 0; end < text.size(); ++end) {
-    depth += (text[end] == '[') - (text[end] == ']');
-    if (text[end] == ']' && depth == 0) break;
+  std::string_view within = bracket(text, {"PROJCS", "PROJCRS", "BOUNDCRS"});
+  if (within.empty()) within = bracket(text, {"GEOGCS", "GEOGCRS", "GEODCRS"});
+  if (within.empty()) return;
+  if (const std::string code = own_code(within); !code.empty()) {
+    cloud_.system = "EPSG:" + code;
+    return;
   }
-  const std::string_view within = text.substr(begin, end - begin);
-  const size_t name = within.rfind("\"EPSG\"");
-  if (name == within.npos) return;
-  const size_t first = within.find_first_of("0123456789", name);
-  if (first == within.npos) return;
-  const size_t stop = std::min(within.find_first_not_of("0123456789", first), within.size());
-  if (stop - first <= 6) cloud_.system = "EPSG:" + std::string(within.substr(first, stop - first));
+  const size_t open = within.find('"'), close = within.find('"', open + 1);
+  cloud_.system =
+      close == within.npos ? std::string() : std::string(within.substr(open + 1, close - open - 1)) + " without a code";
 }
 
 void Reader::points() {
@@ -148,6 +191,10 @@ void Reader::points() {
   cloud_.kind.reserve(head_.points);
   for (size_t k = 0; k < head_.points; ++k) {
     const size_t at = head_.first_point + k * head_.point_bytes;
+    const Vec3 place{get<int32_t>(at) * head_.scale.x + head_.offset.x,
+                     get<int32_t>(at + 4) * head_.scale.y + head_.offset.y,
+                     get<int32_t>(at + 8) * head_.scale.z + head_.offset.z};
+    all_.grow(place);
     const unsigned flags = get<uint8_t>(at + 15);
     if (flags & (long_form ? 0x04u : 0x80u)) {
       ++withheld;
@@ -155,9 +202,7 @@ void Reader::points() {
     }
     const unsigned kind = get<uint8_t>(at + kind_at);
     cloud_.kind.push_back(static_cast<uint8_t>(long_form ? kind : kind & 0x1F));
-    cloud_.places.push_back({get<int32_t>(at) * head_.scale.x + head_.offset.x,
-                             get<int32_t>(at + 4) * head_.scale.y + head_.offset.y,
-                             get<int32_t>(at + 8) * head_.scale.z + head_.offset.z});
+    cloud_.places.push_back(place);
   }
   if (withheld)
     report_.add("SP706", file_,
@@ -165,10 +210,37 @@ void Reader::points() {
                 withheld);
 }
 
+// What the header says of the points against the points themselves. A file that was cut, added to or re-projected by a
+// program that left the header as it was is read by its points.
+void Reader::check_header() {
+  const auto tell = [&](size_t at, const std::string& what) {
+    report_.add("SP709", file_, {Where{file_, 0, 0, {}, static_cast<long long>(at)}, what});
+  };
+  const size_t room = (bytes_.size() - head_.first_point) / head_.point_bytes;
+  const bool has_more_records =
+      (head_.minor >= 3 && get<uint64_t>(227) > 0) || (head_.minor == 4 && get<uint64_t>(235) > 0);
+  if (room > head_.points && !has_more_records)
+    tell(107, strf("the header counts %zu points, the file has room for %zu: those behind are not read", head_.points,
+                   room));
+  const uint32_t old_count = get<uint32_t>(107);
+  if (head_.minor == 4 && old_count != 0 && old_count != head_.points)
+    tell(107, strf("the header counts %u points in its older field and %zu in the one of version 1.4, which is taken",
+                   old_count, head_.points));
+  if (all_.empty()) return;
+  for (int c = 0; c < 3; ++c) {
+    const size_t at = 179 + 16 * static_cast<size_t>(c);
+    const double high = get<double>(at), low = get<double>(at + 8), step = std::fabs(head_.scale[c]);
+    if (std::fabs(high - all_.high[c]) <= 1.01 * step && std::fabs(low - all_.low[c]) <= 1.01 * step) continue;
+    return tell(at, strf("the header says %c from %.10g to %.10g, the points are from %.10g to %.10g", "xyz"[c], low,
+                         high, all_.low[c], all_.high[c]));
+  }
+}
+
 PointCloud Reader::run() {
   read_header();
   read_records();
   points();
+  check_header();
   return std::move(cloud_);
 }
 

@@ -20,7 +20,7 @@ namespace suite {
 struct MotionContext {
   std::optional<SceneFrame> frame;
   std::optional<Clock> clock;
-  double dut1 = 0;  // s
+  double dut1 = 0;  // s, UT1 - UTC at second 0
   // Mean elements of a satellite (catalogue number or title) from a file; the application passes the reader of
   // formats/tle.
   std::function<OrbitElements(const std::string& path, const std::string& satellite)> satellites;
@@ -30,6 +30,7 @@ struct MotionContext {
   std::function<std::string(const Params&)> resolve = nullptr;
   // What moves may be absent outside the times that its track covers (key `outside`).
   bool may_end = false;
+  bool dut1_given = false;  // else a satellite's track says what that may cost
 };
 
 // The track a node describes. Marks what it reads; the caller rejects unread keys. Error, located: see FORMAT.md.

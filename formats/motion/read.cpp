@@ -1,4 +1,5 @@
 #include "base/files.h"
+#include "base/run_app.h"
 #include "formats/motion/fields.h"
 #include "formats/motion/track_files.h"
 
@@ -153,6 +154,12 @@ TrackPtr make_orbit(const Params& node, const MotionContext& context) {
             ? context.satellite_lines((*lines)[0].as_text() + "\n" + (*lines)[1].as_text() + "\n", lines->where().file)
             : context.satellites(motion_file(node.at("tle"), context), node.text("satellite"));
     const double dut1 = node.number_in("dut1_s", -0.9, 0.9, "s", context.dut1);
+    // The equator turns by 465 m in a second.
+    if (!node.has("dut1_s") && !context.dut1_given)
+      note(strf(
+          "satellite %s: dut1_s (UT1 - UTC) is not given and taken as 0; each 0.1 s of it moves the ground track by "
+          "47 m along the equator, by definition at most 0.9 s and 419 m",
+          elements.satellite.c_str()));
     return orbit_track(std::make_shared<const Sgp4>(elements), *context.frame, *context.clock, dut1);
   });
 }
@@ -200,8 +207,8 @@ TrackPtr make_track(const Params& node, const MotionContext& context, int depth)
     default: {
       // The inner track lives in the outer one's axes, which have no place on the Earth.
       const MotionContext inside{
-          std::nullopt,    context.clock, context.dut1, context.satellites, context.satellite_lines,
-          context.resolve, false};
+          std::nullopt,    context.clock, context.dut1,      context.satellites, context.satellite_lines,
+          context.resolve, false,         context.dut1_given};
       track = composed_track(make_track(node.at("outer"), context, depth + 1),
                              make_track(node.at("inner"), inside, depth + 1));
     }

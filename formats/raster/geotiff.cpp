@@ -1,7 +1,6 @@
 // Based on: OGC 19-008r4, GeoTIFF Standard 1.1 (raster space, model tie points, key values).
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 
 #include <geo_normalize.h>
@@ -102,16 +101,7 @@ GeoReference read_georeference(const std::string& path) {
     throw Error(where, "names no EPSG code in its GeoTIFF keys", "ProjectedCSType or GeographicType is needed");
   }
   ref.height_unit_m = height_unit(keys.get());
-  char* text = nullptr;
-  uint16_t count = 0;
-  add_gdal_tags(tiff.get());
-  if (const TIFFField* known = TIFFFindField(tiff.get(), kNoDataTag, TIFF_ANY)) {
-    const bool got = TIFFFieldPassCount(known) ? TIFFGetField(tiff.get(), kNoDataTag, &count, &text)
-                                               : TIFFGetField(tiff.get(), kNoDataTag, &text);
-    char* end = nullptr;
-    if (got && text)
-      if (const double value = std::strtod(text, &end); end != text) ref.no_data = value;
-  }
+  ref.no_data = no_data_of(tiff.get());
   return ref;
 }
 

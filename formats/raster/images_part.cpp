@@ -49,6 +49,11 @@ ImageRead read(const std::string& path, ImageFacts& facts, const std::function<f
            !spec.format.is_floating_point(),
            scale_of(spec.format),
            spec.format.c_str()};
+  // Fewer bits than the type has are stretched to its range.
+  const bool is_unsigned =
+      spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.format.basetype == OIIO::TypeDesc::UINT16;
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample", 0);
+  if (is_unsigned && bits > 0 && static_cast<size_t>(bits) < 8 * spec.format.size()) facts.scale = (1 << bits) - 1;
   if (!input->read_image(0, 0, 0, facts.channels, OIIO::TypeDesc::FLOAT, room()))
     return {true, told(input->geterror())};
   return {true, {}};

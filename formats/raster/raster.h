@@ -8,14 +8,29 @@
 
 namespace suite {
 
+// What a stored number of a band stands for: stored * scale + offset.
+struct RasterNumbers {
+  double scale = 1, offset = 0;
+  bool operator==(const RasterNumbers&) const = default;
+};
+
 struct Raster {
   uint32_t width = 0, height = 0, channels = 0;
-  bool integer = false;       // the file holds whole numbers
-  std::vector<float> values;  // row-major, first row first, channels together; as stored, not normalised
+  bool integer = false;                // the file holds whole numbers
+  std::vector<float> values;           // row-major, first row first, channels together; as stored, not normalised
+  std::vector<RasterNumbers> numbers;  // one a channel, as the file says; empty = the stored numbers are the values
+  std::optional<double> no_data;       // the stored number that marks a missing value, as the file says
+  double scale_z = 0;                  // the third number of a GeoTIFF's pixel scale; 0 and 1 say nothing
 };
 
 // Error: unreadable, more than max_pixels, or more bytes declared than a file of its size can hold.
 Raster read_raster(const std::string& path, size_t max_pixels = size_t{1} << 28);
+
+// Whether a stored number is the mark of a missing value; both as the 32-bit floats that rasters are read as.
+bool is_no_data(const Raster& raster, float stored);
+// The values that the stored numbers stand for; NaN where one is missing. numbers: whether scale and offset count.
+enum class Numbers { stored, scaled };
+std::vector<float> values_of(Raster&& raster, Numbers numbers);
 
 // Where the pixels of a GeoTIFF are. x, y are easting and northing in metres, or longitude and latitude in degrees.
 struct GeoReference {

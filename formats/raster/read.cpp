@@ -1,8 +1,9 @@
 #include <cmath>
+#include <utility>
 
 #include "base/files.h"
 #include "formats/raster/images.h"
-#include "formats/raster/raster.h"
+#include "formats/raster/stored.h"
 
 namespace suite {
 
@@ -22,11 +23,23 @@ void check(const ImageFacts& image, const Where& where, size_t max_pixels, size_
                 "the file is damaged");
 }
 
+// Grey PNGs of 1, 2 and 4 bits come stretched to 8, and their bits are not passed on; 0: no such file.
+int grey_bits_of_png(const std::string& path) {
+  const RandomAccessFile file(path);
+  std::vector<std::byte> start(26);
+  if (file.size() < start.size()) return 0;
+  file.read_at(0, start);
+  const auto at = [&](size_t i) { return static_cast<int>(start[i]); };
+  const bool png = at(0) == 0x89 && at(1) == 'P' && at(2) == 'N' && at(3) == 'G';
+  return png && at(25) == 0 && at(24) < 8 ? at(24) : 0;
+}
+
 }  // namespace
 
 Raster read_raster(const std::string& path, size_t max_pixels) {
   const Where where{path, 0, 0, {}, -1};
   const size_t bytes = file_size(path);  // tells missing files and directories apart
+  if (std::optional<Raster> map = read_portable_map(path, max_pixels)) return std::move(*map);
   Raster raster;
   ImageFacts image;
   const ImageRead read = image_calls().read(path, image, [&] {
@@ -41,11 +54,30 @@ Raster read_raster(const std::string& path, size_t max_pixels) {
   if (!read.problem.empty()) throw Error(where, "cannot be read: " + read.problem, "the file is damaged");
   if (image.scale == 0)
     throw Error(where, "pixels of type " + image.type, "integers of up to 32 bits, or floats, are expected");
+  if (const int bits = grey_bits_of_png(path)) image.scale = (1 << bits) - 1;
   raster.integer = image.integer;
   // The library maps unsigned integers to 0..1 and signed ones to -1..1; undo that.
   if (image.integer)
     for (float& v : raster.values) v = static_cast<float>(std::round(v * image.scale));
+  read_tiff_numbers(path, raster);
   return raster;
+}
+
+bool is_no_data(const Raster& raster, float stored) {
+  if (!raster.no_data) return false;
+  const auto mark = static_cast<float>(*raster.no_data);
+  return stored == mark || (std::isnan(mark) && std::isnan(stored));
+}
+
+std::vector<float> values_of(Raster&& raster, Numbers numbers) {
+  std::vector<float> values = std::move(raster.values);
+  const bool scaled = numbers == Numbers::scaled && !raster.numbers.empty();
+  for (size_t i = 0; i < values.size(); ++i) {
+    const float v = values[i];
+    const RasterNumbers n = scaled ? raster.numbers[i % raster.channels] : RasterNumbers{};
+    values[i] = is_no_data(raster, v) ? NAN : scaled ? static_cast<float>(v * n.scale + n.offset) : v;
+  }
+  return values;
 }
 
 }  // namespace suite

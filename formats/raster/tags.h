@@ -1,5 +1,7 @@
 // What reading and writing GeoTIFF share. Internal to formats/raster.
 #pragma once
+#include <optional>
+
 #include <geotiff.h>
 #include <xtiffio.h>
 
@@ -19,5 +21,7 @@ struct FreeKeys {
 void add_gdal_tags(TIFF* tiff);
 // libtiff talks to standard error on its own; what matters comes back as return values.
 void be_quiet();
+// The mark of missing values, as the tag GDAL_NODATA has it.
+std::optional<double> no_data_of(TIFF* tiff);
 
 }  // namespace suite

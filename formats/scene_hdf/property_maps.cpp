@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "formats/scene_hdf/internal.h"
 
@@ -37,8 +38,9 @@ void write_table(h5::Writer& w, const Scene& s, PropertyMapTable) {
   write_curves(w, kTable + "/family", family);
   std::vector<float> range;  // lowest and highest value
   for (const PropertyMap& m : maps) {
-    const auto [low, high] = std::minmax_element(m.values.begin(), m.values.end());
-    range.insert(range.end(), {m.values.empty() ? 0 : *low, m.values.empty() ? 0 : *high});
+    float low = INFINITY, high = -INFINITY;  // gaps, NaN, change neither
+    for (const float v : m.values) low = std::min(low, v), high = std::max(high, v);
+    range.insert(range.end(), {low <= high ? low : 0, low <= high ? high : 0});
   }
   w.put(kTable + "/range", range, "SI", 2);
   auto values = w.column(kTable + "/values", h5::native<float>(), total, "SI");

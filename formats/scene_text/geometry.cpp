@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/files.h"
-#include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
 #include "scene/primitives.h"
@@ -76,53 +74,31 @@ std::function<Vec3(double, double, double)> georeferenced_grid(const GeoReferenc
 
 }  // namespace
 
-// Heights from any raster, or from an ENVI image by its extension; gaps become NaN.
-void Reader::read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain) {
-  std::vector<double> heights;
-  if (path.size() > 4 && path.compare(path.size() - 4, 4, ".img") == 0) {
-    const EnviImage image(path);
-    if (image.header().bands != 1)
-      throw Error(Where{path, 0, 0, {}, -1}, strf("%zu bands", image.header().bands), "heights are one band", "SP504");
-    terrain.width = static_cast<uint32_t>(image.header().samples);
-    terrain.height = static_cast<uint32_t>(image.header().lines);
-    if (image.header().values() > size_t{1} << 28)
-      throw Error(Where{path, 0, 0, {}, -1}, "too many samples", "at most 2^28", "SP504");
-    heights = image.read_all();
-    if (image.header().ignore_value) no_data = image.header().ignore_value;
-  } else {
-    const Raster raster = read_raster(path);
-    if (raster.channels != 1)
-      throw Error(Where{path, 0, 0, {}, -1}, strf("%u channels", raster.channels), "heights are one channel", "SP504");
-    terrain.width = raster.width;
-    terrain.height = raster.height;
-    heights.assign(raster.values.begin(), raster.values.end());
-  }
-  for (const double h : heights)
-    terrain.heights.push_back(no_data && static_cast<float>(h) == static_cast<float>(*no_data) ? NAN
-                                                                                               : static_cast<float>(h));
-}
-
-namespace {
-
-// The mark of a gap is any number: rasters use the ends of their types, beyond what a quantity may be.
-double mark_of(const Params& p) {
-  const std::string text = p.as_text();
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, code] = std::from_chars(text.data(), end, value);
-  if (code != std::errc() || stop != end) throw p.error("expected a number, found '" + text.substr(0, 60) + "'");
-  return value;
-}
-
-}  // namespace
-
 // Heights that are marks of missing ones in many rasters, and no land on Earth.
-void Reader::tell_marks(const Params& file, const SourceTerrain& terrain) {
+void Reader::tell_marks(const Params& file, const Raster& raster) {
   for (const float mark : {-9999.0f, -32768.0f, -32767.0f, std::numeric_limits<float>::lowest()})
-    if (const auto n = std::count(terrain.heights.begin(), terrain.heights.end(), mark))
+    if (const auto n = std::count(raster.values.begin(), raster.values.end(), mark); n && !is_no_data(raster, mark))
       report_.add("SP506", file.as_text(),
                   {file.where(), strf("%td pixels have the height %g, and no 'no_data' says that they are gaps", n,
                                       static_cast<double>(mark))});
+}
+
+// Heights from any raster; gaps become NaN.
+void Reader::read_heights(const Params& p, SourceTerrain& terrain) {
+  const Params file = p.at("terrain");
+  MapRaster raster = pixels_of(p, file);
+  if (raster.channels != 1) throw file.error(strf("%u channels", raster.channels), "heights are one channel", "SP504");
+  terrain.width = raster.width;
+  terrain.height = raster.height;
+  tell_marks(file, raster);
+  if (raster.scale_z != 0 && raster.scale_z != 1)
+    report_.add(
+        "SP508", file.as_text(),
+        {file.where(),
+         strf("the file's pixel scale has a third number, %.9g, which is not applied to the heights", raster.scale_z)});
+  terrain.heights = values_in(p, file, std::move(raster), "height_scale", "height_offset");
+  const double scale = p.number("height_scale", 1), offset = p.number("height_offset", 0);
+  for (float& h : terrain.heights) h = static_cast<float>(h * scale + offset);
 }
 
 void Reader::read_terrain(const Params& p, DraftGeometry& g) {
@@ -130,8 +106,6 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
   if (!g.material.given()) throw p.error("terrain '" + g.name + "' needs a 'material'");
   g.tile_m = p.number_in("tile_m", 1, 1e6, "m", 4000);
   const std::string path = input(p.at("terrain"));
-  std::optional<double> no_data;
-  if (const auto value = p.find("no_data")) no_data = mark_of(*value);
   if (const auto local = p.find("local")) {
     g.terrain.place = local_grid(*local);
   } else {
@@ -140,21 +114,16 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
     if (!draft_.origin.given)
       throw p.error("a georeferenced terrain needs the scene's 'origin'", "or 'local: {origin, gsd}'", "SP504");
     const GeoReference ref = read_georeference(path);
-    if (!no_data) no_data = ref.no_data;
     if (ref.height_unit_m != 1 && !p.has("height_scale"))
       throw Error(Where{path, 0, 0, {}, -1}, strf("its heights are in feet of %.7g m", ref.height_unit_m),
                   strf("'height_scale: %.7g' makes metres of them", ref.height_unit_m), "SP504");
     g.terrain.georeferenced = true;
     const auto system = map_system_of_epsg(ref.epsg);
     if (!system || system->zone.has_value() == ref.geographic)
-      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg),
-                  "WGS84 or ETRS89, geographic or UTM, are", "SP504");
+      throw Error(Where{path, 0, 0, {}, -1}, strf("EPSG:%d is not known here", ref.epsg), known_systems(), "SP504");
     g.terrain.place = georeferenced_grid(ref, on_earth(*system, rule));
   }
-  read_heights(path, no_data, g.terrain);
-  tell_marks(p.at("terrain"), g.terrain);
-  const double scale = p.number("height_scale", 1), offset = p.number("height_offset", 0);
-  for (float& h : g.terrain.heights) h = static_cast<float>(h * scale + offset);
+  read_heights(p, g.terrain);
 }
 
 void Reader::read_primitive(const Params& p, DraftGeometry& g, const std::string& kind) {

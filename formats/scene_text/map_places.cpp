@@ -1,4 +1,6 @@
 // Where coordinates of maps are in the scene, and heights above the geoid.
+#include <cmath>
+
 #include "formats/scene_text/reader.h"
 
 namespace suite::scene_text {
@@ -42,6 +44,17 @@ std::function<Vec3(Vec3)> Reader::on_earth(const MapSystem& system, const GeoidR
   const SceneFrame frame({draft_.origin.latitude_deg, draft_.origin.longitude_deg, draft_.origin.ellipsoid_height_m});
   const bool grid = rule.geoid && !rule.separation_m;
   return enu_of_map(system, frame, rule.separation_m.value_or(0), grid ? geoid_ : std::nullopt);
+}
+
+// What to do with other systems (NAD83, national grids): the program that warps to UTM around the origin.
+std::string Reader::known_systems() const {
+  const double longitude = draft_.origin.longitude_deg;
+  const int zone = static_cast<int>(std::floor((longitude + 180) / 6)) % 60 + 1;
+  return strf(
+      "WGS84 or ETRS89, geographic or UTM, are; 'gdalwarp -t_srs EPSG:%d IN.tif OUT.tif' brings a raster there "
+      "(heights stay "
+      "as they are: NAVD88, EVRF and others count from the geoid, 'height: geoid')",
+      (draft_.origin.latitude_deg < 0 ? 32700 : 32600) + zone);
 }
 
 // system: as the file names it, which `epsg` replaces. longitude_first: the file has degrees in this order.

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "formats/envi/envi.h"
 #include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
 
@@ -58,23 +57,6 @@ void Reader::read_map(const std::string& name, const Params& p) {
   draft_.failed_maps.erase(name);
 }
 
-Raster Reader::pixels_of(const Params& file) {
-  const std::string path = input(file);
-  if (!path.ends_with(".img")) return read_raster(path);
-  const EnviImage image(path);
-  const EnviHeader& h = image.header();
-  if (h.values() > size_t{1} << 28) throw file.error("the image is too large for a map", "at most 2^28 values");
-  Raster raster;
-  raster.width = static_cast<uint32_t>(h.samples);
-  raster.height = static_cast<uint32_t>(h.lines);
-  raster.channels = static_cast<uint32_t>(h.bands);
-  raster.integer = h.type != EnviType::float32 && h.type != EnviType::float64;
-  raster.values.reserve(h.values());
-  for (size_t line = 0; line < h.lines; ++line)
-    for (const double v : image.read_lines(line, 1)) raster.values.push_back(static_cast<float>(v));
-  return raster;
-}
-
 void Reader::read_class_map(const std::string& name, const Params& p) {
   DraftClassMap m;
   m.where = p.where();
@@ -84,14 +66,22 @@ void Reader::read_class_map(const std::string& name, const Params& p) {
   for (const std::string& key : materials.keys()) m.materials[class_of(key, materials)] = reference(materials.at(key));
   if (m.materials.empty()) throw materials.error("a class map needs at least one class");
   const Params file = p.at("file");
-  const Raster raster = pixels_of(file);
+  const Raster raster = pixels_of(p, file);
   if (!raster.integer || raster.channels != 1)
     throw file.error(strf("a class map is one channel of whole numbers, '%s' has %u%s", file.as_text().c_str(),
                           raster.channels, raster.integer ? "" : " of floats"));
   m.map.width = raster.width;
   m.map.height = raster.height;
   m.map.classes.reserve(raster.values.size());
+  for (const RasterNumbers& n : raster.numbers)
+    if (n != RasterNumbers{})
+      throw file.error(
+          strf("by the file a value is stored * %g + %g, but classes are the stored numbers", n.scale, n.offset),
+          "take scale and offset out of the file");
   for (const float v : raster.values) {
+    if (is_no_data(raster, v) && !m.materials.count(static_cast<uint16_t>(v >= 0 && v <= 65535 ? v : 0)))
+      throw file.error(strf("some pixels hold the mark of a missing class, %g", v),
+                       "list a material for it, or fill them");
     if (!(v >= 0 && v <= 65535)) throw file.error(strf("class %g is not a number from 0 to 65535", v));
     m.map.classes.push_back(static_cast<uint16_t>(v));
   }

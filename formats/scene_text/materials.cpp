@@ -49,7 +49,7 @@ Curve Reader::read_curve_map(const Params& p) {
   }
   if (const auto x = p.find("wavelength_um"))
     return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
-  CurveOptions options;
+  CurveOptions options = curve_options();
   options.outside = read_outside(p);
   options.column = static_cast<int>(p.integer("column", 1, 100000, 1));
   options.scale = p.number("scale", 1);
@@ -65,7 +65,15 @@ Curve Reader::read_curve_value(const Params& p) {
   const std::string text = p.as_text();
   if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) return Curve::constant(p.as_number());
   if (const auto known = curves_.find(text); known != curves_.end()) return known->second;
-  return read_curve(input(p), {});
+  return read_curve(input(p), curve_options());
+}
+
+CurveOptions Reader::curve_options() {
+  CurveOptions options;
+  options.tell = [this](const std::string& path, const std::string& what) {
+    report_.add("SP109", path, {Where{path, 0, 0, {}, -1}, what});
+  };
+  return options;
 }
 
 std::string Reader::embed(const Params& p) {

@@ -62,9 +62,28 @@ void Reader::read_mesh(const Params& p, const std::string& kind, DraftGeometry& 
   } else if (kind == "gdb") {
     const std::string path = input(p.at("gdb"));
     g.mesh = parse_obj(dirsig::obj_of_gdb(read_text(path), path), path, report_);
+    forget_temperatures(p, g.mesh);
   } else {
     g.mesh = parse_obj(p.at("obj_text").as_text(), g.name + " (obj_text)", report_);
   }
+}
+
+// Facets with temperatures of their own have materials ID@-23.15C; where the text has none of that name they are as the
+// others of their ID.
+void Reader::forget_temperatures(const Params& p, SourceMesh& mesh) {
+  const auto named = p.find("materials");
+  size_t lost = 0;
+  for (SourceMesh::Run& run : mesh.runs) {
+    const size_t at = run.material.rfind('@');
+    if (at == run.material.npos || !run.material.ends_with('C') || (named && named->has(run.material))) continue;
+    run.material.resize(at);
+    ++lost;
+  }
+  if (lost)
+    report_.add(
+        "SP705", mesh.file,
+        {Where{mesh.file, 0, 0, {}, -1},
+         strf("%zu runs of facets have temperatures of their own, which 'materials: {ID@CELSIUSC: ...}' keeps", lost)});
 }
 
 // Where a city is: on the Earth by the file's reference system (or the one that is given in its place), or as if its

@@ -1,8 +1,7 @@
 #include <cmath>
+#include <map>
 
 #include "base/files.h"
-#include "formats/envi/envi.h"
-#include "formats/raster/raster.h"
 #include "formats/scene_text/reader.h"
 #include "scene/texture.h"
 
@@ -17,6 +16,9 @@ float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((
 void apply_transfer(const Params& p, std::vector<float>& values) {
   const bool srgb = p.has("transfer") && p.at("transfer").as_choice({"linear", "srgb"}) == 1;
   const double scale = p.number("scale", 1), offset = p.number("offset", 0);
+  for (const float v : values)
+    if (srgb && !std::isnan(v) && !(v >= 0 && v <= 255))
+      throw p.at("transfer").error(strf("a pixel of %g", v), "'srgb' takes display values from 0 to 255");
   for (float& v : values) v = static_cast<float>((srgb ? linear_from_srgb(v / 255) : v) * scale + offset);
 }
 
@@ -24,6 +26,7 @@ void apply_transfer(const Params& p, std::vector<float>& values) {
 void normalise_fractions(const Params& p, PropertyMap& map) {
   for (size_t i = 0; i < map.values.size(); i += map.channels) {
     float sum = 0;
+    if (std::isnan(map.values[i])) continue;  // a gap
     for (size_t c = 0; c < map.channels; ++c) {
       if (!(map.values[i + c] >= 0))
         throw p.error(strf("pixel %zu has a fraction of %g", i / map.channels, map.values[i + c]));
@@ -37,7 +40,7 @@ void normalise_fractions(const Params& p, PropertyMap& map) {
 
 void check_values(const Params& p, const PropertyMap& map, double low, double high, const char* what) {
   for (const float v : map.values)
-    if (!(v >= low && v <= high))
+    if (!std::isnan(v) && !(v >= low && v <= high))
       throw p.error(strf("a value of %g", v), strf("%s from %g to %g; see 'scale' and 'offset'", what, low, high));
 }
 
@@ -50,34 +53,57 @@ std::vector<Curve> Reader::read_family(const Params& p) {
     for (const Params& c : p.items()) family.push_back(read_curve_value(c));
     return family;
   }
-  CurveOptions options;
+  CurveOptions options = curve_options();
   if (p.kind() == Params::Kind::scalar) return read_curve_family(input(p), options);
   options.outside = read_outside(p);
   options.scale = p.number("scale", 1);
   return read_curve_family(input(p.at("file")), options);
 }
 
-void Reader::read_cube(const Params& p, PropertyMap& map) {
+void Reader::check_cube(const Params& p, const MapRaster& cube, PropertyMap& map) {
   map.outside = read_outside(p);
   const Params file = p.at("file");
-  const EnviImage cube(input(file));
-  header_input(file.as_text());
-  const EnviHeader& h = cube.header();
-  if (h.wavelength_um.empty())
-    throw file.error("the cube has no wavelengths", "its header needs 'wavelength' and 'wavelength units'");
-  if (h.values() > size_t{1} << 31) throw file.error("the cube is too large to be baked");
-  map.width = static_cast<uint32_t>(h.samples);
-  map.height = static_cast<uint32_t>(h.lines);
-  map.channels = static_cast<uint32_t>(h.bands);
-  map.wavelength_um = h.wavelength_um;
-  for (size_t k = 1; k < h.wavelength_um.size(); ++k)
-    if (!(h.wavelength_um[k] > h.wavelength_um[k - 1])) throw file.error("the wavelengths of the cube do not ascend");
-  map.values.reserve(h.values());
-  for (size_t line = 0; line < h.lines; ++line)
-    for (const double v : cube.read_lines(line, 1)) map.values.push_back(static_cast<float>(v));
+  if (cube.wavelength_um.empty())
+    throw file.error("the cube has no wavelengths",
+                     "an ENVI image whose header has 'wavelength' and 'wavelength units'");
+  for (size_t k = 1; k < cube.wavelength_um.size(); ++k)
+    if (!(cube.wavelength_um[k] > cube.wavelength_um[k - 1]))
+      throw file.error("the wavelengths of the cube do not ascend");
 }
 
 namespace {
+MapKind kind_of(const std::string& type) {
+  static const std::map<std::string, MapKind> kinds{
+      {"mixture", MapKind::mixture}, {"texture", MapKind::curve_index},     {"curve_index", MapKind::curve_index},
+      {"cube", MapKind::cube},       {"temperature", MapKind::temperature}, {"bump", MapKind::bump},
+      {"normal", MapKind::normal},   {"opacity", MapKind::opacity}};
+  return kinds.at(type);
+}
+
+// Curves for the pixels that are no gaps.
+void choose(PropertyMap& map, const std::vector<std::array<double, 2>>& bands) {
+  std::vector<float> there;
+  for (const float v : map.values)
+    if (!std::isnan(v)) there.push_back(v);
+  const std::vector<uint16_t> chosen = choose_curves(there, map.channels, map.family, bands);
+  std::vector<float> numbers;
+  size_t next = 0;
+  for (size_t i = 0; i < map.values.size(); i += map.channels)
+    numbers.push_back(std::isnan(map.values[i]) ? NAN : static_cast<float>(chosen[next++]));
+  map.values = std::move(numbers);
+  map.channels = 1;
+}
+
+// Curves of shares are held to their range here, as those of materials are.
+void check_family(const Params& p, const PropertyMap& map) {
+  if (map.parameter != "reflectance" && map.parameter != "transmittance") return;
+  for (size_t k = 0; k < map.family.size(); ++k)
+    if (!(map.family[k].min() >= 0 && map.family[k].max() <= 1))
+      throw p.at("family").error(strf("curve %zu of the family: a %s from %g to %g", k, map.parameter.c_str(),
+                                      map.family[k].min(), map.family[k].max()),
+                                 "shares from 0 to 1 are expected");
+}
+
 void read_filter(const Params& p, const std::string& type, PropertyMap& map) {
   const bool smooth = type == "temperature" || type == "bump" || type == "normal";
   if (type == "texture" || type == "curve_index") {
@@ -109,17 +135,22 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
   m.where = p.where();
   map.name = name;
   read_projection(p, map.projection, map.drape);
+  map.kind = kind_of(type);
+  const Params file = p.at("file");
+  MapRaster raster = pixels_of(p, file, type == "cube" ? Pixels::cube : Pixels::any);
   if (type == "cube") {
-    map.kind = MapKind::cube;
-    read_cube(p, map);
-  } else {
-    Raster raster = pixels_of(p.at("file"));
-    map.width = raster.width;
-    map.height = raster.height;
-    map.channels = raster.channels;
-    map.values = std::move(raster.values);
+    check_cube(p, raster, map);
+    leave_bad_bands(file, raster);
+    map.wavelength_um = raster.wavelength_um;
   }
+  map.width = raster.width;
+  map.height = raster.height;
+  map.channels = raster.channels;
+  const double mark = raster.no_data.value_or(NAN);
+  refuse_nan(p, file, raster);
+  map.values = values_in(p, file, std::move(raster), "scale", "offset");
   apply_transfer(p, map.values);
+  close_gaps(p, file, mark, map);
   read_filter(p, type, map);
   const auto one_channel = [&](size_t count) {
     if (map.channels != count)
@@ -133,26 +164,22 @@ void Reader::read_property_map(const std::string& name, const Params& p, const s
     one_channel(m.materials.size());
     normalise_fractions(p, map);
   } else if (type == "texture") {
-    map.kind = MapKind::curve_index;
     map.family = read_family(p.at("family"));
+    check_family(p, map);
     const std::vector<std::array<double, 2>> bands = read_bands_um(p.at("bands_um"));
     one_channel(bands.size());
-    const std::vector<uint16_t> chosen = choose_curves(map.values, map.channels, map.family, bands);
-    map.values.assign(chosen.begin(), chosen.end());
-    map.channels = 1;
+    choose(map, bands);
   } else if (type == "curve_index") {
-    map.kind = MapKind::curve_index;
     one_channel(1);
     map.family = read_family(p.at("family"));
+    check_family(p, map);
     for (const float v : map.values)
-      if (!(v >= 0 && v < static_cast<float>(map.family.size()) && v == std::floor(v)))
+      if (!std::isnan(v) && !(v >= 0 && v < static_cast<float>(map.family.size()) && v == std::floor(v)))
         throw p.error(strf("curve %g of a family of %zu", v, map.family.size()), "numbers start at 0");
   } else if (type == "normal") {
-    map.kind = MapKind::normal;
     one_channel(3);
   } else {
     one_channel(1);
-    map.kind = type == "temperature" ? MapKind::temperature : type == "bump" ? MapKind::bump : MapKind::opacity;
     if (type == "temperature") check_values(p, map, 1, 1e5, "kelvin");
     if (type == "opacity") check_values(p, map, 0, 1, "shares");
   }

@@ -8,6 +8,7 @@
 #include "base/tracked_inputs.h"
 #include "formats/curve/curve.h"
 #include "formats/motion/motion.h"
+#include "formats/raster/raster.h"
 #include "formats/scene_text/scene_text.h"
 #include "formats/voxel/voxel.h"
 #include "motion/map_system.h"
@@ -32,6 +33,12 @@ auto of_file(const Read& read) {
     throw Error(e.where(), e.message(), e.hint(), "SP003");
   }
 }
+
+// A raster, and what an ENVI image says of its bands.
+struct MapRaster : Raster {
+  std::vector<double> wavelength_um;  // empty or one a channel
+  std::vector<bool> bad;              // empty or one a channel
+};
 
 class Reader {
  public:
@@ -73,14 +80,15 @@ class Reader {
   // geometry.cpp
   void read_geometry(const std::string& name, const Params& p);
   void read_terrain(const Params& p, DraftGeometry& g);
-  void tell_marks(const Params& file, const SourceTerrain& terrain);
-  void read_heights(const std::string& path, std::optional<double> no_data, SourceTerrain& terrain);
+  void tell_marks(const Params& file, const Raster& raster);
+  void read_heights(const Params& p, SourceTerrain& terrain);
   void read_primitive(const Params& p, DraftGeometry& g, const std::string& kind);
   // meshes.cpp
   void read_mesh_rules(const Params& p, DraftGeometry& g);
   void read_mesh(const Params& p, const std::string& kind, DraftGeometry& g);
   void read_model(const Params& p, const std::string& kind, DraftGeometry g, size_t slot);
   void read_city_mesh(const Params& p, DraftGeometry& g);
+  void forget_temperatures(const Params& p, SourceMesh& mesh);
   // points.cpp
   void read_points(const Params& p, DraftGeometry& g);
   VoxelData read_point_voxels(const Params& p, const Params& file);
@@ -92,6 +100,7 @@ class Reader {
     std::optional<double> separation_m;  // none: by the origin's grid
   };
   GeoidRule read_heights_rule(const Params& p);
+  std::string known_systems() const;
   std::function<Vec3(Vec3)> map_place(const Params& p, const std::string& system, const Params& file,
                                       bool longitude_first);
   std::function<Vec3(Vec3)> on_earth(const MapSystem& system, const GeoidRule& rule) const;
@@ -106,12 +115,22 @@ class Reader {
   // maps.cpp
   void read_map(const std::string& name, const Params& p);
   void read_class_map(const std::string& name, const Params& p);
-  // The pixels of a map: of an ENVI image by its extension .img, else as formats/raster reads them.
-  Raster pixels_of(const Params& file);
+  // rasters.cpp
+  // The raster of a map or terrain `p`: an ENVI image by its extension .img, else as formats/raster reads it.
+  enum class Pixels { any, cube };  // cube: an ENVI image whatever its extension
+  MapRaster pixels_of(const Params& p, const Params& file, Pixels kind = Pixels::any);
+  // What its numbers stand for by the file, unless `p` has a scale or an offset (the names of those keys); NaN in gaps.
+  std::vector<float> values_in(const Params& p, const Params& file, Raster&& raster, const char* scale,
+                               const char* offset);
+  void leave_bad_bands(const Params& file, MapRaster& raster);
+  static void refuse_nan(const Params& p, const Params& file, const Raster& raster);
+  // mark: of missing values, for messages.
+  void close_gaps(const Params& p, const Params& file, double mark, PropertyMap& map);
   // property_maps.cpp
   void read_property_map(const std::string& name, const Params& p, const std::string& type);
-  void read_cube(const Params& p, PropertyMap& map);
+  void check_cube(const Params& p, const MapRaster& cube, PropertyMap& map);
   std::vector<Curve> read_family(const Params& p);
+  CurveOptions curve_options();  // those whose findings go into the report
 
   // Runs one item; what it throws is filed and the next item goes on. p: the item's text, not searched for unknown keys
   // any more when it failed. code: of faults that bring none.

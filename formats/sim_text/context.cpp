@@ -42,6 +42,7 @@ void read_epoch(const Params& root, Simulation& sim) {
           "give the same date: Sun and Moon by date go on with the captures' times; one that stands still has a "
           "direction {zenith_deg, azimuth_deg}");
   }
+  sim.dut1_given = root.has("dut1_s");
   sim.dut1 = s.dut1 = root.number_in("dut1_s", -0.9, 0.9, "s", 0);
 }
 
@@ -53,6 +54,7 @@ SensorContext sensor_context(const Simulation& sim, const SimulationCallbacks& c
   };
   auto shared = std::make_shared<Shared>();
   shared->motion.dut1 = sim.dut1;
+  shared->motion.dut1_given = sim.dut1_given;
   if (sim.epoch) shared->motion.clock = Clock(*sim.epoch);
   shared->motion.satellites = [](const std::string& path, const std::string& name) {
     return read_tle_of(path, name).elements;

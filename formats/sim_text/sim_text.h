@@ -74,7 +74,8 @@ struct Simulation {
   std::optional<Periodic> periodic;
   SourceSpecs sources;       // as written: dates, phases and clear skies are still to be resolved
   std::optional<Utc> epoch;  // of second 0: key `epoch`, or the sun's or the moon's date
-  double dut1 = 0;           // s, UT1 - UTC
+  double dut1 = 0;           // s, UT1 - UTC at second 0
+  bool dut1_given = false;   // by the text
   std::vector<std::unique_ptr<Sensor>> sensors;
   std::vector<Where> sensor_where;  // of each, in the text
   OutputSpec output;

@@ -23,6 +23,12 @@ std::string file_of(const Params& p) {
     throw p.error("there is no file '" + path + "'", "relative names start at this file's folder");
   return path;
 }
+
+CurveOptions telling() {
+  CurveOptions options;
+  options.tell = [](const std::string& path, const std::string& what) { warn(path + ": " + what); };
+  return options;
+}
 }  // namespace
 
 Curve read_curve_value(const Params& p) {
@@ -31,7 +37,7 @@ Curve read_curve_value(const Params& p) {
   if (p.kind() == Params::Kind::map) {
     if (const auto x = p.find("wavelength_um"))
       return Curve(x->as_numbers(), p.at("value").as_numbers(), read_outside(p), p.where());
-    CurveOptions options;
+    CurveOptions options = telling();
     options.outside = read_outside(p);
     options.column = static_cast<int>(p.integer("column", 0, 10000, 0));
     options.scale = p.number("scale", 1);
@@ -39,7 +45,7 @@ Curve read_curve_value(const Params& p) {
   }
   const std::string text = p.as_text();
   const bool number = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), {});
+  return number ? Curve::constant(p.as_number()) : read_curve(file_of(p), telling());
 }
 
 namespace {

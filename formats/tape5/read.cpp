@@ -23,6 +23,7 @@ class Deck {
         run = {};
         card("card 1");
         card_1(run);
+        own_cards_ = run.unread.size();
       }
       if (repeat == 1 || repeat == 3) cards_3(run);
       if (repeat == 1 || repeat == 4) card_4(run);
@@ -82,6 +83,25 @@ class Deck {
     return integer(first, length);
   }
 
+  std::string text_at(int first, int length) const {
+    std::string_view f = lines_.line();
+    if (static_cast<size_t>(first) > f.size()) return {};
+    f = f.substr(static_cast<size_t>(first - 1), static_cast<size_t>(length));
+    f.remove_prefix(std::min(f.find_first_not_of(" \t\r"), f.size()));
+    return std::string(f.substr(0, f.find_last_not_of(" \t\r") + 1));
+  }
+  // A field that asks for something which is not done here, unless it is blank, 0 or as it would be anyway.
+  void note_unread(Tape5Run& r, const char* field, int first, int length, double harmless = 0) const {
+    const std::string f = text_at(first, length);
+    if (f.empty()) return;
+    double value = NAN;
+    std::from_chars(f.data() + (f[0] == '+'), f.data() + f.size(), value);
+    const bool letters = std::isalpha(static_cast<unsigned char>(f[0]));
+    if (!letters && (value == 0 || value == harmless)) return;
+    r.unread.push_back(std::string(field) + " " + printable(f) +
+                       strf(" (%s, columns %d to %d)", name_, first, first + length - 1));
+  }
+
   // MODTRAN's begins with letters, LOWTRAN's with the number of the profile.
   void card_1(Tape5Run& r) {
     r.where = place(1);
@@ -94,12 +114,18 @@ class Deck {
     r.path_type = integer_in(6, 5, 1, 3);
     r.mode = integer_in(11, 5, 0, 3);
     r.many_scatterings = integer(16, 5) != 0;
+    constexpr const char* kOwnProfiles[] = {"M1", "M2", "M3", "M4", "M5", "M6"};
+    for (int k = 0; k < 6; ++k) note_unread(r, kOwnProfiles[k], 21 + 5 * k, 5, model);
+    note_unread(r, "MDEF", 51, 5, 1);
+    note_unread(r, "IM", 56, 5);
     if (const double t = number_in(66, 8, 0, 1e4); t > 0) r.surface_temperature = t;
     r.surface_albedo = number_in(74, 7, -99, 1);
     if (r.surface_albedo < 0) throw at(74, "the surface is one of the program's own materials, which are not read");
     if (modtran) {
       card("card 1A");
       if (const auto co2 = number(11, 10); co2 && *co2 > 0) r.co2_ppm = *co2;
+      note_unread(r, "H2OSTR", 21, 10, 1);
+      note_unread(r, "O3STR", 31, 10, 1);
       constexpr int filter = 46;  // LFLTNM
       if (lines_.line().size() >= filter && (lines_.line()[filter - 1] == 'T' || lines_.line()[filter - 1] == 't'))
         throw at(filter, "a filter file on card 1A is not read");
@@ -107,6 +133,11 @@ class Deck {
     card("card 2");
     r.haze = integer(3, 3);
     if (r.haze == 7) throw at(3, "haze 7 is the user's own, which is not read");
+    note_unread(r, "ISEASN", modtran ? 7 : 6, modtran ? 4 : 5);
+    note_unread(r, "IVULCN", modtran ? 14 : 11, modtran ? 2 : 5);
+    if (r.haze == 3) note_unread(r, "ICSTL", 16, 5);
+    for (const auto& [field, first] : {std::pair{"WSS", 41}, {"WHH", 51}, {"RAINRT", 61}})
+      note_unread(r, field, first, 10);
     if (integer(21, 5) != 0) throw at(21, "clouds of card 2 (ICLD) are not read");
     if (integer(26, 5) != 0) throw at(26, "the army's vertical structure (IVSA) is not read");
     // A visibility below 0 is an optical depth to later versions, and as none to earlier ones.
@@ -122,6 +153,21 @@ class Deck {
     r.observer_height = number_in(1, 10, -1, 1e6) * 1e3;
     r.end_height = number_in(11, 10, -1, 1e6) * 1e3;
     r.zenith = number_in(21, 10, 0, 180) * kDegree;
+    const std::vector<std::string> of_card_1(r.unread.begin(),
+                                             r.unread.begin() + static_cast<std::ptrdiff_t>(own_cards_));
+    r.unread = of_card_1;
+    // A horizontal path is at H1 over RANGE; nothing else of the card counts.
+    if (r.path_type == 1 && r.mode != 3) {
+      note_unread(r, "H2", 11, 10, r.observer_height / 1e3);
+      note_unread(r, "ANGLE", 21, 10, 90);
+      r.end_height = r.observer_height;
+      r.zenith.reset();
+    }
+    if (r.mode != 3) {
+      note_unread(r, "BETA", 41, 10);
+      note_unread(r, "RO", 51, 10);
+      note_unread(r, "LEN", 61, 5);
+    }
     r.range.reset(), r.day.reset();
     r.solar_zenith.reset(), r.relative_azimuth.reset();
     r.latitude.reset(), r.longitude.reset(), r.hour.reset();
@@ -133,6 +179,7 @@ class Deck {
     if (r.mode != 2) return;
     card("card 3A1");
     const int kind = integer(1, 5);
+    if (integer(16, 5) == 1) throw at(16, "the Moon in place of the Sun (ISOURC 1) is not read");
     if (integer(6, 5) == 1) throw at(6, "phase functions of the user's own (IPH 1) are not read");
     if (const int day = integer_in(11, 5, 0, 366); day > 0) r.day = day;
     card("card 3A2");
@@ -168,6 +215,7 @@ class Deck {
   }
 
   TextLines lines_;
+  size_t own_cards_ = 0;  // what cards 1 to 2 leave unread, which cards 3 of a repetition keep
   const char* name_ = "card 5";
 };
 

@@ -36,6 +36,8 @@ struct Tape5Run {
   std::optional<double> latitude, longitude, hour;       // of the observer, rad, east positive; UTC; other IPARM
   // Card 4: from, to, step and width (full at half maximum), 1/cm.
   double first = 0, last = 0, step = 0, width = 0;
+  // What else the cards say that is read past: "H2OSTR 0.8 (card 1A, columns 21-30)".
+  std::vector<std::string> unread = {};
   Where where;  // card 1
 };
 

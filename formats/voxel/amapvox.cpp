@@ -26,6 +26,7 @@ class Reader {
 
  private:
   void header();
+  void resolution(std::string_view text);
   void leaf_angles(std::string_view type);
   void check_grid();
   void columns();
@@ -35,7 +36,8 @@ class Reader {
   const std::string& file_;
   const std::string& column_;
   Report& report_;
-  std::optional<Vec3> low_, high_, split_;
+  std::optional<Vec3> low_, high_, split_, cell_;
+  Where cell_at_;
   std::vector<std::string> names_;
   size_t taken_ = 0;
   VoxelData data_;
@@ -76,11 +78,28 @@ void Reader::header() {
       if (name == "min_corner") low_ = three(lines_, rest);
       if (name == "max_corner") high_ = three(lines_, rest);
       if (name == "split") split_ = three(lines_, rest);
+      if (name == "res") resolution(rest);
       if (name == "lad_type") leaf_angles(rest);
       at = next;
     }
   }
   throw lines_.error_at_end("ends before the names of its columns");
+}
+
+// One number or three, m.
+void Reader::resolution(std::string_view text) {
+  std::string plain(text);
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+  TextLines one(plain, "");
+  if (!one.next()) return;
+  try {
+    const bool all = one.words() >= 3;
+    cell_ = Vec3{one.number(0, "x"), one.number(all ? 1 : 0, "y"), one.number(all ? 2 : 0, "z")};
+  } catch (const Error& e) {
+    throw lines_.error(0, e.message(), e.hint());
+  }
+  cell_at_ = lines_.where();
 }
 
 // Which way its leaves lie, by which a scanner's hits were made densities; here a medium decides how they meet light.
@@ -110,6 +129,14 @@ void Reader::check_grid() {
     throw lines_.error(0, strf("#split into %g cells", cells),
                        strf("at most %g, and %g for each byte of the file", kMostCells, kCellsOfByte));
   const Vec3 size = *high_ - *low_;
+  for (int c = 0; c < 3 && cell_; ++c)
+    if (const double side = size[c] / (*split_)[c]; !(std::fabs((*cell_)[c] - side) <= 1e-3 * side)) {
+      report_.add(
+          "SP709", file_,
+          {cell_at_, strf("#res says cells of %g m, the corners and #split make them %g x %g x %g m, which holds",
+                          (*cell_)[c], size.x / split_->x, size.y / split_->y, size.z / split_->z)});
+      break;
+    }
   data_.to_local = translation(*low_) * scaling({size.x / split_->x, size.y / split_->y, size.z / split_->z});
 }
 

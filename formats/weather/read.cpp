@@ -25,6 +25,7 @@ Parse kind_of(std::string_view text, const std::string& file) {
   if (!lines.next_raw()) throw lines.error_at_end("holds no weather", "see formats/weather/FORMAT.md for the kinds");
   if (lines.line().starts_with("LOCATION,")) return parse_epw;
   if (lines.line().starts_with("*C0001") || lines.line().starts_with("*U0001")) return parse_bsrn;
+  if (lines.line().starts_with("Source,Location ID,")) return parse_psm3;
   if (two_numbers(lines)) return parse_wth;
   if (lines.next_raw()) {
     if (lines.line().starts_with("Date (MM/DD/YYYY),")) return parse_tmy3;

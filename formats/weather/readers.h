@@ -16,6 +16,7 @@ inline constexpr double kFreezing = 273.15;
 // Rows as the file has them, in SI, with notes on what its kind means by times and values.
 WeatherTable parse_epw(std::string_view text, const std::string& file, const WeatherOptions& options);
 WeatherTable parse_tmy3(std::string_view text, const std::string& file, const WeatherOptions& options);
+WeatherTable parse_psm3(std::string_view text, const std::string& file, const WeatherOptions& options);
 WeatherTable parse_surfrad(std::string_view text, const std::string& file, const WeatherOptions& options);
 WeatherTable parse_bsrn(std::string_view text, const std::string& file, const WeatherOptions& options);
 WeatherTable parse_wth(std::string_view text, const std::string& file, const WeatherOptions& options);

@@ -1,5 +1,7 @@
 // Typical meteorological years of NREL. Based on: S. Wilcox & W. Marion, "Users manual for TMY3 data sets",
 // NREL/TP-581-43156, 2008, tables 1-1 to 1-3.
+#include <chrono>
+
 #include "formats/weather/readers.h"
 
 namespace suite {
@@ -54,6 +56,19 @@ LocalStamp read_stamp(const TextLines& lines) {
   return s;
 }
 
+// Vendors write the end of a day as 00:00 of the next one (TMY3: 24:00). Rows that begin with a midnight are those of
+// files that count hours from their beginning, and stay.
+bool end_the_day_before(LocalStamp& s) {
+  if (s.seconds != 0) return false;
+  using namespace std::chrono;
+  const year_month_day before{sys_days{year{s.year} / s.month / s.day} - days{1}};
+  s.year = static_cast<int>(before.year());
+  s.month = static_cast<int>(static_cast<unsigned>(before.month()));
+  s.day = static_cast<int>(static_cast<unsigned>(before.day()));
+  s.seconds = 86400;
+  return true;
+}
+
 }  // namespace
 
 WeatherTable parse_tmy3(std::string_view text, const std::string& file, const WeatherOptions& options) {
@@ -70,8 +85,12 @@ WeatherTable parse_tmy3(std::string_view text, const std::string& file, const We
   for (Column& column : columns) column.index = find(lines, column.name);
   const size_t direction = find(lines, "Wdir (degrees)"), rain = find(lines, "Lprecip depth (mm)"),
                rain_hours = find(lines, "Lprecip quantity (hr)");
+  bool begins_at_midnight = false;
+  size_t moved = 0;
   read_local_hours(table, lines, utc_offset, options.year, [&](WeatherRow& row) {
-    const LocalStamp stamp = read_stamp(lines);
+    LocalStamp stamp = read_stamp(lines);
+    if (table.rows.size() == 1) begins_at_midnight = stamp.seconds == 0;
+    if (!begins_at_midnight) moved += end_the_day_before(stamp);
     for (const Column& c : columns)
       if (const double v = lines.number(c.index, c.name); v > kNone) row.value(c.quantity) = c.scale * v + c.offset;
     if (lines.number(direction, "wind direction") > kNone)
@@ -80,6 +99,7 @@ WeatherTable parse_tmy3(std::string_view text, const std::string& file, const We
     if (depth > kNone) put_precipitation(row, depth, hours);
     return stamp;
   });
+  if (moved) table.notes.push_back(strf("%zu rows at 00:00 are the ends of the days before (24:00 in TMY3)", moved));
   return table;
 }
 

@@ -1,5 +1,5 @@
-// Weather from files: EnergyPlus (.epw), TMY3 (CSV), days of SURFRAD, months of BSRN, DIRSIG's .wth, plain CSV with
-// units. See FORMAT.md for the grammars and for what each means by its times and values.
+// Weather from files: EnergyPlus (.epw), TMY3 (CSV), NSRDB PSM3, days of SURFRAD, months of BSRN, DIRSIG's .wth, plain
+// CSV with units. See FORMAT.md for the grammars and for what each means by its times and values.
 #pragma once
 #include <optional>
 #include <string>

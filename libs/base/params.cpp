@@ -217,6 +217,9 @@ double Params::number(std::string_view key, double otherwise) const {
   return found ? found->as_number() : otherwise;
 }
 double Params::number_in(std::string_view key, double low, double high, const char* unit) const {
+  if (!has(key) && !misspelt(key))
+    throw error("the key '" + std::string(key) + "' is missing",
+                strf("give a value from %g to %g %s", low, high, unit));
   return at(key).as_number_in(low, high, unit);
 }
 double Params::number_in(std::string_view key, double low, double high, const char* unit, double otherwise) const {

@@ -36,8 +36,11 @@ std::function<double(double)> own_temperature(const Scene& scene, uint32_t m, Ti
     const PropertyMap& map = scene.property_maps[b.property_map];
     if (b.material != m || map.kind != MapKind::temperature || map.values.empty()) continue;
     double sum = 0;
-    for (const float v : map.values) sum += double{v};
-    return [mean = sum / static_cast<double>(map.values.size())](double) { return mean; };
+    size_t places = 0;
+    for (const float v : map.values)
+      if (!std::isnan(v)) sum += double{v}, ++places;
+    if (!places) continue;
+    return [mean = sum / static_cast<double>(places)](double) { return mean; };
   }
   for (const TemperatureBinding& t : scene.temperatures)
     if (t.material == m && !t.spec.model.empty()) {

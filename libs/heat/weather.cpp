@@ -74,10 +74,23 @@ double settled(Q quantity, double value) {
   return value < 0 ? 0 : value;
 }
 
+// A day of rows of minutes that ends at 23:59 lacks the step to midnight: the last row holds that long.
+void close_last_day(WeatherTable& table) {
+  constexpr double kLongest = 600, kDay = 86400;
+  if (table.rows.empty() || !(table.step > 0) || table.step > kLongest) return;
+  const double covered = table.rows.back().end - table.rows.front().end + table.step;
+  if (std::fabs(std::remainder(covered, kDay)) > kStampSlack) return;
+  WeatherRow more = table.rows.back();
+  more.end += table.step;
+  table.rows.push_back(more);
+  table.notes.push_back(strf("the last row is held for %g s more, to the end of its day", table.step));
+}
+
 }  // namespace
 
 Weather::Weather(WeatherTable table, LongwaveModel longwave)
     : table_(std::move(table)), clock_(table_.epoch), frame_(table_.site) {
+  close_last_day(table_);
   const auto sun = std::make_shared<const SunTable>(table_);
   complete_weather(table_, longwave, *sun);
   for (size_t i = 0; i < kWeatherQuantities; ++i) series_[i] = series_of(table_, weather_quantity(i), sun);

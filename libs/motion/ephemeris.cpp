@@ -46,7 +46,8 @@ void check_air(const Refraction& air, double dut1) {
     throw Error(strf("air pressure %g Pa is outside its range", air.pressure), "give 0 (no refraction) to 2e5 Pa");
   if (!(air.temperature >= 150 && air.temperature <= 400))
     throw Error(strf("air temperature %g K is outside its range", air.temperature), "give 150 to 400 K");
-  if (!(std::fabs(dut1) <= 0.9)) throw Error(strf("dut1 = %g s is outside its range", dut1), "give -0.9 to 0.9 s");
+  // Up to 0.9 at second 0, and one more behind each leap second of the run.
+  if (!(std::fabs(dut1) <= 3.9)) throw Error(strf("dut1 = %g s is outside its range", dut1), "give -0.9 to 0.9 s");
 }
 
 SkyBody seen(const SceneFrame& frame, Vec3 site, Instant instant, double dut1, const Refraction& air, Geometric body,

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "motion/track_record.h"
+#include "motion/ut1.h"
 
 namespace suite {
 
@@ -219,7 +220,7 @@ class Orbit final : public Track {
  private:
   OrbitState state(double t) const {
     const Instant instant = clock_.at(t);
-    const OrbitState s = earth_fixed_from_teme(orbit_->at(instant), instant, dut1_);
+    const OrbitState s = earth_fixed_from_teme(orbit_->at(instant), instant, dut1_at(instant, clock_.at(0), dut1_));
     return {frame_.enu_from_ecef(s.position), frame_.enu_direction(s.velocity)};
   }
   std::shared_ptr<const Sgp4> orbit_;

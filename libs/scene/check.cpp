@@ -130,7 +130,10 @@ void PropertyMapTable::check(const Scene&, const PropertyMap& m, size_t, const S
     if (!(m.wavelength_um[k] > (k ? m.wavelength_um[k - 1] : 0)) || !std::isfinite(m.wavelength_um[k]))
       fault(name + "wavelengths do not ascend");
   float low = INFINITY, high = -INFINITY;
-  for (const float v : m.values) {
+  const bool may_miss = m.kind != MapKind::bump && m.kind != MapKind::normal;
+  for (size_t i = 0; i < m.values.size(); ++i) {
+    const float v = m.values[i];
+    if (may_miss && std::isnan(v) && std::isnan(m.values[i - i % m.channels])) continue;  // a gap
     if (!std::isfinite(v)) fault(name + "a value is not finite");
     low = std::min(low, v), high = std::max(high, v);
   }

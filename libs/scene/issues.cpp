@@ -26,6 +26,7 @@ constexpr Row kRows[] = {
      "give a longer table, 'repeat: true', or a shorter 'times_s'"},
     {"SP107", warning, "a temperature is that of deep space", "temperatures are in kelvin"},
     {"SP108", info, "what a model of the sea's surface rests on", ""},
+    {"SP109", warning, "a curve has marks of deleted channels", ""},
     {"SP201", error, "a face names something that is not there",
      "indices count from 1, or from the end when negative; 0 is nothing"},
     {"SP202", warning, "a face has fewer than three corners and is left out", "give at least three corners"},
@@ -101,6 +102,8 @@ constexpr Row kRows[] = {
     {"SP504", error, "a terrain cannot be put in place", ""},
     {"SP505", warning, "the scene's origin is far from its terrain", "correct 'origin'"},
     {"SP506", warning, "a terrain may hold marks of missing heights", "say 'no_data: MARK', or --mute SP506"},
+    {"SP507", info, "what a raster's file says of its numbers", ""},
+    {"SP508", warning, "a terrain's file has a vertical pixel scale", "say 'height_scale' where the heights count it"},
     {"SP701", warning, "an imported file says what is lost here", "--account FILE.json tells every line of the import"},
     {"SP702", info, "an imported file says what has no effect here", ""},
     {"SP703", info, "an imported file says what is approximated here",
@@ -112,6 +115,7 @@ constexpr Row kRows[] = {
     {"SP707", info, "a model's file says what is approximated here", ""},
     {"SP708", warning, "a model's material has no spectrum and is a stand-in",
      "give it one: --set 'materials.NAME={model: lambert, reflectance: CURVE}', or name it in a scene text"},
+    {"SP709", warning, "a model's file contradicts itself", ""},
 };
 }  // namespace
 

@@ -150,11 +150,12 @@ class Gatherer {
     const size_t pixels = map.values.size() / map.channels, step = std::max<size_t>(1, pixels / kPixels);
     const Outside beyond = map.outside == Outside::error ? Outside::hold : map.outside;
     for (size_t p = 0; p < pixels; p += step)
-      add_curve(SpectrumRole::scatters, strf("pixel %zu of map '%s'", p, map.name.c_str()),
-                Curve(map.wavelength_um,
-                      {map.values.begin() + static_cast<long>(p * map.channels),
-                       map.values.begin() + static_cast<long>((p + 1) * map.channels)},
-                      beyond));
+      if (!std::isnan(map.values[p * map.channels]))
+        add_curve(SpectrumRole::scatters, strf("pixel %zu of map '%s'", p, map.name.c_str()),
+                  Curve(map.wavelength_um,
+                        {map.values.begin() + static_cast<long>(p * map.channels),
+                         map.values.begin() + static_cast<long>((p + 1) * map.channels)},
+                        beyond));
     for (size_t c = 0; c < map.channels; ++c) {
       std::vector<double> hat(map.channels, 0.0);
       hat[c] = 1;

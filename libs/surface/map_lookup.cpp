@@ -85,11 +85,17 @@ uint32_t class_at(const ClassMap& map, const MapPlace& place) {
   return map.classes[static_cast<size_t>(row) * map.width + static_cast<size_t>(column)];
 }
 
+// False in a gap (NaN), too. Between pixel centres a gap is where the nearest pixel is one; other gaps count as the
+// nearest pixel.
 bool values_at(const PropertyMap& map, const MapPlace& place, std::span<float> out) {
   Taps taps;
   const bool linear = map.filter == PropertyMap::Filter::linear && map.kind != MapKind::curve_index;
   if (!find_taps(map, pixel_of(map.projection, map.drape, map.width, map.height, place), linear, taps)) return false;
+  const auto gap = [&](int i) { return std::isnan(map.values[taps.pixel[i] * map.channels]); };
+  if (gap(0)) return false;
   std::fill(out.begin(), out.end(), 0.0f);
+  for (int i = 1; i < taps.count; ++i)
+    if (gap(i)) taps.pixel[i] = taps.pixel[0];
   for (int i = 0; i < taps.count; ++i) {
     const float* value = &map.values[taps.pixel[i] * map.channels];
     for (size_t c = 0; c < out.size(); ++c) out[c] += taps.weight[i] * value[c];

@@ -32,6 +32,14 @@ inline std::string las(const std::vector<LasPoint>& points, int minor = 2, int f
     put(107, static_cast<uint32_t>(points.size()));
   const double scale[] = {0.01, 0.01, 0.01, 500000, 5600000, 0};
   for (size_t k = 0; k < 6; ++k) put(131 + 8 * k, scale[k]);
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t k = 0; k < points.size(); ++k) {
+      const LasPoint& p = points[k];
+      const double v = c == 0 ? p.x : c == 1 ? p.y : p.z;
+      double ends[2];  // high, low
+      std::memcpy(ends, all.data() + 179 + 16 * c, sizeof ends);
+      put(179 + 16 * c, k && ends[0] > v ? ends[0] : v), put(187 + 16 * c, k && ends[1] < v ? ends[1] : v);
+    }
   if (epsg) {
     std::memcpy(all.data() + header + 2, "LASF_Projection", 15);
     put(header + 18, uint16_t{34735}), put(header + 20, uint16_t{16});

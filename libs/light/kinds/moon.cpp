@@ -5,6 +5,7 @@
 #include "light/kinds/body.h"
 #include "light/kinds/rows.h"
 #include "light/kinds/solar_spectrum.h"
+#include "motion/ut1.h"
 
 namespace suite {
 
@@ -135,8 +136,9 @@ MoonSpec resolved(MoonSpec moon, const LightMoment& at) {
   if (moon.disk.time) {
     const SourceTime& time = *moon.disk.time;
     const SceneFrame frame = frame_of(at.scene, time.where, "a moon by date");
-    const Instant instant = instant_of(time) + at.seconds;
-    const SkyBody body = moon_at(frame, {}, instant, at.dut1), sun = sun_at(frame, {}, instant, at.dut1);
+    const Instant epoch = instant_of(time), instant = epoch + at.seconds;
+    const double dut1 = dut1_at(instant, epoch, at.dut1);
+    const SkyBody body = moon_at(frame, {}, instant, dut1), sun = sun_at(frame, {}, instant, dut1);
     moon.disk.direction = body.direction;
     if (moon.disk.disk_by_time) moon.disk.half_angle = body.angular_radius;
     // Sun, Moon and observer in one triangle: phase and the Moon's distance from the Sun.

@@ -4,6 +4,7 @@
 #include "light/kinds/rows.h"
 #include "light/kinds/solar_spectrum.h"
 #include "math/warps.h"
+#include "motion/ut1.h"
 
 namespace suite {
 
@@ -18,8 +19,9 @@ class SunLight final : public BodySpec {
   LightSpecPtr resolved(const LightMoment& at) const override {
     if (!disk_.time) return nullptr;
     const SourceTime& time = *disk_.time;
+    const Instant epoch = instant_of(time), instant = epoch + at.seconds;
     const SkyBody body =
-        sun_at(frame_of(at.scene, time.where, "a sun by date"), {}, instant_of(time) + at.seconds, at.dut1);
+        sun_at(frame_of(at.scene, time.where, "a sun by date"), {}, instant, dut1_at(instant, epoch, at.dut1));
     SunSpec now = disk_;
     now.time.reset();
     now.direction = body.direction;

@@ -138,7 +138,41 @@ TEST_F(AirTablesOfOthers, DecksAreComputedInOurAir) {
   EXPECT_EQ(wrong.code, 1);
   EXPECT_THAT(wrong.err, HasSubstr("this run reaches from 2070 to 2120 1/cm, the deck's from 2060 to 2120"));
   EXPECT_EQ(run_deck("slant.tp5 --against run.tp7").code, 1);
+
+  // A run whose last row is one step short of card 4's end.
+  other = made;
+  other.last = 2119;
+  write("short.tp7", test::run_text(other));
+  const CommandResult one_short = run_deck("slant.tp5 --against short.tp7");
+  EXPECT_EQ(one_short.code, 0) << one_short.err;
   EXPECT_EQ(run("dirsig-render sim.yaml --against slant.tp7").code, 2);
+}
+
+// ITYPE 1: the level of H1 over RANGE, whatever ANGLE and H2 say.
+TEST_F(AirTablesOfOthers, HorizontalPathsStayLevel) {
+  const auto path = [&](const char* card_3, double& transmittance) {
+    write("level.tp5",
+          std::string("    6    1    0    0    0    0    0    0    0    0    0    0    0   0.000   0.00\n"
+                      "    0    0    0    0    0    0     0.000     0.000     0.000     0.000     0.000\n") +
+              card_3 + "    2060.0    2080.0       1.0       1.0\n    0\n");
+    const CommandResult said = run_deck("level.tp5");
+    EXPECT_EQ(said.code, 0) << said.err;
+    const size_t at = said.out.find("2060.0 to 2080.0");
+    if (at != std::string::npos) std::sscanf(said.out.c_str() + at, "2060.0 to 2080.0 %lg", &transmittance);
+    return said.out;
+  };
+  double level = 0, tilted = 0, half = 0;
+  path("     1.000     0.000    90.000     1.000\n", level);
+  const std::string said = path("     1.000     3.000    45.000     1.000\n", tilted);
+  path("     1.000     0.000     0.000     0.500\n", half);
+  EXPECT_GT(level, 0.05);
+  EXPECT_LT(level, 0.95);
+  EXPECT_EQ(level, tilted);
+  EXPECT_GT(half, level);
+  EXPECT_THAT(said, HasSubstr("from 1000 m along its level (ITYPE 1) over 1000 m; scattered once"));
+  EXPECT_THAT(
+      said,
+      HasSubstr("not followed here: H2 3.000 (card 3, columns 11 to 20), ANGLE 45.000 (card 3, columns 21 to 30)"));
 }
 
 }  // namespace

@@ -161,5 +161,19 @@ TEST_F(UselessPictures, AllZero) {
              {"every pixel of every band is zero", "check the sources"}, false);
 }
 
+// --dry-run refuses what the run refuses: here a curve that ends before the band, with the sensor's line and the band.
+TEST_F(UselessPictures, DryRunsRefuseWhatRunsRefuse) {
+  std::string scene = kBoards;
+  scene.replace(scene.find("reflectance: 0.2"), 16, "reflectance: {points: [[0.4, 0.2], [0.7, 0.3]], outside: error}");
+  prepare(scene.c_str(), "short");
+  const std::string text = "scene: short.h5\n" + kDay + camera("[0, 0, 50]", "[0, 1, 0]", 1.6);
+  write_file(*folder_ / "sim.yaml", std::string_view(text));
+  const CommandResult dry = run("dirsig-render sim.yaml --dry-run"), real = run("dirsig-render sim.yaml -o none");
+  EXPECT_EQ(real.code, 1);
+  EXPECT_EQ(dry.code, 1) << dry.out;
+  EXPECT_THAT(dry.err, HasSubstr("sim.yaml:4:"));
+  EXPECT_THAT(dry.err, HasSubstr("sensor 'eye', 1.575 to 1.625 um ('pan'): material 'ground'"));
+}
+
 }  // namespace
 }  // namespace suite

@@ -159,6 +159,47 @@ TEST(CityGml, SolidsReferToTheirSurfaces) {
   EXPECT_THAT(message_of([&] { parse_city(bad, "c.gml", std::nullopt, report); }), HasSubstr("'x' is no number"));
 }
 
+// Two boxes of 10 m that share a wall: the second has it by reference, turned round.
+TEST(CityGml, SurfacesOfOtherObjectsByReference) {
+  const auto face = [](const char* id, const char* places) {
+    return "<surfaceMember><Polygon id=\"" + std::string(id) + "\"><exterior><LinearRing><posList>" + places +
+           "</posList></LinearRing></exterior></Polygon></surfaceMember>";
+  };
+  const auto solid = [](const char* id, const std::string& faces) {
+    return "<cityObjectMember><Building id=\"" + std::string(id) + "\"><lod1Solid><Solid><exterior><CompositeSurface>" +
+           faces + "</CompositeSurface></exterior></Solid></lod1Solid></Building></cityObjectMember>";
+  };
+  const auto parse = [&](const std::string& wall, Report& report) {
+    const std::string text = "<CityModel>" + solid("A", face("east", "10 0 0 10 10 0 10 10 10 10 0 10 10 0 0")) +
+                             solid("B", face("top", "10 0 10 20 0 10 20 10 10 10 10 10 10 0 10") + wall) +
+                             "</CityModel>";
+    return parse_city(text, "c.gml", std::nullopt, report);
+  };
+  Report report(scene_issues());
+  const CityModel city = parse(
+      "<surfaceMember><OrientableSurface orientation=\"-\"><baseSurface "
+      "href=\"#east\"/></OrientableSurface></surfaceMember>",
+      report);
+  ASSERT_EQ(city.objects.size(), size_t{2});
+  EXPECT_EQ(city.objects[0].surfaces.size(), size_t{1});
+  ASSERT_EQ(city.objects[1].surfaces.size(), size_t{2});
+  const auto& r = city.objects[1].surfaces[1].rings.at(0);
+  EXPECT_LT(cross(r[1] - r[0], r[2] - r[0]).x, 0);  // looks west, out of B
+  EXPECT_EQ(report.count("SP705"), size_t{0});
+  parse("<surfaceMember href=\"#nowhere\"/>", report);
+  EXPECT_EQ(report.count("SP705"), size_t{1});
+  // References that go round in a circle end.
+  const std::string loop = "<CityModel>" +
+                           solid("A",
+                                 "<surfaceMember><CompositeSurface id=\"a\"><surfaceMember "
+                                 "href=\"#b\"/></CompositeSurface></surfaceMember>") +
+                           solid("B",
+                                 "<surfaceMember><CompositeSurface id=\"b\"><surfaceMember "
+                                 "href=\"#a\"/></CompositeSurface></surfaceMember>") +
+                           "</CityModel>";
+  parse_city(loop, "c.gml", std::nullopt, report);
+}
+
 TEST(City, FormatsAreKnownByNameAndContent) {
   EXPECT_EQ(city_format("a/b.city.json", small_city().substr(0, 100)), "cityjson");
   EXPECT_EQ(city_format("a.json", "{\"scene\": 1}"), "");

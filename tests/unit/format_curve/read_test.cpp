@@ -45,6 +45,41 @@ TEST_F(CurveFile, EcostressHeaderPercentAndDescending) {
   EXPECT_DOUBLE_EQ(c.at(14), 0.01);
 }
 
+TEST_F(CurveFile, EveryMarkOfAComment) {
+  for (const char* mark : {"#", ";", "!", "%", ";;", " ; "}) {
+    const Curve c = read(std::string(mark) + " RSR 0.4\n0.3 0.1\n" + mark + " BAND 2\n0.6 0.2\n2.6 0.3\n");
+    EXPECT_EQ(c.wavelength_um().size(), 3u) << mark;
+  }
+}
+
+// USGS splib07: -1.23e34 at the ends and at 1.35 and 1.4 um.
+TEST_F(CurveFile, MarksOfDeletedChannelsAreLeftOut) {
+  const std::string rows = "0.35 -1.2300000e+034\n0.5 0.28\n1.3 0.25\n1.35 -1.23e34\n1.4 -1.23e34\n1.5 0.21\n2.5 0.1\n";
+  std::string said;
+  CurveOptions options;
+  options.outside = Outside::hold;
+  options.tell = [&](const std::string&, const std::string& what) { said = what; };
+  const Curve c = read(rows, options);
+  EXPECT_DOUBLE_EQ(c.low_um(), 0.5);
+  EXPECT_DOUBLE_EQ(c.at(1.4), 0.23);
+  EXPECT_FALSE(c.covers(0.36, 0.42));  // nothing is held beyond an end that is marked
+  EXPECT_TRUE(c.covers(0.55, 0.65));
+  EXPECT_THAT(said, HasSubstr("3 of 7 values are marks of deleted channels (-1.23e34; 0.35 to 0.35, 1.35 to 1.4 um)"));
+  EXPECT_THAT(fault("0.4 -1.23e34\n0.5 -1.23e34\n"), HasSubstr("every value is the mark of a deleted channel"));
+  // A scale does not hide the mark.
+  options.scale = 1e-10;
+  EXPECT_DOUBLE_EQ(read(rows, options).low_um(), 0.5);
+}
+
+TEST_F(CurveFile, EmissivitiesOfNearlyOneAreOne) {
+  std::string ems = "1\n";
+  for (int k = 0; k < 91; ++k) ems += "1\n";
+  write_file(folder_ / "c.ems", ems + "CURVE_BEGIN\n8 1.0000000000000007\n14 -1e-12\nCURVE_END\n");
+  const Curve c = read_curve(folder_ / "c.ems", {});
+  EXPECT_EQ(c.min(), 0);
+  EXPECT_EQ(c.max(), 1);
+}
+
 // Rows that used to be dropped as headers, and numbers that were read as two.
 TEST_F(CurveFile, NoRowIsLostOrMisread) {
   const Curve marked = read(

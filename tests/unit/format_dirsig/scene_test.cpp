@@ -93,6 +93,49 @@ TEST_F(DirsigScene, MaterialsAreWhatTheirEntriesSay) {
   EXPECT_EQ(materials.at("camouflage").text("map"), "paint");
 }
 
+// Plates in files of one part, whose facets say -23.15 C and 76.85 C, and one that says nothing (-1).
+TEST(DirsigFacets, TheirTemperatures) {
+  const TempFolder folder;
+  const auto plate = [&](const char* name, double celsius) {
+    write_file(folder / (std::string(name) + ".gdb"),
+               std::string_view(
+                   strf("OBJECT\nplate\n1-0-0\nPART\n%s\n1-1-0\nFACE\nf\n1-1-1\nblackbody\nblack\nFACET\n%g\n0.0\n0.0"
+                        "\n0.0\nNULL\nNULL\nNULL\n4\n-5 -5 0\n5 -5 0\n5 5 0\n-5 5 0\n0 0 1\n0.0\n0.0\n0.0\nEND\n",
+                        name, celsius)));
+    return strf(
+        "OBJECT {\n GDB_FILENAME = %s.gdb\n UNITS = METERS\n INSTANCES {\n  INFO = 0, 0, 1, 1, 1, 1, 0, 0, 0\n }\n}\n",
+        name);
+  };
+  const std::string list = "DIRSIG_ODB = 1.0\n" + plate("cold", -23.15) + plate("hot", 76.85) + plate("free", -1);
+  write_file(folder / "plates.odb", std::string_view(list));
+  std::string ems = "1\n";
+  for (int k = 0; k < 91; ++k) ems += "1\n";
+  write_file(folder / "black.ems", std::string_view(ems + "CURVE_BEGIN\n0.3 1\n20 1\nCURVE_END\n"));
+  write_file(
+      folder / "p.mat",
+      "MATERIAL_ENTRY {\n ID = black\n NAME = blackbody\n TEMP_SOLVER_NAME = Therm\n TEMP_SOLVER {\n SPECIFIC_HEAT = "
+      "0.2\n MASS_DENSITY = 1.35\n THERMAL_CONDUCTIVITY = 15.48\n THICKNESS = 5\n }\n SURFACE_PROPERTIES {\n"
+      "EMISSIVITY_PROP_NAME = ClassicEmissivity\n EMISSIVITY_PROP {\n FILENAME = black.ems\n SPECULAR_FRACTION = 0\n "
+      "}\n }\n}\n");
+  write_file(folder / "plates.scene",
+             "<classicscene name=\"p\"><sceneorigin><location frame=\"geodetic\"><latitude>39</latitude><longitude>-120"
+             "</longitude><altitude>0</altitude></location></sceneorigin><odbdirectory>.</odbdirectory><gdbdirectory>."
+             "</gdbdirectory><matfilename>p.mat</matfilename><emsdirectory>.</emsdirectory><geometrylist "
+             "enabled=\"true\"><geometrylistinclude name=\"p\" enabled=\"true\">plates.odb</geometrylistinclude>"
+             "</geometrylist></classicscene>");
+  dirsig::Import import({}, folder.path());
+  const dirsig::SceneMade made = dirsig::scene_of(import, folder / "plates.scene");
+  const std::string file = folder / "plates.scene";
+  const Params root = params_of(made.text, file);
+  const Params materials = root.at("materials");
+  EXPECT_NEAR(materials.at("black_at_250K").number("temperature_k"), 250, 1e-9);
+  EXPECT_NEAR(materials.at("black_at_350K").number("temperature_k"), 350, 1e-9);
+  EXPECT_FALSE(materials.at("black_at_350K").has("temperature"));
+  EXPECT_EQ(materials.at("black").at("temperature").text("model"), "heat");
+  EXPECT_EQ(root.at("objects").at("cold").at("materials").at("black@-23.15C").as_text(), "black_at_250K");
+  EXPECT_FALSE(root.at("objects").at("free").has("materials"));
+}
+
 TEST_F(DirsigScene, MovesStepByStep) {
   const Params world = read(kDirsigData + "range.scene").at("world");
   EXPECT_EQ(made_.epoch, "2009-06-23T17:00:00.000Z");

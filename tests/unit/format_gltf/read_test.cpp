@@ -183,6 +183,21 @@ TEST(Gltf, DataOfAnyType) {
       HasSubstr("t.gltf: error: a buffer's data URI begins 'data:,abc'"));
 }
 
+// A container whose JSON is not padded to 4 bytes, as some writers leave it, and compression that is named.
+TEST(Gltf, ContainersOfEveryLength) {
+  test::GltfFile f;
+  const int p = f.places(kSquare);
+  std::string json = f.text(one_node(strf(R"({"attributes":{"POSITION":%d},"mode":6})", p)));
+  const auto word = [](size_t n) {
+    const auto w = static_cast<uint32_t>(n);
+    return std::string(reinterpret_cast<const char*>(&w), 4);
+  };
+  const auto container = [&] { return "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json; };
+  for (int blank = 0; blank < 4; ++blank, json += ' ') EXPECT_EQ(Read(container()).corners().size(), 6u) << blank;
+  json.replace(json.find("\"version\""), 9, "\"KHR_draco_mesh_compression\"");
+  EXPECT_THAT(message_of([&] { Read r(container()); }), HasSubstr("compressed by Draco (KHR_draco_mesh_compression)"));
+}
+
 TEST(Gltf, FaultsHaveTheirPlace) {
   const auto fault = [](const std::string& primitive, const std::string& node = "", const std::string& more = "") {
     test::GltfFile f;

@@ -43,6 +43,30 @@ TEST(Tape5, RealDecks) {
   EXPECT_EQ(read_tape5(kFolder + "tape5.VIS")[0].range, 200);
 }
 
+// ITYPE 1: H1 and RANGE are the path; what else the cards say is named.
+TEST(Tape5, HorizontalPathsAndFieldsThatAreNotRead) {
+  const std::string deck =
+      "TF  6    1    0    0    0    0    0    0    0    0    0    0    0   0.000   0.00\n"
+      "fFF  2   0   400.000     0.800  0.000000F F F F F\n"
+      "    1         2    0    0    0     0.000     0.000     0.000     0.000     0.000\n"
+      "     0.100     0.500    45.000     5.000     0.000     0.000\n"
+      "  2000.000  2100.000     5.000    20.000\n"
+      "    3\n"
+      "     0.100     0.000    90.000     5.000     0.000     0.000\n"
+      "    0\n";
+  const std::vector<Tape5Run> runs = parse_tape5(deck, "t5");
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_FALSE(runs[0].zenith);
+  EXPECT_EQ(runs[0].end_height, 100);
+  EXPECT_EQ(runs[0].range, 5000);
+  EXPECT_THAT(runs[0].unread,
+              testing::ElementsAre("H2OSTR 0.800 (card 1A, columns 21 to 30)", "IVULCN 2 (card 2, columns 14 to 15)",
+                                   "H2 0.500 (card 3, columns 11 to 20)", "ANGLE 45.000 (card 3, columns 21 to 30)"));
+  EXPECT_THAT(runs[1].unread,
+              testing::ElementsAre("H2OSTR 0.800 (card 1A, columns 21 to 30)", "IVULCN 2 (card 2, columns 14 to 15)"));
+  EXPECT_TRUE(read_tape5(kFolder + "path1000.tape5")[0].unread.empty());
+}
+
 // LOWTRAN 7 has no card 1A; the deck asks for three runs.
 const std::string kLowtran =
     "    6    2    2    0    0    0    0    0    0    0    0    0    0 290.000   0.10\n"

@@ -31,6 +31,17 @@ TEST(AmapVox, DensitiesAndPlaces) {
   EXPECT_FLOAT_EQ(parse(kFile, report, "transmittance").density[5], 0.1f);
 }
 
+TEST(AmapVox, ResolutionsThatDisagree) {
+  std::string text = kFile;
+  Report same(scene_issues()), other(scene_issues());
+  parse(text, same);
+  EXPECT_EQ(same.count("SP709"), size_t{0});
+  text.replace(text.find("#res: 1.0"), 9, "#res: 0.5");
+  EXPECT_EQ(parse(text, other).to_local.point({2, 1, 3}), (Vec3{12, 21, 2}));
+  EXPECT_EQ(other.count("SP709"), size_t{1});
+  EXPECT_THAT(other.text(), HasSubstr("#res says cells of 0.5 m, the corners and #split make them 1 x 1 x 1 m"));
+}
+
 TEST(AmapVox, OlderHeaders) {
   std::string text = kFile;
   text.replace(text.find("10.0 20.0 -1.0"), 14, "(10.0, 20.0, -1.0)");

@@ -32,6 +32,19 @@ TEST(WeatherCsv, UnitsMeaningsAndGaps) {
   EXPECT_THAT(w.notes(), Not(Contains(HasSubstr("standard time"))));
 }
 
+// A day of minutes from 00:00 to 23:59 is a day.
+TEST(WeatherCsv, DaysOfMinutesThatEndAMinuteEarly) {
+  std::string rows = "site: 39.83 -104.65 1650\ntime_utc, wind_speed [m/s]\n";
+  for (int k = 0; k < 1440; ++k) rows += strf("2020-01-01T%02d:%02dZ, %g\n", k / 60, k % 60, k < 1439 ? 1.0 : 3.0);
+  const Weather w = parse_weather(rows, "w.csv");
+  const double begin = w.clock().seconds(parse_iso8601("2020-01-01T00:00Z"));
+  EXPECT_EQ(message_of([&] { w.require(Q::wind_speed, begin, begin + 86400); }), "no error");
+  EXPECT_NEAR(w.at(Q::wind_speed, begin + 86390), 3, 1e-9);
+  EXPECT_THAT(w.notes(), Contains("the last row is held for 60 s more, to the end of its day"));
+  // A minute more is not there.
+  EXPECT_THAT(message_of([&] { w.require(Q::wind_speed, begin, begin + 86460); }), HasSubstr("does not cover"));
+}
+
 TEST(WeatherCsv, LocalTimesAndStampsThatBegin) {
   const std::string rows =
       "time_local, wind_speed [m/s]\n2020-01-01T01:00, 1\n2020-01-01T02:00, 2\n2020-01-01T03:00, 2\n";

@@ -41,6 +41,61 @@ std::string refused(const std::vector<Row>& rows) {
   return message_of([&] { read(rows); });
 }
 
+// The same hours, with midnights as TMY3 has them and as vendors do: 00:00 of the next day, at a seam of two years,
+// too.
+TEST(Tmy3, MidnightOfTheNextDay) {
+  const auto file = [](bool vendor) {
+    std::string text =
+        "1,x,CO,-7.0,40.0,-105.0,1600\nDate (MM/DD/YYYY),Time (HH:MM),GHI (W/m^2),DNI (W/m^2),DHI "
+        "(W/m^2),TotCld (tenths),OpqCld (tenths),Dry-bulb (C),Dew-point (C),RHum (%),Pressure (mbar),Wdir "
+        "(degrees),Wspd (m/s),Lprecip depth (mm),Lprecip quantity (hr)\n";
+    const struct {
+      const char *date, *next;
+    } days[] = {{"11/30/2006", "12/01/2006"}, {"12/01/2003", "12/02/2003"}, {"12/31/2003", "01/01/2004"}};
+    for (int d = 0; d < 3; ++d)
+      for (int h = 1; h <= 24; ++h) {
+        const bool midnight = vendor && h == 24;
+        text += strf("%s,%02d:00,0,0,0,5,5,%g,-5,60,860,180,2.0,0,1\n", midnight ? days[d].next : days[d].date,
+                     midnight ? 0 : h, d + 0.01 * h);
+        if (d == 1 && h == 24)  // the days between, an hour each step needs no gap
+          for (int day = 2; day <= 30; ++day)
+            for (int k = 1; k <= 24; ++k) {
+              const bool end = vendor && k == 24;
+              text +=
+                  strf("12/%02d/2003,%02d:00,0,0,0,5,5,9,-5,60,860,180,2.0,0,1\n", end ? day + 1 : day, end ? 0 : k);
+            }
+      }
+    return text;
+  };
+  const Weather nrel = parse_weather(file(false), "n.csv", {.year = 2021}),
+                vendor = parse_weather(file(true), "v.csv", {.year = 2021});
+  ASSERT_EQ(nrel.table().rows.size(), vendor.table().rows.size());
+  EXPECT_EQ(nrel.clock().utc(0).year, vendor.clock().utc(0).year);
+  EXPECT_EQ(to_iso8601(nrel.clock().utc(0), 0), to_iso8601(vendor.clock().utc(0), 0));
+  for (size_t i = 0; i < nrel.table().rows.size(); ++i)
+    ASSERT_EQ(nrel.table().rows[i].value(Q::air_temperature), vendor.table().rows[i].value(Q::air_temperature)) << i;
+  EXPECT_NEAR(at_utc(vendor, Q::air_temperature, "2022-01-01T07:00:00Z"), 273.15 + 2.24, 1e-9);
+}
+
+TEST(Psm3, ColumnsByNameAndStampsOfTheirZone) {
+  const std::string head =
+      "Source,Location ID,City,State,Country,Latitude,Longitude,Time Zone,Elevation,Local Time Zone\n"
+      "NSRDB,145809,-,-,-,39.73,-104.98,-7,1600,-7\n"
+      "Year,Month,Day,Hour,Minute,GHI,DHI,DNI,Dew Point,Temperature,Pressure,Relative Humidity,Wind Direction,Wind "
+      "Speed,Surface Albedo\n";
+  const Weather w = parse_weather(head +
+                                      "2019,6,1,11,30,900,100,880,4,20,840,35,90,3,0.2\n"
+                                      "2019,6,1,12,30,950,110,900,4,22,840,31,90,4,0.2\n"
+                                      "2019,6,1,13,30,920,110,890,4,23,840,30,90,5,0.2\n",
+                                  "p.csv");
+  EXPECT_NEAR(at_utc(w, Q::air_temperature, "2019-06-01T19:30:00Z"), 273.15 + 22, 1e-9);
+  EXPECT_NEAR(at_utc(w, Q::global, "2019-06-01T19:30:00Z"), 950, 1e-9);
+  EXPECT_NEAR(at_utc(w, Q::pressure, "2019-06-01T19:30:00Z"), 84000, 1e-6);
+  EXPECT_NEAR(w.site().longitude_deg, -104.98, 1e-12);
+  EXPECT_THAT(message_of([&] { parse_weather(head + "2019,6,31,11,30,900,100,880,4,20,840,35,90,3,0.2\n", "p.csv"); }),
+              testing::HasSubstr("p.csv:4:"));
+}
+
 // The cut begins on 1994-02-27 at 0:00 local standard time, which is 7:00 UTC.
 TEST(Epw, StandardTimeAndHoursThatEndAtTheStamp) {
   const Weather w = read_weather(kDenver);

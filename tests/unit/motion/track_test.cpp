@@ -201,6 +201,24 @@ TEST(Track, PointingRules) {
   EXPECT_THROW(pointed_track(still, {Pointing::look_at, nullptr, nullptr}), Error);
 }
 
+// UT1 knows no leap seconds: over the one at the end of 2005 the ground track neither stands still nor jumps. A step of
+// a second changes from one to the next by what gravity and the turning Earth bend the path, 10 m.
+TEST(Track, OrbitThroughALeapSecond) {
+  const auto orbit =
+      std::make_shared<const Sgp4>(read_tle_of(SUITE_TEST_DATA "/motion/SGP4-VER.TLE", "28057").elements);
+  const SceneFrame frame({40, -100, 300});
+  for (const char* epoch : {"2005-12-31T23:59:50Z", "2005-12-31T23:20:00Z", "2005-12-31T22:50:00Z"}) {
+    const Clock clock(parse_iso8601(epoch));
+    const TrackPtr track = orbit_track(orbit, frame, clock, 0.1);
+    const double leap = clock.seconds(parse_iso8601("2006-01-01T00:00:00Z"));
+    for (double t = leap - 5; t <= leap + 5; ++t) {
+      const Vec3 before = track->at(t - 1).translation, here = track->at(t).translation,
+                 next = track->at(t + 1).translation;
+      EXPECT_LT(length((next - here) - (here - before)), 15) << epoch << " " << t - leap;
+    }
+  }
+}
+
 TEST(Track, OrbitAboveTheScene) {
   const auto orbit =
       std::make_shared<const Sgp4>(read_tle_of(SUITE_TEST_DATA "/motion/SGP4-VER.TLE", "28057").elements);

@@ -51,6 +51,18 @@ TEST(MapLookup, DrapedPixelsAtCornersEdgesAndOutside) {
   EXPECT_EQ(at(r, 101 - 6 * 1000, 45 + 8 * 1000), 10);
 }
 
+TEST(MapLookup, GapsSayNothing) {
+  for (const auto filter : {kNearest, kLinear}) {
+    PropertyMap m = raster(Projection::drape, none, filter);
+    m.values[1] = NAN;  // x 102 to 104, y 50 to 46
+    EXPECT_EQ(at(m, 103, 48), -1);
+    EXPECT_EQ(at(m, 102.001, 46.001), -1);
+    EXPECT_EQ(at(m, 101, 48), 0);
+    EXPECT_NEAR(at(m, 101.999, 48), 0, 1e-6);  // the gap beside it counts as the nearest pixel
+    EXPECT_NEAR(at(m, 105, 48), 2, 1e-6);
+  }
+}
+
 TEST(MapLookup, NegativeDistancesFlip) {
   PropertyMap m = raster(Projection::drape, none, kNearest);
   m.drape.gsd_x = -2, m.drape.gsd_y = -4;  // x 100 down to 94, y 50 up to 58
