@@ -80,6 +80,7 @@ struct TraceContext : RTCIntersectContext {
   const Packet* packet = nullptr;  // lanes are the ids of the float rays
   const World* world = nullptr;
   const MovingPart* moving = nullptr;
+  const double* reach = nullptr;              // of visibility rays: how far each goes, unrounded
   const PlacedSet* set = nullptr;             // the instance that rays are inside of; null = in the frame itself
   uint32_t prim = 0;                          // its position in the set
   std::vector<Gathered>* gathered = nullptr;  // all hits go here, and none ends a ray
@@ -95,6 +96,10 @@ struct TraceContext : RTCIntersectContext {
   } inside[kWidth];
   const Ray& ray(unsigned id) const { return rays[packet->ray[id]]; }
   const Ray& enu_ray(unsigned id) const { return outer ? *enu : ray(id); }
+  // How far a lane goes along its ray, whose float says `far` beyond where it was advanced to.
+  double reach_of(unsigned id, float far) const {
+    return reach ? reach[packet->ray[id]] : packet->advance[id] + double{far};
+  }
 };
 
 // Placements of one frame as one Embree user geometry: either instances of meshes and exact surfaces, or placements of

@@ -204,6 +204,7 @@ void PacketTracer::all_unbounded(uint32_t object, std::vector<Hit>& hits) {
 
 void PacketTracer::occluded(const Tile& tile, const Packet& packet, std::span<uint8_t> blocked) {
   TraceContext c = context(packet);
+  c.reach = reach_.data();
   const auto answer = [&](uint32_t i, float far) {
     if (!(far < 0)) return;
     blocked[packet.ray[i]] = 1;
@@ -246,14 +247,19 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
     const float* f = &m.positions[3 * size_t{corner[c]}];
     return Vec3{f[0], f[1], f[2]};
   };
-  const Vec3 p0 = vertex(0), e1 = vertex(1) - p0, e2 = vertex(2) - p0, p = p0 + e1 * double{u} + e2 * double{v};
-  const Vec3 across = cross(e1, e2);
+  const Vec3 p0 = vertex(0), e1 = vertex(1) - p0, e2 = vertex(2) - p0, within = e1 * double{u} + e2 * double{v};
+  const Vec3 p = p0 + within, across = cross(e1, e2);
+  // The way from a corner is rounded, too, when a ray begins at the hit.
+  const Vec3 most{std::fmax(std::fabs(p.x), std::fabs(within.x)), std::fmax(std::fabs(p.y), std::fabs(within.y)),
+                  std::fmax(std::fabs(p.z), std::fabs(within.z))};
   double reach = 0;  // largest coordinate that was rounded to float on the way to this hit, m
+  double span = 0;   // across the frame in which coordinates are
   if (direct) {
     // A translation only.
     hit.position = p + tile->origin;
     hit.normal = normalized(across);
-    reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), 1e-3 * tile->scale, 1e-6});
+    reach = std::max({most.x, most.y, most.z, 1e-3 * tile->scale, 1e-6});
+    span = 2 * tile->scale;
   } else {
     const Affine3 to_world = o.mesh != kNone ? world_.to_world(o, exact_time(ray))
                                              : world_.to_world(world_.flat.way_again(number), exact_time(ray));
@@ -262,15 +268,19 @@ void PacketTracer::finish_triangle(const Found& found, const Ray& ray, Hit& hit)
     // The winding turns round under a mirror; the front side stays the front side.
     if (to_world.determinant() < 0) hit.normal = -hit.normal;
     const double floor = 1e-3 * world_.meshes[mesh].scale;
-    const Vec3 q{std::fmax(std::fabs(p.x), floor), std::fmax(std::fabs(p.y), floor), std::fmax(std::fabs(p.z), floor)};
-    for (size_t k = 0; k < 9; k += 3)
-      reach = std::max(reach, std::fabs(to_world.a[k]) * q.x + std::fabs(to_world.a[k + 1]) * q.y +
-                                  std::fabs(to_world.a[k + 2]) * q.z);
+    const Vec3 q{std::fmax(most.x, floor), std::fmax(most.y, floor), std::fmax(most.z, floor)};
+    for (size_t k = 0; k < 9; k += 3) {
+      const double x = std::fabs(to_world.a[k]), y = std::fabs(to_world.a[k + 1]), z = std::fabs(to_world.a[k + 2]);
+      reach = std::max(reach, x * q.x + y * q.y + z * q.z);
+      span = std::max(span, x + y + z);
+    }
+    span *= 2 * world_.meshes[mesh].scale;
   }
   // Of the double coordinates in the scene's frame, too (their sum bounds the length without a root).
   const Vec3& q = hit.position;
   const double far = std::fabs(q.x) + std::fabs(q.y) + std::fabs(q.z);
   hit.step = static_cast<float>(8 * FLT_EPSILON * reach + 1e-15 * far + aside(moving_, o));
+  hit.span = static_cast<float>(span);
   hit.distance = dot(hit.position - ray.origin, ray.direction);
   hit.time = ray.time;
   hit.object = number;
@@ -301,9 +311,10 @@ void PacketTracer::place_exact(double scale, const Ray& ray, const Asked& asked,
   hit.normal = normalized(pose.to_world.normal(found.normal));
   if (pose.mirrored) hit.normal = -hit.normal;
   // Surfaces without bounds are met in double, where an ulp of the distance travelled is enough.
-  const double step =
-      scale > 0 ? 8 * FLT_EPSILON * scale : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
+  const double step = scale > 0 ? 8 * FLT_EPSILON * scale + 8 * DBL_EPSILON * hit.distance
+                                : 64 * DBL_EPSILON * (length(hit.position) + hit.distance) + 1e-12;
   hit.step = static_cast<float>(step + aside(moving_, asked.object));
+  hit.span = 0;
   hit.time = ray.time;
   hit.object = asked.number;
   hit.triangle = 0;

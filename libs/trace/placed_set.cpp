@@ -58,7 +58,7 @@ bool enter(const PlacedSet& set, unsigned prim, const MeshEntry& mesh, const Tra
   const double advance = context.packet->advance[lane];
   in.id = lane;
   return go_in(set, prim, mesh, context.ray(lane), advance + double{RTCRayN_tnear(rays, n, i)},
-               advance + double{RTCRayN_tfar(rays, n, i)}, in);
+               context.reach_of(lane, RTCRayN_tfar(rays, n, i)), in);
 }
 
 void intersect_one(const RTCIntersectFunctionNArguments* args, unsigned i, const MeshEntry& entry, const LocalRay& in) {
@@ -161,7 +161,7 @@ struct PlainSurface {
     const SeenRay seen(inward, ray);
     const double before = seen.closest - context.packet->advance[lane];
     return before + distance_to(primitive, seen.origin, seen.direction, double{RTCRayN_tnear(rays, n, i)} - before,
-                                double{RTCRayN_tfar(rays, n, i)} - before);
+                                context.reach_of(lane, RTCRayN_tfar(rays, n, i)) - seen.closest);
   }
 };
 
@@ -216,10 +216,12 @@ void occlude_exact(const RTCOccludedFunctionNArguments* args, const PlacedSet& s
   auto* context = static_cast<TraceContext*>(args->context);
   context->set = &set, context->prim = args->primID;
   const ExactSurface surface(set, *context);
-  for (unsigned i = 0; i < args->N; ++i)
-    if (args->valid[i] && surface.meet(RTCRayN_id(args->ray, args->N, i), RTCRayN_tnear(args->ray, args->N, i),
-                                       RTCRayN_tfar(args->ray, args->N, i)))
-      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const unsigned lane = RTCRayN_id(args->ray, args->N, i);
+    const double far = context->reach_of(lane, RTCRayN_tfar(args->ray, args->N, i)) - context->packet->advance[lane];
+    if (surface.meet(lane, RTCRayN_tnear(args->ray, args->N, i), far)) RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  }
   context->set = nullptr;
 }
 

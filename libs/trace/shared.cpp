@@ -23,12 +23,12 @@ struct Target {
     const uint32_t object = set.objects[prim];
     return {set.world->groups[set.frame->shared[object]], set.number_of(object)};
   }
-  // Takes the unrounded ray of a lane into it; false when it does not get there.
+  // Takes the unrounded ray of a lane into it, from `near` beyond its advance to `far` along all of it; false when it
+  // does not get there.
   bool enter(const PlacedSet& set, const TraceContext& outer, unsigned lane, double near, double far,
              LocalRay& in) const {
     const Ray& from = outer.ray(lane);
-    const double advance = outer.packet->advance[lane];
-    near += advance, far += advance;
+    near += outer.packet->advance[lane];
     if (set.partly && !set.moving->there(set.objects[outer.prim], from.time)) return false;
     if (!set.deep.empty()) {
       const PlacedSet::DeepInverse& inverse = set.deep[outer.prim];
@@ -54,6 +54,7 @@ struct Inside {
     static_cast<RTCIntersectContext&>(context) = outer;
     context.rays = &ray, context.packet = &packet;
     context.world = outer.world, context.moving = outer.moving, context.gathered = outer.gathered;
+    if (outer.reach) context.reach = &in.reach;
     context.outer = &outer;
     context.first = outer.first + target.number;
     context.enu = &outer.enu_ray(lane);
@@ -81,7 +82,8 @@ void intersect_groups(const RTCIntersectFunctionNArguments* args) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(outer, args->N, i);
     LocalRay in;
-    if (!target.enter(set, *context, lane, RTCRayN_tnear(outer, args->N, i), RTCRayN_tfar(outer, args->N, i), in))
+    if (!target.enter(set, *context, lane, RTCRayN_tnear(outer, args->N, i),
+                      context->reach_of(lane, RTCRayN_tfar(outer, args->N, i)), in))
       continue;
     Inside inside(target, *context, lane, in);
     alignas(16) RTCRayHit one;
@@ -105,8 +107,8 @@ void occlude_groups(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[i]) continue;
     const unsigned lane = RTCRayN_id(args->ray, args->N, i);
     LocalRay in;
-    if (!target.enter(set, *context, lane, RTCRayN_tnear(args->ray, args->N, i), RTCRayN_tfar(args->ray, args->N, i),
-                      in))
+    if (!target.enter(set, *context, lane, RTCRayN_tnear(args->ray, args->N, i),
+                      context->reach_of(lane, RTCRayN_tfar(args->ray, args->N, i)), in))
       continue;
     Inside inside(target, *context, lane, in);
     alignas(16) RTCRay one;

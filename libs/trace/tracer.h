@@ -57,6 +57,7 @@ struct Hit {
   uint32_t triangle = 0;    // in the mesh
   float u = 0, v = 0;       // barycentrics of vertices 1 and 2; of an exact surface its UV
   float step = 0;           // m, how far rays that leave the surface must start off it
+  float span = 0;           // m, over which rays that come to it are rounded to float; 0: the step covers it
   bool hit() const { return object != kNone; }
 };
 
@@ -141,6 +142,13 @@ class Tracer {
   // units of the last float place of the tile's or instance's size off the surface, along the geometric normal.
   Vec3 leave(const Hit& hit, Dir direction) const {
     return hit.position + hit.normal * double{dot(direction, hit.normal) >= 0 ? hit.step : -hit.step};
+  }
+
+  // How far off the surface of `hit` a visibility ray from a point `distance` m away must end so as not to meet the
+  // surface: its start is rounded, too, unless it lies outside the frame of floats that the surface is met in.
+  static double arrive(double step, double span, double distance) {
+    constexpr double kFloat = 8 * 1.1920929e-7, kDouble = 1e-15;
+    return step + kFloat * (distance < span ? distance : span) + kDouble * distance;
   }
 
   // The hit that a ray would have on a triangle of an object of a mesh, at barycentrics u and v of its vertices 1 and

@@ -23,11 +23,13 @@ LampShape flat(LampShape::Kind kind, Vec3 origin, Vec3 a, Vec3 b, bool mirrored)
   return s;
 }
 
-// 1 - cos of half the cone that a sphere fills, seen from outside; 0 inside.
+// 1 - cos of half the cone that a sphere fills, seen from outside; 0 inside, and on it within rounding: a point on a
+// sphere sees all of its inner side, and points of equal area are drawn as cosines there.
 double cone_drop(const LampShape& s, Vec3 from) {
+  constexpr double kOn = 1e-6;  // of the radius
   const Vec3 to = s.origin - from;
   const double sin2 = s.a.x * s.a.x / dot(to, to);
-  return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
+  return sin2 < 1 - 2 * kOn ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
 }
 
 }  // namespace
@@ -103,8 +105,10 @@ std::optional<ShapePoint> draw(const LampShape& s, Vec3 from, Vec2 u) {
       // Uniform in the cone that the sphere fills; the point on the near side in that direction.
       const Vec3 to = s.origin - from;
       const Dir d = Frame::around(normalized(to)).to_world(uniform_cone(u, drop));
-      const double along = dot(to, d), off2 = std::max(0.0, radius * radius - (dot(to, to) - along * along));
-      p.normal = normalized(from + d * (along - std::sqrt(off2)) - s.origin);
+      // (By the closest approach: of large distances the squares would leave nothing.)
+      const Vec3 closest = d * dot(to, d) - to;
+      const double off2 = std::max(0.0, radius * radius - dot(closest, closest));
+      p.normal = normalized(closest - d * std::sqrt(off2));
     } else {
       p.normal = uniform_sphere(u);
     }
@@ -123,8 +127,9 @@ std::optional<ShapePoint> draw(const LampShape& s, Vec3 from, Vec2 u) {
 }
 
 double density_of(const LampShape& s, Vec3 from, double distance, double cosine) {
+  // From outside the near side is drawn, never the inner one, which rays meet through holes.
   if (s.kind == LampShape::Kind::sphere)
-    if (const double drop = cone_drop(s, from); drop > 0) return 1 / (2 * kPi * drop);
+    if (const double drop = cone_drop(s, from); drop > 0) return cosine > 0 ? 1 / (2 * kPi * drop) : 0;
   return distance * distance / (std::max(std::fabs(cosine), 1e-12) * s.area);
 }
 

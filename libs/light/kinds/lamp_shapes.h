@@ -11,7 +11,7 @@ struct LampShape {
   enum class Kind : uint8_t { point, triangle, parallelogram, disk, sphere } kind = Kind::point;
   bool both_sides = false;
   uint32_t spec = 0;         // whose lamp it is
-  float step = 0;            // how far before the surface visibility rays end, m
+  float step = 0, span = 0;  // of the surface's hits, for Tracer::arrive
   uint32_t carrier = kNone;  // of a point that rides: origin is in its axes
   Vec3 origin, a, b;         // corner and edges; centre and half axes of a disk; centre and (radius, 0, 0)
   double area = 0;           // m2

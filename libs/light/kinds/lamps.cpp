@@ -40,7 +40,7 @@ struct Lamps::Core {
   void add_surfaces(const Tracer& tracer);
   uint32_t add(const LampShape& shape, LightBounds b);
   uint32_t shape_at(const Hit& hit) const;
-  uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, uint32_t object, const Tracer& tracer);
+  uint32_t add_surface(std::optional<LampShape> shape, uint32_t spec, const Hit& middle, const Tracer& tracer);
 };
 
 namespace {
@@ -162,8 +162,9 @@ void Lamps::Core::add_material(uint32_t spec, const Scene& scene) {
   if (s.both_sides) back[found] = spectra[spec].data();
 }
 
-// Puts a piece of an object into the tree; its number there, or kNone.
-uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec, uint32_t object,
+// Puts a piece of an object into the tree; its number there, or kNone. middle: of a flat piece, or the center of a
+// sphere, as the tracer makes hits without a ray, whose steps are upper bounds.
+uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec, const Hit& middle,
                                   const Tracer& tracer) {
   if (!shape) return kNone;
   shape->spec = spec;
@@ -171,19 +172,22 @@ uint32_t Lamps::Core::add_surface(std::optional<LampShape> shape, uint32_t spec,
   // The tracer knows how far off the surface visibility rays must end: ask it for the surface's middle.
   const Kind kind = shape->kind;
   const Dir n = kind == Kind::sphere ? Dir{0, 0, 1} : shape->normal;
-  const Vec3 middle = kind == Kind::sphere     ? shape->origin + n * shape->a.x
-                      : kind == Kind::triangle ? shape->origin + (shape->a + shape->b) / 3
-                      : kind == Kind::disk     ? shape->origin
-                                               : shape->origin + (shape->a + shape->b) * 0.5;
-  const Ray ray{middle + n * (0.01 * std::sqrt(shape->area)), -n, 0};
+  const Vec3 place = kind == Kind::sphere ? shape->origin + n * shape->a.x : middle.position;
+  const Ray ray{place + n * (0.01 * std::sqrt(shape->area)), -n, 0};
   Hit hit;
   TraceStatistics statistics;
   tracer.nearest({&ray, 1}, {&hit, 1}, false, statistics);
-  const double reach = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z), 1e-3});
-  const auto instance = [&](uint32_t o) { return tracer.object(o).instance; };
-  shape->step = hit.hit() && instance(hit.object) == instance(object)
-                    ? hit.step
-                    : static_cast<float>(8 * std::numeric_limits<float>::epsilon() * reach);
+  if (!hit.hit() || tracer.object(hit.object).instance != tracer.object(middle.object).instance) hit = middle;
+  shape->step = hit.step, shape->span = hit.span;
+  // Corners may lie further from the zero of the floats than the middle. Of exact surfaces only what places them is
+  // rounded to float, which matters over their own size.
+  const double extent = std::max({length(shape->a), length(shape->b), length(shape->b - shape->a)}),
+               infinite = std::numeric_limits<double>::infinity();
+  if (kind == Kind::triangle)
+    shape->step = static_cast<float>(Tracer::arrive(double{hit.step}, infinite, extent));
+  else
+    shape->step =
+        static_cast<float>(std::min(double{hit.step}, Tracer::arrive(1e-14 * length(place), infinite, 2 * extent)));
   return add(*shape, bounds_of(*shape));
 }
 
@@ -211,7 +215,8 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
     if (object.primitive != kNone) {
       const Primitive& primitive = scene.primitives[object.primitive];
       const uint32_t spec = carried(object, primitive.material);
-      shape_of_triangle[o] = {add_surface(shape_of(primitive, place), spec, o, tracer)};
+      shape_of_triangle[o] = {
+          add_surface(shape_of(primitive, place), spec, tracer.on_exact(o, {}, {0, 0, 1}, {}, 0), tracer)};
       return;
     }
     const Mesh& mesh = scene.meshes[object.mesh];
@@ -222,7 +227,7 @@ void Lamps::Core::add_surfaces(const Tracer& tracer) {
       mesh.require();
       map.resize(mesh.triangle_count(), kNone);
       for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
-        map[t] = add_surface(shape_of(mesh, t, place), spec, o, tracer);
+        map[t] = add_surface(shape_of(mesh, t, place), spec, tracer.on_triangle(o, t, 1.0 / 3, 1.0 / 3, 0), tracer);
     }
   });
 }
@@ -344,7 +349,8 @@ std::optional<LightSample> Lamps::sample_here(uint32_t lamp, double probability,
   r.distance = point->distance;
   r.density = point->density * probability;
   r.scale = dimmed;
-  r.end = point->position + point->normal * double{point->cosine > 0 ? s.step : -s.step};
+  const double step = Tracer::arrive(double{s.step}, double{s.span}, r.distance);
+  r.end = point->position + point->normal * (point->cosine > 0 ? step : -step);
   return r;
 }
 
