@@ -12,6 +12,7 @@ constexpr int kMostCrossings = 1 << 20;  // of one probing ray; surfaces that li
 // Rays go on behind a boundary along themselves, so that nothing shifts them over hundreds of boundaries; flatter ones
 // than this cosine leave it along the normal for the rest.
 constexpr double kFlattest = 0.05;
+const Dir kUp = normalized(Vec3{0.0123, 0.0345, 1});  // of probing rays
 }  // namespace
 
 Bodies::Bodies(const Surface& surface) : surface_(surface) {
@@ -26,24 +27,78 @@ Bodies::Bodies(const Surface& surface) : surface_(surface) {
       [&](const TracedObject& o) {
         return o.primitive != kNone && primitive_box(scene.primitives[o.primitive]).empty();
       },
-      [&](uint32_t, const TracedObject& o) { unbounded_.insert(o.instance); });
+      [&](uint32_t number, const TracedObject& o) {
+        unbounded_.insert(o.instance);
+        below_ = below_ || o.node != kNone || dot(surface.tracer().place(number).normal({0, 0, 1}), kUp) < 0;
+      });
+  below_ = below_ || (!unbounded_.empty() &&
+                      std::any_of(rules_.begin(), rules_.end(), [](const Rule& r) { return r.medium[0] != kNone; }));
   alone_ = surface.tracer().object_count() < 2 && !surface.tracer().periodic();
+}
+
+Bodies::Sides Bodies::sides(const Hit& hit) const {
+  const TracedObject object = surface_.tracer().object(hit.object);
+  const Scene& scene = surface_.tracer().scene();
+  BoundedSide bounded = BoundedSide::none;
+  if (object.primitive != kNone) {
+    bounded = bounded_side(scene.primitives[object.primitive]);
+    if (bounded == BoundedSide::none && unbounded_.contains(object.instance)) return {Fills::half_spaces, true};
+  } else if (object.mesh != kNone) {
+    const auto known = of_meshes_.find(object.mesh);
+    bounded = known != of_meshes_.end() ? known->second : bounded_side(scene.meshes[object.mesh]);
+    of_meshes_[object.mesh] = bounded;
+  }
+  if (bounded == BoundedSide::none) return {Fills::shared_face, true};
+  return {Fills::bounded_side, bounded == BoundedSide::behind};
 }
 
 void Bodies::cross(MediumStack& stack, const Hit& hit, uint32_t material, Dir direction) const {
   if (material == kNone || !hit.hit()) return;
-  const Rule& rule = rules_[material];
-  const bool behind = dot(direction, hit.normal) < 0;
-  stack.leave(body(hit), !behind);
-  const uint32_t medium = rule.medium[behind];
-  stack.enter(body(hit), behind, medium, priority(medium));
+  cross(stack, hit, rules_[material], dot(direction, hit.normal) < 0);
 }
 
-Bodies::Onward Bodies::onward(const Hit& hit, Dir direction) {
-  const double slope = dot(direction, hit.normal), steep = std::fabs(slope), step = double{hit.step};
+// To the side behind the surface, or from there. False when the medium of the side that is left was not held.
+bool Bodies::cross(MediumStack& stack, const Hit& hit, const Rule& rule, bool behind) const {
+  const uint32_t own = body(hit), left = rule.medium[!behind], entered = rule.medium[behind];
+  if (rule.medium[0] == kNone) {
+    const bool held = stack.leave(own, !behind, left) || (left != kNone && stack.leave_shared(left));
+    stack.enter(own, behind, entered, priority(entered));
+    return held || left == kNone;
+  }
+  const Sides sides = this->sides(hit);
+  if (sides.fills == Fills::shared_face) {
+    const bool held = stack.leave(own, !behind, left) || (left != kNone && stack.leave_any(left));
+    stack.enter(own, behind, entered, priority(entered), true);
+    return held || left == kNone;
+  }
+  const bool half = sides.fills == Fills::half_spaces;
+  const auto fills = [&](bool side) { return half || side == sides.bounded; };
+  const bool held = !fills(!behind) || stack.leave(own, !behind, left) || (left != kNone && stack.leave_shared(left));
+  if (fills(behind)) stack.enter(own, behind, entered, priority(entered));
+  return held || left == kNone;
+}
+
+Bodies::Onward Bodies::onward(const Hit& hit, Dir direction, double step) {
+  const double slope = dot(direction, hit.normal), steep = std::fabs(slope);
   const double along = step / std::max(steep, kFlattest), aside = std::max(0.0, step - along * steep);
   const Vec3 off = direction * along + hit.normal * (slope < 0 ? -aside : aside);
   return {hit.position + off, dot(off, direction)};
+}
+
+// Fills beside_ with what lies at the hit of a ray, `run` m behind its start, and says how the ray goes on behind it
+// all: a surface that lies there may be coarser than the one that was hit.
+Bodies::Onward Bodies::look_beside(const Hit& hit, const Ray& ray, double run, TraceStatistics& statistics) {
+  double step = double{hit.step};
+  for (;;) {
+    const Onward on = onward(hit, ray.direction, step);
+    back_ = std::min(0.5 * on.gap, run);
+    find_beside(hit, {hit.position - ray.direction * back_, ray.direction, ray.time, ray.draw}, back_, back_ + on.gap,
+                statistics);
+    double coarsest = step;
+    for (const Hit& h : beside_) coarsest = std::max(coarsest, double{h.step});
+    if (coarsest == step) return on;
+    step = coarsest;
+  }
 }
 
 void Bodies::settle(Hit& hit, const Ray& ray, double gap) const {
@@ -109,14 +164,11 @@ void Bodies::transmit(MediumStack& stack, const Hit& hit, uint32_t material, Dir
 
 std::optional<Bodies::Onward> Bodies::pass(MediumStack& stack, Hit& hit, const Ray& ray, double run,
                                            TraceStatistics& statistics) {
-  const Onward on = onward(hit, ray.direction);
   if (alone_) {
     cross(stack, hit, surface_.material(hit), ray.direction);
-    return on;
+    return onward(hit, ray.direction, double{hit.step});
   }
-  const double back = std::min(0.5 * on.gap, run);
-  find_beside(hit, {hit.position - ray.direction * back, ray.direction, ray.time, ray.draw}, back, back + on.gap,
-              statistics);
+  const Onward on = look_beside(hit, ray, run, statistics);
   const std::optional<size_t> end = stop();
   // Rays that leave the surface that stops this one start beyond what lies closer to it than this.
   double until = std::numeric_limits<double>::infinity();
@@ -128,10 +180,34 @@ std::optional<Bodies::Onward> Bodies::pass(MediumStack& stack, Hit& hit, const R
     if (beside_[i].distance < until && crosses(i, ray.direction))
       cross(stack, beside_[i], materials_[i], ray.direction);
   if (!end) return on;
-  const double distance = hit.distance - back + beside_[*end].distance;
+  const double distance = hit.distance - back_ + beside_[*end].distance;
   hit = beside_[*end];
   hit.distance = distance;
   return std::nullopt;
+}
+
+// Fills left_ with what a ray from `place` leaves without having entered it: it started in that. The nearest such
+// surface is of the innermost body.
+void Bodies::probe(Vec3 place, Dir direction, double time, TraceStatistics& statistics) {
+  entered_.clear(), left_.clear();
+  Ray ray{place, direction, time};
+  for (int n = 0; n < kMostCrossings; ++n) {
+    Hit hit;
+    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, statistics);
+    if (!hit.hit()) break;
+    const Onward on = look_beside(hit, ray, hit.distance, statistics);
+    for (size_t i = 0; i < beside_.size(); ++i) {
+      if (!crosses(i, ray.direction)) continue;
+      const Hit& h = beside_[i];
+      const Rule& rule = rules_[materials_[i]];
+      const bool behind = dot(ray.direction, h.normal) < 0;
+      if (cross(entered_, h, rule, behind)) continue;
+      const Fills fills = sides(h).fills;
+      left_.push_back(
+          {body(h), rule.medium[!behind], !behind, fills == Fills::half_spaces, fills == Fills::shared_face});
+    }
+    ray.origin = on.start;
+  }
 }
 
 const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& statistics) {
@@ -140,32 +216,18 @@ const MediumStack& Bodies::around(Vec3 place, double time, TraceStatistics& stat
   place_ = place, time_ = time;
   // Whether a place has to be asked for depends on what was asked before: its rays are no rays of the paths'.
   TraceStatistics asking;
-  around_.clear(), entered_.clear(), left_.clear();
-  // What the ray leaves without having entered it, it started in; the nearest such surface is the innermost body.
-  Ray ray{place, normalized(Vec3{0.0123, 0.0345, 1}), time};
-  for (int n = 0; n < kMostCrossings; ++n) {
-    Hit hit;
-    surface_.tracer().nearest({&ray, 1}, {&hit, 1}, false, asking);
-    if (!hit.hit()) break;
-    const Onward on = onward(hit, ray.direction);
-    const double back = std::min(0.5 * on.gap, hit.distance);
-    find_beside(hit, {hit.position - ray.direction * back, ray.direction, time}, back, back + on.gap, asking);
-    for (size_t i = 0; i < beside_.size(); ++i) {
-      if (!crosses(i, ray.direction)) continue;
-      const Hit& h = beside_[i];
-      const bool side = dot(ray.direction, h.normal) > 0;  // the side that the ray comes from: behind the surface
-      if (rules_[materials_[i]].medium[side] != kNone && !entered_.holds(body(h), side))
-        left_.emplace_back(h, materials_[i]);
-      cross(entered_, h, materials_[i], ray.direction);
-    }
-    ray.origin = on.start;
+  around_.clear();
+  std::vector<Left> over;  // half-spaces that hold all that lies over the place
+  if (below_) {
+    probe(place, -kUp, time, asking);
+    std::copy_if(left_.begin(), left_.end(), std::back_inserter(over), [](const Left& l) { return l.half_space; });
   }
+  probe(place, kUp, time, asking);
+  left_.insert(left_.end(), over.begin(), over.end());
   statistics.cycles += asking.cycles;
-  for (size_t i = left_.size(); i-- > 0;) {
-    const bool side = dot(ray.direction, left_[i].first.normal) > 0;
-    const uint32_t medium = rules_[left_[i].second].medium[side];
-    if (!around_.holds(body(left_[i].first), side)) around_.enter(body(left_[i].first), side, medium, priority(medium));
-  }
+  for (size_t i = left_.size(); i-- > 0;)
+    if (const Left& l = left_[i]; !around_.holds(l.body, l.side))
+      around_.enter(l.body, l.side, l.medium, priority(l.medium), l.shared);
   return around_;
 }
 

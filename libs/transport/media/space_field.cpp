@@ -46,7 +46,9 @@ void FieldSpace::start(uint32_t p, const LivePath& live) {
 Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit, const Ray& ray, double length,
                        bool ends, std::span<float> through, std::span<float> emitted) {
   Way& way = ways_[p];
-  if (way.gap > 0) bodies_.settle(hit, ray, way.gap);
+  // This flight uses up the way on behind a boundary, whatever it comes to: the next one begins at the path's origin.
+  const double gap = std::exchange(way.gap, 0);
+  if (gap > 0) bodies_.settle(hit, ray, gap);
   if (!hit.hit() && !stacks_[p].empty()) leave_scene(p, live, record);
   if (hit.hit()) length = hit.distance;
   const std::array<double, 4> u = dimensions::of_flight(live.stream, live.sample, live.flights);
@@ -63,7 +65,6 @@ Flight FieldSpace::fly(uint32_t p, LivePath& live, PathRecord& record, Hit& hit,
                 flown.emits ? emitted.data() : nullptr};
   live.branch = Branch::none;
   live.sided = live.sided && flown.scattered;
-  const double gap = std::exchange(way.gap, 0);
   const auto advance = [&](double distance) {
     live.length += distance;
     live.arrival += index_of(medium) * distance;

@@ -52,7 +52,7 @@ TEST(MediumStack, HoldsWhatThePlainListHolds) {
         stack.enter(object, side, object * 2 + side, static_cast<int>(object % 3) - 1);
         plain.enter(object, side, object * 2 + side, static_cast<int>(object % 3) - 1);
       } else {
-        stack.leave(object, side);
+        stack.leave(object, side, object * 2 + side);
         plain.leave(object, side);
       }
       deepest = std::max(deepest, stack.size());
@@ -72,7 +72,7 @@ TEST(MediumStack, GrowsWithBodiesAndNotWithCrossings) {
   MediumStack stack;
   for (int i = 0; i < 100000; ++i) stack.enter(7, true, 1, 0);  // an open surface that a path goes round
   EXPECT_EQ(stack.size(), 1u);
-  for (int i = 0; i < 100000; ++i) stack.leave(7, true);
+  for (int i = 0; i < 100000; ++i) stack.leave(7, true, 1);
   EXPECT_TRUE(stack.empty());
   stack.enter(7, true, MediumStack::kNothing, 0);
   EXPECT_TRUE(stack.empty());
@@ -89,7 +89,7 @@ TEST(MediumStack, CopiesOfDeepAndShallowOnes) {
   EXPECT_TRUE(to.holds(5, true));
   EXPECT_FALSE(to.holds(6, true));
   to = deep;
-  for (uint32_t i = 300; i-- > 1;) to.leave(i, true);
+  for (uint32_t i = 300; i-- > 1;) to.leave(i, true, i);
   EXPECT_EQ(to.medium(9), 0u);
   EXPECT_EQ(deep.size(), 300u);
 }
