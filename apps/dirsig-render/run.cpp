@@ -73,11 +73,16 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
   for (const BinReport& r : choose_bins(scene, sources, sensor)) {
     note(r.text());
     if (r.met()) continue;
+    if (r.through_gases) {
+      warn(strf("sensor '%s': bands may be farther off than %g %%: %s; %s", r.sensor.c_str(), 100 * r.wanted,
+                r.missed_text().c_str(),
+                r.chosen ? "it is part of their errors" : "leave out spectral_step_um or give a smaller one"));
+      continue;
+    }
     warn(strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(), r.band.c_str(),
               100 * r.reached, r.under.c_str(), 100 * r.wanted,
-              r.g_points > 0 ? "real air is carried in even intervals: give a smaller spectral_step_um"
-              : r.chosen     ? "more bins are not carried: its spectra have lines that are finer still"
-                             : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
+              r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
+                       : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "air/axis.h"
 #include "air/molecules.h"
 #include "air/particle_phase.h"
 #include "air/refraction.h"
@@ -19,13 +20,21 @@ double mean_of(double a, double b) {
   return (a - b) / std::log(a / b);
 }
 
-// The intervals of a state: the first bin of each.
+// Whether two bins are g-points of one interval.
+bool same_interval(const Bin& a, const Bin& b) { return a.low_um == b.low_um && a.high_um == b.high_um; }
+
+// The intervals of a state: the first bin of each, and the end of the last.
 std::vector<size_t> intervals_of(const SpectralState& state) {
   std::vector<size_t> first;
   for (size_t i = 0; i < state.size(); ++i)
-    if (state.bins[i].g == 0) first.push_back(i);
+    if (i == 0 || !same_interval(state.bins[i - 1], state.bins[i])) first.push_back(i);
+  first.push_back(state.size());
   return first;
 }
+
+// Particles change slowly with wavelength: where only their extinction is wanted, they are asked for at steps of this
+// share of a wavelength.
+constexpr double kParticleStep = 0.01;
 
 // Of one interval; at the levels. No gas at all where there is no provider.
 GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const Bin& bin) {
@@ -40,8 +49,8 @@ GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const
 
 class Baker {
  public:
-  Baker(const AirSpec& spec, const SpectralState& state)
-      : spec_(spec), state_(state), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, {}, {}, 0} {
+  Baker(const AirSpec& spec, const SpectralState& state, ColumnParts parts)
+      : spec_(spec), state_(state), parts_(parts), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, {}, {}, 0} {
     const double ground = spec.height_of_ground();
     while (column_.ground + 2 < levels_.size() && levels_[column_.ground].height < ground - 1) ++column_.ground;
     if (spec.refraction)
@@ -54,13 +63,14 @@ class Baker {
     for (size_t i = 0; i < bins(); ++i) middles_.push_back(state.bins[i].center_um());
   }
   AirColumn bake() {
-    parallel_for(0, intervals_of(state_).size(), 1, [&, first = intervals_of(state_)](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) bake_interval(first[n]);
+    const std::vector<size_t> first = intervals_of(state_);
+    parallel_for(0, first.size() - 1, 1, [&](size_t begin, size_t end) {
+      for (size_t n = begin; n < end; ++n) bake_interval(first[n], first[n + 1]);
     });
     if (spec_.molecules) add_molecules();
     add_aerosol();
     for (const AirSpec::Cloud& cloud : spec_.clouds)
-      add_particles(particle_optics(cloud.particles, middles_), [&](double low, double high) {
+      add_particles(cloud.particles, [&](double low, double high) {
         return low >= cloud.base - 1 && high <= cloud.top + 1 ? cloud.content : 0;
       });
     return std::move(column_);
@@ -80,30 +90,32 @@ class Baker {
     return Shells::round({0, 0, -radius}, radius, std::move(heights));
   }
 
-  // Absorption by gases, and Planck's function, which the g-points of an interval share.
-  void bake_interval(size_t first) {
+  // Absorption by gases, and Planck's function, which the g-points of an interval share. Of these some may be left out.
+  void bake_interval(size_t first, size_t end) {
     const Bin& bin = state_.bins[first];
     const GasPoints points = points_of(spec_, levels_, bin);
-    size_t count = 1;
-    while (first + count < bins() && state_.bins[first + count].g > 0) ++count;
-    SUITE_CHECK(points.count() == count);
+    for (size_t i = first; i < end; ++i) SUITE_CHECK(state_.bins[i].g < points.count());
     for (size_t l = 0; l < levels_.size(); ++l) {
       const double mean =
           planck_band_radiance(bin.low_um, bin.high_um, levels_[l].temperature) / (bin.high_um - bin.low_um);
-      for (size_t g = 0; g < count; ++g) {
-        column_.blackbody[l * bins() + first + g] = static_cast<float>(mean);
+      for (size_t i = first; i < end; ++i) {
+        column_.blackbody[l * bins() + i] = static_cast<float>(mean);
         if (l + 1 == levels_.size()) continue;
-        const auto at = [&](size_t level) { return double{points.absorption[level * count + g]}; };
-        column_.extinction[l * bins() + first + g] = static_cast<float>(mean_of(at(l), at(l + 1)));
+        const auto at = [&](size_t level) {
+          return double{points.absorption[level * points.count() + state_.bins[i].g]};
+        };
+        column_.extinction[l * bins() + i] = static_cast<float>(mean_of(at(l), at(l + 1)));
       }
     }
   }
 
   void add_molecules() {
     AirColumn::Kind kind;
-    kind.phase = bake_phase({"rayleigh", {{"depolarisation", kDepolarisation}}, {}, {}, nullptr}, state_);
-    constexpr double gamma = kDepolarisation / (2 - kDepolarisation);
-    kind.moments.assign(bins(), {1, 0, (1 - gamma) / (10 * (1 + 2 * gamma))});
+    if (parts_ == ColumnParts::all) {
+      kind.phase = bake_phase({"rayleigh", {{"depolarisation", kDepolarisation}}, {}, {}, nullptr}, state_);
+      constexpr double gamma = kDepolarisation / (2 - kDepolarisation);
+      kind.moments.assign(bins(), {1, 0, (1 - gamma) / (10 * (1 + 2 * gamma))});
+    }
     kind.scattering.resize(layers() * bins());
     for (size_t l = 0; l < layers(); ++l)
       for (size_t i = 0; i < bins(); ++i)
@@ -122,7 +134,7 @@ class Baker {
       if (region == Region::free_troposphere) kind = {.name = "free_troposphere", .relative_humidity = 0.5};
       if (region == Region::stratosphere) kind = {.name = "stratosphere", .relative_humidity = 0};
       if (a.one_kind && region != Region::boundary) return;
-      add_particles(particle_optics(kind, middles_), [&](double bottom, double top) {
+      add_particles(kind, [&](double bottom, double top) {
         if (!a.one_kind && AerosolProfile::region(0.5 * (bottom + top) - ground) != region) return 0.0;
         return a.profile.depth(bottom - ground, top - ground) / (top - bottom);
       });
@@ -131,7 +143,17 @@ class Baker {
 
   // amount: of extinction at 0.55 um, 1/m, or kg/m3, as the mean between two heights.
   template <class Amount>
-  void add_particles(const ParticleOptics& optics, const Amount& amount) {
+  void add_particles(const ParticleSpec& particles, const Amount& amount) {
+    const bool all = parts_ == ColumnParts::all;
+    const std::vector<double> asked = all ? middles_ : coarse_middles();
+    const ParticleOptics optics = particle_optics(particles, asked);
+    std::vector<double> unit_extinction(bins()), albedo(bins());  // extinction over amount, and the share that is scattered
+    for (size_t i = 0; i < bins(); ++i) {
+      const AxisPlace at = all ? AxisPlace{i, 0} : place_on(asked, middles_[i]);
+      const size_t next = at.s > 0 ? at.i + 1 : at.i;
+      unit_extinction[i] = optics.extinction(at.i) + at.s * (optics.extinction(next) - optics.extinction(at.i));
+      albedo[i] = optics.albedo(at.i) + at.s * (optics.albedo(next) - optics.albedo(at.i));
+    }
     AirColumn::Kind kind;
     kind.scattering.resize(layers() * bins());
     std::vector<float> extinction(layers() * bins());
@@ -140,17 +162,27 @@ class Baker {
       const double here = amount(low(l), high(l));
       any = any || here > 0;
       for (size_t i = 0; i < bins(); ++i) {
-        extinction[l * bins() + i] = static_cast<float>(here * optics.extinction(i));
-        kind.scattering[l * bins() + i] = static_cast<float>(here * optics.extinction(i) * optics.albedo(i));
+        extinction[l * bins() + i] = static_cast<float>(here * unit_extinction[i]);
+        kind.scattering[l * bins() + i] = static_cast<float>(here * unit_extinction[i] * albedo[i]);
       }
     }
     if (!any) return;
-    kind.phase = particle_phase(optics, state_.knots);
-    for (size_t i = 0; i < bins(); ++i)
-      kind.moments.push_back(i > 0 && middles_[i] == middles_[i - 1]
-                                 ? kind.moments.back()
-                                 : optics.moments(i, static_cast<size_t>(spec_.streams) + 1));
+    if (all) {
+      kind.phase = particle_phase(optics, state_.knots);
+      for (size_t i = 0; i < bins(); ++i)
+        kind.moments.push_back(i > 0 && middles_[i] == middles_[i - 1]
+                                   ? kind.moments.back()
+                                   : optics.moments(i, static_cast<size_t>(spec_.streams) + 1));
+    }
     add(std::move(kind), extinction.data());
+  }
+
+  std::vector<double> coarse_middles() const {
+    const auto [low, high] = std::minmax_element(middles_.begin(), middles_.end());
+    std::vector<double> coarse{*low};
+    while (coarse.back() * (1 + kParticleStep) < *high) coarse.push_back(coarse.back() * (1 + kParticleStep));
+    if (*high > coarse.back()) coarse.push_back(*high);
+    return coarse;
   }
 
   // extinction: null = what is scattered.
@@ -163,6 +195,7 @@ class Baker {
   static constexpr double kDepolarisation = 0.0279;  // of air, Bates 1984
   const AirSpec& spec_;
   const SpectralState& state_;
+  ColumnParts parts_;
   std::vector<AirLevel> levels_;
   AirColumn column_;
   std::vector<double> middles_;  // of the bins, um
@@ -181,9 +214,9 @@ auto located(const AirSpec& spec, const Make& make) {
 
 }  // namespace
 
-AirColumn bake_column(const AirSpec& spec, const SpectralState& state) {
+AirColumn bake_column(const AirSpec& spec, const SpectralState& state, ColumnParts parts) {
   check_air(spec);
-  return located(spec, [&] { return Baker(spec, state).bake(); });
+  return located(spec, [&] { return Baker(spec, state, parts).bake(); });
 }
 
 BeamTable bake_beam_table(const AirSpec& spec, const AirColumn& column) {

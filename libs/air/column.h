@@ -37,9 +37,13 @@ struct AirColumn {
   size_t layers() const { return shells.layers(); }
 };
 
-// Bakes air for a state, whose g-points are those of with_gas_points. Error: bands beyond what gases or particles are
-// known for (named); as check_air.
-AirColumn bake_column(const AirSpec& spec, const SpectralState& state);
+enum class ColumnParts {
+  all,
+  extinction,  // without phase functions and moments, and particles interpolated over 1 % of the wavelength: for many bins
+};
+// Bakes air for a state, whose g-points are some of those of with_gas_points. Error: bands beyond what gases or
+// particles are known for (named); as check_air.
+AirColumn bake_column(const AirSpec& spec, const SpectralState& state, ColumnParts parts = ColumnParts::all);
 
 // How deep places in it lie for a beam from outside, in the shadow of the Earth below the ground's level. Error:
 // density that falls so fast that it would lead light around the Earth.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scheduler/air_bins.h"
+#include "scheduler/air_choice.h"
 #include "scheduler/products.h"
 
 namespace suite {
@@ -14,19 +15,6 @@ constexpr double kUsualError = 1e-3;    // judges even bins
 constexpr size_t kMostCells = 1 << 16;  // of a state
 constexpr size_t kMostOfABand = 512;    // bins
 constexpr size_t kCellsAcross = 32;     // of the narrowest band, to begin with
-
-// What a state's bins count in each band by its response, or by its shares.
-std::vector<BandCells> cells_of(const SpectralState& state, std::span<const Band> bands) {
-  const BandProjection projection(state, bands);
-  std::vector<BandCells> all;
-  for (size_t b = 0; b < bands.size(); ++b) {
-    BandCells& cells = all.emplace_back();
-    while (projection.weight(b, cells.first) == 0) ++cells.first;
-    for (size_t k = cells.first; k < state.size(); ++k) cells.share.push_back(projection.weight(b, k));
-    while (cells.share.back() == 0) cells.share.pop_back();
-  }
-  return all;
-}
 
 // One state of a sensor and what it is looking at.
 class StateBins {
@@ -64,16 +52,21 @@ class StateBins {
     const SpectralProducts products = recipe_.over(state);
     const std::vector<BandCells> cells = cells_of(state, bands_);
     error_ = 0, band_ = 0, product_ = products.products.size();
+    of_band_.assign(bands_.size(), 0.0);
     for (size_t b = 0; b < bands_.size(); ++b)
       for (size_t p = 0; p < products.products.size(); ++p) {
         if (!(means_[b][p].mean > 0)) continue;
         double value = 0;
         for (size_t k = 0; k < cells[b].share.size(); ++k)
           value += cells[b].share[k] * products.at(products.products[p], cells[b].first + k);
-        if (const double e = means_[b][p].error(value); e > error_) error_ = e, band_ = b, product_ = p;
+        const double e = means_[b][p].error(value);
+        of_band_[b] = std::max(of_band_[b], e);
+        if (e > error_) error_ = e, band_ = b, product_ = p;
       }
     return error_;
   }
+  double error_of(size_t band) const { return of_band_[band] + unresolved_; }  // as judged last
+  double wanted() const { return wanted_; }
 
   BinReport report(const std::string& sensor, size_t bins) const {
     BinReport r{sensor, bands_.size(), bins, wanted_, error_ + unresolved_, cell_, {}, {}, state_.choice.error > 0};
@@ -171,17 +164,104 @@ class StateBins {
   SpectralProducts products_;  // over the fine cells
   Means means_;                // over the fine cells; 0 = does not matter
   double error_ = 0;
+  std::vector<double> of_band_;
   size_t band_ = 0, product_ = 0;  // whose it is
+};
+
+// The bins of one state under real air, and what is known of them.
+class StateInAir {
+ public:
+  StateInAir(const Scene& scene, std::span<const SourceSpecs> sources, const Sensor& sensor, size_t state,
+             bool white_light)
+      : air_(*sources[0].air),
+        state_(sensor.states()[state]),
+        bands_(sensor.bands(state)),
+        seen_(spectra_of(scene, sources, bands_)),
+        paths_(sources, sensor, state),
+        without_gases_(state_, bands_, seen_, white_light),
+        white_light_(white_light) {}
+
+  // User's bins are even: for spectral_error 0, and where a widest bin is given.
+  SpectralState make() {
+    const bool even = !(state_.choice.error > 0) || state_.choice.widest_um > 0;
+    AirBins in_air = bins_in_air(air_, state_, bands_);  // refuses what gases are not known for
+    if (!even) {
+      const AirChoice choice(air_, paths_, seen_, state_, bands_, white_light_);
+      SpectralState chosen = choice.choose(without_gases_.wanted());
+      without_gases_.judge(choice.cells());
+      note(choice.judge(chosen), choice.floors());
+      return chosen;
+    }
+    without_gases_.judge(in_air.intervals);
+    intervals_ = in_air.intervals.size();
+    // Even bins that are as narrow as the cells are as good as these.
+    if (2 * intervals_ < air_cells(bands_).size()) {
+      const AirChoice choice(air_, paths_, seen_, state_, bands_, white_light_);
+      note(choice.judge(in_air.state), choice.floors());
+    } else {
+      note(std::vector<AirChoice::Worst>(bands_.size()), std::vector<double>(bands_.size(), 0.0));
+    }
+    return std::move(in_air.state);
+  }
+
+  BinReport report(const std::string& sensor, const SpectralState& state) const {
+    BinReport r = without_gases_.report(sensor, intervals_ ? intervals_ : state.size());
+    r.g_points = intervals_ ? state.size() : 0;
+    r.bias = bias_;
+    r.through_gases = true, r.chosen = intervals_ == 0;
+    r.reached = 0;
+    for (size_t b = 0; b < bands_.size(); ++b) {
+      if (!(bias_[b].relative > r.reached) && b > 0) continue;
+      r.reached = bias_[b].relative, r.band = bands_[b].name;
+      if (!under_[b].empty()) r.under = under_[b];
+    }
+    for (size_t b = 0; b < bands_.size(); ++b)
+      if (!bias_[b].within) r.missed.push_back({bands_[b].name, bands_[b].center_um, bias_[b].relative, under_[b]});
+    std::stable_sort(r.missed.begin(), r.missed.end(),
+                     [](const auto& a, const auto& b) { return a.center_um < b.center_um; });
+    return r;
+  }
+
+ private:
+  void note(const std::vector<AirChoice::Worst>& worst, const std::vector<double>& floors) {
+    bias_.clear(), under_.clear();
+    for (size_t b = 0; b < bands_.size(); ++b) {
+      const double error = std::max(worst[b].error, without_gases_.error_of(b));
+      bias_.push_back({error, floors[b], error <= without_gases_.wanted()});
+      under_.push_back(worst[b].error >= error ? worst[b].under : std::string());
+    }
+  }
+
+  const AirSpec& air_;
+  const SpectralState state_;
+  std::span<const Band> bands_;
+  std::vector<SeenSpectra> seen_;
+  AirPaths paths_;
+  StateBins without_gases_;
+  bool white_light_;
+  size_t intervals_ = 0;  // of even bins
+  std::vector<BandBias> bias_;
+  std::vector<std::string> under_;
 };
 
 }  // namespace
 
 std::string BinReport::text() const {
   const char* what = g_points > 0 ? "interval" : "bin";
-  return strf("sensor '%s': %zu band%s in %zu %s%s%s, within %.2g %% of bins of %.3g nm", sensor.c_str(), bands,
+  return strf("sensor '%s': %zu band%s in %zu %s%s%s, within %.2g %% of bins of %.3g nm%s", sensor.c_str(), bands,
               bands == 1 ? "" : "s", bins, what, bins == 1 ? "" : "s",
-              g_points > 0 ? strf(" and %zu g-points of gases", g_points).c_str() : "", 100 * reached, 1000 * cell_um) +
+              g_points > 0 ? strf(" and %zu g-points of gases", g_points).c_str() : "", 100 * reached, 1000 * cell_um,
+              through_gases ? " through the air" : "") +
          (under.empty() ? "" : " (farthest: band '" + band + "', " + under + ")");
+}
+
+std::string BinReport::missed_text() const {
+  constexpr size_t kNamed = 300;
+  std::string text;
+  for (size_t i = 0; i < std::min(kNamed, missed.size()); ++i)
+    text += strf("%s'%s' (%.4g um) %.2g %%", i ? ", " : "", missed[i].band.c_str(), missed[i].center_um,
+                 100 * missed[i].error);
+  return text + (missed.size() > kNamed ? strf(" and %zu more", missed.size() - kNamed) : "");
 }
 
 std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor) {
@@ -191,14 +271,15 @@ std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpe
   std::vector<BinReport> reports;
   for (size_t s = 0; s < sensor.states().size(); ++s) {
     const SpectralState state = sensor.states()[s];
-    StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s)), white_light);
     if (!sources.empty() && sources[0].air) {
-      AirBins in_air = bins_in_air(*sources[0].air, state, sensor.bands(s));
-      bins.judge(in_air.intervals);
-      reports.push_back(bins.report(sensor.name(), in_air.intervals.size()));
-      reports.back().g_points = in_air.state.size();
-      sensor.take_state(s, std::move(in_air.state));
-    } else if (state.choice.error > 0) {
+      StateInAir in_air(scene, sources, sensor, s, white_light);
+      SpectralState made = in_air.make();
+      reports.push_back(in_air.report(sensor.name(), made));
+      sensor.take_state(s, std::move(made));
+      continue;
+    }
+    StateBins bins(state, sensor.bands(s), spectra_of(scene, sources, sensor.bands(s)), white_light);
+    if (state.choice.error > 0) {
       SpectralState chosen = bins.choose();
       reports.push_back(bins.report(sensor.name(), chosen.size()));
       sensor.take_state(s, std::move(chosen));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scheduler/seen_spectra.h"
+#include "spectral/band_bias.h"
 
 namespace suite {
 
@@ -24,8 +25,19 @@ struct BinReport {
   double cell_um = 0;       // width of the finest cells
   std::string band, under;  // the farthest: "red edge", "the sun on reflectance of asphalt"
   bool chosen = true;       // false: the user wants even bins (spectral_error: 0), which were only looked at
-  size_t g_points = 0;      // under real air; what gases do within intervals is not in `reached`
+  size_t g_points = 0;         // of even intervals under real air
+  bool through_gases = false;  // judged along paths through real air
+  // Bands under real air that are farther off than wanted, by wavelength.
+  struct Missed {
+    std::string band;
+    double center_um, error;
+    std::string under;
+  };
+  std::vector<Missed> missed = {};
+  std::vector<BandBias> bias = {};  // of each band under real air; empty: not known
   bool met() const { return reached <= wanted; }
+  // "'b28' (1.361 um) 0.4 %, 'b42' (1.831 um) 1.2 %"
+  std::string missed_text() const;
   // "sensor 'camera': 4 bands in 7 bins, within 0.08 % of bins of 0.05 nm (farthest: band 'red', the sun)"
   std::string text() const;
 };

@@ -8,7 +8,6 @@ namespace suite {
 
 namespace {
 
-constexpr size_t kPairs = 8, kTriples = 4, kPowers = 4;  // leaders that take part
 constexpr double kSameShape = 1e-6;
 
 bool multiplies(SpectrumRole role) { return role == SpectrumRole::scatters || role == SpectrumRole::passes; }
@@ -31,10 +30,12 @@ double unlikeness(const std::vector<float>& a, const std::vector<float>& b) {
 
 }  // namespace
 
-ProductRecipe::ProductRecipe(const std::vector<SeenSpectra>& seen, const SpectralState& state, bool white_light) {
+ProductRecipe::ProductRecipe(const std::vector<SeenSpectra>& seen, const SpectralState& state, bool white_light,
+                             const ProductDepth& depth)
+    : depth_(depth) {
   keep(seen, state);
   choose_leaders(values(state));
-  for (size_t i = 0; i < std::min(kPowers, leaders_.size()); ++i)
+  for (size_t i = 0; i < std::min(depth_.powers, leaders_.size()); ++i)
     if (role_[leaders_[i]] == SpectrumRole::scatters)
       for (const int exponent : {4, 8}) powers_.push_back({leaders_[i], exponent});
   list_products(white_light);
@@ -55,6 +56,7 @@ void ProductRecipe::keep(const std::vector<SeenSpectra>& seen, const SpectralSta
       if (!keeps) continue;
       kept.push_back(rows[i]);
       role_.push_back(s.role);
+      absorbed_.push_back(s.unabsorbed != nullptr);
       name_.push_back(s.names[i]);
     }
   }
@@ -65,7 +67,7 @@ void ProductRecipe::choose_leaders(const std::vector<std::vector<float>>& spectr
   std::vector<double> distance(role_.size(), 0.0);  // from the nearest leader
   for (size_t i = 0; i < role_.size(); ++i)
     if (multiplies(role_[i])) distance[i] = unlikeness(spectra[i], one);
-  while (leaders_.size() < kPairs) {
+  while (leaders_.size() < depth_.pairs) {
     const auto farthest = std::max_element(distance.begin(), distance.end());
     if (farthest == distance.end() || *farthest <= kSameShape) return;
     leaders_.push_back(static_cast<uint32_t>(farthest - distance.begin()));
@@ -83,6 +85,10 @@ void ProductRecipe::list_products(bool white_light) {
   if (lights.empty() || white_light) lights.push_back(one);
   for (const uint32_t l : lights) {
     products_.push_back({l, {one, one, one}});
+    if (l != one && absorbed_[l]) {
+      list_through_gases(l);
+      continue;
+    }
     const bool glows = l != one && role_[l] == SpectrumRole::glow;
     for (uint32_t f = 0; f < role_.size(); ++f)
       if (!shines(role_[f]) && (glows || role_[f] != SpectrumRole::emitting)) products_.push_back({l, {f, one, one}});
@@ -91,7 +97,7 @@ void ProductRecipe::list_products(bool white_light) {
       for (size_t j = i; j < leaders_.size(); ++j) {
         if (i == j) twice[leaders_[i]] = static_cast<uint32_t>(products_.size());
         products_.push_back({l, {leaders_[i], leaders_[j], one}});
-        for (size_t k = j; k < std::min(kTriples, leaders_.size()); ++k)
+        for (size_t k = j; k < std::min(depth_.triples, leaders_.size()); ++k)
           products_.push_back({l, {leaders_[i], leaders_[j], leaders_[k]}});
       }
     // Where light arrives after many reflections, that of two does as well.
@@ -100,14 +106,27 @@ void ProductRecipe::list_products(bool white_light) {
   }
 }
 
-std::vector<std::vector<float>> ProductRecipe::values(const SpectralState& state) const {
-  std::vector<std::vector<float>> all;
+void ProductRecipe::list_through_gases(uint32_t light) {
+  constexpr uint32_t one = SpectralProducts::kOne;
+  for (size_t i = 0; i < std::min(depth_.through_gases, leaders_.size()); ++i)
+    products_.push_back({light, {leaders_[i], one, one}});
+  if (role_[light] != SpectrumRole::glow) return;
+  size_t emitting = 0;
+  for (uint32_t f = 0; f < role_.size() && emitting < depth_.through_gases; ++f)
+    if (role_[f] == SpectrumRole::emitting) products_.push_back({light, {f, one, one}}), ++emitting;
+}
+
+bool ProductRecipe::any_kept(size_t row, size_t rows) const {
+  const auto begin = kept_.begin() + static_cast<long>(row);
+  return std::any_of(begin, begin + static_cast<long>(rows), [](bool k) { return k; });
+}
+
+ProductRecipe::Rows ProductRecipe::values(const SpectralState& state) const {
+  Rows all;
   size_t row = 0;
   for (const SeenSpectra& s : seen_) {
-    const bool any = std::any_of(kept_.begin() + static_cast<long>(row),
-                                 kept_.begin() + static_cast<long>(row + s.names.size()), [](bool k) { return k; });
-    if (any) {
-      std::vector<std::vector<float>> rows = s.over(state);
+    if (any_kept(row, s.names.size())) {
+      Rows rows = s.over(state);
       for (size_t i = 0; i < rows.size(); ++i)
         if (kept_[row + i]) all.push_back(std::move(rows[i]));
     }
@@ -120,8 +139,23 @@ std::vector<std::vector<float>> ProductRecipe::values(const SpectralState& state
   return all;
 }
 
+// Of the kept spectra; empty when there are none of gases.
+ProductRecipe::Rows ProductRecipe::unabsorbed(const SpectralState& state) const {
+  if (std::none_of(seen_.begin(), seen_.end(), [](const SeenSpectra& s) { return s.unabsorbed != nullptr; })) return {};
+  Rows all;
+  size_t row = 0;
+  for (const SeenSpectra& s : seen_) {
+    Rows rows(s.names.size());
+    if (s.unabsorbed && any_kept(row, rows.size())) rows = s.unabsorbed(state);
+    for (size_t i = 0; i < rows.size(); ++i)
+      if (kept_[row + i]) all.push_back(std::move(rows[i]));
+    row += s.names.size();
+  }
+  return all;
+}
+
 SpectralProducts ProductRecipe::over(const SpectralState& state) const {
-  return {values(state), products_, state.size()};
+  return {values(state), products_, state.size(), unabsorbed(state)};
 }
 
 std::string ProductRecipe::name_of(size_t product) const {

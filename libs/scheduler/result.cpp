@@ -25,8 +25,13 @@ double error_degrees(const Capture& capture, uint32_t most_paths) {
 }
 
 ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band,
-                             const TruthPlan& truth, const Goals& goals)
-    : reference_band_(reference_band), neighbours_(has_neighbours(capture)), truth_(truth), goals_(goals) {
+                             const TruthPlan& truth, const Goals& goals, std::span<const BandBias> bias)
+    : reference_band_(reference_band),
+      neighbours_(has_neighbours(capture)),
+      truth_(truth),
+      goals_(goals),
+      bias_(bias.begin(), bias.end()) {
+  SUITE_CHECK(bias_.empty() || bias_.size() == bands);
   CaptureResult& r = result_;
   r.columns = capture.columns;
   r.rows = capture.rows;
@@ -141,6 +146,18 @@ void ResultBuilder::widen() {
     }
 }
 
+// So does what the bins do to bands that are not within the spectral error that is wanted.
+void ResultBuilder::add_bias() {
+  const size_t bands = result_.bands;
+  for (size_t b = 0; b < bias_.size(); ++b) {
+    if (bias_[b].within) continue;
+    for (size_t v = b; v < result_.standard_error.size(); v += bands) {
+      double& error = result_.standard_error[v];
+      error = std::hypot(error, bias_[b].of(std::fabs(result_.radiance[v])));
+    }
+  }
+}
+
 // The correlation of the bands' errors.
 void ResultBuilder::correlate() {
   const size_t bands = result_.bands;
@@ -167,6 +184,7 @@ CaptureResult ResultBuilder::finish() {
     tails[i].error = result_.standard_error[i * result_.values_per_problem() + reference_band_];
   flag_heavy_tails(tails, result_.columns, neighbours_, result_.quality);
   widen();
+  add_bias();
   correlate();
   return std::move(result_);
 }

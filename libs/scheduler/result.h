@@ -4,6 +4,7 @@
 #include <string>
 
 #include "estimate/budget.h"
+#include "spectral/band_bias.h"
 #include "estimate/tails.h"
 #include "scheduler/scheduler.h"
 #include "scheduler/shortfall.h"
@@ -19,9 +20,9 @@ double error_degrees(const Capture& capture, uint32_t most_paths);
 class ResultBuilder {
  public:
   // bands: of the sensor; reference_band: whose samples decide about the heavy-tail flag; goals: of the problems, kept
-  // by reference.
+  // by reference; bias: what is known of the bands' bins (SpectralState::bias).
   ResultBuilder(const Capture& capture, size_t bands, size_t channels, size_t reference_band, const TruthPlan& truth,
-                const Goals& goals);
+                const Goals& goals, std::span<const BandBias> bias = {});
   // Takes problem `problem`, which stands at `slot` of the accumulators. Thread-safe for distinct problems.
   void take(size_t problem, const Accumulators& sums, size_t slot);
   CaptureResult finish();
@@ -33,6 +34,7 @@ class ResultBuilder {
   std::vector<TailSums> tail_sums() const;  // with errors as the scrambles tell them
   void pool(std::span<const TailSums> tails);
   void widen();
+  void add_bias();
   std::vector<float> deviations(const Accumulators& sums, size_t slot, const double* means) const;
   void correlate();
   CaptureResult result_;
@@ -43,6 +45,7 @@ class ResultBuilder {
   bool neighbours_;  // problems beside each other look at neighbouring places
   const TruthPlan& truth_;
   const Goals& goals_;
+  std::vector<BandBias> bias_;
   std::vector<float> largest_;  // sample of each problem
   // The bands' deviations from their means, relative, of the scrambles of every so many problems (1024 at most):
   // [scramble][band], one behind the other. All bands ride on the same paths, so they err together. Kept per problem,

@@ -27,6 +27,8 @@ struct SeenSpectra {
   std::vector<std::string> names;  // "the sun", "reflectance of asphalt"
   // Means over the bins of a state, one row a name.
   std::function<std::vector<std::vector<float>>(const SpectralState&)> over;
+  // Of lights that gases have absorbed on their way: the same without gases, to which errors of what is left are held.
+  std::function<std::vector<std::vector<float>>(const SpectralState&)> unabsorbed = nullptr;
 };
 
 // Of a scene under some sources (resolved; several when they change with time) for the bands of one state. Only what

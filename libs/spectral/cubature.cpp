@@ -132,11 +132,12 @@ class BandFit {
 class Choice {
  public:
   Choice(const SpectralProducts& all, std::span<const BandCells> bands, double tolerance, size_t most)
-      : tolerance_(tolerance), most_(most), used_(all.cells, 0) {
+      : most_(most), used_(all.cells, 0) {
     for (const BandCells& band : bands) {
       BandFit& fit = bands_.emplace_back(all, band);
       NonNegativeFit& found = fits_.emplace_back();
-      fit.reach_all([&](size_t j) { return used_[fit.first() + j] > 0; }, tolerance_, most_, found);
+      tolerances_.push_back(band.tolerance > 0 ? band.tolerance : tolerance);
+      fit.reach_all([&](size_t j) { return used_[fit.first() + j] > 0; }, tolerances_.back(), most_, found);
       for (const size_t j : found.chosen) ++used_[fit.first() + j];
     }
   }
@@ -183,7 +184,7 @@ class Choice {
         if (used_[first + j] && first + j != cell) candidates.push_back(j);
       if (candidates.empty()) return;
       const auto none = [](size_t) { return false; };
-      if (!bands_[b].reach(candidates, none, tolerance_, most_, fit)) return;
+      if (!bands_[b].reach(candidates, none, tolerances_[b], most_, fit)) return;
       others.emplace_back(b, std::move(fit));
     }
     for (auto& [b, fit] : others) {
@@ -193,12 +194,37 @@ class Choice {
     }
   }
 
-  double tolerance_;
+  std::vector<double> tolerances_;  // [band]
   size_t most_;
   std::vector<int> used_;  // by how many bands, of each cell
   std::vector<BandFit> bands_;
   std::vector<NonNegativeFit> fits_;
 };
+
+}  // namespace
+
+namespace {
+
+// What gases have absorbed nearly all of is held to what there would be without them.
+void raise_scales(const SpectralProducts& all, const BandCells& band, std::vector<BandMean>& means) {
+  constexpr double kOwn = 0.01, kBrightest = 1e-3;
+  if (all.unabsorbed.empty()) return;
+  std::vector<double> bright(means.size(), 0.0);
+  std::vector<double> of_light(all.spectra.size(), 0.0);
+  double brightest = 0;
+  for (size_t i = 0; i < means.size(); ++i) {
+    const SpectralProducts::Product& p = all.products[i];
+    if (!all.absorbed(p)) continue;
+    for (size_t j = 0; j < band.share.size(); ++j) bright[i] += band.share[j] * all.unabsorbed_at(p, band.first + j);
+    if (plain(p)) of_light[p.light] = bright[i], brightest = std::max(brightest, bright[i]);
+  }
+  for (size_t i = 0; i < means.size(); ++i) {
+    const SpectralProducts::Product& p = all.products[i];
+    if (!all.absorbed(p)) continue;
+    const double alone = of_light[p.light], dimmed = alone > 0 ? bright[i] / alone : 1;
+    means[i].scale = std::max({means[i].scale, kOwn * bright[i], kBrightest * brightest * dimmed});
+  }
+}
 
 }  // namespace
 
@@ -221,6 +247,7 @@ std::vector<BandMean> band_means(const SpectralProducts& all, const BandCells& b
     const double dark = plain(p) ? 0 : p.factors[1] == SpectralProducts::kOne ? kDarkFactor : kDarkFactors;
     if (!(of_light > kDarkLight * brightest && means[i].mean > dark * of_light)) means[i].mean = 0;
   }
+  raise_scales(all, band, means);
   for (size_t i = 0; i < means.size(); ++i)
     if (const uint32_t by = all.products[i].judged_by; by != SpectralProducts::kOne) means[i].scale = means[by].scale;
   return means;

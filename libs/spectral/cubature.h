@@ -30,8 +30,17 @@ struct SpectralProducts {
   };
   std::vector<Product> products;
   size_t cells = 0;
+  // Of lights that gases have absorbed on their way: the same without gases; empty for others. Errors are never
+  // relative to less than a hundredth of that, nor to less than a thousandth of the brightest of them.
+  std::vector<std::vector<float>> unabsorbed = {};  // [spectrum][cell]; shorter: empty
+  bool absorbed(const Product& p) const { return p.light < unabsorbed.size() && !unabsorbed[p.light].empty(); }
   double at(const Product& p, size_t cell) const {
-    double v = p.light == kOne ? 1 : static_cast<double>(spectra[p.light][cell]);
+    return p.light == kOne ? with_factors(p, cell, 1) : with_factors(p, cell, static_cast<double>(spectra[p.light][cell]));
+  }
+  double unabsorbed_at(const Product& p, size_t cell) const {
+    return with_factors(p, cell, static_cast<double>(unabsorbed[p.light][cell]));
+  }
+  double with_factors(const Product& p, size_t cell, double v) const {
     for (const uint32_t f : p.factors)
       if (f != kOne) v *= static_cast<double>(spectra[f][cell]);
     return v;
@@ -44,6 +53,7 @@ struct BandCells {
   std::vector<double> share;
   // Stretches of cells (first, end) whose share of the band is kept as well.
   std::vector<std::array<size_t, 2>> stretches = {};
+  double tolerance = 0;  // of this band; 0 = that of all
 };
 
 // Means of the products over a band. What is too dark to matter is 0: a light below 1e-6 of the brightest, a product
