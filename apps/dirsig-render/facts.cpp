@@ -37,6 +37,17 @@ void check_water(const Sensor& sensor, const ImageWishes& wishes) {
                 "channels: [water_leaving]");
 }
 
+// A reference system is one of the Earth, and maps are resampled where they are written.
+void check_map(const ImageWishes& wishes, const Simulation& sim, const Facts& facts) {
+  if (wishes.epsg && !facts.on_earth())
+    throw Error(wishes.place_where,
+                "geolocation: a map in a reference system needs a scene with an origin on the Earth",
+                "give the scene an `origin`, or leave out `crs`");
+  if (wishes.resampling && !sim.output.geotiff)
+    throw Error(wishes.place_where, "geolocation: `resampling` is that of maps, which are written as GeoTIFF",
+                "output: {also: [geotiff]}");
+}
+
 }  // namespace
 
 void check_wishes(const Simulation& sim, const Facts& facts) {
@@ -50,6 +61,7 @@ void check_wishes(const Simulation& sim, const Facts& facts) {
               sim.sensor_where[s],
               "geolocation: a scene that repeats itself (`periodic`) has no places: all of them lie in its cell",
               "leave out one of the two");
+        check_map(wishes, sim, facts);
         if (wishes.quantity == Quantity::remote_sensing_reflectance) check_water(*sensor, wishes);
         if (wishes.quantity != Quantity::toa_reflectance) continue;
         const std::optional<FarDisk> sun = facts.sun(moment_of(c));

@@ -19,6 +19,7 @@ class Facts {
   std::string utc(double seconds) const;
   // The sun at that time, as the text gives it: above the air when there is air. Nothing without one.
   std::optional<FarDisk> sun(double seconds) const;
+  bool on_earth() const { return scene_->origin.given; }
   bool sun_moves() const { return sun_.dated(); }
   const LightAbove& light_above() const { return light_above_; }
 

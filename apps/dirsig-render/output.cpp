@@ -7,7 +7,7 @@
 #include "base/outputs.h"
 #include "base/run_app.h"
 #include "formats/envi/envi.h"
-#include "geolocation.h"
+#include "located.h"
 #include "math/stats.h"
 #include "preview.h"
 #include "quantities.h"
@@ -45,10 +45,9 @@ struct OutputWriter::Image {
   std::vector<TruthPicture> pictures;  // of truth
   std::vector<float> all;              // [pixel][value], for formats that take a whole picture
   std::vector<float> all_quality;      // [pixel], likewise
-  std::vector<Vec3> place;             // [pixel], when a geolocation is wanted
-  size_t place_column = 0;             // of the truth: east, north and up
-  size_t unknown = 0;                  // numbers that are no quantity
-  std::vector<double> correlation;     // [band][band], summed over rows
+  std::optional<LocatedPixels> located;
+  size_t unknown = 0;               // numbers that are no quantity
+  std::vector<double> correlation;  // [band][band], summed over rows
   std::optional<MapGrid> map;
   std::optional<TimeWindow> window;  // of all rows
   std::string who, description;
@@ -131,10 +130,6 @@ void OutputWriter::open_truth(Image& m, const Delivery& d, const std::string& ba
     if (const auto at = std::find(names.begin(), names.end(), source.truth); at != names.end() && !source.names.empty())
       m.classes.push_back({static_cast<size_t>(at - names.begin()),
                            open(m, base + "_" + source.truth, class_header(h, source, about))});
-  if (!m.wishes.geolocation) return;
-  const auto east = std::find(names.begin(), names.end(), "east [m]");
-  SUITE_CHECK(names.end() - east >= 3);
-  m.place_column = static_cast<size_t>(east - names.begin());
 }
 
 OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string& stem) {
@@ -149,6 +144,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
                                                : d.rows.rows_of_all;
   m.values = d.result.values_per_problem();
   m.wishes = d.sensor.wishes(d.sensor.tasks()[d.result.task].captures[d.result.capture]);
+  if (m.wishes.geolocation) m.located.emplace(m.columns, m.rows, m.wishes, spec_.geotiff);
   const PreviewSpec& preview = spec_.preview_of(d.sensor.name());
   m.display = display_of(d.bands, preview);
   m.preview.emplace(d.bands, m.display.bands, preview, m.columns, m.rows);
@@ -222,6 +218,7 @@ void OutputWriter::write_whole(Image& m, const std::string& base) const {
     r.placement = RasterPlacement{m.map->origin.x, m.map->origin.y, m.map->gsd_x, m.map->gsd_y, {}};
     if (notes_.origin.given) r.placement->origin_deg = {notes_.origin.latitude_deg, notes_.origin.longitude_deg};
   }
+  if (spec_.geotiff && m.located) m.located->add_control(base + ".tif", r);
   FloatRaster q = r;
   q.bands = {{"quality"}}, q.units.clear(), q.display.clear(), q.true_colour = false, q.no_data.reset();
   const auto write = [&](auto function, const std::string& ending) {
@@ -234,9 +231,18 @@ void OutputWriter::write_whole(Image& m, const std::string& base) const {
     const bool as_previewed = m.preview->in_kelvin()
                                   ? m.wishes.quantity == Quantity::brightness_temperature
                                   : m.wishes.quantity == Quantity::radiance && spec_.units == OutputSpec::Units::w_m2;
-    write_qgis_style(base + ".qml", m.preview->style(m.all, m.values, as_previewed));
+    const RasterStyle style = m.preview->style(m.all, m.values, as_previewed);
+    write_qgis_style(base + ".qml", style);
     write_qgis_style(base + "_quality.qml", quality_style());
     m.files.insert(m.files.end(), {base + ".qml", base + "_quality.qml"});
+    if (m.located) {
+      const auto more = m.located->write_rasters(base, r, m.all, m.all_quality);
+      m.files.insert(m.files.end(), more.begin(), more.end());
+      if (m.located->mapped()) {
+        write_qgis_style(base + "_map.qml", style);
+        m.files.push_back(base + "_map.qml");
+      }
+    }
   }
   if (spec_.exr) write(write_exr, ".exr");
 }
@@ -270,10 +276,7 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
     }
     c.file->append(values);
   }
-  for (size_t i = 0; m.wishes.geolocation && i < n; ++i) {
-    const double* at = &result.truth[i * columns + m.place_column];
-    m.place.push_back({at[0], at[1], at[2]});
-  }
+  if (m.located) m.located->append(d, m.next);
   for (size_t p = 0; p < m.products.size(); ++p) m.products[p]->append(d.products[p].values);
   // Of an image in parts the correlation is the mean over its rows.
   m.correlation.resize(result.bands * result.bands);
@@ -287,13 +290,13 @@ void OutputWriter::append(Image& m, const Delivery& d) const {
 void OutputWriter::finish(Image& m, const std::string& base, std::span<const Band> bands) {
   tell_moment(m);
   for (EnviWriter* w : m.writers()) w->commit();
-  write_whole(m, base);
-  if (m.wishes.geolocation) {
+  if (m.located) {
     const std::string about = m.who + m.description + "; " + notes_.engine;
     const double scale = spec_.type == OutputSpec::Type::uint16 ? spec_.scale : 1;
-    const auto more = write_geolocation({base, m.radiance->header(), about, scale, m.wishes.pixel_m, m.place}, notes_);
+    const auto more = m.located->write_tables({base, m.radiance->header(), about, scale}, notes_.origin);
     m.files.insert(m.files.end(), more.begin(), more.end());
   }
+  write_whole(m, base);
   std::string correlation = "# correlation of the standard errors of the bands; 1 = they err together\nband";
   for (const Band& b : bands) correlation += "," + b.name;
   for (size_t a = 0; a < bands.size(); ++a) {

@@ -59,6 +59,9 @@ void add_gdal_tags(TIFF* tiff) {
       {kGdalMetadataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALMetadata")}};
   static const TIFFFieldInfo no_data[] = {
       {kNoDataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDALNoData")}};
+  static const TIFFFieldInfo rpc[] = {
+      {kRpcTag, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("RPCCoefficient")}};
+  if (!TIFFFindField(tiff, kRpcTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, rpc, 1);
   if (!TIFFFindField(tiff, kGdalMetadataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, metadata, 1);
   if (!TIFFFindField(tiff, kNoDataTag, TIFF_ANY)) TIFFMergeFieldInfo(tiff, no_data, 1);
 }

@@ -1,6 +1,7 @@
 // Rasters of floating-point numbers out: TIFF with GeoTIFF keys and GDAL's metadata, and OpenEXR. See FORMAT.md.
 #pragma once
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,13 +9,24 @@
 
 namespace suite {
 
-// A north-up picture on the plane tangent to WGS84 at a place (east and north in metres), or on a plane that is
-// nowhere.
+// A north-up picture: in a reference system of EPSG, on the plane tangent to WGS84 at a place (east and north in
+// metres), or on a plane that is nowhere.
 struct RasterPlacement {
-  double west = 0, north = 0;                       // m, outer corner of the first pixel
-  double gsd_x = 0, gsd_y = 0;                      // m, > 0; rows go south
+  double west = 0, north = 0;                       // m, or degrees: outer corner of the first pixel
+  double gsd_x = 0, gsd_y = 0;                      // the same, > 0; rows go south
   std::optional<std::array<double, 2>> origin_deg;  // latitude, longitude of the tangent point
+  int epsg = 0;                                     // 0: none
+  bool geographic = false;                          // of epsg: x is the longitude, y the latitude
 };
+
+// A ground control point: what a place in the picture shows. column, row: (0, 0) = outer corner of the first pixel.
+struct GroundControl {
+  double column = 0, row = 0;
+  double x = 0, y = 0, z = 0;  // longitude and latitude, degrees, and height, m; or east, north, up on a plane
+};
+
+// RPC00B in the order of the GeoTIFF tag: two errors (m, negative: unknown), offsets and scales, four times 20 terms.
+using RasterRpc = std::array<double, 92>;
 
 struct RasterBand {
   std::string name;
@@ -33,11 +45,20 @@ struct FloatRaster {
   std::optional<std::array<double, 2>> sun_deg;  // compass azimuth, elevation
   std::string comment;                           // goes into the file's description
   std::optional<RasterPlacement> placement;
+  // Where there is no placement, in longitude and latitude on WGS84 unless `on_plane`.
+  std::vector<GroundControl> control;
+  bool on_plane = false;
+  std::optional<RasterRpc> rpc;
+  std::vector<std::pair<std::string, std::string>> remarks;  // further items of GDAL's metadata: names and values
+  bool doubles = false;                                      // TIFF: 64-bit floats
 };
 
 // values: row-major, first row first, bands together; stored as 32-bit floats, whole or not at all. Error: not
 // writable, sizes that do not fit.
 void write_float_tiff(const std::string& path, const FloatRaster& raster, std::span<const float> values);
+// The same row by row, asked for in their order: `row` fills in the numbers of one.
+void write_float_tiff_rows(const std::string& path, const FloatRaster& raster,
+                           const std::function<void(uint32_t row, std::span<double> values)>& row);
 // The bands to show as the channels R, G and B (one as Y), and all of them under their names in the layer `bands`; no
 // layer where there is nothing to show.
 void write_exr(const std::string& path, const FloatRaster& raster, std::span<const float> values);

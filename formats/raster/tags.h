@@ -9,6 +9,7 @@ namespace suite {
 
 constexpr ttag_t kGdalMetadataTag = 42112;  // GDAL_METADATA, XML
 constexpr ttag_t kNoDataTag = 42113;        // GDAL_NODATA, text
+constexpr ttag_t kRpcTag = 50844;           // RPCCoefficientTag, doubles
 
 struct CloseTiff {
   void operator()(TIFF* t) const { XTIFFClose(t); }
@@ -17,7 +18,7 @@ struct FreeKeys {
   void operator()(GTIF* g) const { GTIFFree(g); }
 };
 
-// Makes libtiff know the two tags, where it does not.
+// Makes libtiff know these tags, where it does not.
 void add_gdal_tags(TIFF* tiff);
 // libtiff talks to standard error on its own; what matters comes back as return values.
 void be_quiet();

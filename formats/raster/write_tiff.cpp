@@ -1,6 +1,7 @@
 // Based on: OGC 19-008r4, GeoTIFF Standard 1.1 (user-defined projected CRS, CT_Orthographic); GDAL's raster data model
-// and GTiff driver (tags 42112 GDAL_METADATA and 42113 GDAL_NODATA, domain IMAGERY). The ellipsoidal orthographic
-// projection (EPSG method 9840) of a point is its east and north in the tangent plane, which is what scene ENU is.
+// and GTiff driver (tags 42112 GDAL_METADATA and 42113 GDAL_NODATA, domain IMAGERY); RPCs in GeoTIFF (tag 50844, NGA
+// STDI-0002's RPC00B). The ellipsoidal orthographic projection (EPSG method 9840) of a point is its east and north in
+// the tangent plane, which is what scene ENU is.
 #include <geo_normalize.h>
 #include <geotiff.h>
 #include <geovalues.h>
@@ -46,6 +47,7 @@ std::string gdal_metadata(const FloatRaster& r) {
     xml += item("sun_azimuth_deg", "", strf("%.9g", (*r.sun_deg)[0]));
     xml += item("sun_elevation_deg", "", strf("%.9g", (*r.sun_deg)[1]));
   }
+  for (const auto& [name, value] : r.remarks) xml += item(name.c_str(), "", value);
   for (size_t b = 0; b < r.bands.size(); ++b) {
     const RasterBand& band = r.bands[b];
     const std::string sample = strf(" sample=\"%zu\"", b);
@@ -70,7 +72,7 @@ void set_layout(TIFF* tiff, const FloatRaster& r, uint32_t rows_per_strip) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, r.width);
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, r.height);
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, bands);
-  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, r.doubles ? 64 : 32);
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
   TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
@@ -91,39 +93,75 @@ void set_texts(TIFF* tiff, const FloatRaster& r) {
   if (r.no_data) TIFFSetField(tiff, kNoDataTag, std::isnan(*r.no_data) ? "nan" : strf("%.17g", *r.no_data).c_str());
 }
 
-bool set_position(TIFF* tiff, const RasterPlacement& at) {
-  const double scale[3] = {at.gsd_x, at.gsd_y, 0}, tie[6] = {0, 0, 0, at.west, at.north, 0};
-  TIFFSetField(tiff, TIFFTAG_GEOPIXELSCALE, 3, scale);
-  TIFFSetField(tiff, TIFFTAG_GEOTIEPOINTS, 6, tie);
+void set_tangent_plane(GTIF* keys, const std::array<double, 2>& origin_deg) {
+  GTIFKeySet(keys, GTModelTypeGeoKey, TYPE_SHORT, 1, ModelTypeProjected);
+  GTIFKeySet(keys, GeographicTypeGeoKey, TYPE_SHORT, 1, 4326);
+  GTIFKeySet(keys, ProjectedCSTypeGeoKey, TYPE_SHORT, 1, KvUserDefined);
+  GTIFKeySet(keys, ProjectionGeoKey, TYPE_SHORT, 1, KvUserDefined);
+  GTIFKeySet(keys, ProjCoordTransGeoKey, TYPE_SHORT, 1, CT_Orthographic);
+  GTIFKeySet(keys, ProjLinearUnitsGeoKey, TYPE_SHORT, 1, Linear_Meter);
+  GTIFKeySet(keys, ProjCenterLatGeoKey, TYPE_DOUBLE, 1, origin_deg[0]);
+  GTIFKeySet(keys, ProjCenterLongGeoKey, TYPE_DOUBLE, 1, origin_deg[1]);
+  GTIFKeySet(keys, ProjFalseEastingGeoKey, TYPE_DOUBLE, 1, 0.0);
+  GTIFKeySet(keys, ProjFalseNorthingGeoKey, TYPE_DOUBLE, 1, 0.0);
+}
+
+void set_epsg(GTIF* keys, int epsg, bool geographic) {
+  GTIFKeySet(keys, GTModelTypeGeoKey, TYPE_SHORT, 1, geographic ? ModelTypeGeographic : ModelTypeProjected);
+  GTIFKeySet(keys, geographic ? GeographicTypeGeoKey : ProjectedCSTypeGeoKey, TYPE_SHORT, 1, epsg);
+  if (geographic)
+    GTIFKeySet(keys, GeogAngularUnitsGeoKey, TYPE_SHORT, 1, Angular_Degree);
+  else
+    GTIFKeySet(keys, ProjLinearUnitsGeoKey, TYPE_SHORT, 1, Linear_Meter);
+}
+
+void set_plane(GTIF* keys) {
+  GTIFKeySet(keys, GTModelTypeGeoKey, TYPE_SHORT, 1, KvUserDefined);
+  GTIFKeySet(keys, GTCitationGeoKey, TYPE_ASCII, 0, "local plane, m");
+}
+
+// The numbers that say where the picture is, and the keys that say in which system.
+bool set_position(TIFF* tiff, const FloatRaster& r) {
+  if (r.placement) {
+    const RasterPlacement& at = *r.placement;
+    const double scale[3] = {at.gsd_x, at.gsd_y, 0}, tie[6] = {0, 0, 0, at.west, at.north, 0};
+    TIFFSetField(tiff, TIFFTAG_GEOPIXELSCALE, 3, scale);
+    TIFFSetField(tiff, TIFFTAG_GEOTIEPOINTS, 6, tie);
+  } else {
+    std::vector<double> ties;
+    for (const GroundControl& c : r.control)
+      for (const double x : {c.column, c.row, 0.0, c.x, c.y, c.z}) ties.push_back(x);
+    TIFFSetField(tiff, TIFFTAG_GEOTIEPOINTS, static_cast<int>(ties.size()), ties.data());
+  }
   const std::unique_ptr<GTIF, FreeKeys> keys(GTIFNew(tiff));
   if (!keys) return false;
   GTIFKeySet(keys.get(), GTRasterTypeGeoKey, TYPE_SHORT, 1, RasterPixelIsArea);
-  if (at.origin_deg) {
-    GTIFKeySet(keys.get(), GTModelTypeGeoKey, TYPE_SHORT, 1, ModelTypeProjected);
-    GTIFKeySet(keys.get(), GeographicTypeGeoKey, TYPE_SHORT, 1, 4326);
-    GTIFKeySet(keys.get(), ProjectedCSTypeGeoKey, TYPE_SHORT, 1, KvUserDefined);
-    GTIFKeySet(keys.get(), ProjectionGeoKey, TYPE_SHORT, 1, KvUserDefined);
-    GTIFKeySet(keys.get(), ProjCoordTransGeoKey, TYPE_SHORT, 1, CT_Orthographic);
-    GTIFKeySet(keys.get(), ProjLinearUnitsGeoKey, TYPE_SHORT, 1, Linear_Meter);
-    GTIFKeySet(keys.get(), ProjCenterLatGeoKey, TYPE_DOUBLE, 1, (*at.origin_deg)[0]);
-    GTIFKeySet(keys.get(), ProjCenterLongGeoKey, TYPE_DOUBLE, 1, (*at.origin_deg)[1]);
-    GTIFKeySet(keys.get(), ProjFalseEastingGeoKey, TYPE_DOUBLE, 1, 0.0);
-    GTIFKeySet(keys.get(), ProjFalseNorthingGeoKey, TYPE_DOUBLE, 1, 0.0);
-  } else {
-    GTIFKeySet(keys.get(), GTModelTypeGeoKey, TYPE_SHORT, 1, KvUserDefined);
-    GTIFKeySet(keys.get(), GTCitationGeoKey, TYPE_ASCII, 0, "local plane, m");
-  }
+  if (r.placement && r.placement->epsg)
+    set_epsg(keys.get(), r.placement->epsg, r.placement->geographic);
+  else if (r.placement && r.placement->origin_deg)
+    set_tangent_plane(keys.get(), *r.placement->origin_deg);
+  else if (r.placement || r.on_plane)
+    set_plane(keys.get());
+  else
+    set_epsg(keys.get(), 4326, true);
   return GTIFWriteKeys(keys.get()) != 0;
 }
 
-bool write_strips(TIFF* tiff, std::span<const float> values, size_t strip_values) {
-  std::vector<float> strip;
-  for (uint32_t i = 0; !values.empty(); ++i) {
+using RowSource = std::function<void(uint32_t row, std::span<double> values)>;
+
+template <class T>
+bool write_strips(TIFF* tiff, const FloatRaster& r, uint32_t rows_per_strip, const RowSource& row) {
+  const size_t row_values = size_t{r.width} * r.bands.size();
+  std::vector<double> values(row_values);
+  std::vector<T> strip;
+  for (uint32_t first = 0, i = 0; first < r.height; first += rows_per_strip, ++i) {
     // The encoder works in the buffer that it is given.
-    const size_t count = std::min(values.size(), strip_values);
-    strip.assign(values.begin(), values.begin() + static_cast<long>(count));
-    if (TIFFWriteEncodedStrip(tiff, i, strip.data(), static_cast<tmsize_t>(count * sizeof(float))) < 0) return false;
-    values = values.subspan(count);
+    strip.clear();
+    for (uint32_t y = first; y < std::min(first + rows_per_strip, r.height); ++y) {
+      row(y, values);
+      for (const double x : values) strip.push_back(static_cast<T>(x));
+    }
+    if (TIFFWriteEncodedStrip(tiff, i, strip.data(), static_cast<tmsize_t>(strip.size() * sizeof(T))) < 0) return false;
   }
   return true;
 }
@@ -131,21 +169,31 @@ bool write_strips(TIFF* tiff, std::span<const float> values, size_t strip_values
 }  // namespace
 
 void write_float_tiff(const std::string& path, const FloatRaster& r, std::span<const float> values) {
+  const size_t row_values = size_t{r.width} * r.bands.size();
+  SUITE_CHECK_EQ(values.size(), row_values * r.height);
+  write_float_tiff_rows(path, r, [&](uint32_t row, std::span<double> to) {
+    std::copy_n(values.begin() + static_cast<long>(row * row_values), row_values, to.begin());
+  });
+}
+
+void write_float_tiff_rows(const std::string& path, const FloatRaster& r, const RowSource& row) {
   const Where where{path, 0, 0, {}, -1};
-  SUITE_CHECK_EQ(values.size(), size_t{r.width} * r.height * r.bands.size());
   if (r.bands.size() > 65535) throw Error(where, strf("a TIFF has at most 65535 bands, not %zu", r.bands.size()));
   AtomicFile file(path);
   be_quiet();
-  const bool big = 4.0 * static_cast<double>(values.size()) > kClassicLimit;
+  const size_t row_values = size_t{r.width} * r.bands.size(), bytes = r.doubles ? 8 : 4;
+  const bool big = static_cast<double>(bytes * row_values) * r.height > kClassicLimit;
   std::unique_ptr<TIFF, CloseTiff> tiff(XTIFFOpen(file.temporary().c_str(), big ? "w8" : "w"));
   if (!tiff) throw Error(where, "cannot be written");
-  const size_t row_values = size_t{r.width} * r.bands.size();
-  const auto rows = static_cast<uint32_t>(std::clamp<size_t>(kStripBytes / 4 / row_values, 1, r.height));
+  const auto rows = static_cast<uint32_t>(std::clamp<size_t>(kStripBytes / bytes / row_values, 1, r.height));
   set_layout(tiff.get(), r, rows);
   set_texts(tiff.get(), r);
-  if (r.placement && !set_position(tiff.get(), *r.placement)) throw Error(where, "its position cannot be written");
-  if (!write_strips(tiff.get(), values, row_values * rows) || !TIFFWriteDirectory(tiff.get()))
-    throw Error(where, "cannot be written", "is the disk full?");
+  if ((r.placement || !r.control.empty()) && !set_position(tiff.get(), r))
+    throw Error(where, "its position cannot be written");
+  if (r.rpc) TIFFSetField(tiff.get(), kRpcTag, static_cast<int>(r.rpc->size()), r.rpc->data());
+  const bool written =
+      r.doubles ? write_strips<double>(tiff.get(), r, rows, row) : write_strips<float>(tiff.get(), r, rows, row);
+  if (!written || !TIFFWriteDirectory(tiff.get())) throw Error(where, "cannot be written", "is the disk full?");
   tiff.reset();
   file.commit();
 }

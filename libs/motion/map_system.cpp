@@ -47,6 +47,12 @@ std::optional<int> epsg_of_name(const std::string& name) {
   return std::atoi(tail.substr(first, last - first + 1).c_str());
 }
 
+Vec2 map_of_geodetic(const MapSystem& system, const Geodetic& place) {
+  if (!system.zone) return {place.longitude_deg, place.latitude_deg};
+  const UtmPoint u = utm_from_geodetic(place, *system.zone);
+  return {u.easting, u.northing};
+}
+
 std::function<Vec3(Vec3)> enu_of_map(const MapSystem& system, const SceneFrame& frame, double separation_m,
                                      std::optional<Geoid> geoid) {
   return [=](Vec3 p) {

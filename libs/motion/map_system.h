@@ -16,6 +16,8 @@ struct MapSystem {
   enum class Heights { unknown, ellipsoid, geoid } heights = Heights::unknown;
 };
 std::optional<MapSystem> map_system_of_epsg(int epsg);
+// Easting and northing, or longitude and latitude. Errors of utm_from_geodetic.
+Vec2 map_of_geodetic(const MapSystem& system, const Geodetic& place);
 // The last number of a name such as EPSG:25832, urn:ogc:def:crs:EPSG::7415, or
 // https://www.opengis.net/def/crs/EPSG/0/7415; of compound names such as urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783
 // (also with + or &) the horizontal one; and that of urn:adv:crs:ETRS89_UTM32*... . Nothing where it is none of these.

@@ -125,7 +125,7 @@ std::optional<GroundGrid> ground_grid(std::span<const Vec2> places, uint32_t col
   const double west = std::floor(low.x / cell), north = std::floor(high.y / cell) + 1;
   const double wide = std::floor(high.x / cell) - west + 1, tall = north - std::floor(low.y / cell);
   if (!(wide * tall <= static_cast<double>(kMostCells)))
-    throw Error(strf("a lookup table of %.6g x %.6g cells of %g m is too large", wide, tall, cell),
+    throw Error(strf("a lookup table of %.6g x %.6g cells of %g is too large", wide, tall, cell),
                 strf("give geolocation: {pixel_m: %.2g} or more",
                      cell * std::sqrt(wide * tall / static_cast<double>(kMostCells))));
   GroundGrid grid{west * cell, north * cell, cell, static_cast<uint32_t>(wide), static_cast<uint32_t>(tall), {}, {}};

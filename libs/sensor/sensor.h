@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -131,8 +132,12 @@ struct ImageWishes {
   Where where = {};          // where the user asked for it, for messages
   bool geolocation = false;  // the place of every pixel and a table that maps it, beside the image; needs the truth
                              // `location`
-  double pixel_m = 0;        // of the table's grid; 0 = from the data
-  Vec3 irradiance_at = {};   // m, ENU: where light from above is taken that remote-sensing reflectance is over
+  double pixel = 0;          // of the grid of table and maps, m, or degrees of a geographic system; 0 = from the data
+  int epsg = 0;              // of that grid; 0 = the UTM zone of the picture's middle
+  Where place_where = {};    // of the keys of `geolocation`
+  enum class Resampling : uint8_t { area, nearest };
+  std::optional<Resampling> resampling;  // of maps (GeoTIFF); by area unless asked for
+  Vec3 irradiance_at = {};  // m, ENU: where light from above is taken that remote-sensing reflectance is over
 };
 
 // A text that a sensor writes: a log, a table of results.

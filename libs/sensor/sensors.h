@@ -63,8 +63,8 @@ std::vector<std::string> read_truth(const Params& params);
 // Key `channels`: a list of parts of the light, beside all of it. Names are checked by the renderer.
 std::vector<std::string> read_channels(const Params& params);
 // Keys `units: radiance | toa_reflectance | brightness_temperature | remote_sensing_reflectance` (with
-// irradiance_at_m) and `geolocation: BOOL | {pixel_m: N}`, which adds
-// `location` to the truth where it is missing. read_units: of a part of a sensor, which keeps the rest.
+// irradiance_at_m) and `geolocation: BOOL | {pixel_m | pixel_deg, crs, resampling}`, which adds `location` to the truth
+// where it is missing. read_units: of a part of a sensor, which keeps the rest.
 ImageWishes read_wishes(const Params& params, std::vector<std::string>& truth);
 void read_units(const Params& params, ImageWishes& wishes);
 // Keys time_s and integration_time_s of sensors with one capture.

@@ -91,7 +91,7 @@ TEST(GroundGrid, SpacingDecidesTheCell) {
 TEST(GroundGrid, NothingKnownAndTooManyCells) {
   EXPECT_FALSE(ground_grid(std::vector<Vec2>(6, {NAN, NAN}), 3, 1));
   const std::string text = message_of([] { ground_grid(std::vector<Vec2>{{0, 0}, {1e6, 1e6}}, 2, 0.5); });
-  EXPECT_NE(text.find("a lookup table of 2e+06 x 2e+06 cells of 0.5 m is too large"), std::string::npos) << text;
+  EXPECT_NE(text.find("a lookup table of 2e+06 x 2e+06 cells of 0.5 is too large"), std::string::npos) << text;
   EXPECT_NE(text.find("pixel_m: 86"), std::string::npos) << text;
 }
 
