@@ -1,0 +1,101 @@
+"""Runs scene-prep and dirsig-render on a world, and reads what they left. -> Pictures, or Refused with what they said."""
+import glob
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "../golden"))
+import envi  # noqa: E402
+from rows_model import FIT, PHASE_FIT  # noqa: E402
+
+TIMEOUT_S = 400
+
+
+class Refused(Exception):
+    """A program ended with another code than 0: code, and the last lines of what it said."""
+
+    def __init__(self, code, text):
+        super().__init__(text)
+        self.code, self.text = code, text
+
+
+class Picture:
+    """Of a sensor: values and standard errors, a list a band; Student's degrees of the errors."""
+
+    def __init__(self, values, errors, degrees):
+        self.values, self.errors, self.degrees = values, errors, degrees
+
+
+def cpu_seconds():
+    use = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return use.ru_utime + use.ru_stime
+
+
+class Programs:
+    def __init__(self, binaries, scratch):
+        self.binaries, self.scratch = os.path.realpath(binaries), scratch
+        self.shared = os.path.join(scratch, "shared")
+        self.warnings = {}
+        os.makedirs(self.shared, exist_ok=True)
+        for file, model in ((FIT, "ward:diffuse=0.2,specular=0.2,roughness=0.3"), (PHASE_FIT, "hg:g=0.5")):
+            if not os.path.exists(os.path.join(self.shared, file)):
+                self.run([self.tool("sqt-fit"), "--model", model, "--order", "3", "-o", file, "-q"], self.shared)
+
+    def tool(self, name):
+        return os.path.join(self.binaries, name)
+
+    def run(self, command, folder):
+        try:
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, errors="replace")
+        except subprocess.TimeoutExpired as late:
+            raise Refused(-1, f"no end after {TIMEOUT_S} s: {' '.join(command)}") from late
+        if done.returncode:
+            text = (done.stdout + done.stderr).strip()
+            at = max(text.find("error"), 0)
+            raise Refused(done.returncode, text[at:at + 500] if at else text[-500:])
+        return done.stdout + done.stderr
+
+    def write(self, world, folder, paths_factor=1):
+        """The world's texts and files, ready to run."""
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder)
+        scene, sim = world.texts(paths_factor)
+        for name, content in {"scene.yaml": scene.encode(), "sim.yaml": sim.encode(), **world.files}.items():
+            with open(os.path.join(folder, name), "wb") as file:
+                file.write(content)
+        for name in (FIT, PHASE_FIT):
+            if f'"{name}"' in scene:
+                shutil.copy(os.path.join(self.shared, name), folder)
+
+    def prepare(self, world, folder, paths_factor=1):
+        self.write(world, folder, paths_factor)
+        return self.run([self.tool("scene-prep"), "scene.yaml", "-o", "scene.h5", "-q", "--no-crossing-check"], folder)
+
+    def render(self, folder, seed, options=(), out="out"):
+        """-> {sensor: Picture}"""
+        told = self.run([self.tool("dirsig-render"), "sim.yaml", "-o", out, "-q", "-j", "1", "--seed", str(seed), *options], folder)
+        for line in told.splitlines():
+            if "warning" in line:
+                key = re.sub(r"[0-9.]+", "#", line)[:110]
+                self.warnings[key] = self.warnings.get(key, 0) + 1
+        return read(os.path.join(folder, out))
+
+    def pictures(self, world, folder, seeds, paths_factor=1, options=()):
+        """-> for each seed {sensor: Picture}; one preparation."""
+        self.prepare(world, folder, paths_factor)
+        return [self.render(folder, seed, options) for seed in seeds]
+
+
+def read(folder):
+    pictures = {}
+    for path in sorted(glob.glob(folder + "/*_error.img")):
+        error, value = envi.read(path), envi.read(path.replace("_error.img", ".img"))
+        degrees = re.search(r"\(Student, ([0-9.]+) degrees\)", error.description)
+        name = os.path.basename(path)[:-len("_error.img")]
+        pictures[name] = Picture([list(b) for b in value.values], [list(b) for b in error.values], float(degrees[1]) if degrees else 3.0)
+    if not pictures:
+        raise Refused(0, "no NAME_error.img was written")
+    return pictures

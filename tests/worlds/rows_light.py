@@ -1,0 +1,111 @@
+"""Rows of air and lights: what stands in the simulation."""
+
+
+def air_none(d):
+    pass
+
+
+def layered(d):
+    spec = {"heights_m": [0, 1000, 5000], "temperature_k": [d.kelvin, d.kelvin] if d.furnace else [290, 270], "rayleigh": not d.furnace and d.chance(0.5)}
+    if not d.furnace and d.chance(0.6):  # quick layers scatter the sun alone: what else they scatter is lost (SIM's FORMAT.md)
+        spec["aerosol"] = {"depth_550": d.u(0.05, 0.8), "scale_height_m": d.one(500, 2000), "albedo": d.u(0.8, 1)}
+    if d.chance(0.5):
+        spec["gases"] = [{"name": "gas", "column_depth": d.u(0.05, 1), "scale_height_m": 1500}]
+    d.world.sim["atmosphere"] = spec
+
+
+def profile(**keys):
+    def make(d):
+        spec = {"profile": d.one("us_standard", "midlatitude_summer", "subarctic_winter"), "gases": "none", "streams": 4, "ground_albedo": d.u(0, 0.4), **keys}
+        if d.chance(0.6):
+            spec["aerosol"] = {"model": d.one("rural", "maritime", "urban"), "visibility_km": d.one(10, 23, 50)}
+        d.world.sim["atmosphere"] = spec
+    return make
+
+
+def direction(d):
+    return {"zenith_deg": d.u(5, 70), "azimuth_deg": d.u(0, 360)}
+
+
+def sun(d):
+    d.world.sim["sun"] = {"direction": direction(d), "irradiance": round(d.level * d.u(2, 6), 3), "half_angle_deg": d.one(0.26655, 2, 5)}
+
+
+def collimated(d):
+    d.world.sim["sun"] = {"direction": direction(d), "irradiance": round(d.level * d.u(2, 6), 3), "collimated": True}
+
+
+def moon(d):
+    d.world.sim["moon"] = {"direction": direction(d), "irradiance": round(d.level * d.u(0.5, 2), 3), "half_angle_deg": d.one(0.26, 3)}
+
+
+def sky(d):
+    d.world.sim["sky"] = {"radiance": round(d.level * d.u(0.3, 2), 3)}
+
+
+def sky_full(d):
+    d.world.sim["sky"] = {"radiance": round(d.level * d.u(0.3, 2), 3), "full_sphere": True}
+
+
+def sky_table(d):
+    d.world.sim["sky"] = {"radiance": round(d.level * d.u(0.3, 2), 3), "table": [[d.u(0.3, 1) for _ in range(4)] for _ in range(3)], "full_sphere": d.chance(0.5)}
+
+
+def sky_thermal(d):
+    d.world.sim["sky"] = {"kind": "thermal", "layers": [{"temperature_k": d.kelvin, "optical_depth": d.u(0.1, 2)}, {"temperature_k": round(d.kelvin * 0.95, 1), "optical_depth": 0.3}]}
+
+
+def clear_sky(d):
+    if "sun" not in d.world.sim:
+        sun(d)
+    d.world.sim["sky"] = {"kind": "clear"}
+
+
+def sky_furnace(d):
+    d.world.sim["sky"] = {"radiance": d.blackbody_curve(), "full_sphere": True}
+
+
+def lamp(kind):
+    def make(d):
+        spec = {"kind": kind, "position_m": [d.u(-3.4, 3.4), d.one(-1.6, 1.6) * d.u(0.95, 1.05) - 1.6, d.u(2.9, 3.3)], "intensity": round(d.level * d.u(2, 20), 3)}
+        if kind == "spot":
+            spec.update(axis=[d.u(-1, 1), d.u(-1, 1), -1], outer_deg=d.u(30, 80))
+        d.world.sim["lamps"].append(spec)
+    return make
+
+
+def lamp_distribution(d):
+    lamp("point")(d)
+    d.world.sim["lamps"][-1].update(axis=[d.u(-0.3, 0.3), d.u(-0.3, 0.3), -1], distribution={"table": [[1], [d.u(0.2, 1)], [d.u(0, 0.5)]]})
+
+
+def lamp_scheduled(d):
+    lamp("point")(d)
+    d.world.sim["lamps"][-1]["schedule"] = [{"time_s": -50, "on": True, "scale": d.u(0.5, 2)}, {"time_s": 0.5, "scale": d.u(0.5, 2)}]
+    d.moving = True
+
+
+NOT_FURNACE = {"without": ("furnace",)}  # shines more or less than the one temperature
+FAR = ("furnace", "room_sphere", "room_box", "ambient")  # is not seen from a room, or through air without end
+
+
+def far(**more):
+    return {"without": FAR + tuple(more.get("without", ()))}
+
+
+ONE_SKY = ("sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "profile_air", "profile_no_adjacency", "traced_air")
+PROFILE = {"without": ("furnace", "room_sphere", "room_box", "no_profile", "periodic"), "weight": 0.8}
+ROWS = [
+    ("air_none", "air", air_none, {"weight": 5}), ("layered_air", "air", layered, {"without": ("room_sphere", "room_box", "no_air"), "weight": 1.2}),
+    ("profile_air", "air", profile(), PROFILE), ("profile_no_adjacency", "air", profile(adjacency=False), PROFILE),
+    ("traced_air", "air", profile(scattering="traced"), PROFILE),
+    ("sun", "light", sun, far(without=("sun_collimated", "reciprocal"))), ("sun_collimated", "light", collimated, far(without=("reciprocal",))),
+    ("moon", "light", moon, far(without=("reciprocal",))),
+    ("sky", "light", sky, far(without=ONE_SKY[1:] + ("reciprocal",))), ("sky_full", "light", sky_full, far(without=ONE_SKY[2:] + ("reciprocal",))),
+    ("sky_table", "light", sky_table, far(without=ONE_SKY[3:] + ("reciprocal",))),
+    ("sky_thermal", "light", sky_thermal, far(without=ONE_SKY[4:] + ("reciprocal",))),
+    ("clear_sky", "light", clear_sky, far(without=ONE_SKY[5:] + ("reciprocal", "layered_air", "thermal", "moved"))),
+    ("sky_furnace", "light_furnace", sky_furnace),
+    ("lamp_point", "light", lamp("point"), NOT_FURNACE), ("lamp_spot", "light", lamp("spot"), NOT_FURNACE),
+    ("lamp_distribution", "light", lamp_distribution, NOT_FURNACE), ("lamp_scheduled", "light", lamp_scheduled, {"without": ("furnace", "still_world")}),
+]
