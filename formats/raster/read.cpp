@@ -26,7 +26,7 @@ void check(const ImageFacts& image, const Where& where, size_t max_pixels, size_
 
 Raster read_raster(const std::string& path, size_t max_pixels) {
   const Where where{path, 0, 0, {}, -1};
-  const size_t bytes = file_size(path);  // tells missing files and directories apart
+  const size_t bytes = input_size(path);  // tells missing files and directories apart
   Raster raster;
   ImageFacts image;
   const ImageRead read = image_calls().read(path, image, [&] {
