@@ -143,6 +143,7 @@ Simulation import_simulation(const RenderOptions& o, const SimulationCallbacks& 
   const dirsig::MadeText made = dirsig::simulation_of(import, o.simulation, help);
   dirsig::Ledger& ledger = import.ledger();
   ledger.close();
+  for (const std::string& file : ledger.files()) note_input(file);  // also those that are read later
   if (!o.account.empty()) {
     check_outputs({o.account});
     make_folders_of({o.account});

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -21,21 +22,18 @@ bool may_be_result(const std::string& file, const std::string& sensor) {
   if (!file.starts_with(sensor)) return false;
   const std::string rest = file.substr(sensor.size());
   if (!rest.starts_with(".") && !rest.starts_with("_")) return false;
-  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr", ".vrt", ".qml"})
+  for (const char* ending : {".img", ".img.hdr", ".png", ".tif", ".exr", ".vrt", ".qml", ".csv", ".rawbh"})
     if (rest.ends_with(ending)) return true;
-  for (const char* whole : {".csv", ".rawbh", "_brf.csv", "_fluxes.csv"})
-    if (rest == whole) return true;
-  return rest.ends_with("_error_correlation.csv");
+  return false;
 }
 
-void check_inputs(const std::string& folder, const Simulation& sim) {
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename().string();
-    bool result = name == "render.json" || name == "result.state.h5";
-    for (const auto& sensor : sim.sensors) result = result || may_be_result(name, sensor->name());
-    if (result) check_outputs({entry.path().string()});
-  }
+// Names of a run's own, whatever its sensors are called.
+bool may_be_of_run(const std::string& file, bool finds_heat) {
+  for (const char* name : {"render.json", "run.lock", "result.state.h5", "result.state.h5.joined"})
+    if (file == name) return true;
+  for (const char* name : {"heat.h5", "heat.csv", "heat.html", "heat_probes.csv", "heat_audit.csv"})
+    if (finds_heat && file == name) return true;
+  return file.ends_with(".mes");  // of sensors of kind `rami`
 }
 
 // Two sensors whose files would be the same ones: 'cam' writes cam_error.img, and so would a sensor 'cam_error'.
@@ -101,9 +99,40 @@ void check_room(const std::string& folder, const Simulation& sim) {
 
 }  // namespace
 
+namespace {
+
+void check_inputs(const RenderOptions& o, const Simulation& sim) {
+  const auto result = [&](const std::filesystem::path& path) {
+    const std::string name = path.filename().string();
+    return may_be_of_run(name, sim.heat && o.heat.empty()) ||
+           std::ranges::any_of(sim.sensors, [&](const auto& s) { return may_be_result(name, s->name()); });
+  };
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(o.output, none))
+    if (result(entry.path())) check_outputs({entry.path().string()});
+  check_outputs({o.view, o.account});
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
+  };
+  const std::filesystem::path folder = place(in_folder(o.output, "x")).parent_path();
+  for (const std::string& named : {o.view, o.account}) {
+    const std::filesystem::path at = place(named);
+    if (!named.empty() && at.parent_path() == folder && result(at))
+      throw UsageError("'" + named + "' has the name of a result of this run; give it another name");
+  }
+}
+
+}  // namespace
+
+RunLock lock_place(const RenderOptions& o, const Simulation& sim) {
+  if (o.study.empty()) check_inputs(o, sim);
+  const std::string folder = o.study.empty() ? o.output : o.study;
+  make_folder(folder);
+  return RunLock::of_folder(folder);
+}
+
 void check_folder(const std::string& folder, const Simulation& sim, bool pictures) {
   check_names(sim);
-  check_inputs(folder, sim);
   if (pictures) check_room(folder, sim);
 }
 

@@ -3,13 +3,19 @@
 #pragma once
 #include <string>
 
+#include "base/run_lock.h"
 #include "formats/sim_text/sim_text.h"
+#include "options.h"
 
 namespace suite {
 
-// Refuses, before anything is rendered, a folder in which results of these sensors would replace inputs of the run
-// (UsageError), or that has no room for their images, and sensors whose files would have the same names (Error).
-// pictures: there will be some (a part of a run has none).
+// As soon as the inputs are read: makes the folder of the results (of the study) and locks it for this run. Error:
+// another run has it. UsageError: results would replace an input; a page or an account has an input's or a result's
+// name.
+RunLock lock_place(const RenderOptions& options, const Simulation& simulation);
+
+// Refuses, before anything is rendered, a folder that has no room for the images, and sensors whose files would have
+// the same names. pictures: there will be some (a part of a run has none).
 void check_folder(const std::string& folder, const Simulation& simulation, bool pictures);
 
 // Bytes that the images take; products of the sensors come on top.

@@ -61,6 +61,7 @@ void refuse_time(const std::shared_ptr<const Scene>& scene, const Simulation& si
   trial.stop = [&] { return worth > 0 || stop_signal() != 0; };
   start_sensors(sim, trial, "");
   run_job(scene, sim.sources, sim.sensors, trial);
+  if (stop_signal()) throw Stopped{};
   const std::string refused = "--time with --part: parts would find different numbers of paths for it; ";
   if (!worth) throw UsageError(refused + "give --paths");
   const uint32_t least = options.budget.min_paths.value_or(kDefaultPilot);

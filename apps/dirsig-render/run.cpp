@@ -362,6 +362,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (o.dry_run && forecast.empty()) return 0;
   if (o.air) return print(air_text(sim, scene));
   const Facts facts(sim, scene);
+  const RunLock lock = forecast.empty() && (!ranks || ranks->leads()) ? lock_place(o, sim) : RunLock();
   find_beforehand(scene, sim, options, o, facts, ranks);
   if (o.heat_only) return 0;
   if (!forecast.empty()) return rehearse(scene, sim, options, forecast, link, loaded.seconds);
@@ -369,7 +370,6 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (options.share && options.budget.seconds > 0) refuse_time(scene, sim, options);
   const std::unique_ptr<StateStore> store = join_or_open(o, sim, options, ranks);
   if (ranks && !ranks->leads()) return follow(scene, sim, options);
-  make_folder(o.output);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts);

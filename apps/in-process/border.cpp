@@ -1,6 +1,7 @@
 #include "apps/in-process/border.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <new>
 
@@ -59,6 +60,11 @@ int at_border(const std::function<void(std::vector<std::string>& told)>& work) {
     work(told);
     for (const std::string& sentence : told) told_text() += (told_text().empty() ? "" : "\n") + sentence;
   });
+}
+
+uintptr_t new_handle() {
+  static std::atomic<uintptr_t> last{0};
+  return 16 * ++last;  // never 0, and as even as an address
 }
 
 void need(const void* given, const char* name) {

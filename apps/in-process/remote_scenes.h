@@ -6,7 +6,8 @@
  * surface's own frame, z its normal; of scenes ENU (x east, y north, z up). Functions return 0, or RS_INPUT when the
  * input is at fault, RS_BUG when the suite is; rs_message() then tells what is wrong and where, as the programs do.
  * Nothing is written to the arrays of a refused call but by rs_scene_trace and rs_simulation_radiance. Objects may be
- * asked by several threads at once; they are closed once, when nobody asks them any more.
+ * asked by several threads at once, and closed at any moment: calls on their way come to their end, later ones are
+ * refused. Their pointers are handles and lead to no memory; none is given twice.
  */
 #ifndef REMOTE_SCENES_H
 #define REMOTE_SCENES_H

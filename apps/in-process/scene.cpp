@@ -43,6 +43,11 @@ namespace suite {
 
 namespace {
 
+Handles<rs_scene>& scenes() {
+  static auto* const all = new Handles<rs_scene>;  // never destroyed: threads may use it to the end of the process
+  return *all;
+}
+
 void need_times(const rs_scene& scene, size_t n, const double* time) {
   if (!time) return;
   for (size_t i = 0; i < n; ++i)
@@ -105,13 +110,16 @@ using suite::need;
 int rs_scene_open(const char* path, double begin, double end, rs_scene** scene) {
   return at_border([&] {
     need(scene, "scene");
-    *scene = new rs_scene(path, begin, end);
+    *scene = suite::scenes().add(std::make_shared<const rs_scene>(path, begin, end));
   });
 }
 
-void rs_scene_close(rs_scene* scene) { delete scene; }
+void rs_scene_close(rs_scene* scene) { suite::scenes().close(scene); }
 
-void rs_scene_describe(const rs_scene* scene, rs_scene_info* info) {
+void rs_scene_describe(const rs_scene* handle, rs_scene_info* info) {
+  *info = {};
+  const auto scene = suite::scenes().find(handle);
+  if (!scene) return;
   const suite::Scene& s = *scene->scene;
   const suite::Box3& box = scene->tracer.bounds();
   *info = {s.materials.size(),
@@ -124,20 +132,24 @@ void rs_scene_describe(const rs_scene* scene, rs_scene_info* info) {
            s.origin.ellipsoid_height_m};
 }
 
-const char* rs_scene_material(const rs_scene* scene, size_t number) {
+const char* rs_scene_material(const rs_scene* handle, size_t number) {
+  const auto scene = suite::scenes().find(handle);
+  if (!scene) return nullptr;
   const auto& all = scene->scene->materials;
   return number < all.size() ? all[number].id.c_str() : nullptr;
 }
 
-const char* rs_scene_tag(const rs_scene* scene, size_t number) {
+const char* rs_scene_tag(const rs_scene* handle, size_t number) {
+  const auto scene = suite::scenes().find(handle);
+  if (!scene) return nullptr;
   const auto& all = scene->scene->tags;
   return number < all.size() ? all[number].c_str() : nullptr;
 }
 
-int rs_scene_trace(const rs_scene* scene, size_t n, const double* origin, const double* direction, const double* time,
+int rs_scene_trace(const rs_scene* handle, size_t n, const double* origin, const double* direction, const double* time,
                    const uint32_t* draw, const rs_hits* hits) {
   return at_border([&] {
-    need(scene, "scene");
+    const auto scene = suite::scenes().get(handle, "scene");
     need(hits, "hits");
     if (n == 0) return;
     need(origin, "origin");
@@ -149,10 +161,10 @@ int rs_scene_trace(const rs_scene* scene, size_t n, const double* origin, const 
   });
 }
 
-int rs_scene_visible(const rs_scene* scene, size_t n, const double* from, const double* to, double gap,
+int rs_scene_visible(const rs_scene* handle, size_t n, const double* from, const double* to, double gap,
                      const double* time, uint8_t* visible) {
   return at_border([&] {
-    need(scene, "scene");
+    const auto scene = suite::scenes().get(handle, "scene");
     if (!(gap >= 0 && gap <= suite::kLargestNumber))
       throw suite::Error(suite::strf("gap: %g", gap), "metres, 0 or more");
     if (n == 0) return;

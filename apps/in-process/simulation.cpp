@@ -93,6 +93,11 @@ namespace suite {
 
 namespace {
 
+Handles<rs_simulation>& simulations() {
+  static auto* const all = new Handles<rs_simulation>;  // never destroyed: threads may use it to the end of the process
+  return *all;
+}
+
 void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uint64_t seed, const RayAnswers& answers,
             Told& told) {
   const auto bands = s.sensor.bands(0);
@@ -128,30 +133,35 @@ using suite::need;
 int rs_simulation_open(const char* path, const char* sensor, rs_simulation** simulation) {
   return at_border([&](suite::Told& told) {
     need(simulation, "simulation");
-    *simulation = new rs_simulation(path, sensor, told);
+    *simulation = suite::simulations().add(std::make_shared<const rs_simulation>(path, sensor, told));
   });
 }
 
-void rs_simulation_close(rs_simulation* simulation) { delete simulation; }
+void rs_simulation_close(rs_simulation* simulation) { suite::simulations().close(simulation); }
 
-void rs_simulation_describe(const rs_simulation* simulation, rs_simulation_info* info) {
+void rs_simulation_describe(const rs_simulation* handle, rs_simulation_info* info) {
+  *info = {};
+  const auto simulation = suite::simulations().find(handle);
+  if (!simulation) return;
   const suite::Capture& c = simulation->first();
   *info = {simulation->sensor.bands(0).size(), c.convergence.max_paths, simulation->sim.pipeline.seed, c.window.begin,
            c.window.end};
 }
 
-const char* rs_simulation_band(const rs_simulation* simulation, size_t number, double* center_um) {
+const char* rs_simulation_band(const rs_simulation* handle, size_t number, double* center_um) {
+  const auto simulation = suite::simulations().find(handle);
+  if (!simulation) return nullptr;
   const auto bands = simulation->sensor.bands(0);
   if (number >= bands.size()) return nullptr;
   if (center_um) *center_um = bands[number].center_um;
   return bands[number].name.c_str();
 }
 
-int rs_simulation_radiance(const rs_simulation* simulation, size_t n, const double* origin, const double* direction,
+int rs_simulation_radiance(const rs_simulation* handle, size_t n, const double* origin, const double* direction,
                            const double* time, uint32_t paths, uint64_t seed, double* radiance, double* standard_error,
                            uint8_t* quality) {
   return at_border([&](suite::Told& told) {
-    need(simulation, "simulation");
+    const auto simulation = suite::simulations().get(handle, "simulation");
     if (seed > (uint64_t{1} << 53)) throw suite::Error("a seed above 2^53");
     if (paths > (1u << 30)) throw suite::Error(suite::strf("%u paths", paths), "up to 2^30");
     if (n == 0) return;

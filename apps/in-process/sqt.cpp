@@ -14,10 +14,12 @@ namespace suite {
 
 namespace {
 
-const sqt::Bundle& bundle_of(const rs_sqt* sqt) {
-  need(sqt, "sqt");
-  return *sqt->file.bundle;
+Handles<rs_sqt>& functions() {
+  static auto* const all = new Handles<rs_sqt>;  // never destroyed: threads may use it to the end of the process
+  return *all;
 }
+
+std::shared_ptr<const sqt::Bundle> bundle_of(const rs_sqt* sqt) { return functions().get(sqt, "sqt")->file.bundle; }
 
 void need_channel(const sqt::Bundle& bundle, size_t channel) {
   if (channel >= bundle.channels())
@@ -55,15 +57,21 @@ int rs_sqt_open(const char* path, rs_sqt** sqt) {
   return at_border([&] {
     suite::need(path, "path");
     suite::need(sqt, "sqt");
-    *sqt = new rs_sqt{suite::read_sqt(path)};
+    *sqt = suite::functions().add(std::make_shared<const rs_sqt>(suite::read_sqt(path)));
   });
 }
 
-void rs_sqt_close(rs_sqt* sqt) { delete sqt; }
+void rs_sqt_close(rs_sqt* sqt) { suite::functions().close(sqt); }
 
-const char* rs_sqt_header(const rs_sqt* sqt) { return sqt->file.header.c_str(); }
+const char* rs_sqt_header(const rs_sqt* handle) {
+  const auto sqt = suite::functions().find(handle);
+  return sqt ? sqt->file.header.c_str() : nullptr;
+}
 
-void rs_sqt_describe(const rs_sqt* sqt, rs_sqt_info* info) {
+void rs_sqt_describe(const rs_sqt* handle, rs_sqt_info* info) {
+  *info = {};
+  const auto sqt = suite::functions().find(handle);
+  if (!sqt) return;
   const suite::sqt::Bundle& bundle = *sqt->file.bundle;
   const suite::sqt::Bundle::Info& known = bundle.info();
   *info = {bundle.channels(),
@@ -77,7 +85,8 @@ void rs_sqt_describe(const rs_sqt* sqt, rs_sqt_info* info) {
 
 int rs_sqt_evaluate(const rs_sqt* sqt, size_t n, const double* out, const double* in, double* f) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::need_in(n, in);
     suite::rows(n, out, f, bundle.channels(),
                 [&](size_t i, suite::Dir o, std::span<double> to) { bundle.value(o, suite::row3(in, i), to); });
@@ -86,7 +95,8 @@ int rs_sqt_evaluate(const rs_sqt* sqt, size_t n, const double* out, const double
 
 int rs_sqt_total(const rs_sqt* sqt, size_t n, const double* out, double* total) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::rows(n, out, total, bundle.channels(), [&](size_t, suite::Dir o, std::span<double> to) {
       for (size_t c = 0; c < to.size(); ++c) to[c] = bundle.total(o, c);
     });
@@ -95,7 +105,8 @@ int rs_sqt_total(const rs_sqt* sqt, size_t n, const double* out, double* total) 
 
 int rs_sqt_magnitude(const rs_sqt* sqt, size_t n, const double* out, double* total) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::rows(n, out, total, bundle.info().magnitude_um.size(),
                 [&](size_t, suite::Dir o, std::span<double> to) { bundle.magnitude(o, to); });
   });
@@ -104,7 +115,8 @@ int rs_sqt_magnitude(const rs_sqt* sqt, size_t n, const double* out, double* tot
 int rs_sqt_sample(const rs_sqt* sqt, size_t n, const double* out, size_t channel, const double* u, double* in,
                   double* pdf) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::need_channel(bundle, channel);
     if (n) suite::need(u, "u");
     for (size_t i = 0; i < 3 * n; ++i)
@@ -119,7 +131,8 @@ int rs_sqt_sample(const rs_sqt* sqt, size_t n, const double* out, size_t channel
 
 int rs_sqt_pdf(const rs_sqt* sqt, size_t n, const double* out, const double* in, double* pdf) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::need_in(n, in);
     suite::rows(n, out, pdf, bundle.channels(),
                 [&](size_t i, suite::Dir o, std::span<double> to) { bundle.pdf(o, suite::row3(in, i), to); });
@@ -128,7 +141,8 @@ int rs_sqt_pdf(const rs_sqt* sqt, size_t n, const double* out, const double* in,
 
 int rs_sqt_dirac(const rs_sqt* sqt, size_t n, const double* out, size_t channel, double* in, double* total) {
   return at_border([&] {
-    const auto& bundle = suite::bundle_of(sqt);
+    const auto held = suite::bundle_of(sqt);
+    const suite::sqt::Bundle& bundle = *held;
     suite::need_channel(bundle, channel);
     if (n) suite::need(total, "total");
     suite::rows(n, out, in, 3, [&](size_t i, suite::Dir o, std::span<double> to) {

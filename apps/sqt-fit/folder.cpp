@@ -11,9 +11,9 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/inputs.h"
-#include "base/interrupt.h"
 #include "base/outputs.h"
 #include "base/progress.h"
+#include "base/run_lock.h"
 #include "fit.h"
 #include "formats/measured/measured.h"
 #include "page/page.h"
@@ -207,8 +207,9 @@ int fit_folder(const SqtFitOptions& o) {
     if (!o.fits.empty()) outputs.push_back(fit_of(o, name));
   }
   check_outputs(outputs);
-  std::map<std::string, Row> finished = finished_rows(o);
   make_folders_of({o.output});
+  const RunLock lock = RunLock::of_file(o.output);
+  std::map<std::string, Row> finished = finished_rows(o);
   std::vector<Row> rows;
   size_t kept = 0, bad = 0;
   Progress progress("fitting", static_cast<double>(names.size()), "file");

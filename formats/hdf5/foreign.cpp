@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include "base/files.h"
-#include "base/inputs.h"
 #include "formats/hdf5/silence.h"
 
 namespace suite::h5 {
@@ -29,8 +28,7 @@ void Foreign::fail(const std::string& what) const { throw Error(Where{path_, 0, 
 
 Foreign::Foreign(const std::string& path) : path_(path) {
   silence();
-  file_size(path);
-  note_input(path);
+  input_size(path);
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access, false, true);
   if (H5Fis_hdf5(path.c_str()) <= 0) fail("is not an HDF5 file");

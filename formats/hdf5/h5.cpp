@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "base/files.h"
-#include "base/inputs.h"
+#include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "formats/hdf5/silence.h"
@@ -133,6 +133,7 @@ Writer::Writer(const std::string& temporary, const std::string& path, PackLevel 
   silence();
   const Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(create, false);
+  const CreatingFile creating;
   file_ = Handle(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, create, file_access()), H5Fclose);
   if (file_ < 0) fail("HDF5 refuses to create it");
 }
@@ -225,8 +226,7 @@ void Reader::fail(const std::string& what) const { throw Error(Where{path_, 0, 0
 
 Reader::Reader(const std::string& path, std::string hint) : path_(path), hint_(std::move(hint)) {
   silence();
-  file_size(path);
-  note_input(path);
+  input_size(path);
   // The signature and a checksummed superblock (version 3) are looked at here; older layouts are followed unchecked by
   // the library and none of ours.
   char head[9] = {};

@@ -83,7 +83,7 @@ double height_unit(GTIF* keys) {
 
 GeoReference read_georeference(const std::string& path) {
   const Where where{path, 0, 0, {}, -1};
-  file_size(path);
+  input_size(path);
   be_quiet();
   const std::unique_ptr<TIFF, CloseTiff> tiff(XTIFFOpen(path.c_str(), "r"));
   if (!tiff) throw Error(where, "is not a TIFF file", "a GeoTIFF is expected");

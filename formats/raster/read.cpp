@@ -38,7 +38,7 @@ int grey_bits_of_png(const std::string& path) {
 
 Raster read_raster(const std::string& path, size_t max_pixels) {
   const Where where{path, 0, 0, {}, -1};
-  const size_t bytes = file_size(path);  // tells missing files and directories apart
+  const size_t bytes = input_size(path);  // tells missing files and directories apart
   if (std::optional<Raster> map = read_portable_map(path, max_pixels)) return std::move(*map);
   Raster raster;
   ImageFacts image;

@@ -6,6 +6,7 @@
 
 #include "air/discrete_ordinates.h"
 #include "air/ordinate_angles.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "math/falling.h"
 #include "spectral/planck.h"
@@ -335,7 +336,7 @@ std::shared_ptr<const DiffuseSource> solve_diffuse_field(const AirSpec& spec, co
   const RoundWays ways(column, source->axes().cosines);
   parallel_for(0, column.bins, 4, [&](size_t begin, size_t end) {
     BinSolver solver(spec, column, state, beams, depths, phases, ways, *source, report);
-    for (size_t bin = begin; bin < end; ++bin) solver.solve(bin);
+    for (size_t bin = begin; bin < end; ++bin) stop_point(), solver.solve(bin);
   });
   return source;
 }

@@ -32,6 +32,13 @@ struct Descriptor {
   throw Error(Where{path, 0, 0, {}, -1}, what, hint);
 }
 
+// What was read must not be replaced, under whichever name.
+void refuse_input(const std::string& path) {
+  if (const std::string input = input_at(path); !input.empty())
+    fail(path, "would replace an input of this run" + (input == path ? std::string() : ", read as '" + input + "'"),
+         "give the output another name");
+}
+
 size_t checked_size(int fd, const std::string& path) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) fail(path, strf("cannot be examined: %s", std::strerror(errno)));
@@ -82,6 +89,12 @@ size_t file_size(const std::string& path) {
   return checked_size(d.fd, path);
 }
 
+size_t input_size(const std::string& path) {
+  const size_t bytes = file_size(path);
+  note_input(path);
+  return bytes;
+}
+
 bool file_exists(const std::string& path) {
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
@@ -113,11 +126,10 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   struct stat info {};
   if (::stat(path_.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) fail(path_, "is a directory", "name an output file");
-  if (const std::string input = input_at(path_); !input.empty())
-    fail(path_, "would replace an input of this run" + (input == path_ ? std::string() : ", read as '" + input + "'"),
-         "give the output another name");
+  refuse_input(path_);
   temporary_ = path_ + strf(".part-%d-%u", static_cast<int>(::getpid()), counter++);
   guard_ = std::make_unique<Temporary>(temporary_.c_str());
+  const CreatingFile creating;
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     fail(path_, strf("cannot be written: %s", std::strerror(errno)), "the folder must exist and be writable");
@@ -162,6 +174,7 @@ void AtomicFile::close() {
 
 void AtomicFile::commit() {
   close();
+  refuse_input(path_);  // it may have been read since
   if (::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(path_, strf("cannot be replaced: %s", std::strerror(errno)));
   done_ = true;

@@ -16,6 +16,8 @@ std::vector<std::byte> read_bytes(const std::string& path, size_t max_bytes = si
 // The same as text, without the byte order mark of UTF-8 that some editors and spreadsheets begin a file with.
 std::string read_text(const std::string& path, size_t max_bytes = size_t{1} << 30);
 size_t file_size(const std::string& path);  // same Errors
+// The size of a file that another library opens next; notes it as an input (inputs.h). Same Errors.
+size_t input_size(const std::string& path);
 bool file_exists(const std::string& path);
 
 // A regular file opened for reading in pieces; for files larger than what one wants in memory.

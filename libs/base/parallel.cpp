@@ -8,8 +8,11 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
+
+#include "base/interrupt.h"
 
 namespace suite {
 
@@ -17,18 +20,18 @@ namespace {
 std::mutex g_mutex;
 int g_threads = 0;
 std::unique_ptr<tbb::global_control> g_control;
-std::unique_ptr<tbb::task_arena> g_arena;
+std::shared_ptr<tbb::task_arena> g_arena;
 
-tbb::task_arena& arena() {
+std::shared_ptr<tbb::task_arena> arena() {
   const std::lock_guard lock(g_mutex);
   if (!g_arena) {
     const int n = g_threads > 0 ? g_threads : tbb::info::default_concurrency();
     // More threads than cores are allowed: the bits must not depend on it, and tests prove that.
     g_control =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(n));
-    g_arena = std::make_unique<tbb::task_arena>(n);
+    g_arena = std::make_shared<tbb::task_arena>(n);
   }
-  return *g_arena;
+  return g_arena;
 }
 }  // namespace
 
@@ -41,15 +44,20 @@ void set_threads(int count) {
 
 int threads() { return g_threads > 0 ? g_threads : tbb::info::default_concurrency(); }
 
-void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body) {
+void parallel_for(size_t begin, size_t end, size_t grain, const std::function<void(size_t, size_t)>& body,
+                  StopPoints stop) {
   if (begin >= end) return;
   if (grain < 1) grain = 1;
   const size_t blocks = (end - begin + grain - 1) / grain;
-  arena().execute([&] {
-    tbb::parallel_for(
-        size_t{0}, blocks, [&](size_t b) { body(begin + b * grain, std::min(end, begin + (b + 1) * grain)); },
-        tbb::simple_partitioner());
-  });
+  const bool finish = FinishFirst::here();
+  const auto piece = [&](size_t b) {
+    std::optional<FinishFirst> first;
+    if (finish) first.emplace();
+    if (stop == StopPoints::between_pieces) stop_point();
+    body(begin + b * grain, std::min(end, begin + (b + 1) * grain));
+  };
+  const std::shared_ptr<tbb::task_arena> here = arena();  // another thread may set another number of threads meanwhile
+  here->execute([&] { tbb::parallel_for(size_t{0}, blocks, piece, tbb::simple_partitioner()); });
 }
 
 void on_threads(int count, const std::function<void()>& body) {

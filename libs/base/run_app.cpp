@@ -163,6 +163,9 @@ int run_app(const AppInfo& info, int argc, const char* const* argv, const std::f
   } catch (const Error& e) {
     say(std::string(e.what()) + "\n");
     return 1;
+  } catch (const Stopped&) {
+    say(info.name + ": stopped by signal\n");
+    return 128 + stop_signal();
   } catch (const std::bad_alloc&) {
     say(info.name + ": error: out of memory\n");
     return 1;

@@ -1,5 +1,5 @@
 // The shell of every executable: options, --help, --version, --threads, --quiet; the one catch; the exit codes.
-// 0 fine, 1 bad input, 2 bad usage, 3 our bug, 128 + n ended by signal n (130: Ctrl-C).
+// 0 fine, 1 bad input, 2 bad usage, 3 our bug, 128 + n ended by signal n (130: Ctrl-C, 143: SIGTERM, 129: SIGHUP).
 #pragma once
 #include <functional>
 #include <memory>

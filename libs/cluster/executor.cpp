@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "cluster/message.h"
 
@@ -56,7 +57,8 @@ bool RankExecutor::run(std::span<Round> rounds, const std::function<bool()>& sto
   std::thread server;
   if (leads()) server = std::thread([this] { serve(); });
   const auto workers = static_cast<size_t>(threads());
-  parallel_for(0, workers, 1, [&](size_t slot, size_t) { work(slot, stop); });
+  parallel_for(
+      0, workers, 1, [&](size_t slot, size_t) { work(slot, stop); }, StopPoints::in_body);
   if (leads())
     server.join();
   else
@@ -81,20 +83,24 @@ void RankExecutor::failed() {
 void RankExecutor::work(size_t slot, const std::function<bool()>& stop) {
   try {
     for (;;) {
-      if (stop && stop()) {
-        {
-          const std::lock_guard lock(mutex_);
-          stopped_ = true;
-        }
-        return end_early();
-      }
+      if (stop && stop()) return stop_here();
       const int64_t next = link_.fetch_and_add(1);
       if (next >= static_cast<int64_t>(pieces_.size())) return;
       run_piece(static_cast<uint32_t>(next), slot);
     }
+  } catch (const Stopped&) {
+    stop_here();
   } catch (...) {
     failed();
   }
+}
+
+void RankExecutor::stop_here() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  end_early();
 }
 
 void RankExecutor::run_piece(uint32_t number, size_t slot) {

@@ -42,6 +42,7 @@ class RankExecutor final : public Executor {
   void serve();
   void receive(MPI_Message& message, const MPI_Status& status);
   void end_early();
+  void stop_here();
   void failed();
 
   Link& link_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 
 namespace suite {
@@ -33,7 +34,7 @@ bool LocalExecutor::run(std::span<Round> rounds, const std::function<bool()>& st
                      [](const Piece& a, const Piece& b) { return a.place < b.place; });
   }
   std::atomic<bool> stopped = false;
-  const auto run_piece = [&](const Piece& piece) {
+  const auto run_whole = [&](const Piece& piece) {
     if (stopped || (stop && stop())) {
       stopped = true;
       return;
@@ -53,10 +54,19 @@ bool LocalExecutor::run(std::span<Round> rounds, const std::function<bool()>& st
     round.statistics.merge(mine);
     if (progress) progress->add(static_cast<double>(mine.paths));
   };
+  // What a block has is dropped when it takes too long to its end.
+  const auto run_piece = [&](const Piece& piece) {
+    try {
+      run_whole(piece);
+    } catch (const Stopped&) {
+      stopped = true;
+    }
+  };
   std::atomic<size_t> next = 0;  // all threads at neighbouring blocks
   const int useful = pieces.empty() ? 0 : rounds.front().pipeline->tracer().useful_threads();
   if (useful <= threads())
-    parallel_for(0, pieces.size(), 1, [&](size_t, size_t) { run_piece(pieces[next++]); });
+    parallel_for(
+        0, pieces.size(), 1, [&](size_t, size_t) { run_piece(pieces[next++]); }, StopPoints::in_body);
   else
     on_threads(std::min(useful, static_cast<int>(pieces.size())), [&] {
       try {

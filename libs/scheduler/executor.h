@@ -32,7 +32,8 @@ class Executor {
  public:
   virtual ~Executor() = default;
   // Runs all blocks of all rounds, whichever capture they belong to, so that none waits for another. stop: asked before
-  // each block, empty = never; false when it ended the run, with what was finished taken. progress: may be null.
+  // each block, empty = never; false when it ended the run, with what was finished taken. A block that meets a stop
+  // point (base/interrupt.h) ends the run likewise. progress: may be null.
   virtual bool run(std::span<Round> rounds, const std::function<bool()>& stop, Progress* progress) = 0;
 
   // Several processes may run one job together, each with the loop of scheduler.h and kits of its own. One of them

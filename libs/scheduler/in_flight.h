@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/interrupt.h"
 #include "scheduler/items.h"
 #include "scheduler/planner.h"
 #include "scheduler/primed.h"
@@ -44,6 +45,13 @@ struct InFlight {
 };
 
 using Batch = std::vector<std::unique_ptr<InFlight>>;
+
+// What the captures have goes into the state, whoever wants the program to end.
+inline void save_all(const Batch& batch) {
+  const FinishFirst first;
+  for (const auto& c : batch)
+    if (c->planner) c->planner->save();
+}
 
 // Rounds as they were told; refers to what was told.
 inline std::vector<Round> rounds_of(std::span<const ToldRound> told, const Batch& batch) {

@@ -1,10 +1,12 @@
 // The captures of a job as what they need, and the order in which they run.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "motion/time_span.h"
 #include "scheduler/order.h"
 #include "sensor/sensor.h"
 
@@ -25,6 +27,10 @@ struct Item {
   StatePair state;
   double moment;  // s, at which its sources are taken (moments.h)
 };
+
+inline TimeSpan hull(const TimeSpan& span, const TimeWindow& window) {
+  return {std::min(span.begin, window.begin), std::max(span.end, window.end)};
+}
 
 // All captures, numbered over sensors, tasks and captures. moves: something in the scene does, so that windows differ.
 std::vector<Item> items_of(std::span<const std::unique_ptr<Sensor>> sensors, bool moves);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/stopwatch.h"
 #include "estimate/plan.h"
@@ -43,10 +44,27 @@ class Job {
   }
 
   JobReport run() {
+    try {
+      run_captures();
+    } catch (const Stopped&) {
+      if (executor().processes() > 1) throw;  // they end together, by their executor alone
+      report_.stopped = true;
+    }
+    if (progress_) progress_->finish();
+    if (!report_.stopped && options_.store) options_.store->finish();
+    if (!report_.stopped && !options_.share) doubt_after();
+    if (tracers_) report_.tiles = tracers_->tile_use();
+    finish();
+    return std::move(report_);
+  }
+
+ private:
+  void run_captures() {
     const std::vector<Item> seen = items_from(sensors_, 0, 0),
                             before = items_from(options_.prepasses, sensors_.size(), seen.size());
     std::vector<Item> items = seen;
     items.insert(items.end(), before.begin(), before.end());
+    report_.captures_asked = items.size();
     for (const Item& item : items)
       check_temperatures(*scene_, capture_of(item).window.begin, capture_of(item).window.end);
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_), options_.tiles);
@@ -57,7 +75,6 @@ class Job {
     if (options_.store) begin_store(items);
     std::vector<ToldRound> none;
     exchange(executor(), none, cap_);
-    report_.captures_asked = items.size();
     for (const Item& item : seen) total_problems_ += static_cast<double>(capture_of(item).problems());
     if (options_.progress)
       progress_ = std::make_unique<Progress>("rendering", forecast_paths(sensors_, options_), "path");
@@ -65,15 +82,7 @@ class Job {
     if (!before.empty()) run_all(before, {.pending = true});
     report_.stopped = executor().any(report_.stopped);
     if (const std::vector<Item> some = of_share(seen); !some.empty() && !report_.stopped) run_all(some, heating());
-    if (progress_) progress_->finish();
-    if (!report_.stopped && options_.store) options_.store->finish();
-    if (!report_.stopped && !options_.share) doubt_after();
-    report_.tiles = tracers_->tile_use();
-    finish();
-    return std::move(report_);
   }
-
- private:
   // The captures of some sensors in the order in which they run, numbered from what is given.
   std::vector<Item> items_from(Sensors sensors, size_t sensor, size_t id) {
     size_t changes = 0;
@@ -85,12 +94,8 @@ class Job {
 
   // Runs captures with kits of their own.
   void run_all(std::span<const Item> items, const Heating& heating) {
-    TimeSpan window;
-    for (const Item& item : items) {
-      const TimeWindow& w = capture_of(item).window;
-      window = &item == items.data() ? TimeSpan{w.begin, w.end}
-                                     : TimeSpan{std::min(window.begin, w.begin), std::max(window.end, w.end)};
-    }
+    TimeSpan window{kEver, -kEver};
+    for (const Item& item : items) window = hull(window, capture_of(item).window);
     primed_.clear();
     kits_ =
         std::make_unique<Kits>(*scene_, sources_, options_.periodic.has_value(), window, options_.kit_bytes, heating);
@@ -191,14 +196,6 @@ class Job {
     if (options_.begun) options_.begun(work);
   }
 
-  void warn_beforehand(const Item& item, const Kit& kit) {
-    std::vector<std::string> all = lost_light(*scene_, sources_, *kit.optics, options_.pipeline,
-                                              goals_of(item).all.max_paths, options_.periodic.has_value());
-    for (std::string& s : wrong_surroundings(*tracer_, *kit.optics)) all.push_back(std::move(s));
-    for (const std::string& s : all)
-      if (told_.insert(s).second) options_.warn(s);
-  }
-
   // Runs the first captures that are left, as many as may be in flight together, round by round of all of them, and
   // delivers them in their order. Returns those that are left then.
   std::span<const Item> run_batch(std::span<const Item> left) {
@@ -225,14 +222,15 @@ class Job {
       while (run_rounds(batch)) {
       }
     } catch (...) {
-      for (const auto& c : batch)
-        if (c->planner) c->planner->save();
+      save_all(batch);
       throw;
     }
     share_seconds(batch, seconds_since(begun));
+    std::optional<FinishFirst> all;
+    if (!options_.store) all.emplace();  // what a state has can be delivered later
     for (auto& c : batch)
       if (!report_.stopped && c->planner && c->planner->whole() && has_results(c->item))
-        deliver(*c), c.reset();
+        stop_point(), deliver(*c), c.reset();
       else
         leave(*c);
     if (primed_.size() > 1) primed_.erase(primed_.begin(), primed_.end() - 1);
@@ -262,8 +260,7 @@ class Job {
     const bool here = executor().processes() > 1 && !shared;
     report_.stopped = !(here ? local_ : executor()).run(rounds, options_.stop, progress_.get());
     for (size_t i = 0; i < of.size(); ++i) of[i]->ran(rounds[i]);
-    if (report_.stopped)
-      for (CapturePlanner* p : of) p->save();
+    if (report_.stopped) save_all(batch);
     return !report_.stopped;
   }
 
@@ -276,7 +273,10 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
-    if (options_.warn) warn_beforehand(item, kit);
+    if (options_.warn)
+      for (const std::string& s :
+           doubts_beforehand(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))
+        if (told_.insert(s).second) options_.warn(s);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;
     primed_.push_back(

@@ -209,4 +209,12 @@ std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& 
   return tracer.tells_all() ? Look(tracer, optics).all() : std::vector<std::string>{};
 }
 
+std::vector<std::string> doubts_beforehand(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
+                                           const PipelineOptions& options, uint32_t paths) {
+  std::vector<std::string> all =
+      lost_light(tracer.scene(), sources, optics, options, paths, tracer.periodic().has_value());
+  for (std::string& s : wrong_surroundings(tracer, optics)) all.push_back(std::move(s));
+  return all;
+}
+
 }  // namespace suite

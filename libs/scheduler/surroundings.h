@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scheduler/shortfall.h"
 #include "surface/surface.h"
 
 namespace suite {
@@ -17,5 +18,9 @@ namespace suite {
 // Looked for along a few rays through each refracting object, so that what is small may be missed.
 constexpr double kApart = 0.02, kSkipped = 1e-3;
 std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& optics);
+
+// These, after what paths of at most so many a problem will not find (lost_light).
+std::vector<std::string> doubts_beforehand(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
+                                           const PipelineOptions& options, uint32_t paths);
 
 }  // namespace suite

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "thermal/step_control.h"
 #include "thermal/tr_bdf2.h"
 
@@ -303,6 +304,7 @@ void Slab::accept(double dt) {
 
 bool Slab::step(double dt, double* estimate) {
   SUITE_CHECK(dt > 0 && T_.front() > 0);
+  stop_point();
   double error = 0;
   if (!attempt(dt, error)) return false;
   accept(dt);
@@ -316,6 +318,7 @@ void Slab::advance(double t) {
   next_step_ = advance_by_error(
       t_, t, next_step_, {options_.tolerance, options_.max_step, options_.min_step},
       [this](double dt) {
+        stop_point();
         double error = 0;
         return attempt(dt, error) ? error : INFINITY;
       },

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "motion/track.h"
 #include "scene/primitives.h"
@@ -71,6 +72,8 @@ void sort_in_space(std::vector<uint32_t>& objects, std::span<const Box3> boxes, 
 
 RTCScene new_scene(bool all_hits, bool loose) {
   RTCScene s = rtcNewScene(device());
+  rtcSetSceneProgressMonitorFunction(
+      s, [](void*, double) { return !stop_is_due(); }, nullptr);
   rtcSetSceneFlags(s, static_cast<RTCSceneFlags>((loose ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST) |
                                                  (all_hits ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0)));
   // Among leaves splits in space are not worth what they take: 4 times the time to build, 4 % more memory, rays the

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "trace/cell_walk.h"
 #include "trace/embree_internal.h"
 
@@ -18,6 +19,7 @@ RTCDevice device() {
         d,
         [](void*, RTCError code, const char* text) {
           if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+          if (code == RTC_ERROR_CANCELLED) throw Stopped{};  // by the monitor of build.cpp
           throw Bug(strf("Embree error %d: %s", static_cast<int>(code), text ? text : ""));
         },
         nullptr);

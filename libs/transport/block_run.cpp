@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/interrupt.h"
 #include "transport/dimensions.h"
 #include "transport/sensor_samples.h"
 #include "transport/serve.h"
@@ -76,6 +77,8 @@ void BlockRun::put(uint32_t i, uint32_t sample) {
 }
 
 void BlockRun::run_wave() {
+  constexpr double kGrace = 0.5;  // s: most blocks end by themselves
+  stop_point(kGrace);
   const auto paths = static_cast<uint32_t>(workspace_.lanes.size());
   const uint64_t asked = __rdtsc();
   draw(paths);

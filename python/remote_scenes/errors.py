@@ -109,7 +109,7 @@ class ProgramBug(ProgramError):
 
 
 class Interrupted(ProgramError):
-    """Stopped by Ctrl-C or SIGTERM (exit codes 130 and 143)."""
+    """Stopped by Ctrl-C, SIGTERM or SIGHUP (exit codes 130, 143 and 129)."""
 
 
 _PLACE = r"(?P<file>.+?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?"
@@ -222,7 +222,7 @@ def error_of(program: str, exit_code: int, output: list[str]) -> ProgramError:
     if exit_code == 2:
         said = [line.partition(": usage: ")[2] for line in output if ": usage: " in line]
         return UsageError(said[0] if said else text, program, exit_code, text)
-    if exit_code in (130, 143):
+    if exit_code in (129, 130, 143):
         return Interrupted(f"{program} was stopped", program, exit_code, text)
     if exit_code != 1:
         return ProgramBug(f"{program} ended with {exit_code}: {text}", program, exit_code, text)

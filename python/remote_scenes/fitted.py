@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 from ctypes import byref
 from typing import Any, Optional, Union
@@ -9,7 +10,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from .library import Numbers, Opened, SqtInfo, check, doubles, library, opened, rows
+from .library import Numbers, Opened, SqtInfo, doubles, library, opened, rows
 
 _DIRAC = {0: None, 1: "mirror", 2: "retro", 3: "through"}
 
@@ -90,8 +91,8 @@ class FittedFunction(Opened):
             u = np.random.default_rng(seed).random(shape if shape else (3,))
         shape, (o, numbers) = rows("out and u", out, u)
         drawn, density = np.empty_like(o), np.empty(len(o))
-        check(library().rs_sqt_sample(self._open, len(o), doubles(o), self._channel(channel), doubles(numbers),
-                                      doubles(drawn), doubles(density)))
+        self._check(library().rs_sqt_sample(self._open, len(o), doubles(o), self._channel(channel), doubles(numbers),
+                                            doubles(drawn), doubles(density)))
         return drawn.reshape(*shape, 3), density.reshape(shape)
 
     def density(self, out: npt.ArrayLike, in_: npt.ArrayLike) -> Numbers:
@@ -102,18 +103,18 @@ class FittedFunction(Opened):
         """The directions of the Dirac lobe (..., 3) and its part of the total (...); NaN and 0 where there is none."""
         shape, (o,) = rows("out", out)
         there, part = np.empty_like(o), np.empty(len(o))
-        check(library().rs_sqt_dirac(self._open, len(o), doubles(o), self._channel(channel), doubles(there), doubles(part)))
+        self._check(library().rs_sqt_dirac(self._open, len(o), doubles(o), self._channel(channel), doubles(there), doubles(part)))
         return there.reshape(*shape, 3), part.reshape(shape)
 
     def _channel(self, channel: int) -> int:
-        if not 0 <= channel < len(self.wavelength_um):
+        if not 0 <= operator.index(channel) < len(self.wavelength_um):
             raise IndexError(f"there is no channel {channel}; channels are 0 to {len(self.wavelength_um) - 1}")
         return channel
 
     def _ask(self, function: str, channels: int, *directions: npt.ArrayLike) -> Numbers:
         shape, arrays = rows("directions", *directions)
         answer = np.empty((len(arrays[0]), channels))
-        check(getattr(library(), function)(self._open, len(answer), *map(doubles, arrays), doubles(answer)))
+        self._check(getattr(library(), function)(self._open, len(answer), *map(doubles, arrays), doubles(answer)))
         return answer.reshape(*shape, channels)
 
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 import os
 import warnings
 import weakref
@@ -106,11 +107,32 @@ def told() -> None:
 
 def set_threads(threads: int) -> None:
     """Threads that calls within this process take from now on; 0 = one a core."""
-    check(library().rs_set_threads(threads))
+    check(library().rs_set_threads(whole(threads, "threads", 2 ** 31 - 1, -2 ** 31)))
+
+
+def whole(number: Any, what: str, most: int, least: int = 0) -> int:
+    """A whole number from `least` to `most`; ValueError or TypeError else. What is larger than its C type would be another
+    number there."""
+    try:
+        value = operator.index(number)
+    except TypeError:
+        raise TypeError(f"{what}={number!r}: a whole number is wanted") from None
+    if not least <= value <= most:
+        raise ValueError(f"{what}={value}: {least} to {most}")
+    return value
+
+
+def c_text(text: Union[str, bytes], what: str) -> bytes:
+    """Text for C, where a NUL would end it: ValueError when there is one."""
+    raw = os.fsencode(text)
+    if b"\0" in raw:
+        raise ValueError(f"{what} {text!r} has a NUL character in it")
+    return raw
 
 
 class Opened:
-    """Something of the library that is closed with this object, or by close()."""
+    """Something of the library that is closed with this object, or by close(). Calls of other threads that are on their way
+    then come to their end; later ones raise ValueError."""
 
     def __init__(self, handle: c_void_p, close: str) -> None:
         self._handle: Optional[c_void_p] = handle
@@ -118,9 +140,17 @@ class Opened:
 
     @property
     def _open(self) -> c_void_p:
-        if self._handle is None:
+        # Once: another thread may close it meanwhile. The library refuses handles that are closed then.
+        handle = self._handle
+        if handle is None:
             raise ValueError("it has been closed")
-        return self._handle
+        return handle
+
+    def _check(self, status: int) -> None:
+        """check(), of a call with _open."""
+        if status and self._handle is None:
+            raise ValueError("it has been closed")
+        check(status)
 
     def close(self) -> None:
         """Gives its memory back; it cannot be asked any more."""
@@ -137,7 +167,7 @@ class Opened:
 def opened(function: str, path: Union[str, Path], *more: Any) -> c_void_p:
     """What an open function of the library makes of a file."""
     handle = c_void_p()
-    check(getattr(library(), function)(os.fsencode(path), *more, byref(handle)))
+    check(getattr(library(), function)(c_text(path, "the path"), *more, byref(handle)))
     return handle
 
 

@@ -9,7 +9,7 @@ from typing import Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from .library import Numbers, Opened, SimulationInfo, check, doubles, library, opened, rows, told
+from .library import Numbers, Opened, SimulationInfo, c_text, doubles, library, opened, rows, told, whole
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class LitScene(Opened):
 
     def __init__(self, path: Union[str, os.PathLike[str]], sensor: Optional[str] = None) -> None:
         self.path = os.fspath(path)
-        super().__init__(opened("rs_simulation_open", self.path, None if sensor is None else sensor.encode()),
+        super().__init__(opened("rs_simulation_open", self.path, None if sensor is None else c_text(sensor, "the sensor's name")),
                          "rs_simulation_close")
         told()
         info, centre = SimulationInfo(), c_double()
@@ -58,14 +58,12 @@ class LitScene(Opened):
         shape, (o, d) = rows("origin and direction", origin, direction)
         n = len(o)
         time = None if time_s is None else np.ascontiguousarray(np.broadcast_to(np.asarray(time_s, np.float64), shape)).reshape(-1)
-        if paths is not None and not 0 < paths <= 1 << 30:
+        if paths is not None and whole(paths, "paths", 1 << 30) == 0:
             raise ValueError(f"paths={paths}: 1 to 2^30")
-        seed = self.seed if seed is None else seed
-        if not 0 <= seed <= 1 << 53:
-            raise ValueError(f"seed={seed}: 0 to 2^53")
+        seed = self.seed if seed is None else whole(seed, "seed", 1 << 53)
         mean, error, quality = np.empty((n, len(self.bands))), np.empty((n, len(self.bands))), np.empty(n, np.uint8)
-        check(library().rs_simulation_radiance(self._open, n, doubles(o), doubles(d), doubles(time), paths or 0, seed,
-                                               doubles(mean), doubles(error), quality.ctypes.data_as(POINTER(c_uint8))))
+        self._check(library().rs_simulation_radiance(self._open, n, doubles(o), doubles(d), doubles(time), paths or 0, seed,
+                                                     doubles(mean), doubles(error), quality.ctypes.data_as(POINTER(c_uint8))))
         told()
         return Radiance(mean.reshape(*shape, len(self.bands)), error.reshape(*shape, len(self.bands)), quality.reshape(shape))
 

@@ -10,6 +10,7 @@ import sys
 import threading
 import warnings
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import IO, Callable, Sequence, Union
 
@@ -25,7 +26,8 @@ _PERCENT = re.compile(r"^.*: \d+ % \(.* left\)$")
 
 def find_program(name: str) -> str:
     """The path of a program: in the folder that REMOTE_SCENES_BIN names, else on the PATH, else in `build/release/bin` of
-    the working folder or of one above it. ProgramMissing when it is in none of them (or not in the folder that is named).
+    the checkout that holds this package, else in that of the working folder or of one above it, which a ProgramWarning
+    names once. ProgramMissing when it is in none of them (or not in the folder that is named).
     """
     if folder := os.environ.get(FOLDER_VARIABLE):
         found = shutil.which(name, path=folder)
@@ -34,12 +36,22 @@ def find_program(name: str) -> str:
         return found
     if found := shutil.which(name):
         return found
+    if found := shutil.which(name, path=str(Path(__file__).resolve().parents[2] / "build/release/bin")):
+        return found
     here = Path.cwd()
     for above in (here, *here.parents):
         if found := shutil.which(name, path=str(above / "build/release/bin")):
+            _tell_found(str(above / "build/release/bin"))
             return found
     raise ProgramMissing(f"{name} was found nowhere: build the suite (scripts/build), put its build/release/bin on the PATH, "
                          f"or name that folder in {FOLDER_VARIABLE}")
+
+
+@lru_cache(maxsize=None)
+def _tell_found(folder: str) -> None:
+    """Nobody has named the folder: whoever started Python somewhere below it may mean other programs, or trust none there."""
+    warnings.warn(f"the programs of {folder} are used, which was found from the working folder upwards; put it on the PATH, "
+                  f"or name it in {FOLDER_VARIABLE}", ProgramWarning, stacklevel=_caller())
 
 
 @dataclass(frozen=True)

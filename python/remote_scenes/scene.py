@@ -12,7 +12,7 @@ from typing import Any, Mapping, Sequence, Union
 
 from .errors import Finding, InputError, with_keys
 from .programs import Progress, run_program
-from .tree import CurveLike, FileName, Keys, OpenKeys, plain, write
+from .tree import CurveLike, FileName, Keys, OpenKeys, beside, plain, write
 
 Time = Union[float, str, datetime.datetime]
 """Seconds, or a date: a datetime with a time zone, or text as 2026-06-21T10:30:00Z."""
@@ -188,8 +188,9 @@ class Scene(Keys):
         return check_scene(self.write(path), **options)
 
     def prepare(self, path: FileName, **options: Any) -> PreparedScene:
-        """Writes the text beside `path` (with the ending .yaml) and prepares it as `path` (.h5); see prepare_scene."""
-        return prepare_scene(self.write(Path(path).with_suffix(".yaml")), path, **options)
+        """Writes the text beside `path` (with the ending .yaml; _scene.yaml where a simulation's text has that name) and prepares
+        it as `path` (.h5); see prepare_scene."""
+        return prepare_scene(self.write(beside(self, Path(path).with_suffix(".yaml"))), path, **options)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from .programs import Progress, run_program
 from .results import Result
 from .scene import PreparedScene, Time, Vector, _options, _settings
 from .temperatures import open_temperatures
-from .tree import CurveLike, FileName, Keys, OpenKeys, write
+from .tree import CurveLike, FileName, Keys, OpenKeys, beside, write
 
 
 @dataclass(kw_only=True)
@@ -209,16 +209,17 @@ class Simulation(Keys):
         return run_program("dirsig-render", [self.write(path), "--dry-run", *_render_options(**options)]).stdout
 
     def render(self, folder: FileName, **options: Any) -> Result:
-        """Writes the text beside the folder (with the ending .yaml) and renders it into the folder; see render."""
+        """Writes the text beside the folder (with the ending .yaml; _simulation.yaml where a scene's text has that name) and
+        renders it into the folder; see render."""
         folder = Path(folder)
-        return render(self.write(folder.with_name(folder.name + ".yaml")), folder, **options)
+        return render(self.write(beside(self, folder.with_name(folder.name + ".yaml"))), folder, **options)
 
     def find_temperatures(self, folder: FileName, *, progress: Progress = None, **options: Any) -> xr.Dataset:
         """Finds the temperatures that follow from `weather` and writes them into the folder (heat.h5, heat.csv, heat.html),
         without rendering; further runs take them with `heat=folder/"heat.h5"`. Returns them; see open_temperatures.
         """
         folder = Path(folder)
-        text = self.write(folder.with_name(folder.name + ".yaml"))
+        text = self.write(beside(self, folder.with_name(folder.name + ".yaml")))
         run_program("dirsig-render", [text, "-o", folder, "--heat-only", *_render_options(**options)], progress)
         return open_temperatures(folder / "heat.h5")
 

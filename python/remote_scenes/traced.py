@@ -9,7 +9,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from .library import HitArrays, Numbers, Opened, SceneInfo, check, doubles, integers, library, opened, rows
+from .library import HitArrays, Numbers, Opened, SceneInfo, doubles, integers, library, opened, rows
 
 Integers = npt.NDArray[np.int64]
 
@@ -37,6 +37,14 @@ class Hits:
     def hit(self) -> npt.NDArray[np.bool_]:
         """Where something is met."""
         return np.isfinite(self.distance)
+
+
+def _draws(given: npt.ArrayLike) -> npt.NDArray[np.uint32]:
+    numbers = np.asarray(given)
+    if numbers.size and (numbers.dtype.kind not in "iu" or numbers.min() < 0 or numbers.max() >= 1 << 32):
+        raise ValueError(f"draw: whole numbers from 0 to {(1 << 32) - 1} are wanted, not {numbers.dtype} "
+                         f"from {numbers.min()} to {numbers.max()}")
+    return numbers.astype(np.uint32)
 
 
 class TracedScene(Opened):
@@ -70,14 +78,14 @@ class TracedScene(Opened):
         whose holes (opacity maps) rays pass are there or not by a hash of the ray and of `draw`, whole numbers."""
         shape, (o, d) = rows("origin and direction", origin, direction)
         n = len(o)
-        number = self._each(draw, shape, np.uint32)
+        number = self._each(None if draw is None else _draws(draw), shape, np.uint32)
         hits = Hits(np.empty(n), np.empty((n, 3)), np.empty((n, 3)), *(np.empty(n, np.int64) for _ in range(4)))
         arrays = HitArrays(doubles(hits.distance), doubles(hits.position), doubles(hits.normal), integers(hits.material),
                            integers(hits.instance), integers(hits.tag), integers(hits.triangle))
         time = self._each(time_s, shape, np.float64)
-        check(library().rs_scene_trace(self._open, n, doubles(o), doubles(d), doubles(time),
-                                       None if number is None else number.ctypes.data_as(POINTER(c_uint32)), byref(arrays)))
-        return Hits(*(getattr(hits, f).reshape(*shape, *getattr(hits, f).shape[1:]) for f in Hits.__dataclass_fields__))
+        self._check(library().rs_scene_trace(self._open, n, doubles(o), doubles(d), doubles(time),
+                                             None if number is None else number.ctypes.data_as(POINTER(c_uint32)), byref(arrays)))
+        return Hits(*(getattr(hits, f).reshape(shape + getattr(hits, f).shape[1:]) for f in Hits.__dataclass_fields__))
 
     def visible(self, from_: npt.ArrayLike, to: npt.ArrayLike, gap_m: float = 1e-3,
                 time_s: Optional[npt.ArrayLike] = None) -> npt.NDArray[np.bool_]:
@@ -85,9 +93,9 @@ class TracedScene(Opened):
         within gap_m of either place do not stand between."""
         shape, (a, b) = rows("from_ and to", from_, to)
         seen = np.empty(len(a), np.uint8)
-        check(library().rs_scene_visible(self._open, len(a), doubles(a), doubles(b), gap_m,
-                                         doubles(self._each(time_s, shape, np.float64)),
-                                         seen.ctypes.data_as(POINTER(c_uint8))))
+        self._check(library().rs_scene_visible(self._open, len(a), doubles(a), doubles(b), gap_m,
+                                               doubles(self._each(time_s, shape, np.float64)),
+                                               seen.ctypes.data_as(POINTER(c_uint8))))
         return np.asarray(seen.reshape(shape) != 0)
 
     @staticmethod

@@ -149,6 +149,17 @@ def _mark(value: Keys) -> str:
     return f"{MARK}, a {type(value).__name__.lower()}"
 
 
+def beside(value: Keys, path: FileName) -> Path:
+    """`path`, for the text that goes with a result: where this package has written a text of another class there,
+    `s_scene.yaml` or `s_simulation.yaml` in place of `s.yaml`."""
+    target = Path(path)
+    if target.exists():
+        old = target.read_text(encoding="utf-8", errors="replace")
+        if old.startswith(MARK) and not old.startswith(_mark(value)):
+            return target.with_stem(f"{target.stem}_{type(value).__name__.lower()}")
+    return target
+
+
 def write(value: Keys, path: FileName) -> Path:
     """Writes the text, whole or not at all; a file that holds it already is left as it is. FileExistsError when something
     stands there that this package has not written, or of another class: a text by hand is never replaced.

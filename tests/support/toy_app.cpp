@@ -12,8 +12,43 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/run_app.h"
+#include "base/run_lock.h"
 
 using namespace suite;
+
+namespace {
+
+int hold_lock(const std::string& folder, double seconds) {
+  const RunLock lock = RunLock::of_folder(folder);
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  return 0;
+}
+
+// Many, of many threads, until a signal comes.
+int write_files(const std::string& folder) {
+  on_threads(4, [&] {
+    for (int i = 0; i < 1000000; ++i) write_file(folder + "/x", "short");
+  });
+  return 0;
+}
+
+int loop_for_ever(const std::string& file) {
+  const StopInGoodOrder order;
+  AtomicFile whole(file);
+  whole.write(std::string_view("all of it"));
+  try {
+    parallel_for(0, size_t{1} << 40, 1,
+                 [](size_t, size_t) { parallel_for(0, 1000, 1, [](size_t, size_t) { std::this_thread::yield(); }); });
+  } catch (const Stopped&) {
+    const FinishFirst finish;
+    parallel_for(0, 10, 1, [&](size_t, size_t) { stop_point(); });
+    whole.commit();
+    throw;
+  }
+  return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   std::string what, name = "unnamed";
@@ -37,6 +72,9 @@ int main(int argc, char** argv) {
         if (what == "usage") throw UsageError("--name and --strict contradict each other");
         if (what == "refuse") return 1;
         if (what == "echo") throw Error(name);
+        if (what == "lock") return hold_lock(name, size);
+        if (what == "files") return write_files(name);
+        if (what == "loop") return loop_for_ever(name);
         if (what == "write" || what == "stop") {
           AtomicFile file(name);
           file.write(std::string_view("half of it"));

@@ -87,6 +87,50 @@ TEST_F(Hostile, NoProgramReplacesItsInputs) {
   }
 }
 
+// A picture of the sky was replaced by the preview of a sensor of its name, for another library had opened it; and a
+// track, a page and a table of weather were found to be inputs only when all was rendered.
+TEST_F(Hostile, WhatOtherLibrariesReadIsNotReplacedEither) {
+  prepare();
+  // 1 x 1, 8-bit RGB.
+  const unsigned char png[] = {0x89, 'P',  'N',  'G',  0x0d, 0x0a, 0x1a, 0x0a, 0,   0,    0,    13,   'I',  'H',
+                               'D',  'R',  0,    0,    0,    1,    0,    0,    0,   1,    8,    2,    0,    0,
+                               0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,    12,  'I',  'D',  'A',  'T',  0x78,
+                               0x9c, 0x63, 0x60, 0x60, 0x60, 0,    0,    0,    4,   0,    1,    0xf6, 0x17, 0x38,
+                               0x55, 0,    0,    0,    0,    'I',  'E',  'N',  'D', 0xae, 0x42, 0x60, 0x82};
+  const std::string place = "position_m: [0, 0, 9], look_at_m: [0, 1, 0]";
+  const auto rendered = [&](const std::string& picture, const std::string& options) {
+    write_file(folder_ / "sky.yaml", "scene: scene.h5\nsky: {kind: image, file: " + picture +
+                                         ", wavelength_um: [0.45, 0.55, 0.65]}\nsensors:\n" + camera("cam", place));
+    return run("dirsig-render sky.yaml " + options);
+  };
+  const auto put = [&](const std::string& name) { write_file(folder_ / name, std::as_bytes(std::span(png))); };
+  put("cam.png"), put("far.png");
+  std::filesystem::create_directories(folder_ / "hard");
+  std::filesystem::create_directories(folder_ / "soft");
+  std::filesystem::create_hard_link(folder_ / "far.png", folder_ / "hard/cam.png");
+  std::filesystem::create_symlink("../far.png", folder_ / "soft/cam_quality.tif");
+  for (const auto& [picture, options] : {std::pair<std::string, std::string>{"cam.png", "-o ."},
+                                         {"far.png", "-o hard"},
+                                         {"far.png", "-o soft"},
+                                         {"far.png", "-o out --view far.png"},
+                                         {"far.png", "-o out --view scene.h5"}}) {
+    const CommandResult r = rendered(picture, options);
+    EXPECT_EQ(r.code, 2) << picture << " " << options << "\n" << r.err;
+    EXPECT_THAT(r.err, HasSubstr("would replace an input")) << options;
+    EXPECT_EQ(r.err.find("median relative"), std::string::npos) << "only after rendering: " << options;
+  }
+  const CommandResult page = rendered("far.png", "-o out --view ./out/cam.png");
+  EXPECT_EQ(page.code, 2) << page.err;
+  EXPECT_THAT(page.err, HasSubstr("'./out/cam.png' has the name of a result of this run"));
+  for (const char* name : {"cam.png", "far.png", "hard/cam.png"})
+    EXPECT_EQ(read_bytes(folder_ / name).size(), sizeof png) << name;
+  // What an earlier run made is an input of the next one.
+  EXPECT_EQ(rendered("far.png", "-o out").code, 0);
+  const std::vector<std::byte> before = read_bytes(folder_ / "out/cam.png");
+  EXPECT_EQ(rendered("out/cam.png", "-o out").code, 2);
+  EXPECT_EQ(read_bytes(folder_ / "out/cam.png"), before);
+}
+
 TEST_F(Hostile, NamesStayInTheFolder) {
   prepare();
   for (const char* name :

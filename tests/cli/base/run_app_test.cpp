@@ -104,6 +104,57 @@ TEST(RunApp, ASignalAsksForAnEndInGoodOrder) {
   EXPECT_EQ(folder.entries(), 1u);  // whole, without its temporary
 }
 
+// Loops of the libraries once went on to their end after a signal.
+TEST(RunApp, ParallelLoopsStopAtASignalAndFinishWhatHasToBe) {
+  const TempFolder folder;
+  const CommandResult r = signalled(folder, "loop", "TERM");
+  EXPECT_EQ(r.code, 143);
+  EXPECT_THAT(r.err, HasSubstr("toy: stopped by signal\n"));
+  EXPECT_EQ(folder.entries(), 1u);  // whole
+}
+
+// A file that a thread created while another one ended the program would stay.
+TEST(RunApp, NoFileAppearsWhileASignalEndsTheProgram) {
+  for (int k = 0; k < 20; ++k) {
+    const TempFolder folder;
+    const CommandResult r = run_command("bash -c \"" + std::string(SUITE_TOY_APP) + " files --name " + folder.path() +
+                                        " & pid=\\$!; while [ ! -e " + (folder / "x") +
+                                        " ]; do sleep 0.01; done; kill -TERM \\$pid; "
+                                        "wait \\$pid\"");
+    EXPECT_EQ(r.code, 143);
+    EXPECT_EQ(folder.entries(), 1u);  // "x", whole
+  }
+}
+
+// Three jobs into one folder: the later ones are refused and name the first; a lock whose run has died is none.
+TEST(RunApp, AFolderIsLockedForOneRun) {
+  const TempFolder folder;
+  const std::string run = std::string(SUITE_TOY_APP) + " lock --name " + folder.path(), path = folder / "run.lock";
+  const std::string wait = "while [ ! -s " + path + " ]; do sleep 0.01; done; ";
+  for (const auto& [signal, code] : {std::pair<std::string, int>{"TERM", 143}, {"HUP", 129}}) {
+    const CommandResult r = run_command("bash -c \"" + run + " -s 60 & pid=\\$!; " + wait + run +
+                                        " -s 0; echo second \\$?; kill -" + signal + " \\$pid; wait \\$pid\"");
+    EXPECT_EQ(r.code, code) << r.err;
+    EXPECT_THAT(r.out, HasSubstr("second 1"));
+    EXPECT_THAT(r.err, HasSubstr("another run writes here: process "));
+    EXPECT_THAT(r.err, HasSubstr("(toy lock --name "));
+    EXPECT_EQ(folder.entries(), 0u) << "the lock goes with the run";
+  }
+  EXPECT_EQ(run_command(run + " -s 0").code, 0);
+  EXPECT_EQ(folder.entries(), 0u);
+  // Killed, it stays, and the next run takes it.
+  run_command("bash -c \"" + run + " -s 60 & pid=\\$!; " + wait + "kill -KILL \\$pid; wait \\$pid\"");
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(run_command(run + " -s 0").code, 0);
+  EXPECT_EQ(folder.entries(), 0u);
+  // Somebody's own file of that name is left alone.
+  std::ofstream(path) << "mine\n";
+  const CommandResult r = run_command(run + " -s 0");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("is no lock file, and stands where a run puts one"));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 // Escape sequences of an input once reached the terminal as they were.
 TEST(RunApp, ControlCharactersOfArgumentsAreShown) {
   const CommandResult r = toy("echo --name \"$(printf 'a\\033[31mb')\"");

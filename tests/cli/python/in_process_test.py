@@ -3,8 +3,10 @@ import csv
 import math
 import shutil
 import subprocess
+import sys
 import threading
 import unittest
+from ctypes import byref
 from pathlib import Path
 from unittest import mock
 
@@ -12,7 +14,7 @@ import numpy as np
 
 import remote_scenes as rs
 from kit import ROOT, Case, lawn_with_things
-from remote_scenes.library import NAME, find_library
+from remote_scenes.library import NAME, HitArrays, SceneInfo, find_library, library
 
 
 def run(program, *arguments):
@@ -167,6 +169,97 @@ class Traced(Case):
             self.assertEqual(len(set(hits.instance)), 1)
             self.assertTrue((hits.triangle == -1).all())
 
+    def test_one_ray_has_one_answer(self):
+        """It was a TypeError."""
+        with rs.open_scene(self.path) as scene:
+            one, many = scene.trace([20, 0, 50], [0, 0, -1]), scene.trace([[20, 0, 50]], [0, 0, -1])
+            for name in ("distance", "position", "normal", "material", "instance", "tag", "triangle", "hit"):
+                self.assertEqual(getattr(one, name).shape, getattr(many, name).shape[1:], name)
+                np.testing.assert_array_equal(getattr(one, name), getattr(many, name)[0])
+            self.assertAlmostEqual(float(one.distance), 42, places=9)
+            self.assertEqual(scene.visible([20, 0, 50], [20, 0, 9]).shape, ())
+
+    def test_closed_while_others_use_it(self):
+        """The process ended by a signal, four times of four."""
+        (self.folder / "use.py").write_text("""
+import sys, threading, time
+import numpy as np
+import remote_scenes as rs
+
+scene, satin, wrong = rs.open_scene(sys.argv[1]), rs.open_sqt(sys.argv[2]), []
+rays = np.random.default_rng(1).random((2000, 3)) * 20 + [0, 0, 9]
+begun = threading.Barrier(9)
+
+def use(thing, ask):
+    begun.wait()
+    try:
+        while True:
+            ask()
+    except ValueError as e:
+        if str(e) != "it has been closed":
+            wrong.append(e)
+    except BaseException as e:
+        wrong.append(e)
+
+def fewer_threads():
+    for k in range(200):
+        rs.set_threads(1 + k % 3)
+
+asked = [(scene, lambda: scene.trace(rays, [0, 0, -1])), (scene, lambda: scene.visible(rays, [0, 0, 50])),
+         (satin, lambda: satin.evaluate(rs.direction(np.linspace(0, 80, 2000)), rs.direction(30)))]
+threads = [threading.Thread(target=use, args=asked[k % 3]) for k in range(8)]
+for t in threads:
+    t.start()
+begun.wait()
+fewer_threads()
+scene.close()
+satin.close()
+for t in threads:
+    t.join()
+assert not wrong, wrong
+scene.close()
+""")
+        run("sqt-fit", "-q", "--model", "lambert:reflectance=0.3", "-o", self.folder / "grey.sqt")
+        for _ in range(3):
+            done = subprocess.run([sys.executable, self.folder / "use.py", self.path, self.folder / "grey.sqt"],
+                                  capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_handles_of_the_library_that_are_closed_are_refused(self):
+        lib, scene = library(), rs.open_scene(self.path)
+        handle = scene._open
+        scene.close()
+        again = rs.open_scene(self.path)
+        for call in (lambda: lib.rs_scene_trace(handle, 1, None, None, None, None, byref(HitArrays())),
+                     lambda: lib.rs_scene_visible(handle, 1, None, None, 0, None, None)):
+            self.assertEqual(call(), 1)
+            self.assertIn(b"scene has been closed", lib.rs_message())
+        self.assertIsNone(lib.rs_scene_material(handle, 0))
+        info = SceneInfo(materials=7)
+        lib.rs_scene_describe(handle, byref(info))
+        self.assertEqual(info.materials, 0)
+        lib.rs_scene_close(handle)
+        lib.rs_scene_close(None)
+        self.assertEqual(again.trace([20, 0, 50], [0, 0, -1]).hit, True)
+        again.close()
+
+    def test_numbers_and_names_that_c_would_cut(self):
+        """2^32 + 1 threads were one, a draw of -1 or 2^32 another one, and a path ended at its NUL."""
+        for threads in (2 ** 32 + 1, 2 ** 70, -2 ** 32):
+            self.assertRaisesRegex(ValueError, "threads=.*: -2147483648 to 2147483647", rs.set_threads, threads)
+        self.assertRaisesRegex(rs.InputError, "0 to 4096", rs.set_threads, 5000)
+        self.assertRaisesRegex(TypeError, "threads=1.5: a whole number", rs.set_threads, 1.5)
+        with rs.open_scene(self.path) as scene:
+            for draw in (-1, 2 ** 32, np.array([2 ** 40]), 0.5, 2 ** 70, [1.0]):
+                self.assertRaisesRegex(ValueError, "draw: whole numbers from 0 to 4294967295", scene.trace, [[0, 0, 9]], [0, 0, -1],
+                                       draw=draw)
+            scene.trace([[0, 0, 9]], [0, 0, -1], draw=2 ** 32 - 1)
+            scene.trace(np.empty((0, 3)), [0, 0, -1], draw=[])
+        nul = str(self.path) + "\0.png"
+        for open_ in (rs.open_scene, rs.open_sqt, rs.open_simulation):
+            self.assertRaisesRegex(ValueError, "NUL", open_, nul)
+        self.assertRaisesRegex(ValueError, "the sensor's name .* NUL", rs.open_simulation, self.path, "cam\0era")
+
     def test_names_tags_and_nothing(self):
         with rs.open_scene(self.path) as scene:
             hits = scene.trace([[5, 5, 30], [5, 5, 30], [0, -5, 30], [0, -7.5, 30], [-30, 20, 30]],
@@ -307,6 +400,11 @@ class Lit(Case):
             self.assertRaisesRegex(rs.InputError, "unit vector", lit.radiance, [0, 0, 9], [0, 0, -3])
             self.assertRaises(ValueError, lit.radiance, [0, 0, 9], [0, 0, -1], paths=0)
             self.assertRaises(ValueError, lit.radiance, [0, 0, 9], [0, 0, -1], seed=-1)
+            for wrong in (2 ** 64 + 5, 2 ** 53 + 1):
+                self.assertRaisesRegex(ValueError, "seed=", lit.radiance, [0, 0, 9], [0, 0, -1], seed=wrong)
+                self.assertRaisesRegex(ValueError, "paths=", lit.radiance, [0, 0, 9], [0, 0, -1], paths=wrong)
+            self.assertRaisesRegex(TypeError, "paths=2.5", lit.radiance, [0, 0, 9], [0, 0, -1], paths=2.5)
+            self.assertEqual(lit.radiance([0, 0, 9], [0, 0, -1], paths=1).radiance.shape, (len(lit.bands),))
 
 
 class Border(Case):

@@ -2,8 +2,11 @@
 import json
 import os
 import shlex
+import shutil
 import signal
 import stat
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -88,6 +91,42 @@ class Programs(Case):
             with self.assertRaisesRegex(rs.ProgramMissing, "REMOTE_SCENES_BIN"):
                 rs.run_program("scene-prep", ["--version"])
         self.assertEqual(rs.version(), rs.__version__)
+
+    def test_programs_above_the_working_folder_are_named(self):
+        """Any folder above the working one was taken without a word."""
+        programs, below = self.folder / "build/release/bin", self.folder / "a/b"
+        for folder in (programs, below):
+            folder.mkdir(parents=True)
+        (programs / "scene-prep").write_text("#!/bin/sh\necho scene-prep 9.9\n")
+        (programs / "scene-prep").chmod(0o755)
+        code = "import remote_scenes as rs; print(rs.find_program('scene-prep'), rs.version())"
+        shutil.copytree(Path(rs.__file__).parent, self.folder / "deep/package/remote_scenes")  # in no checkout
+        env = {k: v for k, v in os.environ.items() if k != "REMOTE_SCENES_BIN"} | {
+            "PATH": "/usr/bin:/bin", "PYTHONPATH": str(self.folder / "deep/package")}
+        done = subprocess.run([sys.executable, "-c", code], cwd=below, env=env, capture_output=True, text=True)
+        self.assertEqual(done.stdout.split(), [str(programs.resolve() / "scene-prep"), "9.9"], done.stderr)
+        self.assertEqual(done.stderr.count(f"ProgramWarning: the programs of {programs.resolve()} are used"), 1, done.stderr)
+        # Named, there is nothing to say.
+        done = subprocess.run([sys.executable, "-c", code], cwd=below, env=env | {"REMOTE_SCENES_BIN": str(programs)},
+                              capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+
+    def test_a_scene_and_a_simulation_of_one_name_have_texts_of_their_own(self):
+        """prepare("s00.h5") and render("s00") wanted the same s00.yaml."""
+        sensor = rs.Orthographic(name="map", columns=4, rows=4, gsd_m=1, bands=BANDS[:1], paths=1)
+        with self.subTest("scene first"):
+            prepared = lawn_with_things().prepare(self.folder / "s00.h5")
+            text = (self.folder / "s00.yaml").read_text()
+            for _ in range(2):
+                by_day(prepared, [sensor]).render(self.folder / "s00")
+            self.assertEqual((self.folder / "s00.yaml").read_text(), text)
+            self.assertTrue((self.folder / "s00_simulation.yaml").exists())
+        with self.subTest("simulation first"):
+            by_day(prepared, [sensor]).render(self.folder / "s01")
+            lawn_with_things().prepare(self.folder / "s01.h5")
+            self.assertTrue((self.folder / "s01_scene.yaml").exists())
+        (self.folder / "s02.yaml").write_text("scene: s00.h5\n")  # by hand
+        self.assertRaises(FileExistsError, by_day(prepared, [sensor]).render, self.folder / "s02")
 
     def test_maps_far_from_a_high_origin_are_told(self):
         """Coordinates of maps are on the ellipsoid to other programs: 3000 m / 6381 km of 20 km are 9.4 m."""

@@ -209,6 +209,15 @@ TEST(LimitsOfOutputs, InputsAreNotReplaced) {
     EXPECT_THROW(check_outputs({folder / "new", folder / name}), UsageError) << name;
   }
   EXPECT_EQ(read_text(folder / "in.obj"), "v 0 0 0\n");
+  // What another library opens, and what is read while an output of its name is being written.
+  write_file(folder / "sky.png", "pixels");
+  EXPECT_EQ(input_size(folder / "sky.png"), 6u);
+  EXPECT_EQ(input_at(folder / "sky.png"), folder / "sky.png");
+  write_file(folder / "late", "in");
+  AtomicFile late(folder / "late");
+  read_text(folder / "late");
+  EXPECT_THAT(message_of([&] { late.commit(); }), HasSubstr("would replace an input of this run"));
+  EXPECT_EQ(read_text(folder / "late"), "in");
   EXPECT_NO_THROW(check_outputs({"", "-", "-", folder / "new", folder / "other"}));
   EXPECT_THROW(check_outputs({folder / "new", folder.path() + "/./new"}), UsageError);
 }
