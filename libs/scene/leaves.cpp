@@ -15,6 +15,27 @@ Leaves::Leaves(const Scene& scene) : scene_(scene), of_(scene.groups.size()), fi
     }
 }
 
+bool tags_groups(const Scene& scene) {
+  return std::ranges::any_of(scene.groups, [](const Group& g) {
+    return std::ranges::any_of(g.placements,
+                               [](const Placement& p) { return p.tag != kNone && p.kind == TargetKind::group; });
+  });
+}
+
+uint64_t Leaves::object_of(uint64_t number) const {
+  uint64_t object = number, begin = 0;  // of the placement that is looked at
+  for (size_t group = 0;;) {
+    const std::vector<uint64_t>& first = first_[group];
+    const auto i =
+        static_cast<size_t>(std::upper_bound(first.begin(), first.end(), number - begin) - first.begin()) - 1;
+    const Placement& p = scene_.groups[group].placements[i];
+    begin += first[i];
+    if (p.tag != kNone) object = begin;
+    if (p.kind != TargetKind::group) return object;
+    group = p.target;
+  }
+}
+
 std::optional<Leaf> Leaves::at(uint64_t number, double t) const {
   Leaf leaf;
   for (size_t group = 0;;) {

@@ -17,6 +17,9 @@ struct Leaf {
   uint32_t tag = kNone;                // the innermost one
 };
 
+// Whether a tag stands on a placement of a group, so that several leaves are one thing.
+bool tags_groups(const Scene& scene);
+
 class Leaves {
  public:
   // scene must outlive it.
@@ -25,6 +28,9 @@ class Leaves {
   // number: below count(), that of truth images (the order of the hierarchy). Nothing when it is not there at time t,
   // s. Error: a track on the way does not cover t.
   std::optional<Leaf> at(uint64_t number, double t) const;
+  // The first leaf of the thing that a leaf is part of: of the innermost placement on the way that has a tag; the leaf
+  // itself where none has. number: below count().
+  uint64_t object_of(uint64_t number) const;
 
  private:
   const Scene& scene_;

@@ -31,6 +31,7 @@ def write_chips(datasets: Union[xr.Dataset, Mapping[str, xr.Dataset]], folder: F
 
     datasets: of Result, one or by name. Objects are the instances of the truth (a sensor with `truth: [tag, instance, ...]`
     or `[material, instance, ...]`): a pixel belongs to the instance, tag and material that most of its samples met first.
+    By tag, a group with a tag is one object (`truth_object`); `instance` of a label is then its first one.
     category: what names them; untagged ones are no objects. names: the categories, in the order of their numbers from 1;
     else those that occur in the scene, which are the same for all images of one scene.
     size, stride: pixels; chips at the right and lower edge are moved inwards so that all are whole, smaller images are one
@@ -124,7 +125,7 @@ class _Objects:
         # Of each class its category, 0 = none: nothing or untagged, and what the caller did not name.
         of_class = np.array([0] + [known.get(one, 0) for one in classes.attrs["class_names"][1:]], dtype=np.int64)
         kind = of_class[classes.values.astype(np.int64)]
-        instance = dataset["truth_instance"].values
+        instance = dataset["truth_object" if category == "tag" and "truth_object" in dataset else "truth_instance"].values
         there = (kind > 0) & np.isfinite(instance)
         pairs = np.stack([np.where(there, kind, 0), np.where(there, instance, 0).astype(np.int64)], axis=-1).reshape(-1, 2)
         unique, inverse = np.unique(pairs, axis=0, return_inverse=True)

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 
+#include "scene/leaves.h"
 #include "transport/truth/truth.h"
 
 namespace suite {
@@ -60,7 +62,7 @@ struct Votes {  // (id + 1, count) pairs in the slots; (0, 0) = free
   }
 };
 
-enum class What { material, instance, tag };
+enum class What { material, instance, tag, object };
 uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
   if (node.object == kNone && what != What::material) return kNone;  // the Earth is no instance and has no tag
   switch (what) {
@@ -70,6 +72,7 @@ uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
       if (node.object == kNone) return kNone;  // the Earth under the scene
       return c.tracer.object(node.object).instance;
     case What::tag:
+    case What::object:
       break;
   }
   return node.object != kNone ? c.tracer.object(node.object).tag : kNone;
@@ -77,11 +80,15 @@ uint32_t id_of(What what, const TruthContext& c, const FirstMeeting& node) {
 
 struct Majority final : TruthCollector {
   Majority(const TruthContext& c, What w, std::string name, bool f)
-      : context(c), what(w), column(std::move(name)), fraction(f) {}
+      : context(c), what(w), column(std::move(name)), fraction(f) {
+    if (what == What::object) leaves.emplace(c.tracer.scene());
+  }
   size_t slots() const override { return 2 * kVotes; }
   std::vector<std::string> columns() const override { return {column}; }
   void add(const TruthSample& s, double* slots) const override {
-    if (s.first) Votes::add(slots, id_of(what, context, *s.first));
+    if (!s.first) return;
+    const uint32_t id = id_of(leaves ? What::instance : what, context, *s.first);
+    Votes::add(slots, leaves && id != kNone ? static_cast<uint32_t>(leaves->object_of(id)) : id);
   }
   void join(const double* others, double* slots) const override { Votes::join(others, slots); }
   void finish(const double* slots, const TruthCounts& n, double* v) const override {
@@ -94,6 +101,7 @@ struct Majority final : TruthCollector {
   What what;
   std::string column;
   bool fraction;
+  std::optional<Leaves> leaves;  // of objects
 };
 
 // The share of all samples that met each material or tag first.
@@ -146,7 +154,7 @@ struct Reflectance final : TruthCollector {
 
 template <What what, bool fraction>
 std::unique_ptr<const TruthCollector> majority(const TruthContext& c) {
-  static const std::array<std::string, 3> names{"material", "instance", "tag"};
+  static const std::array<std::string, 4> names{"material", "instance", "tag", "object"};
   const std::string& name = names[static_cast<size_t>(what)];
   return std::make_unique<Majority>(c, what, fraction ? name + " fraction" : name, fraction);
 }
@@ -163,6 +171,10 @@ void add_matter_rows(std::vector<TruthRow>& table) {
   table.push_back({"tag", "number of the most frequent tag", "", majority<What::tag, false>});
   table.push_back(
       {"tag_fraction", "its share of all samples (exact up to 4 different ones)", "", majority<What::tag, true>});
+  table.push_back({"object",
+                   "number of the most frequent tagged thing: a tagged group is one, by its first instance; comes by "
+                   "itself with tag and instance where groups have tags",
+                   "", majority<What::object, false>});
   table.push_back({"abundance", "share of all samples that met each tag, one column a tag", "",
                    [](const TruthContext& c) -> std::unique_ptr<const TruthCollector> {
                      return std::make_unique<Abundance>(c, What::tag);

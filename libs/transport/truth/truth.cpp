@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "scene/leaves.h"
+
 namespace suite {
 
 const Registry<TruthRow>& truth_rows() {
@@ -23,9 +25,21 @@ void TruthCollector::join(const double* others, double* own) const {
   for (size_t i = 0; i < slots(); ++i) own[i] += others[i];
 }
 
-TruthPlan::TruthPlan(std::span<const std::string> names, const TruthContext& context) {
-  if (!names.empty()) slots_ = 1;
-  for (const std::string& name : names) {
+namespace {
+
+// With tags and instances comes what is one thing, where instances alone do not say so: a label is of a thing.
+std::vector<std::string> completed(std::span<const std::string> given, const Scene& scene) {
+  std::vector<std::string> names(given.begin(), given.end());
+  const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
+  if (has("tag") && has("instance") && !has("object") && tags_groups(scene)) names.emplace_back("object");
+  return names;
+}
+
+}  // namespace
+
+TruthPlan::TruthPlan(std::span<const std::string> given, const TruthContext& context) {
+  if (!given.empty()) slots_ = 1;
+  for (const std::string& name : completed(given, context.tracer.scene())) {
     collectors_.push_back(truth_rows().find(name).make(context));
     const std::vector<std::string> columns = collectors_.back()->columns();
     widths_.push_back(columns.size());

@@ -59,7 +59,8 @@ const Registry<TruthRow>& truth_rows();
 // The collectors of a capture, side by side.
 class TruthPlan {
  public:
-  // Error: an unknown name, or a scene without what a collector needs (an origin on the Earth).
+  // `object` joins `tag` and `instance` where a group has a tag. Error: an unknown name, or a scene without what a
+  // collector needs (an origin on the Earth).
   TruthPlan(std::span<const std::string> names, const TruthContext& context);
   // Doubles that a problem keeps of each scramble; 0 when nothing is wanted.
   size_t slots() const { return slots_; }

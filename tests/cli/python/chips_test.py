@@ -89,6 +89,32 @@ class Chips(Case):
             # The ring has a hole where it is whole, which is no polygon.
             self.assertEqual(kinds, {dict} if segmentation == "rle" else {dict, list})
 
+    def test_a_group_under_one_tag_is_one_object(self):
+        """A truck of two boxes, placed twice, had four labels."""
+        scene = rs.Scene("group")
+        for name, share in (("grey", 0.2), ("white", 0.7)):
+            scene.materials[name] = rs.Material("lambert", reflectance=share)
+        scene.objects.update(ground=rs.plane(100, 100, material="grey"), body=rs.box([-1, -2.5, 0], [1, 2.5, 1.5], material="white"),
+                             cab=rs.box([-1, 1, 1.5], [1, 2.5, 2.5], material="grey"))
+        scene.groups["truck"] = [rs.Placement("body"), rs.Placement("cab")]
+        scene.groups["convoy"] = [rs.Placement("truck", tag="vehicle", translate=[20 * k, 0, 0]) for k in (0, 1)]
+        scene.world += [rs.Placement("ground", tag="ground"), rs.Placement("truck", tag="vehicle", translate=[-10, 0, 0]),
+                        rs.Placement("convoy", translate=[0, 0, 0])]
+        for truth in (["tag", "instance", "material"], ["tag", "object", "instance"]):
+            sensor = rs.Orthographic(name="chip", columns=128, rows=32, gsd_m=0.5, bands=BANDS[:1], paths=16, truth=truth)
+            image = rs.Simulation(scene.prepare(self.folder / "g.h5"), [sensor], sky=rs.Sky(radiance=10)).render(
+                self.folder / "out")["chip"]
+            labels = rs.write_chips(image, self.folder / "chips", size=128, category="tag", names=["vehicle"], segmentation="polygon")
+            # 2 m x 5 m of 0.5 m pixels each, the cab on top of its body, one outline.
+            self.assertEqual([(a["area"], a["bbox"][2:], len(a["segmentation"])) for a in labels["annotations"]], [(40, [4, 10], 1)] * 3)
+            self.assertEqual([a["bbox"][0] for a in labels["annotations"]], [42, 62, 102])
+            self.assertEqual([a["instance"] for a in labels["annotations"]], [1, 3, 5])
+            by_part = image.truth_instance.values
+            self.assertEqual(sorted(set(by_part[np.isfinite(by_part)].tolist())), [0, 1, 2, 3, 4, 5, 6])
+            material = rs.write_chips(image, self.folder / "m", size=128, category="material") if "material" in truth else None
+            if material:  # by material, parts stay parts
+                self.assertEqual(len(material["annotations"]), 7)
+
     def test_pictures_are_stretched_alike(self):
         image = self.image()
         labels = rs.write_chips(image, self.folder / "chips", size=32, bands=["red"], value_range=(0, 200))

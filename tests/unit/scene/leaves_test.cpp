@@ -29,6 +29,33 @@ TEST(Leaves, AreInTheOrderOfTheHierarchy) {
     EXPECT_EQ(one->material_override, material[i]) << i;
     EXPECT_EQ(one->tag, tag[i]) << i;
   }
+  // Each tagged row is one thing, but for the leaf in it with a tag of its own.
+  const uint64_t object[] = {0, 1, 2, 3, 4};
+  for (uint64_t i = 0; i < 5; ++i) EXPECT_EQ(leaves.object_of(i), object[i]) << i;
+  EXPECT_TRUE(tags_groups(s));
+}
+
+TEST(Leaves, OfATaggedGroupAreOneObject) {
+  Scene s;
+  Placement leaf, truck, convoy;
+  leaf.kind = TargetKind::primitive;
+  truck.kind = convoy.kind = TargetKind::group;
+  convoy.target = 1, truck.target = 2;
+  Placement tagged = truck, alone = leaf;
+  tagged.tag = alone.tag = 0;
+  // A leaf; a tagged truck of three leaves; a convoy of a leaf and two tagged trucks; a tagged leaf; a truck without a
+  // tag.
+  s.groups = {{"root", {leaf, tagged, convoy, alone, truck}},
+              {"convoy", {leaf, tagged, tagged}},
+              {"truck", {leaf, leaf, leaf}}};
+  const Leaves leaves(s);
+  const std::vector<uint64_t> object{0, 1, 1, 1, 4, 5, 5, 5, 8, 8, 8, 11, 12, 13, 14};
+  ASSERT_EQ(leaves.count(), object.size());
+  for (uint64_t i = 0; i < object.size(); ++i) EXPECT_EQ(leaves.object_of(i), object[i]) << i;
+  for (Group& g : s.groups)
+    for (Placement& p : g.placements)
+      if (p.kind == TargetKind::group) p.tag = kNone;
+  EXPECT_FALSE(tags_groups(s));
 }
 
 // 2^30 of them, nested: none is walked to but the one that is asked for.
