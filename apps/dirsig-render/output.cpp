@@ -61,8 +61,13 @@ struct OutputWriter::Image {
   }
 };
 
-OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts)
-    : folder_(std::move(folder)), spec_(std::move(spec)), notes_(std::move(notes)), facts_(facts) {}
+OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts,
+                           BandBiases biases)
+    : folder_(std::move(folder)),
+      spec_(std::move(spec)),
+      notes_(std::move(notes)),
+      facts_(facts),
+      biases_(std::move(biases)) {}
 OutputWriter::~OutputWriter() = default;
 
 OutputSpec::Files OutputWriter::files_of(const ImageRows& rows) const {
@@ -97,10 +102,27 @@ std::unique_ptr<EnviWriter> OutputWriter::open(Image& m, const std::string& base
   return std::make_unique<EnviWriter>(m.files.back(), std::move(header));
 }
 
+// How far each band of the image may be off by its bins, where that is known.
+void OutputWriter::add_bias(const Image& m, const Delivery& d, EnviHeader& h) const {
+  const size_t state = d.sensor.tasks()[d.result.task].captures[d.result.capture].state;
+  const std::vector<BandBias> bias = bias_of(biases_, d.sensor.name(), state);
+  if (bias.empty()) return;
+  std::string relative = "{", floor = "{";
+  for (size_t i = 0; i < m.values; ++i) {
+    const BandBias& b = bias[i % bias.size()];
+    relative += strf("%s%.3g", i ? ", " : "", b.relative), floor += strf("%s%.4g", i ? ", " : "", b.floor);
+  }
+  h.extra.push_back({"spectral bias", relative + "}"});
+  h.extra.push_back({"spectral bias units", "1, of the radiance or of spectral bias floor where that is more"});
+  h.extra.push_back({"spectral bias floor", floor + "}"});
+  h.extra.push_back({"spectral bias floor units", "W/(m2 sr um)"});
+}
+
 void OutputWriter::open_radiance(Image& m, const Delivery& d, const std::string& base, const std::string& about) const {
   const std::string name = text_of(m.wishes.quantity, spec_.units).name;
   EnviHeader h = common_header(m, d);
   h.description = name + about;
+  add_bias(m, d, h);
   EnviHeader e = h;
   e.description = "standard error of the " + name + about +
                   strf("; an interval of 95 %% reaches %.3g standard errors to either side (Student, %.3g degrees)",

@@ -14,7 +14,8 @@ namespace suite {
 class OutputWriter {
  public:
   // facts must outlive it.
-  OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts);
+  // biases: of the bands by their bins, for the headers.
+  OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts, BandBiases biases);
   ~OutputWriter();
   // Takes a finished capture; images whose rows are complete are written. Error: not writable, an unknown preview band.
   void take(const Delivery& delivery);
@@ -25,6 +26,7 @@ class OutputWriter {
   OutputSpec::Files files_of(const ImageRows& rows) const;
   Image& image_of(const Delivery& delivery, const std::string& stem);
   EnviHeader common_header(const Image& image, const Delivery& delivery) const;
+  void add_bias(const Image& image, const Delivery& delivery, EnviHeader& header) const;
   std::unique_ptr<EnviWriter> open(Image& image, const std::string& base, EnviHeader header) const;
   void open_radiance(Image& image, const Delivery& delivery, const std::string& base, const std::string& about) const;
   void open_truth(Image& image, const Delivery& delivery, const std::string& base, const EnviHeader& header,
@@ -37,6 +39,7 @@ class OutputWriter {
   OutputSpec spec_;
   SceneNotes notes_;
   const Facts& facts_;
+  const BandBiases biases_;
   std::map<std::string, std::unique_ptr<Image>> open_;  // images of which rows are still to come
 };
 

@@ -69,14 +69,17 @@ std::string explain(const std::string& feature) {
 }
 
 // Chooses the bins of a sensor's states and says what they are good for.
-void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources) {
-  for (const BinReport& r : choose_bins(scene, sources, sensor)) {
+void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSpecs> sources, BandBiases& biases) {
+  const std::vector<BinReport> reports = choose_bins(scene, sources, sensor);
+  add_biases(reports, biases);
+  for (const BinReport& r : reports) {
     note(r.text());
     if (r.met()) continue;
     if (r.through_gases) {
       warn(strf("sensor '%s': bands may be farther off than %g %%: %s; %s", r.sensor.c_str(), 100 * r.wanted,
                 r.missed_text().c_str(),
-                r.chosen ? "it is part of their errors" : "leave out spectral_step_um or give a smaller one"));
+                r.chosen ? "their errors include it"
+                         : "their errors include it; leave out spectral_step_um or give a smaller one"));
       continue;
     }
     warn(strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(), r.band.c_str(),
@@ -241,7 +244,7 @@ void check_usage(const Cli& cli, const RenderOptions& o, const Ranks* ranks) {
 }
 
 // Tells what takes part, and refuses what the sensors ask for in vain; their bins are chosen on the way.
-void check_sensors(Simulation& sim, const Scene& scene, const JobOptions& options) {
+void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   for (size_t s = 0; s < sim.sensors.size(); ++s)
     for (const Task& task : sim.sensors[s]->tasks())
       for (const Capture& c : task.captures) check_motion(scene, c.window.begin, c.window.end, sim.sensor_where[s]);
@@ -255,7 +258,7 @@ void check_sensors(Simulation& sim, const Scene& scene, const JobOptions& option
     for (const std::string& truth : sensor->truth()) truth_rows().find(truth);
     for (const std::string& channel : sensor->channels()) channel_rows().find(channel);
     check_air_asked(sim, scene, *sensor);
-    choose_bins_of(*sensor, scene, standing);
+    choose_bins_of(*sensor, scene, standing, options.biases);
   }
 }
 
@@ -372,7 +375,7 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   if (ranks && !ranks->leads()) return follow(scene, sim, options);
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
-  writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts);
+  writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts, options.biases);
   if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
   options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
   options.warn = warn;

@@ -77,7 +77,9 @@ struct rs_simulation {
     if (sensor.states().size() != 1 || sensor.tasks().empty())
       throw Error(where, strf("sensor '%s' has %zu spectral states", sensor.name().c_str(), sensor.states().size()),
                   "name a sensor of one");
-    for (const BinReport& r : choose_bins(*scene, sources_at_all_times(sim.sources, *scene), sensor))
+    const std::vector<BinReport> reports = choose_bins(*scene, sources_at_all_times(sim.sources, *scene), sensor);
+    add_biases(reports, biases);
+    for (const BinReport& r : reports)
       if (!r.met()) told.push_back("bands are less exact than asked for: " + r.text());
     heating = heating_of(sim, *scene, sensor.states()[0]);
   }
@@ -87,6 +89,7 @@ struct rs_simulation {
   suite::Sensor& sensor;
   std::shared_ptr<suite::Scene> scene;
   suite::Heating heating;
+  suite::BandBiases biases;
 };
 
 namespace suite {
@@ -114,6 +117,7 @@ void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uin
   options.pipeline.seed = seed;
   options.periodic = s.sim.periodic;
   options.heating = s.heating;
+  options.biases = s.biases;
   options.progress = false;
   if (paths) options.budget.min_paths = options.budget.max_paths = paths, options.budget.relative_error = 0;
   options.warn = [&](const std::string& sentence) { told.push_back(sentence); };

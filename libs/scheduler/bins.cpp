@@ -264,6 +264,11 @@ std::string BinReport::missed_text() const {
   return text + (missed.size() > kNamed ? strf(" and %zu more", missed.size() - kNamed) : "");
 }
 
+void add_biases(std::span<const BinReport> reports, BandBiases& to) {
+  for (size_t s = 0; s < reports.size(); ++s)
+    if (!reports[s].bias.empty()) to[{reports[s].sensor, s}] = reports[s].bias;
+}
+
 std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor) {
   bool white_light = false;
   for (const Task& t : sensor.tasks())

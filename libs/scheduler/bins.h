@@ -42,6 +42,9 @@ struct BinReport {
   std::string text() const;
 };
 
+// What reports, of each state in its turn, know of the bands' errors.
+void add_biases(std::span<const BinReport> reports, BandBiases& to);
+
 // Gives every state of a sensor that asks for it bins for what it sees of the scene. sources: resolved; several when
 // they change with time. One report a state. Error: a source whose spectrum does not cover the bands.
 std::vector<BinReport> choose_bins(const Scene& scene, std::span<const SourceSpecs> sources, Sensor& sensor);

@@ -27,7 +27,7 @@ struct InFlight {
   // To be called when all of the work is known.
   void plan(Saving& saving) {
     result.emplace(work.capture, primed->projection().bands(), work.sensor.channels().size(),
-                   primed->kit.bands->reference, primed->truth, work.goals);
+                   primed->kit.bands->reference, primed->truth, work.goals, work.bias);
     planner.emplace(work, *result, saving);
   }
   // Bytes that its sums and its result take, at most: a function of what is asked for alone.

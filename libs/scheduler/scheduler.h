@@ -15,6 +15,7 @@
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
 #include "sensor/quality.h"
+#include "spectral/band_bias.h"
 #include "transport/pipeline.h"
 
 namespace suite {
@@ -47,6 +48,7 @@ struct JobOptions {
   // Only these blocks of the sensors' captures are run, and pre-passes whole; needs a store. Only a share that runs
   // nothing has results: those of the captures that the store has whole. Nothing = a run by itself.
   std::optional<Share> share = {};
+  BandBiases biases = {};  // of the sensors' bins (bins.h): where a band misses what is wanted, part of its error
   bool progress = true;
   // Asked between blocks of problems: true ends the job in good order, with all that is finished in the store. Empty =
   // never.
