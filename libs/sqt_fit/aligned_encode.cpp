@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sqt/polar_profile.h"
 #include "sqt/sheet_walk.h"
 #include "sqt/totals_code.h"
 #include "sqt_fit/aligned_source.h"
@@ -141,7 +142,8 @@ AlignedFit encode_aligned(const AlignedSource& source, double quality) {
   d.layout.quality = quality;
   d.totals = source.totals();
   fit.sheets_bytes = encode_sheets(source, quality, &d.sheets);
-  d.totals.log2_scale = fit_scale(d.layout, d.sheets, d.totals, d.function.wavelength_um);
+  join_polar_slices(d.layout, d.sheets);  // as a bundle does
+  d.totals.log2_scale = fit_scale(d.layout, d.function, d.sheets, d.totals);
   fit.totals_bytes = encode_totals(d.totals, d.layout.channels);
   return fit;
 }
