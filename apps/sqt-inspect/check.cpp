@@ -20,7 +20,8 @@ std::vector<IssueKind> check_issues() {
       {"IN105", Severity::error, "sampling does not follow the density", "fit again"},
       {"IN106", Severity::error, "the mean of w / pdf is not the total", "fit again"},
       {"IN107", Severity::error, "two cells of a slice overlap", "fit again"},
-      {"IN108", Severity::warning, "not reciprocal", "measured data often are not; formats/sqt/FORMAT.md says how it is defined"}};
+      {"IN108", Severity::warning, "not reciprocal",
+       "measured data often are not; formats/sqt/FORMAT.md says how it is defined"}};
 }
 
 namespace {

@@ -177,12 +177,13 @@ class AlignedBundle final : public Bundle {
   void find_polar() {
     std::vector<LogScale> scales;
     for (const AlignedTables::Sheet& sheet : tables_.sheets()) scales.push_back(sheet.scale);
-    polar_ = polar_profile(layout_, planar_ && totals_.theta.front() == 0, scales, [this](size_t s, Dir d) -> LeafPlace {
-      const AlignedTables::Sheet& sheet = tables_.sheets()[s];
-      Query q;
-      if (!find_leaf(sheet, face_point_fast(d), q)) return {};
-      return {q.leaf, kStride, q.dx, q.dy};
-    });
+    polar_ =
+        polar_profile(layout_, planar_ && totals_.theta.front() == 0, scales, [this](size_t s, Dir d) -> LeafPlace {
+          const AlignedTables::Sheet& sheet = tables_.sheets()[s];
+          Query q;
+          if (!find_leaf(sheet, face_point_fast(d), q)) return {};
+          return {q.leaf, kStride, q.dx, q.dy};
+        });
     const auto weight = polar_weight(layout_);
     for (size_t c = 0; c < channels(); ++c)
       if (totals_.log2_scale[c] > kNothing)

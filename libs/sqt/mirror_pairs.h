@@ -1,5 +1,5 @@
-// Half directions drawn near the normal, so that pairs of directions lie near their mirror direction: heavy-tailed, lobes
-// of any width are met. Density (1 + a) a / (2 pi (s + a)^2) per steradian over s = 1 - cos(theta_h) in [0, 1].
+// Half directions drawn near the normal, so that pairs of directions lie near their mirror direction: heavy-tailed,
+// lobes of any width are met. Density (1 + a) a / (2 pi (s + a)^2) per steradian over s = 1 - cos(theta_h) in [0, 1].
 #pragma once
 #include <cmath>
 

@@ -176,7 +176,8 @@ class PaperBundle final : public Bundle {
                 for (size_t c = 0; c < f.size(); ++c) f[c] = static_cast<float>(slice_value(0, p, c));
               }};
     for (size_t c = 0; c < channels(); ++c)
-      polar_.set_integral(c, [](double below) { return 1 - below; }, view_total(0, c));
+      polar_.set_integral(
+          c, [](double below) { return 1 - below; }, view_total(0, c));
   }
   // Data of both sides are seen from the front: the back is taken to scatter as the front does.
   bool below(Dir out) const { return cosine_weighted() && (hemisphere() ? out.z <= 0 : out.z == 0); }

@@ -52,8 +52,7 @@ double PolarProfile::integral(size_t channel, const std::function<double(double)
       const double below = below_at(i), width = below_at(i + 1) - below;
       for (size_t k = 0; k < place.size(); ++k) {
         const double w = weight(std::min(1.0, below + place[k] * width));
-        if (w > 0)
-          sum += share[k] * width * w * portable_exp2(log2(s, {i, static_cast<float>(place[k])}, channel));
+        if (w > 0) sum += share[k] * width * w * portable_exp2(log2(s, {i, static_cast<float>(place[k])}, channel));
       }
     }
   return 2 * kPi * sum;
@@ -76,10 +75,11 @@ PolarProfile polar_profile(const AlignedLayout& layout, bool isotropic, const st
             const LeafPlace at = find(sheet, d);
             for (size_t c = 0; c < f.size(); ++c) {
               const int16_t* p = at.numbers + c * at.step;
-              f[c] = at.numbers ? portable_exp2(scales[sheet].value(static_cast<float>(p[0]) +
-                                                                    at.dx * static_cast<float>(p[1]) +
-                                                                    at.dy * static_cast<float>(p[2])))
-                                : 0;
+              f[c] =
+                  at.numbers
+                      ? portable_exp2(scales[sheet].value(static_cast<float>(p[0]) + at.dx * static_cast<float>(p[1]) +
+                                                          at.dy * static_cast<float>(p[2])))
+                      : 0;
             }
           }};
 }

@@ -39,8 +39,7 @@ std::vector<double> reciprocity_error(size_t channels,
 
 std::vector<double> reciprocity_error(const Bundle& bundle) {
   if (!bundle.cosine_weighted()) return std::vector<double>(bundle.channels() + 1, 0.0);
-  return reciprocity_error(bundle.channels(),
-                           [&](Dir out, Dir in, std::span<double> f) { bundle.value(out, in, f); });
+  return reciprocity_error(bundle.channels(), [&](Dir out, Dir in, std::span<double> f) { bundle.value(out, in, f); });
 }
 
 }  // namespace suite::sqt

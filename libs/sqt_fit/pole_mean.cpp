@@ -40,8 +40,7 @@ void PoleMean::value(Dir out, Dir in, std::span<double> f) const {
     for (size_t c = 0; c < f.size(); ++c)
       if (std::isfinite(one[c])) sum[c] += one[c], ++known[c];
   }
-  for (size_t c = 0; c < f.size(); ++c)
-    f[c] = known[c] ? sum[c] / known[c] : std::numeric_limits<double>::quiet_NaN();
+  for (size_t c = 0; c < f.size(); ++c) f[c] = known[c] ? sum[c] / known[c] : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace suite::sqt

@@ -57,7 +57,9 @@ struct Case {
 };
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = [] {
-    auto make = [](const char* name, const AlignedData& d) { return Case{name, make_bundle(d), make_bundle(spoiled(d))}; };
+    auto make = [](const char* name, const AlignedData& d) {
+      return Case{name, make_bundle(d), make_bundle(spoiled(d))};
+    };
     const PaperData paper = test::small_paper(test::glossy(0.3));
     return std::vector<Case>{make("half", aligned(test::glossy(0.3, 9))),
                              make("direct", aligned(test::glossy(0.5), LobeFrame::direct)),
@@ -82,7 +84,8 @@ TEST(Zenith, ValuesDoNotDependOnAzimuthAndDoNotJump) {
           EXPECT_EQ(c.spoiled->value({0, 0, 1}, in, n), f[n]) << c.name;
         }
         for (const double beside : {1e-9, 1e-6, 1e-4})
-          EXPECT_NEAR(c.spoiled->value(dir_from_angles(beside, 50 * k * kDegree), in, 0) / first[0], 1, 1e-5 + 20 * beside)
+          EXPECT_NEAR(c.spoiled->value(dir_from_angles(beside, 50 * k * kDegree), in, 0) / first[0], 1,
+                      1e-5 + 20 * beside)
               << c.name << ' ' << polar << ' ' << k << ' ' << beside;
       }
     }
@@ -92,7 +95,8 @@ TEST(Zenith, ValuesAreTheMeanOverAzimuth) {
   for (const Case& c : cases())
     for (const double polar : {3.0, 20.0, 50.0}) {
       const Dir in = dir_from_angles(polar * kDegree, 0.7);
-      EXPECT_NEAR(c.spoiled->value({0, 0, 1}, in, 0) / c.plain->value({0, 0, 1}, in, 0), 1, 4e-3) << c.name << ' ' << polar;
+      EXPECT_NEAR(c.spoiled->value({0, 0, 1}, in, 0) / c.plain->value({0, 0, 1}, in, 0), 1, 4e-3)
+          << c.name << ' ' << polar;
     }
 }
 
@@ -137,7 +141,8 @@ TEST(Zenith, FitsHoldTheMeanOfDataThatDepend) {
               0.2 * (1 + 0.15 * (1 - z * z)), 5e-3);
 }
 
-// f = 1 + (cos out - cos in) / 2: the error is half the mean distance of two uniform cosines, L / 6, L = 1 - cos 80 deg.
+// f = 1 + (cos out - cos in) / 2: the error is half the mean distance of two uniform cosines, L / 6, L = 1 - cos 80
+// deg.
 TEST(Reciprocity, IsItsClosedFormAndOneNumber) {
   const double L = 1 - std::cos(80 * kDegree);
   const auto found = reciprocity_error(1, [](Dir o, Dir i, std::span<double> f) { f[0] = 1 + 0.5 * (o.z - i.z); });
@@ -146,9 +151,8 @@ TEST(Reciprocity, IsItsClosedFormAndOneNumber) {
   const Analytic f([](Dir o, Dir i) { return 0.2 * (1 + 0.5 * (o.z - i.z)); });
   const auto bundle = make_bundle(aligned(f, LobeFrame::direct));
   const Reference reference(f, 2000);
-  EXPECT_EQ(reference.findings().reciprocity_error, reciprocity_error(1, [&](Dir o, Dir i, std::span<double> v) {
-                                                      f.value(o, i, v);
-                                                    }).back());
+  EXPECT_EQ(reference.findings().reciprocity_error,
+            reciprocity_error(1, [&](Dir o, Dir i, std::span<double> v) { f.value(o, i, v); }).back());
   EXPECT_EQ(reference.measure(*bundle).back().reciprocity_error, reciprocity_error(*bundle).back());
   EXPECT_NEAR(reciprocity_error(*bundle).back(), L / 6, 0.02 * L / 6);
 }
