@@ -102,6 +102,7 @@ function choose(i, same = false) {
   draw();
   drawOverlay();
   if (!same) showMap();
+  if (ui.tell) ui.tell();
 }
 
 function chooseAnew(one) {
@@ -328,7 +329,7 @@ function ready() {
       `Numbers here differ from the files' by at most ${shown(100 * l.values, 2)} % (values of a millionth of a band's largest or less: ` +
       `by more), standard errors by ${shown(100 * l.errors, 2)} %; truth has seven digits.\n${one.about}`;
   };
-  ui.images.addEventListener('change', tell);
+  ui.tell = tell;
   tell();
   window.readyAt = performance.now();
 }

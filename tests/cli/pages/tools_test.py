@@ -103,6 +103,7 @@ class Tools(unittest.TestCase):
             first = browser.run(one)
             browser.set("#frame", 2)
             self.assertEqual(browser.run("state.image"), 2)
+            self.assertEqual(browser.run("ui.images.value"), "2")
             self.assertEqual(browser.run(one), first)
             browser.set("#rate", 20)
             browser.run("document.getElementById('play').click()")
@@ -144,6 +145,7 @@ class Tools(unittest.TestCase):
             browser.set("#images", names.index("tilted"))
             turn = float(re.search(r"rotate\(([-0-9.]+)\)", browser.run("document.getElementById('north').innerHTML"))[1])
             self.assertAlmostEqual(turn, -71.6, delta=3)
+            self.assertIn("sensor 'tilted'", browser.run("document.getElementById('losses').innerText"))
             # Thermal bands in kelvin and in their colours.
             self.assertTrue(browser.run("state.colours && inKelvin()"))
             low, high = browser.run("rangesShown() || percentiles([valuesOf(state.band).map(v => kelvinOf(image(), state.band, v))], 0, 100)")
