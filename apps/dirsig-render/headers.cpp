@@ -153,6 +153,9 @@ EnviHeader truth_header(EnviHeader header, const std::vector<std::string>& names
   h.bands = names.size();
   h.band_names = names;
   h.ignore_value = std::nan("");
+  if (const GeodeticOrigin& o = notes.origin; o.given)
+    h.extra.push_back(
+        {kSceneOrigin, strf("{%.12g, %.12g, %.10g}", o.latitude_deg, o.longitude_deg, o.ellipsoid_height_m)});
   h.description = "truth" + about + "; materials:";
   for (size_t i = 0; i < notes.materials.size(); ++i) h.description += strf(" %zu=%s", i, notes.materials[i].c_str());
   if (!notes.tags.empty()) h.description += "; tags:";

@@ -46,6 +46,8 @@ EnviHeader quality_header(EnviHeader header, const std::string& about);
 RasterStyle quality_style();
 EnviHeader truth_header(EnviHeader header, const std::vector<std::string>& names, const SceneNotes& notes,
                         const std::string& about);
+// Its key for where scene ENU is: latitude, longitude (degrees, WGS84) and ellipsoidal height (m) of the zero.
+inline constexpr const char* kSceneOrigin = "scene origin";
 // What a classification shows: a row of the truth whose numbers have names.
 struct ClassSource {
   std::string truth, none;  // "tag", "untagged": what 0 is called

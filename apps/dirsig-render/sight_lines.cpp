@@ -133,12 +133,15 @@ std::optional<FittedRpc> rpc_of(const std::vector<SightLine>& lines, const Groun
     for (int k = 0; k < kLayers; ++k)
       if (const auto at = levels.meet(line, h.low + (h.high - h.low) * k / (kLayers - 1)))
         seen.push_back({places.frame().geodetic_from_enu(*at), double(line.row), double(line.column)});
-  if (const auto rpc = fit_rpc(seen)) {
-    FittedRpc fit{*rpc};
-    check_against(places, fit);
-    return fit;
-  }
-  return std::nullopt;
+  // Jitter of few lines is no shape to follow: the ridge that leaves the places of all pixels the least residual.
+  std::optional<FittedRpc> best;
+  for (const double ridge : {kRpcRidge, 1e-4, 1e-2})
+    if (const auto rpc = fit_rpc(seen, ridge)) {
+      FittedRpc fit{*rpc};
+      check_against(places, fit);
+      if (!best || fit.rms < best->rms) best = fit;
+    }
+  return best;
 }
 
 }  // namespace suite

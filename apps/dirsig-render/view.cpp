@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <set>
@@ -14,6 +15,7 @@
 #include "base/run_app.h"
 #include "budget_options.h"
 #include "formats/envi/envi.h"
+#include "headers.h"
 #include "page/live_page.h"
 #include "page/packed.h"
 #include "sensor/quality.h"
@@ -80,13 +82,19 @@ Viewed open_viewed(const std::string& folder, const std::string& name) {
   return v;
 }
 
+const std::vector<std::string> kScripts{"cube_data.js",    "cube_spectra.js", "cube_places.js",
+                                        "cube_regions.js", "cube_play.js",    "cube.js"};
+
 // Characters of the file that an image takes at most when every n-th column and row is kept: steps of 16 and 9 bits for
 // values and errors, and the heads of their blocks (page/steps.h).
 double size_of(const Viewed& v, size_t step) {
   const auto kept = [&](size_t n) { return static_cast<double>((n + step - 1) / step); };
   const double truth = v.truth ? 4.0 * static_cast<double>(v.truth->bands) : 0;
-  return kept(v.values.samples) * kept(v.values.lines) *
-         (206.0 / 64 * static_cast<double>(v.values.bands) + 1 + truth) * 4 / 3;
+  // Steps stand in whole blocks of 64 pixels.
+  const double pixels = kept(v.values.samples) * kept(v.values.lines), filled = 64 * std::ceil(pixels / 64);
+  const double blocks = 2 * static_cast<double>(v.values.bands) + 1 + truth / 4;
+  return (206.0 / 64 * static_cast<double>(v.values.bands) * filled + (1 + truth) * pixels) * 4 / 3 +
+         kLiveBlock * blocks;
 }
 
 // Numbers [band][pixel] of every `step`-th column and row. scale: what a stored number counts.
@@ -159,6 +167,26 @@ double reach_of_95_percent(const EnviHeader& errors) {
   return at == std::string::npos ? 0 : std::strtod(errors.description.c_str() + at + kBefore.size(), nullptr);
 }
 
+// Where the picture is: as a map, and where scene ENU is on the Earth.
+void set_place(const Viewed& v, Json& j) {
+  const std::vector<std::string>& m = v.values.map_info;
+  if (m.size() >= 7 && (m[0] == "Orthographic" || m[0] == "Arbitrary")) {
+    Json map = Json::object();
+    map.set("west", std::strtod(m[3].c_str(), nullptr));
+    map.set("north", std::strtod(m[4].c_str(), nullptr));
+    map.set("dx", std::strtod(m[5].c_str(), nullptr));
+    map.set("dy", std::strtod(m[6].c_str(), nullptr));
+    j.set("map", std::move(map));
+  }
+  for (const auto& [key, text] : v.truth ? v.truth->extra : decltype(v.truth->extra){}) {
+    double at[3];
+    if (key != kSceneOrigin || std::sscanf(text.c_str(), " {%lf , %lf , %lf", at, at + 1, at + 2) != 3) continue;
+    Json origin = Json::array();
+    for (const double x : at) origin.push(x);
+    j.set("origin", std::move(origin));
+  }
+}
+
 Json about_image(const Viewed& v, size_t step) {
   const EnviHeader& h = v.values;
   Json j = Json::object();
@@ -185,6 +213,7 @@ Json about_image(const Viewed& v, size_t step) {
   for (const int b : h.default_bands) shown.push(b - 1);
   if (v.truth)
     for (const std::string& column : v.truth->band_names) truth.push(truth_of(column, v));
+  set_place(v, j);
   j.set("bands", std::move(bands));
   j.set("shown", std::move(shown));
   j.set("truth", std::move(truth));
@@ -268,12 +297,22 @@ Json put_blocks(LivePage& page, const Viewed& v, size_t number, size_t step) {
   return lost;
 }
 
+Json about_page(const std::vector<Viewed>& images, size_t step) {
+  Json about = Json::object(), list = Json::array();
+  for (const Viewed& v : images) list.push(about_image(v, step));
+  about.set("images", std::move(list));
+  about.set("flags", about_flags());
+  about.set("made", strf("suite %s: ", kVersion) + command_line());
+  return about;
+}
+
 // The least step with which all images fit.
 size_t step_for(const std::vector<Viewed>& images, double bytes) {
   size_t most = 1;
   for (const Viewed& v : images) most = std::max({most, v.values.samples, v.values.lines});
+  const auto around = static_cast<double>(live_page_size(kScripts, about_page(images, most)));
   for (size_t step = 1;; ++step) {
-    double all = 0;
+    double all = around;
     for (const Viewed& v : images) all += size_of(v, step);
     if (all <= bytes) return step;
     if (step >= most)
@@ -312,13 +351,8 @@ void write_view(const std::string& folder, const std::string& path, size_t room)
     warn(strf("%s keeps every %zu-th column and row of the images alone, to stay within %s", path.c_str(), step,
               human_bytes(bytes).c_str()));
   make_folders_of({path});
-  Json about = Json::object(), list = Json::array();
-  for (const Viewed& v : images) list.push(about_image(v, step));
-  about.set("images", std::move(list));
-  about.set("flags", about_flags());
-  about.set("made", strf("suite %s: ", kVersion) + command_line());
   const std::string name = std::filesystem::path(in_folder(folder, "x")).parent_path().filename();
-  LivePage page(path, "Results in " + name, {"cube_data.js", "cube_spectra.js", "cube.js"}, about);
+  LivePage page(path, "Results in " + name, kScripts, about_page(images, step));
   Json lost = Json::array();
   for (size_t i = 0; i < images.size(); ++i) lost.push(put_blocks(page, images[i], i, step));
   page.json("lost", lost);

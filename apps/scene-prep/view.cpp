@@ -107,7 +107,8 @@ Json put_sketch(LivePage& page, const std::string& id, const std::string& name, 
   for (size_t i = 0; i < cells.size(); ++i) {
     const double low = i % 3 == 0 ? box.low.x : i % 3 == 1 ? box.low.y : box.low.z;
     const double extent = i % 3 == 0 ? size.x : i % 3 == 1 ? size.y : size.z;
-    cells[i] = static_cast<uint16_t>(extent > 0 ? std::lround(65535 * (s.positions[i] - low) / extent) : 0);
+    // What lies in the middle but for rounding goes one way, or the pole of a ball would be torn.
+    cells[i] = static_cast<uint16_t>(extent > 0 ? std::floor(65535 * (s.positions[i] - low) / extent + 0.5 + 1e-6) : 0);
   }
   page.data(id + "v", LiveKind::u8, std::as_bytes(std::span(cells)));
   if (s.positions.size() / 3 <= 65536) {
@@ -175,6 +176,7 @@ Json about_scene(const Scene& scene, const Box3& box, double time) {
   if (scene.origin.given) {
     j.set("latitude", scene.origin.latitude_deg);
     j.set("longitude", scene.origin.longitude_deg);
+    j.set("height", scene.origin.ellipsoid_height_m);
   }
   j.set("made", strf("suite %s: ", kVersion) + command_line());
   return j;

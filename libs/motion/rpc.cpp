@@ -9,7 +9,6 @@ namespace suite {
 namespace {
 
 constexpr size_t kTerms = 20, kUnknowns = 2 * kTerms - 1, kFewest = 80;
-constexpr double kRidge = 1e-6;  // of the unknowns against numbers of order 1: keeps what is undetermined at 0
 constexpr double kLeastDenominator = 0.02;  // 1 at the middle
 constexpr int kRounds = 6;
 
@@ -72,10 +71,10 @@ std::array<double, kUnknowns> solved(std::vector<Row>& rows) {
 }
 
 // numerator - value * denominator = 0 for all places, weighted by the denominator of the round before.
-void fit(std::span<const Rpc::Terms> at, std::span<const double> value, Rpc::Terms& numerator,
-         Rpc::Terms& denominator) {
+void fit(std::span<const Rpc::Terms> at, std::span<const double> value, Rpc::Terms& numerator, Rpc::Terms& denominator,
+         double relative) {
   denominator = {1};
-  const double ridge = kRidge * std::sqrt(static_cast<double>(at.size()));
+  const double ridge = relative * std::sqrt(static_cast<double>(at.size()));
   for (int round = 0; round < kRounds; ++round) {
     std::vector<Row> rows(at.size() + kUnknowns, Row{});
     for (size_t i = 0; i < at.size(); ++i) {
@@ -99,7 +98,7 @@ Vec2 Rpc::image(const Geodetic& place) const {
           line.offset + line.scale * sum(line_numerator, at) / sum(line_denominator, at)};
 }
 
-std::optional<Rpc> fit_rpc(std::span<const SightedPlace> places) {
+std::optional<Rpc> fit_rpc(std::span<const SightedPlace> places, double ridge) {
   if (places.size() < kFewest) return std::nullopt;
   Rpc r;
   r.longitude_deg = {places[0].place.longitude_deg, 1};
@@ -116,8 +115,8 @@ std::optional<Rpc> fit_rpc(std::span<const SightedPlace> places) {
     line.push_back((p.line - r.line.offset) / r.line.scale);
     sample.push_back((p.sample - r.sample.offset) / r.sample.scale);
   }
-  fit(at, line, r.line_numerator, r.line_denominator);
-  fit(at, sample, r.sample_numerator, r.sample_denominator);
+  fit(at, line, r.line_numerator, r.line_denominator, ridge);
+  fit(at, sample, r.sample_numerator, r.sample_denominator, ridge);
   for (size_t i = 0; i < at.size(); ++i) {
     if (!(sum(r.line_denominator, at[i]) > kLeastDenominator) ||
         !(sum(r.sample_denominator, at[i]) > kLeastDenominator))

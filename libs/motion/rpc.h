@@ -31,7 +31,9 @@ struct Rpc {
   Vec2 image(const Geodetic& place) const;
 };
 
-// Nothing where no coefficients follow the places: fewer than 80 of them, or a denominator that comes near to zero.
-std::optional<Rpc> fit_rpc(std::span<const SightedPlace> places);
+// ridge: of the unknowns against numbers of order 1; more of it follows noise less. Nothing where no coefficients
+// follow the places: fewer than 80 of them, or a denominator that comes near to zero.
+inline constexpr double kRpcRidge = 1e-6;
+std::optional<Rpc> fit_rpc(std::span<const SightedPlace> places, double ridge = kRpcRidge);
 
 }  // namespace suite

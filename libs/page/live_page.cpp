@@ -46,6 +46,14 @@ std::string in_element(const Json& value) {
 
 }  // namespace
 
+size_t live_page_size(const std::vector<std::string>& scripts, const Json& about) {
+  constexpr size_t kRest = 2048;  // elements, policy and title
+  size_t size = kRest + live_text("live.css").size() + live_text("live.js").size() + live_text("steps.js").size() +
+                in_element(about).size();
+  for (const std::string& name : scripts) size += live_text(name).size();
+  return size;
+}
+
 std::string base64(std::span<const std::byte> bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text((bytes.size() + 2) / 3 * 4, '=');
@@ -65,6 +73,7 @@ LivePage::LivePage(const std::string& path, const std::string& title, const std:
     : file_(path) {
   file_.write(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; img-src data: blob:\"><link rel=\"icon\" href=\"data:,\"><title>" +
       in_markup(title) + "</title>\n<style>\n" + std::string(live_text("live.css")) + "</style></head>\n<body><h1>" +

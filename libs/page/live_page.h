@@ -50,6 +50,10 @@ class LivePage {
   AtomicFile file_;
 };
 
+// Bytes of a page without its blocks, and at most of what stands around the numbers of a block.
+size_t live_page_size(const std::vector<std::string>& scripts, const Json& about);
+inline constexpr size_t kLiveBlock = 160;
+
 // The same bytes as base64 (RFC 4648, section 4), padded.
 std::string base64(std::span<const std::byte> bytes);
 

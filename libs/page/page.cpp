@@ -56,19 +56,36 @@ struct Axis {
   }
 };
 
+// A tick in as many digits as tell it from its neighbour.
+std::string tick_text(const std::vector<double>& ticks, size_t i) {
+  double step = INFINITY;
+  for (size_t k = 1; k < ticks.size(); ++k) step = std::min(step, std::fabs(ticks[k] - ticks[k - 1]));
+  const double size = std::fabs(ticks[i]);
+  const int digits = size > 0 && std::isfinite(step)
+                         ? static_cast<int>(std::floor(std::log10(size)) - std::floor(std::log10(step))) + 1
+                         : 6;
+  return strf("%.*g", std::clamp(digits, 6, 15), ticks[i]);
+}
+
 std::string frame_of(const Plot& plot, const Axis& x, const Axis& y) {
   std::string s = strf("<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"#fafafa\" stroke=\"#999\"/>", kLeft,
                        kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
-  for (const double t : x.ticks())
+  const std::vector<double> along = x.ticks(), up = y.ticks();
+  for (size_t i = 0; i < along.size(); ++i) {
+    const double t = along[i];
     s += strf(
         "<line x1=\"%.1f\" y1=\"%g\" x2=\"%.1f\" y2=\"%g\" stroke=\"#ddd\"/><text x=\"%.1f\" y=\"%g\" "
-        "text-anchor=\"middle\">%g</text>",
-        x.place(t), kTop, x.place(t), kHeight - kBottom, x.place(t), kHeight - kBottom + 16, t);
-  for (const double t : y.ticks())
+        "text-anchor=\"middle\">%s</text>",
+        x.place(t), kTop, x.place(t), kHeight - kBottom, x.place(t), kHeight - kBottom + 16,
+        tick_text(along, i).c_str());
+  }
+  for (size_t i = 0; i < up.size(); ++i) {
+    const double t = up[i];
     s += strf(
         "<line x1=\"%g\" y1=\"%.1f\" x2=\"%g\" y2=\"%.1f\" stroke=\"#ddd\"/><text x=\"%g\" y=\"%.1f\" "
-        "text-anchor=\"end\">%g</text>",
-        kLeft, y.place(t), kWidth - kRight, y.place(t), kLeft - 6, y.place(t) + 4, t);
+        "text-anchor=\"end\">%s</text>",
+        kLeft, y.place(t), kWidth - kRight, y.place(t), kLeft - 6, y.place(t) + 4, tick_text(up, i).c_str());
+  }
   s +=
       strf("<text x=\"%g\" y=\"20\" font-size=\"15\" font-weight=\"bold\">", kLeft) + in_markup(plot.title) + "</text>";
   s += strf("<text x=\"%g\" y=\"%g\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2, kHeight - 14) +

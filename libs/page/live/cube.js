@@ -1,25 +1,33 @@
 // A folder of results: pictures of any band, spectra of pixels on a click, flags and truth over the picture.
 
-const state = {image: 0, band: 0, rgb: [0, 0, 0], mode: 'band', low: 1, high: 99, srgb: true, colours: false, each: false,
-  over: '', opacity: 0.6, flags: 255, zoom: 1, picks: []};
+const kHelp = 'Click on a pixel for its spectrum; with Shift beside the others. Drag over a region for its statistics.';
+
+const state = {image: 0, band: 0, rgb: [0, 0, 0], mode: 'band', low: 1, high: 99, srgb: true, colours: false, each: false, kelvin: true,
+  over: '', opacity: 0.6, flags: 255, zoom: 1, picks: [], region: null, select: false};
 const ui = {};
 const image = () => about.images[state.image];
 const valuesOf = band => numbersKept(`i${state.image}.v${band}`);
+// One band of a thermal picture is shown in kelvin, unless that is switched off.
+const inKelvin = () => state.mode === 'band' && (image().unit === 'K' || (state.kelvin && isThermal(image(), state.band)));
+const toKelvin = () => inKelvin() && image().unit !== 'K';
 
 function buildStage() {
-  ui.canvas = make('canvas', {id: 'picture', onclick: pick, onmousemove: hover});
+  ui.canvas = make('canvas', {id: 'picture', onpointermove: hover});
   ui.over = make('canvas', {className: 'over', id: 'overlay'});
   ui.marks = make('canvas', {className: 'over'});
+  listenRegion(ui.canvas);
   ui.stage = make('div', {className: 'stage', onwheel: event => {
     if (!event.ctrlKey) return;
     event.preventDefault();
     zoomTo(state.zoom * (event.deltaY < 0 ? 1.25 : 0.8));
-  }}, ui.canvas, ui.over, ui.marks);
-  ui.readout = make('div', {className: 'said', id: 'readout'}, 'Click on a pixel for its spectrum; with Shift beside the others.');
-  ui.bar = make('canvas', {width: 300, height: 14, id: 'bar'});
-  ui.barText = make('div', {className: 'row', style: 'justify-content:space-between;width:300px;font-size:12px', id: 'legend'});
+  }}, ui.canvas, ui.over, ui.marks, ui.regionBox = make('div', {className: 'region', hidden: true}));
+  ui.readout = make('div', {className: 'said', id: 'readout'}, kHelp);
+  ui.map = make('div', {className: 'map', id: 'map'});
+  ui.bar = make('canvas', {width: 420, height: 14, id: 'bar'});
+  ui.barText = make('div', {className: 'row', id: 'legend'});
   ui.losses = make('div', {className: 'said', id: 'losses'}, 'reading ...');
-  return make('div', {}, ui.stage, ui.bar, ui.barText, ui.readout, ui.losses);
+  ui.view = make('div', {className: 'view'}, ui.stage, ui.map, make('div', {className: 'scale'}, ui.bar, ui.barText), ui.readout, ui.losses);
+  return ui.view;
 }
 
 function number(key, least, most) {
@@ -62,25 +70,42 @@ function buildPanel() {
   const box = (title, ...inside) => make('fieldset', {}, make('legend', {}, title), ...inside);
   return make('div', {className: 'panel'},
     box('image', ui.images, make('div', {className: 'row'}, make('button', {id: 'closer', onclick: () => zoomTo(state.zoom * 1.5)}, '+'),
-      make('button', {onclick: () => zoomTo(state.zoom / 1.5)}, '-'), make('button', {onclick: () => fit()}, 'fit'), ui.zoomText = make('span'))),
+      make('button', {onclick: () => zoomTo(state.zoom / 1.5)}, '-'), make('button', {onclick: () => fit()}, 'fit'), ui.zoomText = make('span')), buildPlayer()),
     box('shows', ui.mode, ui.bandBox, ui.rgbBox),
     box('stretch', make('div', {className: 'row'}, number('low', 0, 100), 'to', number('high', 0, 100), 'per cent of the pixels'),
-      check('srgb', 'as the eye sees (sRGB), else linear'), check('each', 'red, green and blue each by itself'), check('colours', 'one band in colours')),
+      check('srgb', 'as the eye sees (sRGB), else linear'), check('each', 'red, green and blue each by itself'), check('colours', 'one band in colours'), check('kelvin', 'thermal bands in kelvin')),
     box('over it', ui.over_, make('label', {}, 'how much of it', ui.opacity), ui.keys));
 }
 
 function buildSpectra() {
   ui.plot = make('div', {id: 'plot'});
-  ui.table = make('div', {});
-  const clear = make('button', {id: 'clear', onclick: () => { state.picks = []; showPicks(); }}, 'clear');
-  return make('div', {}, ui.plot, ui.table, clear);
+  ui.table = make('div', {className: 'tables'});
+  ui.regionTable = make('div', {className: 'tables', id: 'region'});
+  const clear = make('button', {id: 'clear', onclick: () => { state.picks = []; state.region = null; showPicks(); }}, 'clear');
+  ui.select = make('button', {id: 'select', onclick: () => setSelecting(!state.select)}, 'select a region');
+  const csv = make('button', {id: 'csv', onclick: exportCsv}, 'save as CSV');
+  return make('div', {className: 'chart'}, ui.plot, make('div', {className: 'row'}, ui.select, clear, csv), ui.regionTable, ui.table);
 }
 
-// Another image: what can be chosen of it.
-function choose(i) {
+// Another image: what can be chosen of it. same: of the same kind as the one before (another frame), whose choices stay.
+function choose(i, same = false) {
+  const one = about.images[i], before = image();
+  const shift = kept => kept.map(p => ({...p, spectrum: spectrumOf(one, i, p.index)}));
   state.image = i;
-  state.picks = [];
-  const one = image();
+  ui.images.value = String(i);
+  state.picks = same ? shift(state.picks) : [];
+  if (!same) chooseAnew(one);
+  state.region = same && state.region ? regionOf(state.region.from, state.region.to) : null;
+  for (const canvas of [ui.canvas, ui.over, ui.marks])
+    if (!same || canvas.width !== one.columns || canvas.height !== one.rows) canvas.width = one.columns, canvas.height = one.rows;
+  if (!same || before.columns !== one.columns) fit();
+  draw();
+  drawOverlay();
+  if (!same) showMap();
+  if (ui.tell) ui.tell();
+}
+
+function chooseAnew(one) {
   const three = one.shown.length === 3;
   state.band = one.shown.length ? one.shown[0] : 0;
   state.rgb = three ? [...one.shown] : [0, 1, 2].map(k => Math.min(k, one.bands.length - 1));
@@ -96,16 +121,17 @@ function choose(i) {
   option(ui.over_, '', 'nothing');
   option(ui.over_, 'q', 'flags');
   one.truth.forEach((t, n) => option(ui.over_, 't' + n, `truth: ${t.name}${t.unit ? ' [' + t.unit + ']' : ''}`));
-  for (const canvas of [ui.canvas, ui.over, ui.marks]) canvas.width = one.columns, canvas.height = one.rows;
-  fit();
-  draw();
-  drawOverlay();
-  showPicks();
+  state.colours = document.getElementById('colours').checked = inKelvin();
+  document.getElementById('kelvin').parentElement.hidden = !one.bands.some((_, b) => isThermal(one, b));
+  showPlayer();
 }
 
 function nameOf(band) { return band.um ? `${band.name} (${shown(band.um)} um)` : band.name; }
 
-function fit() { zoomTo(Math.min(600 / image().columns, 600 / image().rows, 40)); }
+function fit() {
+  const room = (ui.view && ui.view.clientWidth ? ui.view.clientWidth : 600) - 4;
+  zoomTo(Math.min(room / image().columns, Math.max(240, 0.68 * window.innerHeight) / image().rows, 40));
+}
 
 function zoomTo(zoom) {
   const one = image();
@@ -115,6 +141,8 @@ function zoomTo(zoom) {
     canvas.style.height = one.rows * state.zoom + 'px';
   }
   ui.zoomText.textContent = `x ${shown(state.zoom, 3)}`;
+  showMap();
+  drawRegion();
 }
 
 function draw() {
@@ -128,12 +156,13 @@ function draw() {
   ui.waiting = false;
   const context = ui.canvas.getContext('2d'), picture = context.createImageData(one.columns, one.rows);
   if (rgb) {
-    const ranges = state.each ? lists.map(list => percentiles([list], state.low, state.high)) : Array(3).fill(commonRange(lists));
+    const ranges = rangesShown() || (state.each ? lists.map(list => percentiles([list], state.low, state.high)) : Array(3).fill(commonRange(lists)));
     paintRgb(picture.data, lists, ranges, state.srgb);
     showLegend(ranges, bands);
   } else {
-    const range = percentiles(lists, state.low, state.high);
-    paintScale(picture.data, lists[0], range, scaleOf(state.colours, state.srgb));
+    const shownList = toKelvin() ? lists[0].map(v => kelvinOf(one, state.band, v)) : lists[0];
+    const range = rangesShown() ? rangesShown()[0] : percentiles([shownList], state.low, state.high);
+    paintScale(picture.data, shownList, range, scaleOf(state.colours, state.srgb && !inKelvin(), inKelvin()));
     showLegend([range], bands);
   }
   context.putImageData(picture, 0, 0);
@@ -151,22 +180,23 @@ function commonRange(lists) {
 }
 
 function showLegend(ranges, bands) {
-  const context = ui.bar.getContext('2d'), one = image(), single = ranges.length === 1;
+  const context = ui.bar.getContext('2d'), one = image(), single = ranges.length === 1, wide = ui.bar.width;
   ui.bar.height = single ? 14 : 36;
   for (let k = 0; k < ranges.length; ++k)
-    for (let x = 0; x < 300; ++x) {
-      const t = x / 299, v = encoded(t, state.srgb);
-      const c = single ? scaleOf(state.colours, state.srgb)(t) : [0, 1, 2].map(i => i === k ? v : 0);
+    for (let x = 0; x < wide; ++x) {
+      const t = x / (wide - 1), v = encoded(t, state.srgb);
+      const c = single ? scaleOf(state.colours, state.srgb && !inKelvin(), inKelvin())(t) : [0, 1, 2].map(i => i === k ? v : 0);
       context.fillStyle = `rgb(${c.map(Math.round).join(',')})`;
       context.fillRect(x, single ? 0 : 12 * k, 1, single ? 14 : 12);
     }
   const told = state.each && !single ? ranges : [ranges[0]];
   ui.barText.textContent = '';
   const span = text => ui.barText.append(make('span', {}, text));
+  const ends = ([low, high]) => { const step = (high - low) / 200 || 1; return [tickText(low, step), tickText(high, step)]; };
   if (told.length === 1) {
-    const [low, high] = told[0];
-    span(shown(low)), span(`${one.quantity}${one.unit ? ', ' + one.unit : ''}`), span(shown(high));
-  } else span(told.map(([low, high], k) => `${one.bands[bands[k]].name}: ${shown(low)} to ${shown(high)}`).join('; ') + ' ' + one.unit);
+    const [low, high] = ends(told[0]), what = toKelvin() ? 'brightness temperature at the band\'s middle, K' : `${one.quantity}${one.unit ? ', ' + one.unit : ''}`;
+    span(low), span(what), span(high);
+  } else span(told.map((range, k) => `${one.bands[bands[k]].name}: ${ends(range).join(' to ')}`).join('; ') + ' ' + one.unit);
 }
 
 function key(colour, text, extra) {
@@ -238,9 +268,11 @@ function hover(event) {
   const bands = state.mode === 'rgb' ? state.rgb : [state.band];
   const told = bands.map(b => {
     const list = valuesOf(b);
-    return `${one.bands[b].name} ${list ? shown(list[at.index]) : '...'} +- ${shown(numberAt(`i${state.image}.e${b}`, at.index), 2)}`;
+    const kelvin = toKelvin() && list ? ` (${shown(kelvinOf(one, b, list[at.index]), 5)} K)` : '';
+    return `${one.bands[b].name} ${list ? shown(list[at.index]) : '...'} +- ${shown(numberAt(`i${state.image}.e${b}`, at.index), 2)}${kelvin}`;
   });
-  ui.readout.textContent = `column ${at.column * one.step}, row ${at.row * one.step}: ${told.join(', ')} ${one.unit}`;
+  const place = placeText(at.index);
+  ui.readout.textContent = `column ${at.column * one.step}, row ${at.row * one.step}: ${told.join(', ')} ${one.unit}${place ? '\n' + place : ''}`;
 }
 
 function pick(event) {
@@ -256,21 +288,29 @@ function pick(event) {
 function showPicks() {
   const one = image(), context = ui.marks.getContext('2d'), reach = one.reach || 1;
   context.clearRect(0, 0, one.columns, one.rows);
+  drawRegion();
   ui.plot.textContent = ui.table.textContent = '';
-  if (!state.picks.length) return;
+  const drawn = [...state.picks, ...(state.region ? [state.region] : [])];
+  showRegion();
+  if (!drawn.length) {
+    ui.plot.append(make('div', {className: 'said'}, kHelp));
+    return;
+  }
   for (const p of state.picks) {
     context.fillStyle = p.colour;
     context.fillRect(p.column, p.row, 1, 1);
   }
-  ui.plot.append(plotSpectra(state.picks, one, reach));
-  ui.plot.append(make('div', {className: 'said'}, one.reach ? `Bars: 95 %, ${shown(reach, 3)} standard errors to either side.` : 'Bars: one standard error to either side.'));
-  ui.table.append(tableOf(state.picks, one, state.image, state.mode === 'rgb' ? state.rgb[0] : state.band));
+  ui.plot.append(plotSpectra(drawn, one, reach, ui.plot.clientWidth));
+  ui.plot.append(make('div', {className: 'said'}, (one.reach ? `Bars: 95 %, ${shown(reach, 3)} standard errors to either side` : 'Bars: one standard error to either side') +
+    (state.region ? '; of the region (black): one standard deviation of its pixels.' : '.')));
+  if (state.picks.length) ui.table.append(tableOf(state.picks, one, state.image, state.mode === 'rgb' ? state.rgb[0] : state.band));
 }
 
 // The first picture is there before the rest of the file.
 function begin() {
   const app = document.getElementById('app');
   app.append(buildPanel(), buildStage(), buildSpectra());
+  window.addEventListener('resize', () => { fit(); showPicks(); });
   ui.about = make('div', {className: 'said'}, about.made);
   app.after(ui.about);
   choose(0);
@@ -280,6 +320,7 @@ function begin() {
 function ready() {
   if (ui.waiting) draw();
   if (state.over) drawOverlay();
+  showMap();
   const lost = JSON.parse(document.getElementById('lost').textContent);
   const tell = () => {
     const one = image(), l = lost[state.image];
@@ -288,7 +329,7 @@ function ready() {
       `Numbers here differ from the files' by at most ${shown(100 * l.values, 2)} % (values of a millionth of a band's largest or less: ` +
       `by more), standard errors by ${shown(100 * l.errors, 2)} %; truth has seven digits.\n${one.about}`;
   };
-  ui.images.addEventListener('change', tell);
+  ui.tell = tell;
   tell();
   window.readyAt = performance.now();
 }

@@ -51,9 +51,18 @@ function paintRgb(pixels, lists, ranges, srgb) {
   }
 }
 
-// A scale of one band: [r, g, b] for 0 to 1.
-function scaleOf(colours, srgb) {
-  return t => colours ? viridis(t) : [0, 1, 2].map(() => encoded(t, srgb));
+// A scale of one band: [r, g, b] for 0 to 1. Temperatures have colours of their own, as previews do.
+function scaleOf(colours, srgb, kelvin) {
+  return t => colours ? (kelvin ? inferno(t) : viridis(t)) : [0, 1, 2].map(() => encoded(t, srgb));
+}
+
+// Whether a band is one of thermal radiance, and the temperature at which a blackbody sends as much at its middle.
+const kToSi = {'W/(m2 sr um)': 1, 'W/(cm2 sr um)': 1e4};
+function isThermal(image, band) { return image.bands[band].um > 3 && image.unit in kToSi; }
+function kelvinOf(image, band, radiance) {
+  const um = image.bands[band].um, c1 = 1.191042972e8, c2 = 14387.76877;  // W um4 / (m2 sr), um K
+  const v = radiance * kToSi[image.unit];
+  return v > 0 ? c2 / (um * Math.log1p(c1 / (um ** 5 * v))) : NaN;
 }
 
 function paintScale(pixels, list, [low, high], scale) {
@@ -70,12 +79,3 @@ function rgbOf(hex) { return [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16
 
 const kFlagColours = ['#e63946', '#ff9f1c', '#8338ec', '#2a9df4', '#06d6a0', '#b5179e', '#7f5539', '#333333'];
 const kSpectrumColours = ['#1b6ca8', '#c0392b', '#1e8449', '#8e44ad', '#b9770e', '#16808a', '#7f3f1f', '#555555'];
-
-// Whole numbers of some class: neighbours get hues far apart.
-function classColour(i) {
-  const hue = (0.11 + 0.6180339887 * i) % 1 * 6, bright = 255 - 55 * (i % 3);
-  return [0, 1, 2].map(c => {
-    const from = (hue + 6 - 2 * c) % 6, share = Math.min(1, Math.max(0, 2 - Math.min(from, 6 - from)));
-    return bright * (0.15 + 0.85 * share);
-  });
-}

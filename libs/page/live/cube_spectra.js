@@ -1,6 +1,6 @@
 // Spectra of chosen pixels: a plot with error bars, and a table.
 
-const kPlot = {width: 520, height: 340, left: 74, right: 12, top: 12, bottom: 44};
+const kPlot = {width: 520, height: 340, left: 74, right: 14, top: 12, bottom: 44};
 
 function svg(tag, attributes, text) {
   const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
@@ -21,13 +21,13 @@ function spectrumOf(image, number, index) {
 function frame(plot, x, y, xLabel, yLabel) {
   const p = kPlot, bottom = p.height - p.bottom, right = p.width - p.right;
   plot.append(svg('rect', {x: p.left, y: p.top, width: right - p.left, height: bottom - p.top, fill: '#fafafa', stroke: '#999'}));
-  for (const t of ticks(x.low, x.high)) {
-    plot.append(svg('line', {x1: x.at(t), x2: x.at(t), y1: p.top, y2: bottom, stroke: '#ddd'}));
-    plot.append(svg('text', {x: x.at(t), y: bottom + 15, 'text-anchor': 'middle'}, shown(t)));
+  for (const t of tickLabels(x.low, x.high, Math.max(2, Math.round((right - p.left) / 80)))) {
+    plot.append(svg('line', {x1: x.at(t.at), x2: x.at(t.at), y1: p.top, y2: bottom, stroke: '#ddd'}));
+    plot.append(svg('text', {x: x.at(t.at), y: bottom + 15, 'text-anchor': 'middle'}, t.text));
   }
-  for (const t of ticks(y.low, y.high)) {
-    plot.append(svg('line', {x1: p.left, x2: right, y1: y.at(t), y2: y.at(t), stroke: '#ddd'}));
-    plot.append(svg('text', {x: p.left - 5, y: y.at(t) + 4, 'text-anchor': 'end'}, shown(t)));
+  for (const t of tickLabels(y.low, y.high)) {
+    plot.append(svg('line', {x1: p.left, x2: right, y1: y.at(t.at), y2: y.at(t.at), stroke: '#ddd'}));
+    plot.append(svg('text', {x: p.left - 5, y: y.at(t.at) + 4, 'text-anchor': 'end'}, t.text));
   }
   plot.append(svg('text', {x: (p.left + right) / 2, y: p.height - 8, 'text-anchor': 'middle'}, xLabel));
   plot.append(svg('text', {transform: `translate(14 ${(p.top + bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle'}, yLabel));
@@ -38,11 +38,13 @@ function axis(low, high, from, to) {
   return {low, high, at: v => from + (v - low) / (high - low) * (to - from)};
 }
 
-// picks: [{spectrum, colour}]; reach: standard errors that bars reach to either side.
-function plotSpectra(picks, image, reach) {
-  const p = kPlot, plot = svg('svg', {viewBox: `0 0 ${p.width} ${p.height}`, width: p.width, height: p.height,
+// picks: [{spectrum, colour}]; reach: standard errors that bars reach to either side; width: of the page's room.
+function plotSpectra(picks, image, reach, width) {
+  const p = kPlot;
+  p.width = Math.min(760, Math.max(280, width || 520)), p.height = Math.round(Math.min(400, Math.max(240, 0.62 * p.width)));
+  const plot = svg('svg', {viewBox: `0 0 ${p.width} ${p.height}`, width: p.width, height: p.height,
     'font-size': 11, 'font-family': 'sans-serif', 'class': 'spectra'});
-  const points = picks.flatMap(pick => pick.spectrum.points), bar = q => reach * (Number.isFinite(q.error) ? q.error : 0);
+  const points = picks.flatMap(pick => pick.spectrum.points), bar = q => q.half !== undefined ? q.half : reach * (Number.isFinite(q.error) ? q.error : 0);
   if (!points.length) return plot;
   const least = Math.min(...points.map(q => q.value - bar(q))), most = Math.max(...points.map(q => q.value + bar(q)));
   const room = 0.05 * (most - least);

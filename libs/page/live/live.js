@@ -97,6 +97,95 @@ function ticks(low, high, count = 5) {
   return out;
 }
 
+// A tick in as many digits as tell it from its neighbours, `step` away.
+function tickText(v, step) {
+  if (v === 0) return '0';
+  const size = Math.abs(v);
+  if (size >= 1e6 || size < 1e-4) return shown(v, Math.min(15, Math.max(1, Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)) + 1)));
+  return v.toFixed(Math.min(15, Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
+}
+
+// Labels of an axis or a bar: round places with their texts.
+function tickLabels(low, high, count = 5) {
+  const at = ticks(low, high, count), step = at.length > 1 ? at[1] - at[0] : high - low || 1;
+  return at.map(v => ({at: v, text: tickText(v, step)}));
+}
+
+// Round decades, and 2 and 5 of them where there are few.
+function logTicks(low, high) {
+  const out = [], decades = Math.log10(high / low);
+  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e)
+    for (const m of decades < 2.5 ? [1, 2, 5] : [1]) {
+      const v = Number(`${m}e${e}`);
+      if (v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9)) out.push({at: v, text: shown(v, 3)});
+    }
+  return out;
+}
+
+// 1, 2 or 5 times a power of ten, at most x.
+function roundBelow(x) {
+  const unit = 10 ** Math.floor(Math.log10(x)), part = x / unit;
+  return unit * (part >= 5 ? 5 : part >= 2 ? 2 : 1);
+}
+
+// A length for people, m.
+function lengthText(m) { return m >= 1000 ? `${shown(m / 1000)} km` : m >= 1 ? `${shown(m)} m` : m >= 0.01 ? `${shown(100 * m)} cm` : `${shown(1000 * m)} mm`; }
+
+// A text as a file of the reader's.
+function save(name, text, type = 'text/csv') {
+  window.lastSaved = {name, text};
+  const link = make('a', {download: name, href: URL.createObjectURL(text instanceof Blob ? text : new Blob([text], {type}))});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
+// Black over red to yellow: a polynomial (M. Zucker, 2019) through the map "inferno" (S. van der Walt and N. Smith, 2015, CC0).
+function inferno(t) {
+  const c = [[0.0002, 0.0017, -0.0195], [0.1065, 0.5640, 3.9327], [11.6025, -3.9729, -15.9424], [-41.7040, 17.4364, 44.3541],
+    [77.1629, -33.4024, -81.8073], [-71.3194, 32.6261, 73.2095], [25.1311, -12.2427, -23.0703]];
+  return [0, 1, 2].map(k => 255 * Math.min(1, Math.max(0, c.reduceRight((sum, row) => sum * t + row[k], 0))));
+}
+
+// The colour of the i-th material, tag or class, the same in all pages and in the classes of ENVI (headers.cpp).
+function classColour(i) {
+  const hue = (0.11 + 0.6180339887498949 * i) % 1 * 6, bright = 255 - 55 * (i % 3);
+  return [0, 1, 2].map(c => {
+    const from = (hue + 6 - 2 * c) % 6, share = Math.min(1, Math.max(0, 2 - Math.min(from, 6 - from)));
+    return bright * (0.15 + 0.85 * share);
+  });
+}
+
+// Longitude and latitude, degrees, and ellipsoidal height of scene ENU; origin: latitude, longitude, height (WGS84).
+function geodeticOf([e, n, u], [latitude, longitude, height]) {
+  const a = 6378137, f = 1 / 298.257223563, e2 = f * (2 - f), rad = Math.PI / 180;
+  const sp = Math.sin(latitude * rad), cp = Math.cos(latitude * rad), sl = Math.sin(longitude * rad), cl = Math.cos(longitude * rad);
+  const N = a / Math.sqrt(1 - e2 * sp * sp);
+  const x = (N + height) * cp * cl - sl * e - sp * cl * n + cp * cl * u, y = (N + height) * cp * sl + cl * e - sp * sl * n + cp * sl * u;
+  const z = (N * (1 - e2) + height) * sp + cp * n + sp * u, p = Math.hypot(x, y);
+  let phi = Math.atan2(z, p * (1 - e2)), h = 0;
+  for (let i = 0; i < 8; ++i) {
+    const s = Math.sin(phi), M = a / Math.sqrt(1 - e2 * s * s);
+    h = p * Math.cos(phi) + z * s - a * Math.sqrt(1 - e2 * s * s);
+    phi = Math.atan2(z, p * (1 - e2 * M / (M + h)));
+  }
+  return [Math.atan2(y, x) / rad, phi / rad, h];
+}
+
+function geodeticText(enu, origin) {
+  if (!origin) return `east ${enu[0].toFixed(2)}, north ${enu[1].toFixed(2)}, up ${enu[2].toFixed(2)} m`;
+  const [longitude, latitude, height] = geodeticOf(enu, origin);
+  return `${Math.abs(latitude).toFixed(6)} ${latitude < 0 ? 'S' : 'N'}, ${Math.abs(longitude).toFixed(6)} ${longitude < 0 ? 'W' : 'E'}, ${height.toFixed(1)} m`;
+}
+
+// An arrow to the north: degrees clockwise from up in the picture.
+function northArrow(degrees) {
+  const holder = make('span', {title: 'north', id: 'north'});
+  holder.innerHTML = `<svg width="30" height="30" viewBox="-15 -15 30 30"><g transform="rotate(${degrees.toFixed(1)})">` +
+    '<path d="M0 -13L5 8L0 4L-5 8Z" fill="#222"/></g></svg>';
+  holder.append('N');
+  return holder;
+}
+
 // Dark violet over green to yellow in even steps of brightness: a polynomial (M. Zucker, 2019) through the map "viridis"
 // (S. van der Walt and N. Smith, 2015, CC0). 0 to 1 gives red, green and blue, 0 to 255.
 function viridis(t) {

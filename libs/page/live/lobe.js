@@ -1,7 +1,7 @@
 // Lobes of a fitted scattering function: patches of its cells, as far out as its value, for one view direction at a time.
 
 const view = {azimuth: 215, elevation: 30, zoom: 1};
-const state = {view: 0, channel: 0, scale: 'root', edges: true, chosen: -1};
+const state = {view: 0, channel: 0, scale: 'log', edges: true, chosen: -1};
 const ui = {};
 let cells = null, shapes = [];
 
@@ -22,7 +22,8 @@ function reach(v) {
   if (state.scale === 'sphere') return 1;
   if (state.scale === 'linear') return v / cells.high;
   if (state.scale === 'root') return Math.cbrt(v / cells.high);
-  return Math.max(0.02, Math.log(v / cells.low) / Math.log(cells.high / cells.low || 2));
+  const zero = cells.low / 3;  // what is least is not nothing
+  return Math.max(0.02, Math.log(v / zero) / Math.log(cells.high / zero));
 }
 
 function colour(v) {
@@ -96,6 +97,7 @@ function draw() {
   drawArrow(context, project, out, '#c0392b', 'view');
   drawArrow(context, project, [-out[0], -out[1], out[2]], '#2471a3', 'mirror direction', true);
   showTexts(v);
+  drawProfile();
 }
 
 // Directions of files: azimuths count from x to y.
@@ -138,28 +140,116 @@ function choose(x, y) {
   draw();
 }
 
+// The cell of a direction, or -1; i begins the search with one that is likely.
+function cellOf(c, d) {
+  const at = (i, k) => [c.corners[12 * i + 3 * k], c.corners[12 * i + 3 * k + 1], c.corners[12 * i + 3 * k + 2]];
+  for (let i = 0; i < c.orders.length; ++i) {
+    let left = 0, right = 0;
+    for (let k = 0; k < 4; ++k) dot(cross(at(i, k), at(i, (k + 1) % 4)), d) >= 0 ? ++left : ++right;
+    if ((left === 4 || right === 4) && dot(at(i, 0), d) > 0) return i;
+  }
+  return -1;
+}
+
+// Values in the plane of the view, all channels over each other: zenith angles on the side of the view negative.
+function profileOf(channel) {
+  const id = `${about.views[state.view].number}.${channel}`, v = about.views[state.view], out = [];
+  const c = {corners: new Int16Array(bytesOf(block('c' + id).text).buffer), values: numbersOf('v' + id), orders: numbersOf('o' + id)};
+  for (let angle = -89; angle <= 89; angle += 2) {
+    const t = radians(angle), p = radians(v.phi + 180);
+    const i = cellOf(c, [Math.sin(t) * Math.cos(p), Math.sin(t) * Math.sin(p), Math.cos(t)]);
+    if (i >= 0 && c.values[5 * i + 4] > 0) out.push([angle, c.values[5 * i + 4]]);
+  }
+  return out;
+}
+
+const profiles = new Map();
+function profilesOfView() {
+  if (!profiles.has(state.view)) profiles.set(state.view, about.channels.map((_, c) => profileOf(c)));
+  return profiles.get(state.view);
+}
+
+function drawProfile() {
+  const all = profilesOfView(), values = all.flat().map(p => p[1]);
+  const signature = JSON.stringify([state.view, state.channel, ui.profile.clientWidth]);
+  if (ui.drawnProfile === signature) return;
+  ui.drawnProfile = signature;
+  ui.profile.textContent = '';
+  if (!values.length) return;
+  const p = {width: Math.min(760, Math.max(280, ui.profile.clientWidth || 420)), left: 62, right: 10, top: 10, bottom: 40};
+  p.height = Math.round(Math.min(420, 0.75 * p.width));
+  let low = Math.min(...values), high = Math.max(...values);
+  low = Math.max(low, 1e-8 * high) / 1.3, high *= 1.3;
+  const x = a => p.left + (a + 90) / 180 * (p.width - p.left - p.right);
+  const y = v => p.top + Math.log(high / Math.max(v, low)) / Math.log(high / low) * (p.height - p.top - p.bottom);
+  const tag = (name, attributes, text) => {
+    const e = document.createElementNS('http://www.w3.org/2000/svg', name);
+    for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
+    if (text !== undefined) e.textContent = text;
+    return e;
+  };
+  const plot = tag('svg', {viewBox: `0 0 ${p.width} ${p.height}`, width: p.width, height: p.height, 'font-size': 11, 'font-family': 'sans-serif', 'class': 'spectra'});
+  plot.append(tag('rect', {x: p.left, y: p.top, width: p.width - p.left - p.right, height: p.height - p.top - p.bottom, fill: '#fafafa', stroke: '#999'}));
+  for (let a = -90; a <= 90; a += 30) plot.append(tag('line', {x1: x(a), x2: x(a), y1: p.top, y2: p.height - p.bottom, stroke: '#ddd'}),
+    tag('text', {x: x(a), y: p.height - p.bottom + 14, 'text-anchor': 'middle'}, a));
+  const decades = logTicks(low, high), labelled = decades.length > 1 ? decades : tickLabels(low, high, 3);
+  for (const t of labelled) plot.append(tag('line', {x1: p.left, x2: p.width - p.right, y1: y(t.at), y2: y(t.at), stroke: '#ddd'}),
+    tag('text', {x: p.left - 5, y: y(t.at) + 4, 'text-anchor': 'end'}, t.text));
+  plot.append(tag('text', {x: (p.left + p.width - p.right) / 2, y: p.height - 8, 'text-anchor': 'middle'}, 'zenith angle in the plane of the view, degrees (its side: < 0)'),
+    tag('text', {transform: `translate(12 ${(p.top + p.height - p.bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle'}, 'value, 1/sr'));
+  all.forEach((points, c) => plot.append(tag('polyline', {'class': 'channel', fill: 'none', stroke: channelColour(c), 'stroke-width': c === state.channel ? 2.5 : 1.2,
+    points: points.map(([a, v]) => `${x(a).toFixed(1)},${y(v).toFixed(1)}`).join(' ')})));
+  ui.profile.append(plot, make('div', {className: 'keys'}, ...about.channels.map((um, c) => make('label', {style: 'display:inline-block;margin-right:10px'},
+    make('span', {className: 'box', style: `background:${channelColour(c)}`}), channelText(c)))));
+}
+
+function channelColour(c) {
+  const n = about.channels.length;
+  return `rgb(${viridis(n > 1 ? 0.9 * (n - 1 - c) / (n - 1) : 0.3).map(Math.round).join(',')})`;
+}
+function channelText(c) { return about.channels[c] > 0 ? `${shown(about.channels[c])} um` : `channel ${c + 1}`; }
+
 function listen(canvas) {
-  let from = null, moved = 0;
-  canvas.addEventListener('mousedown', e => { from = [e.clientX, e.clientY]; moved = 0; e.preventDefault(); });
-  window.addEventListener('mousemove', e => {
+  const fingers = new Map();
+  let moved = 0;
+  const spread = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+  const nearer = by => { view.zoom = Math.min(200, Math.max(0.2, view.zoom * by)); };
+  canvas.addEventListener('pointerdown', e => {
+    if (!fingers.size) moved = 0;
+    fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    canvas.setPointerCapture(e.pointerId);
+  });
+  canvas.addEventListener('pointermove', e => {
+    const from = fingers.get(e.pointerId);
     if (!from) return;
-    const dx = e.clientX - from[0], dy = e.clientY - from[1];
+    const dx = e.clientX - from[0], dy = e.clientY - from[1], before = fingers.size === 2 ? spread() : 0;
     moved += Math.abs(dx) + Math.abs(dy);
-    from = [e.clientX, e.clientY];
-    view.azimuth = (view.azimuth + 0.4 * dx + 360) % 360;
-    view.elevation = Math.min(89.9, Math.max(-89.9, view.elevation + 0.4 * dy));
+    fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    if (before) nearer(spread() / Math.max(1, before));
+    else {
+      view.azimuth = (view.azimuth + 0.4 * dx + 360) % 360;
+      view.elevation = Math.min(89.9, Math.max(-89.9, view.elevation + 0.4 * dy));
+    }
     draw();
   });
-  window.addEventListener('mouseup', e => {
+  const end = e => {
+    if (!fingers.delete(e.pointerId) || e.type !== 'pointerup' || moved >= 4 || fingers.size) return;
     const box = canvas.getBoundingClientRect();
-    if (from && moved < 4 && e.target === canvas) choose(e.clientX - box.left, e.clientY - box.top);
-    from = null;
-  });
+    choose(e.clientX - box.left, e.clientY - box.top);
+  };
+  canvas.addEventListener('pointerup', end);
+  canvas.addEventListener('pointercancel', end);
   canvas.addEventListener('wheel', e => {
     e.preventDefault();
-    view.zoom = Math.min(200, Math.max(0.2, view.zoom * Math.exp(-0.001 * e.deltaY)));
+    nearer(Math.exp(-0.001 * e.deltaY));
     draw();
   }, {passive: false});
+}
+
+function resize() {
+  const width = Math.max(240, ui.space.clientWidth - 2), tall = window.innerWidth < 1200 ? width : Infinity;
+  ui.canvas.width = width, ui.canvas.height = Math.max(240, Math.min(tall, window.innerHeight - 110));
+  draw();
 }
 
 function begin() {
@@ -168,24 +258,27 @@ function begin() {
   ui.slider = make('input', {type: 'range', id: 'view', min: 0, max: about.views.length - 1, step: 1, value: 0, oninput: () => { state.view = Number(ui.slider.value); again(); }});
   ui.viewText = make('div', {id: 'viewText'});
   ui.channel = make('select', {id: 'channel', onchange: () => { state.channel = Number(ui.channel.value); again(); }});
-  about.channels.forEach((um, c) => option(ui.channel, c, `${shown(um)} um`));
+  about.channels.forEach((_, c) => option(ui.channel, c, channelText(c)));
   ui.scale = make('select', {id: 'scale', onchange: () => { state.scale = ui.scale.value; draw(); }});
-  for (const [key, text] of [['root', 'cube root of the value'], ['linear', 'the value'], ['log', 'its logarithm'], ['sphere', 'none: the sphere of directions']]) option(ui.scale, key, text);
+  for (const [key, text] of [['log', 'logarithm of the value'], ['root', 'its cube root'], ['linear', 'the value'], ['sphere', 'none: the sphere of directions']]) option(ui.scale, key, text);
   ui.edges = make('input', {type: 'checkbox', id: 'edges', checked: true, onchange: () => { state.edges = ui.edges.checked; draw(); }});
   ui.facts = make('div', {id: 'facts'});
   ui.told = make('div', {id: 'told'}, 'Drag turns, the wheel goes nearer, a click tells of a cell.');
   ui.bar = make('canvas', {width: 280, height: 12});
-  ui.barText = make('div', {className: 'row', style: 'justify-content:space-between;font-size:12px', id: 'legend'});
+  ui.barText = make('div', {className: 'row', style: 'justify-content:space-between;flex-wrap:nowrap;font-size:12px', id: 'legend'});
   ui.lacks = make('div', {className: 'said', id: 'lacks'});
-  ui.canvas = make('canvas', {id: 'picture', width: Math.max(400, Math.min(window.innerWidth - 360, 1200)), height: Math.max(400, window.innerHeight - 90)});
+  ui.canvas = make('canvas', {id: 'picture'});
+  ui.space = make('div', {className: 'space'}, ui.canvas);
+  ui.profile = make('div', {id: 'profile'});
   document.getElementById('app').append(make('div', {className: 'panel'}, box('view direction', ui.slider, ui.viewText), box('shows', ui.channel,
     make('label', {}, 'distance from the middle', ui.scale), make('label', {}, ui.edges, ' borders of the cells'), ui.bar, ui.barText),
-    box('slice', ui.facts), box('chosen', ui.told), ui.lacks), make('div', {className: 'space'}, ui.canvas));
+    box('slice', ui.facts), box('chosen', ui.told), ui.lacks), make('div', {className: 'view'}, ui.space), make('div', {className: 'chart'}, ui.profile));
   state.view = Math.floor(about.views.length / 3);
   ui.slider.value = state.view;
   listen(ui.canvas);
   load();
-  draw();
+  resize();
+  window.addEventListener('resize', resize);
 }
 
 function ready() {

@@ -6,8 +6,8 @@ const ui = {};
 let painter = null, drawing = false;
 
 function resize() {
-  const width = Math.max(320, Math.min(window.innerWidth - 360, 1600)), height = Math.max(300, window.innerHeight - 90);
-  ui.canvas.width = width, ui.canvas.height = height;
+  const width = Math.max(240, ui.space.clientWidth - 2), tall = window.innerWidth < 1200 ? 0.75 * width : Infinity;
+  ui.canvas.width = width, ui.canvas.height = Math.max(240, Math.min(tall, window.innerHeight - 130));
   draw();
 }
 
@@ -19,6 +19,7 @@ function draw() {
     const camera = cameraOf(view, ui.canvas.width, ui.canvas.height);
     painter.draw(camera, state.sun, state.byTag, state.chosen);
     drawMarks(camera);
+    showMap(camera);
     window.drawnAt = performance.now();
   });
 }
@@ -34,6 +35,25 @@ function drawMarks(camera) {
   for (const f of state.findings) for (const p of f.places) mark(p, f.error ? '#d00' : '#e07000', f.text);
   if (state.picked) mark(state.picked, '#0060ff', 'chosen');
 }
+
+// An arrow to the north, and a bar of scale for what is as far away as the middle of the view.
+function showMap(camera) {
+  const east = camera.right[1], up = camera.up[1], metres = 2 * view.distance / camera.f / camera.height, length = roundBelow(150 * metres);
+  ui.map.replaceChildren(...Math.hypot(east, up) > 0.02 ? [northArrow(Math.atan2(east, up) * 180 / Math.PI)] : [],
+    make('span', {}, make('div', {className: 'bar', id: 'scalebar', style: `width:${length / metres}px`}), lengthText(length)),
+    make('span', {className: 'said'}, 'in the middle of the view'), ui.place);
+}
+
+// The place under the pointer, where finding it is quick.
+let slow = 0;
+function hover(e) {
+  if (slow > 40) return;
+  const box = ui.canvas.getBoundingClientRect(), begin = performance.now();
+  const hit = hitAt(e.clientX - box.left, e.clientY - box.top);
+  slow = Math.max(slow, performance.now() - begin);
+  ui.place.textContent = hit ? geodeticText(add(hit.place, about.middle), originOfScene()) : '';
+}
+function originOfScene() { return about.latitude === undefined ? null : [about.latitude, about.longitude, about.height || 0]; }
 
 // The nearest thing along the ray of a place in the window.
 function hitAt(x, y) {
@@ -72,7 +92,8 @@ function choose(x, y) {
     tag: tag === kNone ? 'none' : about.tags[tag], place: enu};
   const row = (name, text) => make('tr', {}, make('td', {}, name), make('td', {}, text));
   ui.told.replaceChildren(make('table', {}, row('object', hit.thing.name), row('instance', String(number)), row('material', state.hit.material),
-    row('tag', state.hit.tag), row('east, m', shown(enu[0], 8)), row('north, m', shown(enu[1], 8)), row('up, m', shown(enu[2], 8))));
+    row('tag', state.hit.tag), row('east, m', shown(enu[0], 8)), row('north, m', shown(enu[1], 8)), row('up, m', shown(enu[2], 8)),
+    ...about.latitude === undefined ? [] : [row('place', geodeticText(enu, originOfScene()))]));
   draw();
 }
 
@@ -82,30 +103,44 @@ function look(p, distance) {
   draw();
 }
 
+function shift(dx, dy) {
+  const camera = cameraOf(view, ui.canvas.width, ui.canvas.height), by = 2 * view.distance / camera.f / ui.canvas.height;
+  view.target = add(view.target, add(scaled(camera.right, -dx * by), scaled(camera.up, dy * by)));
+}
+
+// Mouse and fingers: one turns, two shift and draw nearer.
 function listen(canvas) {
-  let from = null, moved = 0;
-  canvas.addEventListener('mousedown', e => { from = [e.clientX, e.clientY]; moved = 0; e.preventDefault(); });
-  window.addEventListener('mousemove', e => {
-    if (!from) return;
-    const dx = e.clientX - from[0], dy = e.clientY - from[1];
+  const fingers = new Map();
+  let moved = 0;
+  const spread = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+  canvas.addEventListener('pointerdown', e => {
+    if (!fingers.size) moved = 0;
+    fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    canvas.setPointerCapture(e.pointerId);
+  });
+  canvas.addEventListener('pointermove', e => {
+    const from = fingers.get(e.pointerId);
+    if (!from) return hover(e);
+    const dx = e.clientX - from[0], dy = e.clientY - from[1], before = fingers.size === 2 ? spread() : 0;
     moved += Math.abs(dx) + Math.abs(dy);
-    from = [e.clientX, e.clientY];
-    if (e.shiftKey || e.buttons & 2) {
-      const camera = cameraOf(view, canvas.width, canvas.height), by = 2 * view.distance / camera.f / canvas.height;
-      view.target = add(view.target, add(scaled(camera.right, -dx * by), scaled(camera.up, dy * by)));
-    } else {
+    fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    if (fingers.size === 2) {
+      shift(dx / 2, dy / 2);
+      view.distance *= before / Math.max(1, spread());
+    } else if (e.shiftKey || e.buttons & 2) shift(dx, dy);
+    else {
       view.azimuth = (view.azimuth + 0.3 * dx + 360) % 360;
       view.elevation = Math.min(89.9, Math.max(-89.9, view.elevation + 0.3 * dy));
     }
     draw();
   });
-  window.addEventListener('mouseup', e => {
-    if (from && moved < 4 && e.target === canvas) {
-      const box = canvas.getBoundingClientRect();
-      choose(e.clientX - box.left, e.clientY - box.top);
-    }
-    from = null;
-  });
+  const end = e => {
+    if (!fingers.delete(e.pointerId) || e.type !== 'pointerup' || moved >= 4 || fingers.size) return;
+    const box = canvas.getBoundingClientRect();
+    choose(e.clientX - box.left, e.clientY - box.top);
+  };
+  canvas.addEventListener('pointerup', end);
+  canvas.addEventListener('pointercancel', end);
   canvas.addEventListener('contextmenu', e => e.preventDefault());
   canvas.addEventListener('wheel', e => {
     e.preventDefault();
@@ -130,7 +165,7 @@ function setSun() {
 
 function buildPanel() {
   const box = (title, ...inside) => make('fieldset', {}, make('legend', {}, title), ...inside);
-  ui.told = make('div', {id: 'told'}, 'Drag turns, Shift or the right button shifts, the wheel goes nearer; click on something, double click looks at it.');
+  ui.told = make('div', {id: 'told'}, 'Drag turns, Shift, the right button or two fingers shift, wheel or two fingers go nearer; click on something, double click looks at it.');
   ui.colour = make('select', {id: 'colour', onchange: () => { state.byTag = ui.colour.value === 'tag'; state.chosen = null; keys(); draw(); }});
   option(ui.colour, 'material', 'a colour for each material');
   option(ui.colour, 'tag', 'a colour for each tag');
@@ -143,7 +178,7 @@ function buildPanel() {
   ui.findings = make('div', {className: 'keys', id: 'findings'});
   ui.lacks = make('div', {className: 'said', id: 'lacks'}, 'reading ...');
   const whole = () => { view.target = [0, 0, 0], view.distance = 2.4 * about.radius; draw(); };
-  return make('div', {className: 'panel'}, box('chosen', ui.told), box('view', make('button', {id: 'whole', onclick: whole}, 'all of it'), ui.colour, ui.keys),
+  return make('div', {className: 'panel'}, box('chosen', ui.told), box('view', make('button', {id: 'whole', onclick: whole}, 'all of it'), ' ', make('button', {id: 'tagged', onclick: lookAtTagged}, 'what has tags'), ui.colour, ui.keys),
     box('sun, no shadows', make('label', {}, 'UTC', ui.when), make('label', {}, 'azimuth', ui.azimuth), make('label', {}, 'elevation', ui.elevation), ui.sunText),
     box('findings of the check', ui.findings), ui.lacks);
 }
@@ -176,13 +211,41 @@ function showFindings(list) {
   if (!list.length) ui.findings.textContent = 'none with a place';
 }
 
+// The scene's date at the time that is shown, UTC.
+function momentOf({epoch, time}) {
+  const start = epoch ? Date.parse(/(Z|[-+]\d\d:?\d\d)$/.test(epoch) ? epoch : epoch + 'Z') : NaN;
+  return Number.isFinite(start) ? new Date(start + 1000 * (time || 0)).toISOString().slice(0, 16) : '2026-06-21T10:00';
+}
+
+// Near what has tags, from where all of it is seen; all of the scene where nothing or nearly everything has one.
+function lookAtTagged() {
+  let low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const thing of painter.things)
+    for (let i = 0; i < thing.places.length / 12; ++i) {
+      if (thing.keys[3 * i + 1] === kNone) continue;
+      for (let k = 0; k < 8; ++k) {
+        const p = outOfLocal(thing.places, i, [0, 1, 2].map(a => k >> a & 1 ? thing.high[a] : thing.low[a]));
+        low = low.map((v, a) => Math.min(v, p[a])), high = high.map((v, a) => Math.max(v, p[a]));
+      }
+    }
+  const radius = low[0] <= high[0] ? 0.5 * Math.hypot(...sub(high, low)) : Infinity, near = radius < 0.7 * about.radius;
+  view.target = near ? scaled(add(low, high), 0.5) : [0, 0, 0];
+  view.distance = near ? Math.max(4 * radius, 2e-3 * about.radius) : 2.4 * about.radius || 1;
+  draw();
+}
+
 function begin() {
   ui.canvas = make('canvas', {id: 'picture'});
   ui.marks = make('div', {id: 'marks'});
-  document.getElementById('app').append(buildPanel(), make('div', {className: 'space'}, ui.canvas, ui.marks));
+  ui.space = make('div', {className: 'space'}, ui.canvas, ui.marks);
+  ui.place = make('span', {id: 'place'});
+  ui.map = make('div', {className: 'map', id: 'map'});
+  const app = document.getElementById('app');
+  app.className = 'two';
+  app.append(buildPanel(), make('div', {className: 'view'}, ui.space, ui.map));
   painter = new Painter(ui.canvas);
   view.distance = 2.4 * about.radius || 1;
-  if (about.latitude !== undefined) ui.when.value = (about.epoch || '2026-06-21T10:00').slice(0, 16);
+  if (about.latitude !== undefined) ui.when.value = momentOf(about);
   listen(ui.canvas);
   setSun();
 }
@@ -198,6 +261,7 @@ function ready() {
     thing.high = add(thing.low, thing.size);
     painter.add(thing);
   });
+  lookAtTagged();
   keys();
   showFindings(end.findings);
   const triangles = painter.things.reduce((sum, t) => sum + t.indices.length / 3 * t.places.length / 12, 0);

@@ -31,23 +31,19 @@ out vec4 colour;
 void main() {
   vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
   if (dot(normal, eye - place) < 0.0) normal = -normal;
-  float light = 0.35 + 0.65 * (sun.z > 0.0 ? max(0.0, dot(normal, sun)) : 0.0);
+  float light = 0.4 + 0.6 * (sun.z > 0.0 ? max(0.0, dot(normal, sun)) : 0.0);
   vec3 hue = vec3(1.0);
   if (shown != 0xffffffffu) {
-    float h = fract(0.11 + 0.61803398875 * float(shown + 1u)) * 6.0;
-    vec3 k = mod(h + vec3(5.0, 3.0, 1.0), 6.0);
-    hue = 1.0 - 0.55 * clamp(min(k, 4.0 - k), 0.0, 1.0);
+    float h = fract(0.11 + 0.61803398875 * float(shown)) * 6.0;
+    vec3 from = mod(h + vec3(6.0, 4.0, 2.0), 6.0);
+    hue = (255.0 - 55.0 * float(shown % 3u)) / 255.0 * (0.15 + 0.85 * clamp(2.0 - min(from, 6.0 - from), 0.0, 1.0));
   }
   if (chosen != 0xfffffffeu && shown == chosen) hue = mix(hue, vec3(1.0, 0.2, 0.1), 0.5);
   colour = vec4(hue * light, 1.0);
 }`;
 
-// The same colour as text, of a material or a tag.
-function colourOf(i) {
-  if (i === kNone || i < 0) return '#fff';
-  const h = (0.11 + 0.61803398875 * (i + 1)) % 1 * 6;
-  return `rgb(${[5, 3, 1].map(o => { const k = (h + o) % 6; return Math.round(255 * (1 - 0.55 * Math.min(1, Math.max(0, Math.min(k, 4 - k))))); }).join(',')})`;
-}
+// The same colour as text, of a material or a tag: that of live.js.
+function colourOf(i) { return i === kNone || i < 0 ? '#fff' : `rgb(${classColour(i).map(Math.round).join(',')})`; }
 
 class Painter {
   constructor(canvas) {

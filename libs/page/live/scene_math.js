@@ -68,6 +68,7 @@ function meetsBox(ray, low, high, most) {
 // intersection", 1997.
 function nearestTriangle(ray, positions, indices, most) {
   let best = null, limit = most;
+  const room = 1e-6;  // of an edge: no ray slips through where triangles meet
   const [ox, oy, oz] = ray.from, [dx, dy, dz] = ray.along;
   for (let t = 0; t < indices.length; t += 3) {
     const a = 3 * indices[t], b = 3 * indices[t + 1], c = 3 * indices[t + 2];
@@ -78,10 +79,10 @@ function nearestTriangle(ray, positions, indices, most) {
     const det = e1x * px + e1y * py + e1z * pz;
     if (det === 0) continue;
     const sx = ox - ax, sy = oy - ay, sz = oz - az, u = (sx * px + sy * py + sz * pz) / det;
-    if (u < 0 || u > 1) continue;
+    if (u < -room || u > 1 + room) continue;
     const qx = sy * e1z - sz * e1y, qy = sz * e1x - sx * e1z, qz = sx * e1y - sy * e1x;
     const v = (dx * qx + dy * qy + dz * qz) / det;
-    if (v < 0 || u + v > 1) continue;
+    if (v < -room || u + v > 1 + room) continue;
     const distance = (e2x * qx + e2y * qy + e2z * qz) / det;
     if (distance > 1e-9 && distance < limit) limit = distance, best = {distance, triangle: t / 3};
   }

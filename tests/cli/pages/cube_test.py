@@ -206,7 +206,7 @@ sensors:
     def test_what_does_not_fit_is_told(self):
         values, _, _ = make_cube(self.folder, 9, 100)
         page = self.folder / "x.html"
-        done = view("-o", self.folder, "--view", page, "--view-size", "100KiB")
+        done = view("-o", self.folder, "--view", page, "--view-size", "180KiB")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("every 2-th column and row", done.stderr)
         with Browser() as browser:
