@@ -19,7 +19,7 @@ def closed_object(world, rng, material, size):
         spec = rng.choice(({"sphere": {"radius": size}}, {"box": {"x0": -size, "y0": -size, "z0": -size, "x1": size, "y1": size, "z1": size}},
                            {"obj_text": shapes.ball_mesh(size), "normals": "facet"},
                            {"obj_text": shapes.box_mesh(-size, -size, -size, size, size, size), "normals": "facet"},
-                           {"cylinder": {"radius": size, "height": size, "capped": True}}))
+                           {"cylinder": {"radius": size, "height": size, "capped": 1}}))
     return world.add("objects", "new", dict(spec, material=material))
 
 
@@ -116,8 +116,6 @@ def brighter(world, factor):
     for key, what in (("sun", "irradiance"), ("moon", "irradiance"), ("sky", "radiance")):
         if what in made.sim.get(key, {}):
             made.sim[key][what] = times_number(made.sim[key][what], factor)
-    for layer in made.sim.get("sky", {}).get("layers", []):  # emission is no factor of the text: leave this light as it is
-        raise ValueError(layer)
     for lamp in made.sim["lamps"]:
         what = "radiance" if "radiance" in lamp else "intensity"
         lamp[what] = times_number(lamp[what], factor)

@@ -11,8 +11,8 @@ from world import draw_world
 
 
 KNOWN_BOUND = 1e-4             # of a known fault, judged by the spread between its seeds
-PILOT, MOST = 4, 64            # times the relation's paths
-SECONDS, START = 0.2, 0.09     # of CPU that a term takes, and of those what starting takes
+PILOT, MOST = 2, 64            # times the relation's paths
+SECONDS, START = 0.15, 0.09    # of CPU that a term takes, and of those what starting takes
 
 
 @dataclass

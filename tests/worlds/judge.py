@@ -68,6 +68,11 @@ def expected_of(case, name, band, pixel):
     return case.expected[name][band][pixel] if case.expected is not None else 0.0
 
 
+def known_pixels(case, name, band, n):
+    """Pixels of which it is known what is right: all but those that are to be 'not a number'."""
+    return [i for i in range(n) if not math.isnan(expected_of(case, name, band, i))]
+
+
 def screen(case, pictures):
     """pictures: one {sensor: Picture} a term, in the terms' order, under the names of the first."""
     found, best = Finding(), math.inf
@@ -75,7 +80,7 @@ def screen(case, pictures):
         for band in range(len(first.values)):
             n = len(first.values[band])
             total, parts, size = 0.0, [], 0.0
-            for i in range(n):
+            for i in known_pixels(case, name, band, n):
                 difference, scale, pixel = -expected_of(case, name, band, i), abs(expected_of(case, name, band, i)), []
                 for (coefficient, *_), seen in zip(case.terms, pictures):
                     p = seen[name]
@@ -101,17 +106,17 @@ def by_seeds(case, runs):
     found = Finding()
     for name, first in runs[0][0].items():
         for band in range(len(first.values)):
-            n = len(first.values[band])
-            differences, sizes = [], []
+            kept = known_pixels(case, name, band, len(first.values[band]))
+            n, differences, sizes = len(kept), [], []
             for pictures in runs:
-                row = [sum(c * seen[name].values[band][i] for (c, *_), seen in zip(case.terms, pictures)) - expected_of(case, name, band, i) for i in range(n)]
+                row = [sum(c * seen[name].values[band][i] for (c, *_), seen in zip(case.terms, pictures)) - expected_of(case, name, band, i) for i in kept]
                 differences.append(row)
-                sizes.append([max(abs(expected_of(case, name, band, i)), *(abs(seen[name].values[band][i]) for seen in pictures)) for i in range(n)])
+                sizes.append([max(abs(expected_of(case, name, band, i)), *(abs(seen[name].values[band][i]) for seen in pictures)) for i in kept])
             for i in list(range(n)) + [None]:
                 values = [sum(r) if i is None else r[i] for r in differences]
                 scale = sum(sum(s) if i is None else s[i] for s in sizes) / len(runs)
                 mean = sum(values) / len(values)
                 spread = sum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values)
-                where = f"{name} band {band} " + ("mean" if i is None else f"pixel {i}")
+                where = f"{name} band {band} " + ("mean" if i is None else f"pixel {kept[i]}")
                 found.consider(mean, spread + (case.tolerance * scale) ** 2, len(values) - 1, scale, where)
     return found.closed()

@@ -7,7 +7,7 @@ import judge
 from evaluate import case_of, draw, pictures_of
 from programs import Refused
 
-MOST_TRIES = 120
+MOST_TRIES = 150
 
 
 def write(programs, case, folder, text):
@@ -40,7 +40,7 @@ class Failing:
             if case.exact:
                 self.found = case.exact(self.programs, os.path.join(self.scratch, "term0"), 1)
                 return bool(self.found) and self.like.status == "fails"
-            runs = pictures_of(self.programs, case, self.scratch, range(1, 7), max(2, self.like.factor))
+            runs = pictures_of(self.programs, case, self.scratch, range(1, 9), max(4, self.like.factor))
         except Refused as refused:
             self.found = refused.text
             same = refused.text.splitlines()[-1][:40] == self.like.where.splitlines()[-1][:40] if refused.text and self.like.where else False
@@ -65,17 +65,20 @@ def candidates(world):
     def drop(table, k):
         return lambda w: table(w).pop(k)
 
+    walls = {"room"} if world.facts["furnace"] else set()  # without them, or the sky, it is no furnace
     for k in range(len(world.scene["world"])):
+        if world.scene["world"][k]["place"].rstrip("0123456789") in walls:
+            continue
         ways.append((f"world {k}", drop(lambda w: w.scene["world"], k)))
     for k in range(len(world.scene["volumes"])):
         ways.append((f"volume {k}", drop(lambda w: w.scene["volumes"], k)))
-    for k in range(len(world.sim["lamps"])):
+    for k in range(0 if world.facts["furnace"] else len(world.sim["lamps"])):
         ways.append((f"lamp {k}", drop(lambda w: w.sim["lamps"], k)))
     for k in range(len(world.sim["sensors"])):
         if len(world.sim["sensors"]) > 1:
             ways.append((f"sensor {k}", drop(lambda w: w.sim["sensors"], k)))
     for key in ("sun", "moon", "sky", "atmosphere"):
-        if key in world.sim:
+        if key in world.sim and not (key == "sky" and world.facts["furnace"]):
             ways.append((key, drop(lambda w: w.sim, key)))
     for name, group in world.scene["groups"].items():
         if len(group) > 1:
@@ -120,7 +123,7 @@ def simpler(world):
             ways.append((f"{name} smooth", put(("scene", "materials", name, "model"), "dielectric")))
             ways[-1] = (f"{name} smooth", lambda w, n=name: w.scene["materials"][n].update(model="dielectric") or w.scene["materials"][n].pop("roughness", None) and None)
     for name, m in world.scene["media"].items():
-        ways += [(f"{name} {k}", put(("scene", "media", name, k), None)) for k in ("phase", "priority", "temperature_k") if k in m]
+        ways += [(f"{name} {k}", put(("scene", "media", name, k), None)) for k in ("phase", "priority", *(() if world.facts["furnace"] else ("temperature_k",))) if k in m]
         if len(m) > 1 or "water" in m or "leaves" in m:
             small = {"absorption": 0.3, **{k: m[k] for k in ("index", "temperature_k", "priority") if k in m}}
             ways.append((f"{name} absorbs", put(("scene", "media", name), small)))

@@ -91,6 +91,8 @@ def superposition(world, rng):
     if len(first) == len(lights) and len(lights) > 1:
         first.discard(lights[-1])
     a, b, none = (change.with_lights(world, keep) for keep in (first, set(lights) - first, set()))
+    if set(lights) == first and world.sim.get("sky", {}).get("kind") == "thermal":
+        return None
     if set(lights) == first:  # one light: against twice of it
         return Case([(1, change.brighter(world, 2)), (-2, world), (1, none)], note="twice the light")
     return Case([(1, world), (1, none), (-1, a), (-1, b)], note=f"{sorted(first)} and the rest of {lights}")
@@ -116,7 +118,7 @@ def channels(world, rng):
         bands, v = len(cameras[0]["bands"]), picture.values
         for b in range(bands):
             for i, all_light in enumerate(v[b]):
-                part = [v[b * 8 + k][i] for k in range(8)]
+                part = [v[b + bands * k][i] for k in range(8)]
                 size = max(sum(abs(p) for p in part[3:7]), abs(all_light))
                 for what, total in (("single + multiple", part[1] + part[2]), ("unscattered + direct + diffuse + adjacency", sum(part[3:7]))):
                     if abs(total - all_light) > 2e-5 * size:
@@ -158,8 +160,8 @@ RELATIONS = {r.name: r for r in (
     Relation("substitution", same_as(rewrite.substitute), 4),
     Relation("switches", same_as(change.switches), 2),
     Relation("time_shift", same_as(change.time_shift), 1),
-    Relation("channels", channels, 1),
-    Relation("sensors_agree", sensors_agree, 2),
+    Relation("channels", channels, 1, frozen("wants_camera")),
+    Relation("sensors_agree", sensors_agree, 2, frozen("wants_camera")),
     Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "still_world", "no_room", "no_profile")),
     Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile")),
     Relation("same_bytes", same_bytes, 1),

@@ -149,7 +149,7 @@ def inner_things(d):
     name, index = around(d)
     if name is None and index != 1 or index is None or len(d.surround) > 3:
         return opaque(d)
-    if d.chance(0.25):
+    if d.chance(0.4):
         d.take("nested_deep")
         return nested(d)
     return a_body(d) if d.chance(0.55) else opaque(d)
@@ -265,7 +265,7 @@ def room(kind):
         spec = {"sphere": {"radius": 25}} if kind == "sphere" else {"box": {"x0": -14, "y0": -14, "z0": -3, "x1": 14, "y1": 14, "z1": 14}}
         row = d.pick("model", lambda r: r.name not in ("lambert_through", "leaf", "mirror"))
         material = row.make(d)
-        if d.chance(0.4):
+        if d.chance(0.6):
             d.take("room_glows")
             material = glow(d, d.u(0, 0.6))
         else:
@@ -318,25 +318,29 @@ def ambient(d):
 
 NO_ROOM = {"without": ("room_sphere", "room_box", "periodic")}
 AMBIENT = ("layered_air", "profile_air", "profile_no_adjacency", "traced_air", "tabled_air", "periodic")
+FLOORS = ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh")
+NO_POOL = FLOORS + ("room_sphere", "room_box")
+NOT_A_ROOM = FLOORS + ("pool", "in_water", "point_in_water", "sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky",
+                       "sky_furnace", "layered_air", "profile_air", "profile_no_adjacency", "traced_air")
 SMOOTH = {"without": ("reciprocal",)}   # a point's light by a smooth surface is found from one end alone
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal
 ROWS = [
-    ("plane", "shape", plane), ("disk", "shape", disk), ("box", "shape", box, CLOSED), ("sphere", "shape", sphere, CLOSED),
-    ("cone", "shape", cone, CLOSED), ("cylinder", "shape", cylinder, CLOSED), ("pipe", "shape", pipe), ("sinusoid", "shape", sinusoid),
+    ("plane", "shape", plane, {"weight": 1.5}), ("disk", "shape", disk, {"weight": 1.5}), ("box", "shape", box, CLOSED), ("sphere", "shape", sphere, CLOSED),
+    ("cone", "shape", cone, CLOSED), ("cylinder", "shape", cylinder, CLOSED), ("pipe", "shape", pipe, {"weight": 1.5}), ("sinusoid", "shape", sinusoid, {"weight": 1.5}),
     ("mesh_box", "shape", mesh_box, CLOSED), ("mesh_ball", "shape", mesh_ball, CLOSED), ("mesh_smooth", "shape", mesh_smooth, SHADING),
-    ("mesh_quad", "shape", mesh_quad), ("solid_voxels", "shape", solid_voxels),
+    ("mesh_quad", "shape", mesh_quad, {"weight": 1.5}), ("solid_voxels", "shape", solid_voxels, {"weight": 1.5}),
     ("haze_body", "body", haze_body, {"weight": 2}), ("glass_index", "body", glass(False, False), SMOOTH), ("glass_medium", "body", glass(False, True), SMOOTH),
     ("rough_index", "body", glass(True, False)), ("rough_medium", "body", glass(True, True)),
-    ("names_outside", "detail", None), ("glass_dispersion", "detail", None), ("nested_deep", "detail", None), ("in_water", "detail", None),
-    ("room_glows", "detail", None),
+    ("names_outside", "detail", None), ("glass_dispersion", "detail", None), ("nested_deep", "detail", None), ("in_water", "detail", None, {"without": NO_POOL}),
+    ("room_glows", "detail", None, {"without": NOT_A_ROOM}),
     ("opaque", "thing", opaque, {"weight": 3}), ("a_body", "thing", a_body, {"weight": 2}), ("pane", "thing", pane),
     ("nested", "thing", nested, {"weight": 2}), ("touching", "thing", touching), ("glass_on_opaque", "thing", glass_on_opaque),
     ("overlapping", "thing", overlapping), ("volume", "thing", volume, {"without": ("no_volume",)}), ("cluster", "thing", cluster),
     ("glowing", "thing", glowing),
     ("floor_none", "floor", floor_none), ("floor_plane", "floor", floor_plane), ("floor_infinite", "floor", floor_infinite),
-    ("floor_sinusoid", "floor", floor_sinusoid), ("floor_mesh", "floor", floor_mesh), ("pool", "floor", pool, {"weight": 1.5}),
-    ("room_sphere", "floor", room("sphere"), {"weight": 0.7, "without": ("no_room",)}),
-    ("room_box", "floor", room("box"), {"weight": 0.7, "without": ("no_room",)}),
+    ("floor_sinusoid", "floor", floor_sinusoid), ("floor_mesh", "floor", floor_mesh), ("pool", "floor", pool, {"weight": 2}),
+    ("room_sphere", "floor", room("sphere"), {"weight": 1.3, "without": ("no_room",)}),
+    ("room_box", "floor", room("box"), {"weight": 1.3, "without": ("no_room",)}),
     ("fill_none", "fill", fill_none, {"weight": 3}), ("layer", "fill", layer, {"weight": 1.5}), ("two_layers", "fill", two_layers),
     ("ambient", "fill", ambient, {"without": AMBIENT}),  # air of the simulation fills all space, too
 ]

@@ -89,8 +89,8 @@ NOT_FURNACE = {"without": ("furnace",)}  # shines more or less than the one temp
 FAR = ("furnace", "room_sphere", "room_box", "ambient")  # is not seen from a room, or through air without end
 
 
-def far(**more):
-    return {"without": FAR + tuple(more.get("without", ()))}
+def far(weight=1, without=()):
+    return {"weight": weight, "without": FAR + tuple(without)}
 
 
 ONE_SKY = ("sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "profile_air", "profile_no_adjacency", "traced_air")
@@ -98,14 +98,16 @@ PROFILE = {"without": ("furnace", "room_sphere", "room_box", "no_profile", "peri
 ROWS = [
     ("air_none", "air", air_none, {"weight": 5}), ("layered_air", "air", layered, {"without": ("room_sphere", "room_box", "no_air"), "weight": 1.2}),
     ("profile_air", "air", profile(), PROFILE), ("profile_no_adjacency", "air", profile(adjacency=False), PROFILE),
-    ("traced_air", "air", profile(scattering="traced"), PROFILE),
+    ("traced_air", "air", profile(scattering="traced"), {**PROFILE, "weight": 1}),
     ("sun", "light", sun, far(without=("sun_collimated", "reciprocal"))), ("sun_collimated", "light", collimated, far(without=("reciprocal",))),
     ("moon", "light", moon, far(without=("reciprocal",))),
-    ("sky", "light", sky, far(without=ONE_SKY[1:] + ("reciprocal",))), ("sky_full", "light", sky_full, far(without=ONE_SKY[2:] + ("reciprocal",))),
-    ("sky_table", "light", sky_table, far(without=ONE_SKY[3:] + ("reciprocal",))),
-    ("sky_thermal", "light", sky_thermal, far(without=ONE_SKY[4:] + ("reciprocal",))),
-    ("clear_sky", "light", clear_sky, far(without=ONE_SKY[5:] + ("reciprocal", "layered_air", "thermal", "moved"))),
-    ("sky_furnace", "light_furnace", sky_furnace),
+    ("sky", "light", sky, far(1.7, ONE_SKY[1:] + ("reciprocal",))), ("sky_full", "light", sky_full, far(1.7, ONE_SKY[2:] + ("reciprocal",))),
+    ("sky_table", "light", sky_table, far(1.7, ONE_SKY[3:] + ("reciprocal",))),
+    ("sky_thermal", "light", sky_thermal, far(1.7, ONE_SKY[4:] + ("reciprocal",))),
+    ("clear_sky", "light", clear_sky, far(6, ONE_SKY[5:] + ("reciprocal", "layered_air", "thermal", "moved"))),
+    ("sky_furnace", "light_furnace", sky_furnace, {"without": ("sun", "sun_collimated", "moon", "sky", "sky_full", "sky_table", "sky_thermal", "clear_sky", "lamp_point",
+                                                              "lamp_spot", "lamp_distribution", "lamp_scheduled", "room_sphere", "room_box", "room_glows",
+                                                              "profile_air", "profile_no_adjacency", "traced_air")}),
     ("lamp_point", "light", lamp("point"), NOT_FURNACE), ("lamp_spot", "light", lamp("spot"), NOT_FURNACE),
     ("lamp_distribution", "light", lamp_distribution, NOT_FURNACE), ("lamp_scheduled", "light", lamp_scheduled, {"without": ("furnace", "still_world")}),
 ]

@@ -183,10 +183,10 @@ ROWS = [
     ("curves", "curves", None),
     ("lambert", "model", lambert, {"weight": 2}), ("lambert_through", "model", lambert_through), ("mirror", "model", mirror, {"without": ("reciprocal",)}),  # as smooth glass
    
-    ("ward", "model", ward), ("ggx", "model", ggx, {"weight": 0.4}),  # the tables of ggx and sea take a second or more
+    ("ward", "model", ward), ("ggx", "model", ggx, {"weight": 0.7}),  # the tables of ggx and sea take a second or more
      ("oren_nayar", "model", oren_nayar), ("rpv", "model", rpv), ("ross_li", "model", ross_li),
     ("roujean", "model", roujean), ("priest_germer", "model", priest_germer), ("beard_maxwell", "model", maxwell("beard_maxwell")),
-    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf), ("sea", "model", sea, {"weight": 0.4}),
+    ("shell", "model", maxwell("shell")), ("leaf", "model", leaf), ("sea", "model", sea, {"weight": 0.7}),
     ("sqt", "model", sqt, {"without": ("reciprocal",)}),  # a fit is reciprocal but for its own error
     ("temperature_constant", "temperature", constant, {"weight": 2}), ("temperature_table", "temperature", table),
     ("hg", "phase", hg), ("double_hg", "phase", double_hg), ("rayleigh", "phase", rayleigh), ("tabulated", "phase", tabulated),

@@ -65,7 +65,7 @@ def pushbroom(d):
 
 def fisheye(d):
     add(d, common(d, "fish", kind="fisheye", size=5, position_m=[d.u(-0.1, 0.1), d.u(-0.1, 0.1), 3.3], look=d.one("up", "down"), max_angle_deg=d.one(60, 90), **times(d)),
-        [1.0 if math.hypot(k % 5 - 2, k // 5 - 2) < 2.5 else 0.0 for k in range(25)])  # nothing outside the circle
+        [1.0 if math.hypot(k % 5 - 2, k // 5 - 2) < 1.79 else math.nan for k in range(25)])  # pixels that the circle cuts are not known
 
 
 def unit(d):
@@ -83,7 +83,7 @@ def points(quantity, factor):
             collectors.append(spec)
         factors = [factor] * 3
         index = d.world.facts.get("pool_index")
-        if index and d.chance(0.7):
+        if index:
             d.take("point_in_water")
             collectors.append(dict(collectors[0], name="w", position_m=[2.5, 2.5, -0.6]))
             factors.append(factor * index * index)
@@ -98,9 +98,9 @@ def two_bands(d):
 
 
 ROWS = [
-    ("two_bands", "bands", two_bands), ("camera_within", "detail", None), ("point_in_water", "detail", None),
+    ("two_bands", "bands", two_bands), ("camera_within", "detail", None), ("point_in_water", "detail", None, {"without": ("floor_none", "floor_plane", "floor_infinite", "floor_sinusoid", "floor_mesh", "room_sphere", "room_box")}),
     ("frame", "sensor", frame, {"weight": 3}),
     ("orthographic", "sensor", orthographic), ("platform_frame", "sensor", platform_frame), ("pushbroom", "sensor", pushbroom),
-    ("fisheye", "sensor", fisheye), ("irradiance", "sensor", points("irradiance", math.pi)), ("radiance", "sensor", points("radiance", 1)),
-    ("actinic_flux", "sensor", points("actinic_flux", 4 * math.pi)),
+    ("fisheye", "sensor", fisheye), ("irradiance", "sensor", points("irradiance", math.pi), {"weight": 1.5}), ("radiance", "sensor", points("radiance", 1), {"weight": 1.5}),
+    ("actinic_flux", "sensor", points("actinic_flux", 4 * math.pi), {"weight": 1.5}),
 ]

@@ -155,7 +155,7 @@ class Draw:
         """A material that nothing is looked through, with maps perhaps."""
         spec = dict(self.pick("model").make(self))
         spec.update(self.emission())
-        if self.chance(0.25):
+        if self.chance(0.5):
             row = self.pick("map")
             if row:
                 spec = row.make(self, spec)
@@ -201,7 +201,7 @@ def add_lights(d):
         if not d.world.facts.get("room"):
             d.pick("light_furnace").make(d)
         return
-    for _ in range(d.one(1, 1, 2, 3)):
+    for _ in range(d.one(1, 2, 2, 3)):
         row = d.pick("light")
         if row:
             row.make(d)
@@ -220,11 +220,12 @@ def draw_world(seed, traits, table, paths=4):
     d.pick("fill").make(d)
     slots = SLOTS[:]
     d.rng.shuffle(slots)
-    for slot in slots[:d.one(1, 2, 2, 3)]:
+    for slot in slots[:d.one(1, 2, 3, 3)]:
         place_thing(d, slot)
     add_lights(d)
-    for _ in range(d.one(1, 1, 2)):
-        row = d.pick("sensor", lambda r: r.name not in d.world.rows)
+    for k in range(d.one(1, 2)):
+        cameras = k == 0 and "wants_camera" in traits
+        row = d.pick("sensor", lambda r: r.name not in d.world.rows and (not cameras or r.name in ("frame", "orthographic")))
         if row:
             row.make(d)
     if "periodic" in d.traits:
