@@ -42,9 +42,12 @@ void Baker::tell_endless_media() {
         std::find_if(draft_.geometry.begin(), draft_.geometry.end(), [&](auto& g) { return g.name == e.surface; });
     const std::string often =
         std::isinf(e.scatterings) ? "without ever being absorbed" : strf("about %.0f times", e.scatterings);
-    add("SP607", surface == draft_.geometry.end() ? Where{draft_.file, 0, 0, {}, -1} : surface->where,
-        "medium '" + e.medium + "' fills half of all space behind '" + e.surface +
-            "': what does not come back scatters " + often + (e.at_um > 0 ? strf(" at %g um", e.at_um) : ""));
+    const Where nowhere = e.surface.empty() ? draft_.ambient.where : Where{draft_.file, 0, 0, {}, -1};
+    add("SP607", surface == draft_.geometry.end() ? nowhere : surface->where,
+        "medium '" + e.medium +
+            (e.surface.empty() ? std::string("' fills all space that no body fills")
+                               : "' fills half of all space behind '" + e.surface + "'") +
+            ": what does not come back scatters " + often + (e.at_um > 0 ? strf(" at %g um", e.at_um) : ""));
   }
 }
 

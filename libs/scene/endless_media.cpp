@@ -105,6 +105,9 @@ EndlessMedium worst(const Medium& m, std::span<const SpectralWindow> windows) {
 
 std::vector<EndlessMedium> endless_media(const Scene& scene, std::span<const SpectralWindow> windows) {
   std::vector<EndlessMedium> found;
+  if (scene.ambient != kNone)
+    if (EndlessMedium one = worst(scene.media[scene.ambient], windows); one.scatterings >= kMany)
+      found.push_back(std::move(one));
   const Faces faces(scene);
   for (const Face& f : faces.all) {
     if (f.primitive->kind != PrimitiveKind::plane) continue;

@@ -18,6 +18,7 @@ constexpr int kRays = 64;         // through each object
 constexpr size_t kObjects = 256;  // of all, the first ones
 constexpr int kMostHits = 64;     // on one of them
 constexpr double kOff = 3;        // where the surroundings are asked for, in steps of rays that leave the surface
+constexpr double kTouching = 16;  // steps within which bodies touch and do not overlap
 constexpr uint64_t kPurpose = 0x77657473;
 
 class Look {
@@ -39,10 +40,11 @@ class Look {
   }
 
   std::vector<std::string> all() {
-    if (std::find(looked_at_.begin(), looked_at_.end(), true) == looked_at_.end()) return {};
+    look_for_overlaps();
+    if (std::find(looked_at_.begin(), looked_at_.end(), true) == looked_at_.end()) return {told_.begin(), told_.end()};
     size_t seen = 0;
     tracer_.each(
-        "refracting surfaces", [&](const TracedObject& o) { return matters(o); },
+        "refracting surfaces", [&](const TracedObject& o) { return has(o, looked_at_); },
         [&](uint32_t number, const TracedObject& o) {
           if (seen++ >= kObjects) return;
           shoot(box_of(number, o), seen);
@@ -53,12 +55,30 @@ class Look {
   }
 
  private:
-  bool matters(const TracedObject& o) const {
-    const auto has = [&](uint32_t material) { return material != kNone && looked_at_[material]; };
-    if (o.material_override != kNone) return has(o.material_override);
-    if (o.primitive != kNone) return has(scene_.primitives[o.primitive].material);
+  // Where bodies of different media may overlap at all.
+  void look_for_overlaps() {
+    std::set<uint32_t> media;
+    std::vector<bool> bounds;
+    for (uint32_t i = 0; i < scene_.materials.size(); ++i) {
+      const uint32_t medium = optics_.medium_behind(i);
+      bounds.push_back(medium != kNone);
+      if (medium != kNone) media.insert(medium);
+    }
+    if (media.size() < 2) return;
+    size_t seen = 0;
+    tracer_.each(
+        "bodies of media", [&](const TracedObject& o) { return has(o, bounds); },
+        [&](uint32_t number, const TracedObject& o) {
+          if (seen++ < kObjects) pass(box_of(number, o), seen);
+        });
+  }
+
+  bool has(const TracedObject& o, const std::vector<bool>& wanted) const {
+    const auto is = [&](uint32_t material) { return material != kNone && wanted[material]; };
+    if (o.material_override != kNone) return is(o.material_override);
+    if (o.primitive != kNone) return is(scene_.primitives[o.primitive].material);
     const auto& parts = scene_.meshes[o.mesh].parts;
-    return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return has(p.material); });
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& p) { return is(p.material); });
   }
 
   // ENU; of what has no bounds that of all other things, and something around the origin.
@@ -150,9 +170,14 @@ class Look {
     return bodies_.around(place, time, statistics_).medium(scene_.ambient);
   }
   std::string name_of(uint32_t medium) const {
-    return medium == kNone ? "nothing" : "'" + scene_.media[medium].id + "'";
+    return medium == kNone ? "nothing" : is_named(medium) ? "'" + scene_.media[medium].id + "'" : "clear matter";
   }
-  double index_of(uint32_t medium) const { return medium == kNone ? 1 : scene_.media[medium].index.at(um_); }
+  double index_of(uint32_t medium) const {
+    if (medium == kNone) return 1;
+    if (is_named(medium)) return scene_.media[medium].index.at(um_);
+    return std::sqrt(double{optics_.matter(medium).index_squared[optics_.state().knots[0]]});
+  }
+  bool is_named(uint32_t medium) const { return medium < scene_.media.size(); }
 
   // An index that suits what is on both sides is right, whatever the material names.
   void compare(const Hit& hit, uint32_t material) {
@@ -163,17 +188,80 @@ class Look {
     for (const uint32_t medium : {front, back}) tell_skipped(hit, m, medium);
     const auto apart = [](double a, double b) { return std::fabs(a - b) > kApart * b; };
     const double made_for = index_of(m.outside), own = m.surface.curves.at("index").at(um_);
-    if (!apart(index_of(front), made_for) || !apart(own * index_of(front), index_of(back))) return;
+    if (!apart(own * index_of(front), index_of(back))) return;
+    if (apart(index_of(front), made_for)) {
+      told_.insert(
+          strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
+               "needs a material with `outside`, or to end",
+               m.id.c_str(), name_of(front).c_str(), index_of(front), made_for));
+      return;
+    }
+    const double meant = own * index_of(front), share = std::pow(index_of(back) / meant, 2);
+    told_.insert(strf(
+        "'%s' bends light into matter of index %.4g, but behind it there is %s (index %.4g): radiance from there is "
+        "%.3g times what it should be. Give what the surface encloses the higher `priority`, or close the surface",
+        m.id.c_str(), meant, name_of(back).c_str(), index_of(back), share));
+  }
+
+  // Bodies of media of equal priority that overlap in part: one of them ends within the other.
+  void pass(const Box3& box, uint64_t object) {
+    struct In {
+      uint32_t body, material, medium;
+      Vec3 place;
+    };
+    std::vector<In> in;
+    for (uint64_t r = 0; r < kRays / 4; ++r) {
+      const auto u = [&](uint64_t i) { return unit_double(hash_of(kPurpose, hash_of(object, r, i + 16))); };
+      const Vec3 size = box.size();
+      const double z = 2 * u(3) - 1, s = std::sqrt(1 - z * z), phi = 2 * kPi * u(4);
+      const Dir d{s * std::cos(phi), s * std::sin(phi), z};
+      Ray ray{box.low + Vec3{u(0) * size.x, u(1) * size.y, u(2) * size.z} - d * length(size), d, 0,
+              static_cast<uint32_t>(hash_of(object, r))};
+      in.clear();
+      for (int n = 0; n < kMostHits; ++n) {
+        Hit hit;
+        tracer_.nearest({&ray, 1}, {&hit, 1}, false, statistics_);
+        const uint32_t material = hit.hit() ? surface_.material(hit) : kNone;
+        const uint32_t medium = material == kNone ? kNone : optics_.medium_behind(material);
+        if (material == kNone || (optics_.material(material).model && optics_.material(material).model->opaque()))
+          break;
+        const uint32_t body = tracer_.object(hit.object).instance;
+        if (dot(d, hit.normal) < 0) {
+          if (medium != kNone) in.push_back({body, material, medium, hit.position});
+        } else if (const auto left = std::find_if(in.rbegin(), in.rend(), [&](const In& b) { return b.body == body; });
+                   left != in.rend()) {
+          for (auto later = in.rbegin(); later != left; ++later)
+            if (length(hit.position - later->place) > kTouching * double{hit.step}) tell_overlap(*left, *later);
+          in.erase(std::next(left).base());
+        }
+        ray.origin = tracer_.leave(hit, d);
+      }
+    }
+  }
+  template <class In>
+  void tell_overlap(const In& a, const In& b) {
+    const auto priority = [&](uint32_t medium) { return is_named(medium) ? scene_.media[medium].priority : 0; };
+    if (a.medium == b.medium || a.body == b.body || priority(a.medium) != priority(b.medium)) return;
+    const auto rate = [&](uint32_t medium) {
+      const BakedMedium& m = optics_.matter(medium);
+      const size_t bin = optics_.state().knots[0];
+      return double{m.absorption[bin]} + double{m.scattering[bin]};
+    };
+    const bool turned = scene_.materials[a.material].id > scene_.materials[b.material].id;
+    const In &first = turned ? b : a, &second = turned ? a : b;
     told_.insert(
-        strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
-             "needs a material with `outside`, or to end",
-             m.id.c_str(), name_of(front).c_str(), index_of(front), made_for));
+        strf("bodies of '%s' and '%s' overlap in part and have one priority: which of %s (extinction %.3g 1/m, index "
+             "%.4g) and %s (%.3g 1/m, %.4g) fills what they share depends on where the light comes from. Give one of "
+             "them a higher `priority`",
+             scene_.materials[first.material].id.c_str(), scene_.materials[second.material].id.c_str(),
+             name_of(first.medium).c_str(), rate(first.medium), index_of(first.medium), name_of(second.medium).c_str(),
+             rate(second.medium), index_of(second.medium)));
   }
 
   // Rays leave a surface from a step off it, so that they do not meet it again where float places are coarse; what
   // fills that step is left out. The worst case is told once.
   void tell_skipped(const Hit& hit, const Material& m, uint32_t medium) {
-    if (medium == kNone) return;
+    if (medium == kNone || !is_named(medium)) return;
     const BakedMedium& baked = optics_.media()[medium];
     double densest = 0;
     for (size_t i = 0; i < baked.absorption.size(); ++i)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "air/air_media.h"
+#include "optics/interface.h"
 #include "spectral/planck.h"
 #include "thermal/models.h"
 
@@ -77,19 +78,66 @@ std::vector<std::unique_ptr<const ScatterModel>> bake_family(const PropertyMap& 
 
 }  // namespace
 
+namespace {
+// Every bin takes the index of its knot.
+void take_index_of_knots(BakedMedium& m, const SpectralState& state) {
+  const std::vector<int> knot_of_bin = state.knot_of_bin();
+  const std::vector<float> own = m.index_squared;
+  for (size_t i = 0; i < own.size(); ++i) {
+    m.index_squared[i] = own[state.knots[static_cast<size_t>(knot_of_bin[i])]];
+    if (!m.blackbody.empty()) m.blackbody[i] *= m.index_squared[i] / own[i];
+  }
+}
+}  // namespace
+
 Optics::Optics(const Scene& scene, SpectralState state, const std::vector<bool>& used, const Heating& heating,
                TimeSpan window, std::shared_ptr<const AirSpec> air)
     : state_(std::move(state)), window_(window) {
   if (air && air->scattering == AirScattering::traced) traced_ = air;
   // Places in the air are drawn by what its light does at the knots.
   const bool lit_air = air && air->scattering == AirScattering::diffuse && air->adjacency;
-  if (uses_media(scene) || traced_) bake_media(scene);
+  if (uses_media(scene) || traced_) bake_media(scene, used);
   bake_all(scene, used, heating);
   if (state_.knots.size() > 1 && !spectral_flights_ && !lit_air && one_shape()) {
     state_.knots.erase(state_.knots.begin() + 1, state_.knots.end());
     bake_all(scene, used, heating);
-    if (!media_.empty()) bake_media(scene);
+    if (!media_.empty()) bake_media(scene, used);
   }
+  if (media_.empty()) bake_clear(scene, used, 0, clear_);
+  settle_indices(scene);
+}
+
+// Clear matter of interfaces that name no medium; its numbers begin with `first`.
+void Optics::bake_clear(const Scene& scene, const std::vector<bool>& used, uint32_t first,
+                        std::vector<BakedMedium>& into) {
+  behind_.clear();
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    behind_.push_back(m.inside);
+    if (m.bounds_medium() || !is_interface(m.surface) || !(used.empty() || used[i])) continue;
+    const Curve& index = m.surface.curves.at("index");
+    const bool nothing = index.min() == 1 && index.max() == 1;
+    if (nothing || !index.covers(state_.low_um, state_.high_um)) continue;  // that the material itself reports
+    Medium clear;
+    clear.id = "clear matter of '" + m.id + "'";
+    clear.index = index;
+    behind_.back() = first++;
+    into.emplace_back(clear, state_);
+  }
+}
+
+// A smooth interface bends all wavelengths of a knot alike: radiance that it passes is scaled by the squared index of
+// the knot, and so must be what matter beside it emits. Rough ones scale each bin by its own.
+void Optics::settle_indices(const Scene& scene) {
+  std::vector<bool> smooth(std::max(media_.size(), clear_.size()));
+  for (size_t i = 0; i < materials_.size(); ++i) {
+    const ScatterModel* const model = materials_[i].model;
+    if (!model || !model->has_delta() || model->opaque()) continue;
+    for (const uint32_t medium : {behind_[i], scene.materials[i].outside})
+      if (medium != kNone) smooth[medium] = true;
+  }
+  for (size_t m = 0; m < smooth.size(); ++m)
+    if (smooth[m]) take_index_of_knots((media_.empty() ? clear_ : media_)[m], state_);
 }
 
 // Mixed materials change their shape with wavelength wherever the shares of their parts do.
@@ -103,7 +151,7 @@ bool Optics::one_shape() const {
   });
 }
 
-void Optics::bake_media(const Scene& scene) {
+void Optics::bake_media(const Scene& scene, const std::vector<bool>& used) {
   const auto bake_them = [&] {
     media_.clear();
     for (const Medium& m : scene.media) {
@@ -113,6 +161,7 @@ void Optics::bake_media(const Scene& scene) {
         throw Error(e.where(), "medium '" + m.id + "': " + e.message(), e.hint(), e.code());
       }
     }
+    bake_clear(scene, used, static_cast<uint32_t>(media_.size()), media_);
     if (!traced_) return;
     const auto column = std::make_shared<const AirColumn>(bake_column(*traced_, state_));
     air_ = {column->shells, static_cast<uint32_t>(media_.size())};

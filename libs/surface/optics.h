@@ -49,8 +49,15 @@ class Optics {
          TimeSpan window = {}, std::shared_ptr<const AirSpec> air = nullptr);
 
   const BakedMaterial& material(uint32_t index) const { return materials_[index]; }
-  // The scene's media, all of them where a ray can meet one, else none.
+  // The scene's media, all of them where a ray can meet one, else none; then the clear matter of interfaces, where
+  // there are others, and layers of air.
   std::span<const BakedMedium> media() const { return media_; }
+  // The medium behind a material's surface: that which it names, or, of an interface that names none on either side,
+  // clear matter of its index, which it encloses. kNone: none. A number of matter().
+  uint32_t medium_behind(uint32_t material) const { return behind_[material]; }
+  // Clear matter alone, where nothing else fills space and media() is empty; and either kind, by its number.
+  std::span<const BakedMedium> clear() const { return clear_; }
+  const BakedMedium& matter(uint32_t medium) const { return media_.empty() ? clear_[medium] : media_[medium]; }
   // Null = no air among them.
   const AirLayers* air() const { return air_ ? &*air_ : nullptr; }
   // False when every medium scatters alike at all wavelengths, so that flights need not be weighed between knots.
@@ -65,11 +72,14 @@ class Optics {
   void bake_all(const Scene& scene, const std::vector<bool>& used, const Heating& heating);
   void bake_one(const Scene& scene, size_t index, const Heating& heating);
   bool one_shape() const;
-  void bake_media(const Scene& scene);
+  void bake_media(const Scene& scene, const std::vector<bool>& used);
+  void bake_clear(const Scene& scene, const std::vector<bool>& used, uint32_t first, std::vector<BakedMedium>& into);
+  void settle_indices(const Scene& scene);
   SpectralState state_;
   TimeSpan window_;
   std::vector<BakedMaterial> materials_;
-  std::vector<BakedMedium> media_;
+  std::vector<BakedMedium> media_, clear_;
+  std::vector<uint32_t> behind_;  // per material
   std::shared_ptr<const AirSpec> traced_;
   std::optional<AirLayers> air_;
   bool any_emission_ = false, spectral_flights_ = false;

@@ -39,6 +39,7 @@ class Surface {
   uint32_t material(const TracedObject& object, const Hit& hit) const { return lookup_.at(object, hit); }
   Vec2 uv(const Hit& hit) const;  // (u, v) barycentrics where the mesh has no UVs
   const Tracer& tracer() const { return tracer_; }
+  const Optics& optics() const { return optics_; }
 
  private:
   const Tracer& tracer_;

@@ -19,7 +19,8 @@ class LitAirSpace : public AirSpace {
   explicit LitAirSpace(const SpaceContext& c) : AirSpace(c), places_(c), knots_(c.optics.state().knots) {}
 
   template <class L>
-  void start(uint32_t p, const L&) {
+  void start(uint32_t p, const L& lane) {
+    AirSpace::start(p, lane);
     places_.start(p);
   }
   template <class L>
@@ -36,7 +37,9 @@ class LitAirSpace : public AirSpace {
     } else {
       places_.beyond(lane.origin, lane.direction, length, through, emitted);
     }
-    flight.length = length, flight.difference = left;
+    // Clear matter holds none of the air.
+    flight.length = flight.weakened || length == std::numeric_limits<double>::infinity() ? length : 0;
+    flight.difference = left;
     if (flight.weakened)
       for (size_t k = 0; k < std::min<size_t>(L::kKnots, knots_.size()); ++k) lane.throughput[k] *= through[knots_[k]];
     return flight;
@@ -48,13 +51,16 @@ class LitAirSpace : public AirSpace {
     return places_.chances(lane.origin, lane.direction, length);
   }
   // What a path that may go back there must remember of a flight, which it has just flown.
-  void remember(uint32_t) {}
+  void remember(uint32_t p) {
+    if (clear_) clear_->remember(p);
+  }
   // Puts path p to a place on the flight that it remembers, drawn for its knot; returns the densities of all knots.
   // through: what lies on the way there leaves of light. Nothing where nothing scatters. u: in [0, 1).
   template <class L>
   std::optional<AirVertices::PerKnot> go_to(uint32_t p, L& lane, double length, double u, std::span<float> through) {
     const auto place = places_.go_to(p, lane.origin, lane.direction, length, u, lane.knot, through);
     if (!place) return std::nullopt;
+    if (clear_) clear_->resume(p);
     lane.length += place->distance;
     lane.arrival += place->distance;
     return place->density;

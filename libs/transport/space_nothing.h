@@ -1,5 +1,5 @@
-// What fills space: nothing, or air alone in closed form. Two of the answers that the path kernel is made for; the
-// third is media/space_field.h.
+// What fills space: nothing, or air alone in closed form, but for clear matter that interfaces enclose. Two of the
+// answers that the path kernel is made for; the third is media/space_field.h.
 #pragma once
 #include <limits>
 #include <memory>
@@ -9,6 +9,7 @@
 #include "transport/contribution.h"
 #include "transport/known_way.h"
 #include "transport/lane.h"
+#include "transport/media/clear_matter.h"
 #include "transport/options.h"
 #include "transport/sight.h"
 
@@ -51,40 +52,56 @@ class NothingSpace {
   static constexpr uint32_t kDense = 0;     // spectra that fly() needs
   using Sight = PlainSight;
   struct Around {};  // what surrounds a path
-  explicit NothingSpace(const SpaceContext& c) : sight_(c.lost) {}
+  explicit NothingSpace(const SpaceContext& c)
+      : clear_(ClearMatter::of(c.surface, c.optics, c.width)), sight_(c.lost) {}
 
   // A wave of paths begins; and one of them does.
   void begin_wave() {}
   template <class L>
-  void start(uint32_t, const L&) {}
+  void start(uint32_t p, const L& lane) {
+    if (clear_) clear_->start(p, lane.origin, lane.time);
+  }
   // Where the ray that looks for what a path meets next begins.
   template <class L>
   Vec3 ray_from(uint32_t, const L& lane) const {
     return lane.origin;
   }
-  double index(uint32_t) const { return 1; }
+  double index(uint32_t p) const { return clear_ ? clear_->index(p) : 1; }
   // What path p sees a surface emit into empty space, made that of one in the matter that fills space there. Per bin.
-  void emit_within(uint32_t, std::span<float>) const {}
+  void emit_within(uint32_t p, std::span<float> emission) const {
+    if (clear_) clear_->emit_within(p, emission);
+  }
   // What fills space all the way to the outside, as a light that nodes can ask for (Atmosphere::sky); null = none.
   const Light* sky() const { return nullptr; }
   double sky_density(Dir) const { return 0; }
   const float* sky_radiance(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
   const float* sky_behind(const Ray&, std::span<float>, std::span<float>) const { return nullptr; }
-  void cross(uint32_t, const Hit&, uint32_t, Dir) {}
+  void cross(uint32_t p, const Hit& hit, uint32_t material, Dir in) {
+    if (clear_) clear_->cross(p, hit, material, in);
+  }
   void clear_sight() {}
   Sight& sight() { return sight_; }
   // What lies on the way of ray i of the last sight(), of SightRays, leaves of its light: false = all of it. reach: the
   // same of scattering alone at the knots, the share of continuations that would get as far.
   bool dims(const Ray&, double, size_t, std::span<float>, std::span<double>) { return false; }
   // m, index of refraction times way, along ray i.
-  double optical_way(uint32_t, size_t, double distance) const { return distance; }
+  double optical_way(uint32_t p, size_t, double distance) const { return index(p) * distance; }
   // Along a way that interfaces bend (kernel_refract.h): it leaves the event, or the surface at `hit` towards `in`,
-  void begin_way(uint32_t, bool, const Hit&, uint32_t, Dir, Dir) {}
+  void begin_way(uint32_t p, bool event, const Hit& hit, uint32_t material, Dir out, Dir in) {
+    if (clear_) clear_->begin_way(p, !event && dot(in, hit.normal) * dot(out, hit.normal) < 0, hit, material, in);
+  }
   // runs `length` m straight on, which multiplies `through`; the index of refraction there. scratch: per bin.
-  double follow_way(const Ray&, double, std::span<float>, std::span<float>) { return 1; }
+  double follow_way(const Ray&, double, std::span<float>, std::span<float>) {
+    return clear_ ? clear_->index_on_way() : 1;
+  }
   // and passes a surface.
-  void cross_way(const Hit&, uint32_t, Dir) {}
-  TraceStatistics take_statistics() { return {}; }
+  void cross_way(const Hit& hit, uint32_t material, Dir in) {
+    if (clear_) clear_->cross_way(hit, material, in);
+  }
+  TraceStatistics take_statistics() { return clear_ ? clear_->take_statistics() : TraceStatistics{}; }
+
+ protected:
+  std::unique_ptr<ClearMatter> clear_;  // null: none
 
  private:
   Sight sight_;
@@ -118,8 +135,9 @@ class AirSpace : public NothingSpace {
 
   void begin_wave() { seen_.forget(); }
   template <class L>
-  Flight fly(uint32_t, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
+  Flight fly(uint32_t p, L& lane, PathRecord&, Hit&, const Ray&, double length, bool ends, std::span<float> through,
              std::span<float> emitted) {
+    if (length < std::numeric_limits<double>::infinity() && clear_ && clear_->around(p)) return {};
     return fly_through_air(air_, lane.surfaces > 0 ? nullptr : &seen_, lane, length, ends, through, emitted);
   }
   static constexpr uint16_t kEmitter = kFromAir;
@@ -134,6 +152,7 @@ class AirSpace : public NothingSpace {
     return true;
   }
   double follow_way(const Ray& ray, double length, std::span<float> through, std::span<float> scratch) {
+    if (clear_ && clear_->on_way()) return clear_->index_on_way();
     air_.transmittance(ray.origin, ray.direction, length, scratch);
     for (size_t i = 0; i < through.size(); ++i) through[i] *= scratch[i];
     return 1;

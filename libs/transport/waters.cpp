@@ -1,14 +1,13 @@
 #include "transport/waters.h"
 
+#include "optics/interface.h"
+
 namespace suite {
 
 Waters::Waters(const KernelContext& context) {
   if (!context.waters) return;
   for (const Material& m : context.surface.tracer().scene().materials) {
-    const std::string& model = m.surface.model;
-    kind_.push_back(model == "sea"                                       ? Kind::opaque
-                    : model == "dielectric" || model == "ggx_dielectric" ? Kind::body
-                                                                         : Kind::none);
+    kind_.push_back(m.surface.model == "sea" ? Kind::opaque : is_interface(m.surface) ? Kind::body : Kind::none);
   }
 }
 

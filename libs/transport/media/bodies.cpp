@@ -17,9 +17,10 @@ const Dir kUp = normalized(Vec3{0.0123, 0.0345, 1});  // of probing rays
 
 Bodies::Bodies(const Surface& surface) : surface_(surface) {
   const Scene& scene = surface.tracer().scene();
-  for (const Material& m : scene.materials) {
-    rules_.push_back({{m.outside, m.inside}, m.is_boundary()});
-    any_ = any_ || m.bounds_medium();
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    rules_.push_back({{m.outside, surface.optics().medium_behind(i)}, m.is_boundary()});
+    any_ = any_ || rules_.back().medium[0] != kNone || rules_.back().medium[1] != kNone;
     any_boundary_ = any_boundary_ || m.is_boundary();
   }
   surface.tracer().each(

@@ -60,7 +60,10 @@ class Bodies {
   }
   // Copies of one object that a periodic scene puts at its sides are one body.
   uint32_t body(const Hit& hit) const { return surface_.tracer().object(hit.object).instance; }
-  int priority(uint32_t medium) const { return medium == kNone ? 0 : surface_.tracer().scene().media[medium].priority; }
+  int priority(uint32_t medium) const {  // clear matter: 0
+    const std::vector<Medium>& named = surface_.tracer().scene().media;
+    return medium < named.size() ? named[medium].priority : 0;
+  }
   Sides sides(const Hit& hit) const;
   bool cross(MediumStack& stack, const Hit& hit, const Rule& rule, bool behind) const;
   void probe(Vec3 place, Dir direction, double time, TraceStatistics& statistics);

@@ -23,6 +23,8 @@ void MediaSight::begin(SightRays& rays) {
   depths_.assign(rays.size() * media_, 0.0);
   bent_.assign(rays.size(), 0);
   passes_.assign(rays.size(), 1);
+  start_.clear();
+  for (size_t i = 0; i < rays.size(); ++i) start_.push_back(bodies_at_[i].medium(ambient_));
   rays_.clear();
   if (!body_rules_.any_boundary() && !lost_) return;
   rays_.assign(rays.rays().begin(), rays.rays().end());

@@ -28,6 +28,8 @@ class MediaSight {
   void begin(SightRays& rays);
   bool next(TraceRequest& request);
   std::span<const double> depths(size_t ray) const { return {&depths_[ray * media_], media_}; }
+  // What a ray starts in; where nothing bends it, what lies on its way has one index.
+  uint32_t start(size_t ray) const { return start_[ray]; }
   double passes(size_t ray) const { return lost_ && bent_[ray] ? passes_[ray] : 0; }
   TraceStatistics take_statistics() { return std::exchange(statistics_, {}); }
 
@@ -51,6 +53,7 @@ class MediaSight {
   size_t added_ = 0;
   std::vector<double> depths_, travelled_, gap_, passes_;
   std::vector<uint8_t> bent_;
+  std::vector<uint32_t> start_;  // media
   // Rays that are still on their way.
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;

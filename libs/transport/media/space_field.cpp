@@ -266,7 +266,7 @@ bool FieldSpace::dims(const Ray& ray, double distance, size_t i, std::span<float
         tau += depth[m] * double{optics_.media()[m].scattering[optics_.state().knots[k]]};
       reach[k] = std::exp(-tau);
     }
-  if (!air_) return dim;
+  if (!air_ || (is_airless(sight_.start(i)) && !(sight_.passes(i) > 0))) return dim;
   if (!dim) std::fill(transmission.begin(), transmission.end(), 1.0f);
   air_->transmittance(ray.origin, ray.direction, distance, phase_);
   for (size_t k = 0; k < phase_.size(); ++k) transmission[k] *= phase_[k];

@@ -220,6 +220,11 @@ TEST_F(Messages, OfEndlessMedia) {
     else
       EXPECT_EQ(r.out.find("SP607"), std::string::npos) << r.out;
   }
+  const CommandResult ambient = run(
+      "scene-prep scene.yaml -o endless.h5 --set 'media={fog: {scattering: 1, absorption: 0.001}}' --set ambient=fog");
+  EXPECT_EQ(ambient.code, 0) << ambient.err;
+  EXPECT_THAT(ambient.out, testing::AllOf(HasSubstr("SP607"), HasSubstr("all space that no body fills"),
+                                          HasSubstr("about 1001 times")));
 }
 
 // Other values for once: told in what comes out, part of what a state belongs to, refused at their place.

@@ -109,5 +109,30 @@ TEST(Surroundings, DenseMatterOfALargeObject) {
   EXPECT_THAT(told_of(10, 3), IsEmpty());
 }
 
+// A layer of higher priority around glass with a medium holds within the glass; two bodies that cut each other hold by
+// the direction; nested ones, touching ones and those of one medium do not.
+TEST(Surroundings, PrioritiesThatAreAmbiguous) {
+  const auto told_of = [](int of_layer, double low, uint32_t medium) {
+    auto scene = std::make_shared<Scene>();
+    scene->media = {clear("haze", 1, of_layer), clear("glass", kGlass), clear("smoke", 1)};
+    scene->materials = {boundary(0), interface_of("ball", kGlass, 1), boundary(medium)};
+    scene->materials[0].id = "layer", scene->materials[2].id = "cloud";
+    place(*scene, PrimitiveKind::box, {-4, -4, 0, 4, 4, 4}, 0);
+    place(*scene, PrimitiveKind::sphere, {0.9}, 1, translation({0, 0, 1.5}));
+    place(*scene, PrimitiveKind::box, {-1, -1, low, 1, 1, low + 1}, 2);
+    check_scene(*scene, "priorities");
+    const Tracer tracer(scene);
+    const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
+    return wrong_surroundings(tracer, Optics(*scene, sensor.states()[0]));
+  };
+  EXPECT_THAT(told_of(0, 2.5, 2), IsEmpty()) << "nested";
+  EXPECT_THAT(told_of(0, 4, 2), IsEmpty()) << "touching";
+  EXPECT_THAT(told_of(0, 3.5, 0), IsEmpty()) << "one medium";
+  EXPECT_THAT(told_of(1, 3.5, 2), ElementsAre(AllOf(HasSubstr("'ball' bends light into matter of index 1.5"),
+                                                    HasSubstr("'haze' (index 1)"), HasSubstr("0.444 times"))));
+  EXPECT_THAT(told_of(0, 3.5, 2), ElementsAre(AllOf(HasSubstr("'cloud' and 'layer' overlap in part"),
+                                                    HasSubstr("'smoke' (extinction 0.1 1/m"))));
+}
+
 }  // namespace
 }  // namespace suite::test
