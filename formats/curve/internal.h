@@ -6,11 +6,6 @@
 
 namespace suite {
 
-struct NamedCurve {
-  std::string name;  // may be empty
-  Curve curve;
-};
-
 Curve read_table(const std::string& path, const CurveOptions& options);
 std::vector<NamedCurve> read_sli(const std::string& path, const CurveOptions& options);
 std::vector<NamedCurve> read_ems(const std::string& path, const CurveOptions& options);
