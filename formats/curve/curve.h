@@ -12,6 +12,11 @@ namespace suite {
 
 class Params;
 
+struct NamedCurve {
+  std::string name;  // may be empty
+  Curve curve;
+};
+
 struct CurveOptions {
   Outside outside = Outside::error;
   int column = 0;        // 1 = first value column after the wavelength; 0 = the only one, or the first
@@ -26,6 +31,10 @@ Curve read_curve(const std::string& path, const CurveOptions& options);
 
 // All curves of a file: of a library in its order, else the one. Same Errors.
 std::vector<Curve> read_curve_family(const std::string& path, const CurveOptions& options);
+
+// The spectral responses of several bands from one table: a header line that names the columns, the first of them the
+// wavelength with its unit, then rows. See FORMAT.md. Error with file and line.
+std::vector<NamedCurve> read_responses(const std::string& path);
 
 // One curve from several that follow each other in wavelength: the rows of each up to where the next one takes over,
 // linear between the last and the first. at_um: where, one less than parts; empty = the middle of what neighbours

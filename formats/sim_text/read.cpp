@@ -1,5 +1,6 @@
 #include <set>
 
+#include "formats/curve/curve.h"
 #include "formats/sim_text/air_tables.h"
 #include "formats/sim_text/context.h"
 #include "formats/sim_text/heat.h"
@@ -133,6 +134,11 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
   read_epoch(root, sim);
   SensorContext context = sensor_context(sim, callbacks);
   context.curve = read_curve_value;
+  context.responses = [](const Params& file) {
+    std::vector<NamedResponse> bands;
+    for (NamedCurve& c : read_responses(file.as_path())) bands.push_back({std::move(c.name), std::move(c.curve)});
+    return bands;
+  };
   sim.heat = read_heat_request(root, sim, context);
   std::set<std::string> names;
   const Params sensors = root.at("sensors");

@@ -1,6 +1,7 @@
 #include "sensor/sensors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "sensor/kinds/rows.h"
@@ -101,37 +102,94 @@ TimeWindow read_window(const Params& params) {
   return {time, time + params.number_in("integration_time_s", 0, 86400, "s", 0)};
 }
 
+namespace {
+
+Band band_of_shape(const Params& item, const std::string& name, double center, double width) {
+  const auto shape = item.find("shape");
+  switch (shape ? shape->as_choice({"gaussian", "rectangular", "triangular"}) : 0) {
+    case 0:
+      return Band::gaussian(name, center, width);
+    case 1:
+      return Band::rectangular(name, center, width);
+    default:
+      return Band::triangular(name, center, width);
+  }
+}
+
+double read_center(const Params& p) {
+  const double center = p.as_number();
+  if (!(center >= 0.01 && center <= kLongestWave))
+    throw p.error("the band's centre is " + wavelengths_text(center, center),
+                  strf("0.01 to %g um are possible", kLongestWave));
+  return center;
+}
+
+// Bands in bulk: even centres, named by them.
+void add_even_bands(const Params& item, std::vector<Band>& bands) {
+  const double first = read_center(item.at("from_um")), last = read_center(item.at("to_um"));
+  const auto count = static_cast<int>(item.integer("count", 2, 10000));
+  if (!(last > first)) throw item.at("to_um").error("the last centre is not beyond the first");
+  const double step = (last - first) / (count - 1),
+               width = item.number_in("fwhm_um", 1e-6, 2 * first * 0.999, "um", step);
+  for (int i = 0; i < count; ++i) {
+    const double center = std::round((first + i * step) * 1e9) / 1e9;
+    bands.push_back(band_of_shape(item, strf("%.10g nm", std::round(center * 1e6) / 1e3), center, width));
+  }
+}
+
+Band read_band(const Params& item, const SensorContext& context) {
+  const std::string name = item.text("name");
+  if (const auto response = item.find("response")) {
+    const Curve curve = context.curve(*response);
+    if (curve.low_um() > kLongestWave)
+      throw response->error("the response is given from " + curve.range_text(),
+                            strf("0.01 to %g um are possible", kLongestWave));
+    return Band::tabulated(name, curve, response->where());
+  }
+  const double center = read_center(item.at("center_um"));
+  return band_of_shape(item, name, center, item.number_in("fwhm_um", 1e-6, 2 * center * 0.999, "um"));
+}
+
+// Bands of a file of responses, all or those that are listed.
+void add_bands_of_file(const Params& item, const SensorContext& context, std::vector<Band>& bands) {
+  const Params file = item.at("responses");
+  const std::vector<NamedResponse> there = context.responses(file);
+  const auto take = [&](const NamedResponse& r) { bands.push_back(Band::tabulated(r.name, r.curve, file.where())); };
+  const auto names = item.find("names");
+  if (!names) {
+    std::ranges::for_each(there, take);
+    return;
+  }
+  std::vector<std::string> known;
+  for (const NamedResponse& r : there) known.push_back(r.name);
+  for (const Params& name : names->items()) {
+    const auto at = std::ranges::find(known, name.as_text());
+    if (at == known.end()) {
+      const std::string near = nearest_name(name.as_text(), known);
+      throw name.error(
+          "the file has no band '" + name.as_text() + "'",
+          near.empty() ? "it has '" + known.front() + "' to '" + known.back() + "'" : "did you mean '" + near + "'?");
+    }
+    take(there[static_cast<size_t>(at - known.begin())]);
+  }
+}
+
+}  // namespace
+
 std::vector<Band> read_bands(const Params& list, const SensorContext& context) {
   std::vector<Band> bands;
   std::set<std::string> names;
   for (const Params& item : list.items()) {
-    const std::string name = item.text("name");
-    if (!names.insert(name).second) throw item.error("two bands are named '" + name + "'", "give each its own name");
-    if (const auto response = item.find("response")) {
-      const Curve curve = context.curve(*response);
-      if (curve.low_um() > kLongestWave)
-        throw response->error("the response is given from " + curve.range_text(),
-                              strf("0.01 to %g um are possible", kLongestWave));
-      bands.push_back(Band::tabulated(name, curve, response->where()));
-      continue;
-    }
-    const double center = item.at("center_um").as_number();
-    if (!(center >= 0.01 && center <= kLongestWave))
-      throw item.at("center_um")
-          .error("the band's centre is " + wavelengths_text(center, center),
-                 strf("0.01 to %g um are possible", kLongestWave));
-    const double width = item.number_in("fwhm_um", 1e-6, 2 * center * 0.999, "um");
-    const auto shape = item.find("shape");
-    switch (shape ? shape->as_choice({"gaussian", "rectangular", "triangular"}) : 0) {
-      case 0:
-        bands.push_back(Band::gaussian(name, center, width));
-        break;
-      case 1:
-        bands.push_back(Band::rectangular(name, center, width));
-        break;
-      default:
-        bands.push_back(Band::triangular(name, center, width));
-    }
+    const size_t before = bands.size();
+    if (item.has("from_um"))
+      add_even_bands(item, bands);
+    else if (item.has("responses"))
+      add_bands_of_file(item, context, bands);
+    else
+      bands.push_back(read_band(item, context));
+    for (size_t i = before; i < bands.size(); ++i)
+      if (!names.insert(bands[i].name).second)
+        throw item.error("two bands are named '" + bands[i].name + "'", "give each its own name");
   }
   if (bands.empty()) throw list.error("a sensor needs at least one band");
   return bands;

@@ -23,16 +23,23 @@ struct GreyImage {
 };
 
 // What a sensor needs from the outside when it is made. Functions that are not set are refused where they are needed.
+// A band of a file of spectral responses.
+struct NamedResponse {
+  std::string name;
+  Curve curve;
+};
+
 struct SensorContext {
-  std::function<Curve(const Params&)> curve;              // from a number, a file name or {file: ..., ...}
-  std::function<void(const Delivery&)> deliver;           // receives every finished capture
-  std::function<TrackPtr(const Params&)> track;           // a motion (formats/motion)
-  std::function<Vec3(const Params&)> position;            // position keys of a motion, scene ENU
-  std::function<Jitter(const Params&, uint64_t)> jitter;  // with a seed to mix in
-  std::function<double(const Params&)> time;              // s, from a number or a UTC text
-  std::function<GreyImage(const std::string&)> image;     // a picture file
-  std::function<std::optional<SceneFrame>()> frame;       // where the scene is on the Earth, if it is
-  std::function<std::string(double)> utc;                 // UTC text of a simulation time; empty = no clock
+  std::function<Curve(const Params&)> curve;                           // from a number, a file name or {file: ..., ...}
+  std::function<std::vector<NamedResponse>(const Params&)> responses;  // of all bands of a file, by its name
+  std::function<void(const Delivery&)> deliver;                        // receives every finished capture
+  std::function<TrackPtr(const Params&)> track;                        // a motion (formats/motion)
+  std::function<Vec3(const Params&)> position;                         // position keys of a motion, scene ENU
+  std::function<Jitter(const Params&, uint64_t)> jitter;               // with a seed to mix in
+  std::function<double(const Params&)> time;                           // s, from a number or a UTC text
+  std::function<GreyImage(const std::string&)> image;                  // a picture file
+  std::function<std::optional<SceneFrame>()> frame;                    // where the scene is on the Earth, if it is
+  std::function<std::string(double)> utc;  // UTC text of a simulation time; empty = no clock
 };
 
 using SensorRow = RegistryRow<std::unique_ptr<Sensor>(const Params& params, const SensorContext& context)>;
@@ -44,6 +51,7 @@ Registry<SensorRow>& sensor_kinds();
 std::unique_ptr<Sensor> make_sensor(const Params& params, const SensorContext& context);
 
 // Parts that several kinds share.
+// Each a band, or several: {from_um, to_um, count, fwhm_um, shape}, {responses: FILE, names: [...]}. Located Errors.
 std::vector<Band> read_bands(const Params& list, const SensorContext& context);
 Convergence read_convergence(const Params& params);  // key `paths`: N, or {min, max, relative_error, absolute_floor}
 // Key `paths: {bands: {NAME: relative error, ...}}`: a target for each band listed. Sets convergence.relative_error to
