@@ -6,8 +6,8 @@
 namespace suite {
 
 void ErrorHistogram::add(double relative_error) {
-  const double octave = std::log2(std::max(relative_error, 1e-9) / 1e-9);
-  ++counts_[std::min(kBins - 1, static_cast<size_t>(octave * 64))];
+  const double bin = 64 * std::log2(std::max(relative_error, 1e-9) / 1e-9);
+  ++counts_[bin < kBins - 1 ? static_cast<size_t>(bin) : kBins - 1];  // unknown ones (infinite, NaN) are the largest
   ++total_;
 }
 
@@ -20,7 +20,7 @@ double ErrorHistogram::median() const {
   uint64_t seen = 0;
   for (size_t i = 0; i < kBins; ++i)
     if ((seen += counts_[i]) * 2 >= total_ && total_)
-      return i == 0 ? 0 : 1e-9 * std::exp2((static_cast<double>(i) + 0.5) / 64);
+      return i == 0 ? 0 : i == kBins - 1 ? INFINITY : 1e-9 * std::exp2((static_cast<double>(i) + 0.5) / 64);
   return 0;
 }
 

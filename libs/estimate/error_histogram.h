@@ -11,7 +11,7 @@ class ErrorHistogram {
  public:
   void add(double relative_error);
   void merge(const ErrorHistogram& o);
-  double median() const;  // 0 when empty
+  double median() const;  // 0 when empty, infinity when unknown or beyond all bins
 
  private:
   static constexpr size_t kBins = 64 * 40;

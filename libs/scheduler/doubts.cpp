@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sampling.h"
 #include "motion/time.h"
 #include "optics/models.h"
 #include "scene/primitives.h"
@@ -192,6 +193,25 @@ SensorRay middle_ray(const Sensor& sensor, const Capture& capture, size_t proble
   const std::vector<double> u(static_cast<size_t>(sensor.numbers()), 0.5);
   std::vector<float> weights(sensor.states()[capture.state].size());
   return sensor.ray({capture, problem, u, weights});
+}
+
+CaptureResult with_blind_flagged(const Sensor& sensor, const Capture& capture, CaptureResult result) {
+  constexpr int kLooks = 64;
+  const size_t values = result.values_per_problem();
+  std::vector<double> u(static_cast<size_t>(sensor.numbers()));
+  std::vector<float> weights(sensor.states()[capture.state].size());
+  for (size_t i = 0; i < result.problems(); ++i) {
+    const std::span<const double> light(&result.radiance[i * values], values);
+    if (std::any_of(light.begin(), light.end(), [](double L) { return L != 0; })) continue;
+    bool looks = false;
+    Pcg32 rng(i);
+    for (int k = 0; k < kLooks && !looks; ++k) {
+      for (double& x : u) x = rng.uniform();
+      looks = sensor.ray({capture, i, u, weights}).weight != 0;  // NaN: a sample that fails, which is counted
+    }
+    if (!looks) result.quality[i] |= quality_no_information;
+  }
+  return result;
 }
 
 }  // namespace suite

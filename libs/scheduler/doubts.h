@@ -35,6 +35,10 @@ std::vector<Doubt> doubts_of_view(const Tracer& tracer, const SourceSpecs& writt
 // After rendering: nothing was hit, everything is zero, a band is. complete: the outcome counts all paths.
 std::optional<Doubt> doubt_of_outcome(const Sensor& sensor, const SensorOutcome& outcome, bool complete);
 
+// Raises quality_no_information for problems without light whose rays have all the weight 0, as outside the circle of a
+// fisheye lens.
+CaptureResult with_blind_flagged(const Sensor& sensor, const Capture& capture, CaptureResult result);
+
 // The ray of a problem's middle at the middle of its capture.
 SensorRay middle_ray(const Sensor& sensor, const Capture& capture, size_t problem);
 

@@ -40,6 +40,7 @@ ResultBuilder::ResultBuilder(const Capture& capture, size_t bands, size_t channe
   r.paths.resize(n);
   r.quality.resize(n);
   resize_large(largest_, n);
+  empty_.resize(n);
   resize_large(scatter_, n);
   light_.resize(n);
   lacks_.resize(n);
@@ -56,6 +57,8 @@ void ResultBuilder::take(size_t problem, const Accumulators& sums, size_t slot) 
   const std::span<double> means(&r.radiance[problem * values], values),
       errors(&r.standard_error[problem * values], values);
   sums.estimate(slot, means, errors);
+  empty_[problem] = sums.accepted(slot) == 0;
+  if (empty_[problem]) std::fill(errors.begin(), errors.end(), INFINITY);
   scatter_[problem] = sums.scatter(slot, means[reference_band_]);
   lacks_[problem] = lack_of(problem, sums, slot);
   light_[problem] = sums.lacking(slot, means);
@@ -160,9 +163,23 @@ void ResultBuilder::correlate() {
     }
 }
 
+// Problems whose own samples tell nothing about their value or its error, whatever those beside them say.
+void ResultBuilder::flag_unknown(std::span<const TailSums> tails) {
+  constexpr double kAll = 1 - 1e-6;  // of the light, in one of the scrambles: the error is as large as the value then
+  const size_t values = result_.values_per_problem();
+  for (size_t i = 0; i < tails.size(); ++i) {
+    const TailSums& s = tails[i];
+    // (The first of several bins is not all that a problem shows.)
+    const bool lone = result_.bins == 1 && s.mean > 0 && s.sampled >= kAll * s.mean;
+    if (empty_[i]) std::fill_n(&result_.standard_error[i * values], values, INFINITY);
+    if (lone || !std::isfinite(s.sampled)) result_.quality[i] |= quality_no_information;
+  }
+}
+
 CaptureResult ResultBuilder::finish() {
   std::vector<TailSums> tails = tail_sums();
   pool(tails);
+  flag_unknown(tails);
   for (size_t i = 0; i < tails.size(); ++i)
     tails[i].error = result_.standard_error[i * result_.values_per_problem() + reference_band_];
   flag_heavy_tails(tails, result_.columns, neighbours_, result_.quality);

@@ -33,6 +33,7 @@ class ResultBuilder {
   std::vector<TailSums> tail_sums() const;  // with errors as the scrambles tell them
   void pool(std::span<const TailSums> tails);
   void widen();
+  void flag_unknown(std::span<const TailSums> tails);
   std::vector<float> deviations(const Accumulators& sums, size_t slot, const double* means) const;
   void correlate();
   CaptureResult result_;
@@ -44,6 +45,7 @@ class ResultBuilder {
   const TruthPlan& truth_;
   const Goals& goals_;
   std::vector<float> largest_;  // sample of each problem
+  std::vector<uint8_t> empty_;  // [problem] no sample was accepted
   // The bands' deviations from their means, relative, of the scrambles of every so many problems (1024 at most):
   // [scramble][band], one behind the other. All bands ride on the same paths, so they err together. Kept per problem,
   // because sums of their products must not depend on who comes first.

@@ -321,7 +321,7 @@ class Job {
     const Capture& capture = c.work.capture;
     CaptureLog& log = c.log;
     log.statistics = c.planner->statistics();
-    CaptureResult result = c.result->finish();
+    CaptureResult result = with_blind_flagged(sensor, capture, c.result->finish());
     report_.shortfalls[item.sensor].shortfall.merge(c.result->shortfall());
     result.task = item.task;
     result.capture = item.capture;

@@ -18,7 +18,10 @@ std::span<const QualityBit> quality_bits() {
        "error"},
       {quality_clipped, "clipped",
        "the detector's charge is beyond its full well or its counts beyond an end of the converter: the radiance "
-       "holds, counts and apparent temperature are no measure of it"}};
+       "holds, counts and apparent temperature are no measure of it"},
+      {quality_no_information, "no_information",
+       "value or error is unknown: no sample was accepted, the sensor gives every ray the weight 0, or only one of the "
+       "groups of samples whose scatter makes the error has any, or any light"}};
   return bits;
 }
 

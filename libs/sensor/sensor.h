@@ -121,6 +121,8 @@ enum QualityFlag : uint8_t {
   quality_truncated = 4,   // more than 1 % of the energy was cut at the maximum number of nodes
   quality_unresolved = 8,  // light behind smooth refracting surfaces was not found, and would change more than 0.1 %
   quality_clipped = 16,    // of detectors: counts beyond an end of the converter, or charge beyond the full well
+  quality_no_information =
+      32,  // value or error is unknown: no sample counted, or one group of them alone brought light
 };
 
 // What the numbers of an image are, and what goes with it. Paths, errors, targets and products know radiance only: it
