@@ -158,7 +158,8 @@ TEST(Quality, BitsAreNamedOnceAndCounted) {
     all = static_cast<uint8_t>(all | b.bit);
     EXPECT_FALSE(b.name.empty() || b.meaning.empty());
   }
-  EXPECT_EQ(all, quality_heavy_tail | quality_failures | quality_truncated | quality_unresolved | quality_clipped);
+  EXPECT_EQ(all, quality_heavy_tail | quality_failures | quality_truncated | quality_unresolved | quality_clipped |
+                     quality_no_information);
   QualityCounts counts;
   counts.add(std::vector<uint8_t>{0, 1, 3, 12});
   EXPECT_EQ(counts.problems, 4u);
