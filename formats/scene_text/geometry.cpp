@@ -72,6 +72,14 @@ std::function<Vec3(double, double, double)> georeferenced_grid(const GeoReferenc
   };
 }
 
+// A scale of the text replaces the file's own, which then has to be in it.
+std::string cure_of_feet(const std::string& path, double unit) {
+  const Raster raster = read_raster(path);
+  if (raster.numbers.empty()) return strf("'height_scale: %.7g' makes metres of them", unit);
+  return strf("'height_scale: %.7g, height_offset: %.7g' makes metres of the stored numbers",
+              unit * raster.numbers[0].scale, unit * raster.numbers[0].offset);
+}
+
 }  // namespace
 
 // Heights that are marks of missing ones in many rasters, and no land on Earth.
@@ -116,7 +124,7 @@ void Reader::read_terrain(const Params& p, DraftGeometry& g) {
     const GeoReference ref = read_georeference(path);
     if (ref.height_unit_m != 1 && !p.has("height_scale"))
       throw Error(Where{path, 0, 0, {}, -1}, strf("its heights are in feet of %.7g m", ref.height_unit_m),
-                  strf("'height_scale: %.7g' makes metres of them", ref.height_unit_m), "SP504");
+                  cure_of_feet(path, ref.height_unit_m), "SP504");
     g.terrain.georeferenced = true;
     const auto system = map_system_of_epsg(ref.epsg);
     if (!system || system->zone.has_value() == ref.geographic)
