@@ -86,12 +86,12 @@ TEST(ClearMatter, LooksLikeABlackbody) {
         for (const auto& [ray, expected] :
              {std::pair{to_middle, 1.0}, {to_rim, 1.0}, {within, squared}, {out, squared}}) {
           const auto r =
-              render(room(c), sources_of(c), std::make_unique<RaySensor>(repeated(ray), bands, 64, 0.05)).result;
+              render(room(c), sources_of(c), std::make_unique<RaySensor>(repeated(ray), bands, 36, 0.05)).result;
           for (size_t b = 0; b < bands.size(); ++b) {
             const Repeated got = over_problems(r, b);
             EXPECT_NEAR(got.mean / black(bands[b]), expected, kSigmas * got.error / black(bands[b]) + 1e-4 * expected)
                 << name_of(c) << ", band " << b;
-            EXPECT_LT(kSigmas * got.error, 0.05 * got.mean) << "that would not be seen";
+            EXPECT_LT(kSigmas * got.error, 0.07 * got.mean) << "that would not be seen";
           }
         }
       }
