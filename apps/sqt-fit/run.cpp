@@ -91,7 +91,7 @@ void print_summary(const SqtFitOptions& o, const Outcome& out) {
   const sqt::ErrorFigures& e = out.errors.back();
   note(strf("%s: %zu bytes, %zu leaves to order %d, %.2f s", o.method.c_str(), out.file.size(),
             out.bundle->info().leaves, out.bundle->info().max_order, out.seconds));
-  note(strf("  l1 %.2f %%  cos_rmse %.2f %%  rmse %.3g /sr  total_error %.2g %%  reciprocity_error %.2g %%", 100 * e.l1,
+  note(strf("  l1 %.2f %%  cos_rmse %.2f %%  rmse %.3g /sr  total_error %.2g %%  reciprocity_error %.2f %%", 100 * e.l1,
             100 * e.cos_rmse, e.rmse, 100 * e.total_error, 100 * e.reciprocity_error));
   note(strf("  peaks at 20/45/70 deg: %.3f %.3f %.3f of the data; largest sampling weight %.2f", e.peak_ratio_20,
             e.peak_ratio_45, e.peak_ratio_70, e.max_weight));

@@ -9,6 +9,7 @@
 #include "sqt/aligned.h"
 #include "sqt/aligned_tables.h"
 #include "sqt/planes.h"
+#include "sqt/polar_profile.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
 
@@ -34,6 +35,7 @@ class AlignedBundle final : public Bundle {
       channel_magnitude_.push_back(
           static_cast<size_t>(std::lower_bound(totals_.magnitude_um.begin(), totals_.magnitude_um.end(), um) -
                               totals_.magnitude_um.begin()));
+    find_polar();
   }
 
   void value(Dir out, Dir in, std::span<double> f) const override {
@@ -131,9 +133,12 @@ class AlignedBundle final : public Bundle {
       const AlignedTables::Sheet& sheet = tables_.sheets()[s];
       for (size_t i = 0; i < sheet.tree.size(); ++i) {
         const int16_t* p = numbers(&sheet.plane[i * layout_.width() * kStride], view, channel);
-        const double g = portable_exp2(sheet.scale.value(p[0]) + static_cast<float>(scale(at, channel))),
-                     mass = tables_.probability(column, p[3]);
         const CellId id = sheet.tree.cell(i);
+        const float value = view == 0 && !polar_.empty()
+                                ? polar_.log2(s, PolarProfile::locate(1 - center_of(id).z), channel)
+                                : sheet.scale.value(p[0]);
+        const double g = portable_exp2(value + static_cast<float>(scale(at, channel))),
+                     mass = tables_.probability(column, p[3]);
         if (!layout_.half_stored || mirrored(id) == id) {
           out.push_back({id, static_cast<int>(s), g, mass});
         } else {
@@ -163,7 +168,39 @@ class AlignedBundle final : public Bundle {
     LogScale scale;
     float dx, dy;
     double to_density;  // from the leaf's probability
+    int first;          // slices before it are the polar one, in the profile's place
+    size_t sheet;
+    PolarProfile::At polar;
   };
+
+  // The slice along the normal, with its total.
+  void find_polar() {
+    std::vector<LogScale> scales;
+    for (const AlignedTables::Sheet& sheet : tables_.sheets()) scales.push_back(sheet.scale);
+    polar_ =
+        polar_profile(layout_, planar_ && totals_.theta.front() == 0, scales, [this](size_t s, Dir d) -> LeafPlace {
+          const AlignedTables::Sheet& sheet = tables_.sheets()[s];
+          Query q;
+          if (!find_leaf(sheet, face_point_fast(d), q)) return {};
+          return {q.leaf, kStride, q.dx, q.dy};
+        });
+    const auto weight = polar_weight(layout_);
+    for (size_t c = 0; c < channels(); ++c)
+      if (totals_.log2_scale[c] > kNothing)
+        polar_.set_integral(c, weight, totals_.magnitudes[channel_magnitude_[c]] / std::exp2(totals_.log2_scale[c]));
+  }
+  // The leaf, and where in it the point is; false where there is none.
+  bool find_leaf(const AlignedTables::Sheet& sheet, FacePoint p, Query& q, size_t* index = nullptr) const {
+    const Tree::Found found = sheet.tree.find(p);
+    if (found.leaf < 0) return false;
+    const size_t leaf = static_cast<size_t>(found.leaf);
+    const double cells = static_cast<double>(1u << found.order), x = p.x * cells, y = p.y * cells;
+    q.dx = static_cast<float>(x - std::floor(x) - 0.5);
+    q.dy = static_cast<float>(y - std::floor(y) - 0.5);
+    q.leaf = &sheet.plane[leaf * layout_.width() * kStride];
+    if (index) *index = leaf;
+    return true;
+  }
 
   bool surface() const { return layout_.cosine_weighted; }
   bool faces(Dir out) const { return !surface() || out.z > 0 || (out.z < 0 && layout_.sheets == 2); }
@@ -250,7 +287,7 @@ class AlignedBundle final : public Bundle {
     const size_t s = surface() && layout_.sheets == 2 && in.z < 0 ? 1 : 0;
     if (surface() && (s == 0 ? !(in.z > 0) : !(in.z < 0))) return false;
     FacePoint p;
-    double stretch = 1;
+    double stretch = 1, cosine = 1;  // from the pole of the divided sphere
     q.up = upright(out);
     if (planar_ && layout_.frame != LobeFrame::direct) {
       // Half or retro frame of an isotropic surface: the sum of both directions, neither turned to the slice's azimuth
@@ -266,24 +303,23 @@ class AlignedBundle final : public Bundle {
       p = face_point_fast(along, layout_.half_stored ? std::max(std::fabs(across), reach) : across, hz * inverse,
                           flat * inverse2);
       stretch = 4 * std::fabs(side * (hx * out.x + hy * out.y) + hz * q.up.z) * inverse;
+      cosine = hz * inverse;
     } else {
       const LobeMap m = map(q.up, s);
       Dir d = m.cell_direction(frame(out).to_local(in));
       if (layout_.half_stored) d.y = std::max(std::fabs(d.y), 1e-9);
       p = face_point_fast(d);
       stretch = m.stretch(d);
+      cosine = d.z;
     }
     const AlignedTables::Sheet& sheet = tables_.sheets()[s];
-    const Tree::Found found = sheet.tree.find(p);
-    if (found.leaf < 0) return false;
-    const size_t leaf = static_cast<size_t>(found.leaf);
-    const double cells = static_cast<double>(1u << found.order), x = p.x * cells, y = p.y * cells;
-    q.dx = static_cast<float>(x - std::floor(x) - 0.5);
-    q.dy = static_cast<float>(y - std::floor(y) - 0.5);
+    size_t leaf = 0;
+    if (!find_leaf(sheet, p, q, &leaf)) return false;
     q.scale = sheet.scale;
-    q.leaf = &sheet.plane[leaf * layout_.width() * kStride];
     q.to_density = sheet.inverse_area[leaf] / stretch;
     q.at = place(views_, q.up);
+    q.first = q.at.view[0] == 0 && !polar_.empty() ? 1 : 0;
+    if (q.first) q.sheet = s, q.polar = PolarProfile::locate(std::max(0.0, 1 - cosine));
     return true;
   }
   // Of a leaf, those of a view and a channel.
@@ -296,16 +332,20 @@ class AlignedBundle final : public Bundle {
     using Four = float __attribute__((vector_size(16)));
     using Numbers = int16_t __attribute__((vector_size(8)));
     Four plane{};
-    for (int b = 0; b < q.at.count; ++b)
+    for (int b = q.first; b < q.at.count; ++b)
       plane += static_cast<float>(q.at.weight[b]) *
                __builtin_convertvector(load<Numbers>(numbers(q.leaf, q.at.view[b], channel)), Four);
-    return portable_exp2(l + q.scale.value(plane[0] + q.dx * plane[1] + q.dy * plane[2]));
+    float number = plane[0] + q.dx * plane[1] + q.dy * plane[2];
+    if (q.first) number += static_cast<float>(q.at.weight[0]) * polar_.number(q.sheet, q.polar, channel);
+    return portable_exp2(l + q.scale.value(number));
   }
   // The same of up to kTogether channels from `first` on, to the same bits.
   void values_at(const Query& q, const Place& fine, size_t first, std::span<double> f) const {
     std::array<const int16_t*, 4> rows;
-    for (int b = 0; b < q.at.count; ++b) rows[b] = numbers(q.leaf, q.at.view[b], first);
-    const EightFloats plane = planes(std::span(rows).first(q.at.count), q.at.weight, q.dx, q.dy);
+    const int count = q.at.count - q.first;
+    for (int b = 0; b < count; ++b) rows[b] = numbers(q.leaf, q.at.view[b + q.first], first);
+    EightFloats plane = planes(std::span(rows).first(count), q.at.weight + q.first, q.dx, q.dy);
+    if (q.first) plane += static_cast<float>(q.at.weight[0]) * polar_.numbers(q.sheet, q.polar, first);
     std::array<float, kTogether> scales{}, values;
     for (size_t k = 0; k < f.size(); ++k) scales[k] = static_cast<float>(scale(fine, first + k));
     const auto s = load<EightFloats>(scales.data());
@@ -327,50 +367,16 @@ class AlignedBundle final : public Bundle {
   AlignedTotals totals_;
   ThetaGrid views_, fine_;
   AlignedTables tables_;
+  PolarProfile polar_;                     // in the place of the first slice; empty where it is not the normal's
   bool planar_;                            // a surface seen in the plane of its normal and `out`
   const uint64_t number_ = next_number();  // of this bundle among all that there ever were
   std::vector<size_t> channel_magnitude_;
 };
 
-void check(const AlignedData& d) {
-  auto require = [](bool condition, const char* what) {
-    if (!condition) throw Error(std::string("inconsistent SQT data: ") + what);
-  };
-  const AlignedLayout& l = d.layout;
-  const AlignedTotals& t = d.totals;
-  require(l.channels > 0 && l.channels == d.function.wavelength_um.size(), "number of channels");
-  require(!l.theta.empty() && l.phi_count > 0 && t.phi_count > 0 && !t.theta.empty(), "no views");
-  require(t.phi_count == l.phi_count, "azimuths of totals are not those of views");
-  require(l.phi_count == 1 || !d.function.isotropic, "views of isotropic data at several azimuths");
-  for (size_t i = 1; i < l.theta.size(); ++i) require(l.theta[i] > l.theta[i - 1], "view angles do not ascend");
-  for (size_t i = 1; i < t.theta.size(); ++i) require(t.theta[i] > t.theta[i - 1], "angles of totals do not ascend");
-  for (size_t i = 1; i < t.magnitude_um.size(); ++i)
-    require(t.magnitude_um[i] > t.magnitude_um[i - 1], "wavelengths of totals do not ascend");
-  for (const double um : d.function.wavelength_um)
-    require(std::binary_search(t.magnitude_um.begin(), t.magnitude_um.end(), um), "a wavelength has no total");
-  require(t.magnitudes.size() == t.theta.size() * t.phi_count * t.magnitude_um.size(), "number of totals");
-  require(t.log2_scale.size() == t.theta.size() * t.phi_count * l.channels, "number of scales");
-  if (t.delta_kind != Dirac::none) {
-    require(d.function.quantity == Quantity::bsdf, "a Dirac lobe of something that is no surface");
-    require(t.delta_kind != Dirac::through || l.sheets == 2, "a Dirac lobe on a side without data");
-    require(t.delta.size() == t.theta.size() * t.phi_count * l.channels, "number of Dirac totals");
-    require(t.magnitude_um.size() == l.channels, "a Dirac lobe with totals finer than channels");
-    for (const float m : t.delta) require(std::isfinite(m) && m >= 0 && m <= 1.001f, "a Dirac total is out of range");
-  }
-  for (const float m : t.magnitudes) require(std::isfinite(m) && m >= 0, "a total is negative or not finite");
-  for (const float s : t.log2_scale) require(std::isfinite(s) && std::fabs(s) <= 200, "a scale is not finite");
-  require(d.sheets.size() == static_cast<size_t>(l.sheets) && (l.sheets == 1 || l.sheets == 2), "number of sheets");
-  for (const AlignedSheet& s : d.sheets) {
-    require(!s.leaves.empty() && s.plane.size() >= s.leaves.size() * l.width() * AlignedSheet::kStride &&
-                s.inverse_area.size() == s.leaves.size() && s.mass.size() >= s.leaves.size() * padded_row(l.width()),
-            "number of leaf values");
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const Bundle> make_bundle(AlignedData data) {
-  check(data);
+  check_aligned(data);
   Bundle::Info info;
   info.function = data.function;
   info.method = "aligned";

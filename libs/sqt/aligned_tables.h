@@ -16,6 +16,9 @@
 
 namespace suite::sqt {
 
+// Error naming the first invariant that does not hold.
+void check_aligned(const AlignedData& data);
+
 class AlignedTables {
  public:
   struct Sheet {

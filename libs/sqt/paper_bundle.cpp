@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "sqt/paper.h"
+#include "sqt/polar_profile.h"
 #include "sqt/theta_grid.h"
 #include "sqt/tree.h"
 
@@ -58,6 +59,7 @@ class PaperBundle final : public Bundle {
     for (const double um : info_.function.wavelength_um)
       channel_magnitude_.push_back(static_cast<size_t>(
           std::lower_bound(data_.magnitude_um.begin(), data_.magnitude_um.end(), um) - data_.magnitude_um.begin()));
+    find_polar();
   }
 
   void value(Dir out, Dir in, std::span<double> f) const override {
@@ -69,10 +71,7 @@ class PaperBundle final : public Bundle {
     const FacePoint p = face_point(to_frame(out, in));
     for (const auto& [view, weight] : blend(out)) {
       if (weight <= 0) continue;
-      const Slice& s = slice(view, channel);
-      const int leaf = s.tree.leaf(p);
-      if (leaf >= 0 && s.mass() > 0)
-        f += weight * s.value[static_cast<size_t>(leaf)] * view_total(view, channel) / s.mass();
+      f += weight * (view == 0 && !polar_.empty() ? polar_value(in, channel) : slice_value(view, p, channel));
     }
     return f;
   }
@@ -155,6 +154,31 @@ class PaperBundle final : public Bundle {
     if (!cosine_weighted()) return Weighting::none;
     return hemisphere() ? Weighting::upper_side : Weighting::both_sides;
   }
+  // f of a slice, in its frame.
+  double slice_value(size_t view, FacePoint p, size_t channel) const {
+    const Slice& s = slice(view, channel);
+    const int leaf = s.tree.leaf(p);
+    if (leaf < 0 || !(s.mass() > 0)) return 0;
+    return s.value[static_cast<size_t>(leaf)] * view_total(view, channel) / s.mass();
+  }
+  double polar_value(Dir in, size_t channel) const {
+    const size_t sheet = in.z < 0 ? 1 : 0;
+    const float l = polar_.log2(sheet, PolarProfile::locate(1 - std::fabs(in.z)), channel);
+    return l < -100 ? 0 : std::exp2(static_cast<double>(l));
+  }
+  // The first slice of an isotropic surface, seen along the normal, with its total (polar_profile.h).
+  void find_polar() {
+    if (!cosine_weighted() || !info_.function.isotropic || data_.phi_count != 1 || grid_[0] != 0) return;
+    polar_ = {channels(), info_.function.bilateral, std::vector<LogScale>(hemisphere() ? 1 : 2),
+              [this](size_t sheet, Dir d, std::span<float> f) {
+                if (sheet == 1) d.z = -d.z;
+                const FacePoint p = face_point(d);
+                for (size_t c = 0; c < f.size(); ++c) f[c] = static_cast<float>(slice_value(0, p, c));
+              }};
+    for (size_t c = 0; c < channels(); ++c)
+      polar_.set_integral(
+          c, [](double below) { return 1 - below; }, view_total(0, c));
+  }
   // Data of both sides are seen from the front: the back is taken to scatter as the front does.
   bool below(Dir out) const { return cosine_weighted() && (hemisphere() ? out.z <= 0 : out.z == 0); }
   bool turned_over(Dir out) const { return cosine_weighted() && out.z < 0; }
@@ -197,6 +221,7 @@ class PaperBundle final : public Bundle {
   ThetaGrid grid_;
   std::vector<Slice> slices_;
   std::vector<size_t> channel_magnitude_;
+  PolarProfile polar_;  // in the place of the first slice; empty where it is not the normal's
 };
 
 void check(const PaperData& d) {
@@ -230,10 +255,21 @@ void check(const PaperData& d) {
   }
 }
 
+// Slices at the normal are one, whatever their azimuth: the first stands for all.
+void join_polar_slices(PaperData& data) {
+  if (data.function.quantity != Quantity::bsdf || data.views.front().theta != 0) return;
+  const size_t channels = data.function.wavelength_um.size(), magnitudes = data.magnitude_um.size();
+  for (size_t j = 1; j < data.phi_count; ++j) {
+    for (size_t c = 0; c < channels; ++c) data.slices[j * channels + c] = data.slices[c];
+    std::copy_n(data.magnitudes.begin(), magnitudes, data.magnitudes.begin() + static_cast<ptrdiff_t>(j * magnitudes));
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const Bundle> make_bundle(PaperData data) {
   check(data);
+  join_polar_slices(data);
   Bundle::Info info;
   info.function = data.function;
   info.method = "paper";

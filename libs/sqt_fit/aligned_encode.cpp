@@ -141,7 +141,7 @@ AlignedFit encode_aligned(const AlignedSource& source, double quality) {
   d.layout.quality = quality;
   d.totals = source.totals();
   fit.sheets_bytes = encode_sheets(source, quality, &d.sheets);
-  d.totals.log2_scale = fit_scale(d.layout, d.sheets, d.totals, d.function.wavelength_um);
+  d.totals.log2_scale = fit_scale(d.layout, d.function, d.sheets, d.totals);
   fit.totals_bytes = encode_totals(d.totals, d.layout.channels);
   return fit;
 }

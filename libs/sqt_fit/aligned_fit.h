@@ -41,8 +41,8 @@ class AlignedSource {
 std::vector<std::byte> encode_sheets(const AlignedSource& source, double quality,
                                      std::vector<AlignedSheet>* decoded = nullptr);
 // log2 of the scale that gives decoded sheets the totals of the data.
-std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<AlignedSheet>& sheets,
-                             const AlignedTotals& totals, const std::vector<double>& wavelength_um);
+std::vector<float> fit_scale(const AlignedLayout& layout, const Function::Info& function,
+                             const std::vector<AlignedSheet>& sheets, const AlignedTotals& totals);
 
 // Codes totals and scale. The numbers are rounded in place to what a decoder sees (relative steps of 1/2000).
 std::vector<std::byte> encode_totals(AlignedTotals& totals, size_t channels);

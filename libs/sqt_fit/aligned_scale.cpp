@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "sqt/polar_profile.h"
 #include "sqt/portable_math.h"
 #include "sqt/theta_grid.h"
+#include "sqt/tree.h"
 #include "sqt_fit/aligned_fit.h"
 
 namespace suite::sqt {
@@ -28,12 +30,14 @@ struct LeafGrid {
   int side = 0;
   std::vector<Dir> direction;
   std::vector<float> dx, dy;
+  std::vector<PolarProfile::At> polar;
   void fill(const LeafPart& part, int n) {
     side = n;
-    direction.clear(), dx.clear(), dy.clear();
+    direction.clear(), dx.clear(), dy.clear(), polar.clear();
     for (int k = 0; k < n * n; ++k) {
       const double ux = (k % n + 0.5) / n, uy = (k / n + 0.5) / n;
       direction.push_back(direction_in(part.id, {ux, uy}));
+      polar.push_back(PolarProfile::locate(1 - direction.back().z));
       dx.push_back(static_cast<float>(part.x + ux * part.width - 0.5));
       dy.push_back(static_cast<float>(part.y + uy * part.width - 0.5));
     }
@@ -69,8 +73,9 @@ std::vector<TotalView> total_views(const AlignedLayout& layout, const AlignedTot
 // Adds a leaf's share of the integral of f |cos| to every view: integral[view][channel].
 class LeafIntegral {
  public:
-  LeafIntegral(const AlignedLayout& layout, LogScale scale, const std::vector<TotalView>& views)
-      : layout_(layout), scale_(scale), views_(views) {}
+  LeafIntegral(const AlignedLayout& layout, LogScale scale, const PolarProfile& polar,
+               const std::vector<TotalView>& views)
+      : layout_(layout), scale_(scale), polar_(polar), views_(views) {}
 
   void add(CellId id, size_t sheet, const int16_t* leaf, std::vector<double>& integral) {
     const double copies = layout_.half_stored && mirrored(id) != id ? 2 : 1;
@@ -96,15 +101,22 @@ class LeafIntegral {
       // Near the horizon the cosine changes within a part, and what lies below does not count: look more closely.
       const double above = layout_.cosine_weighted ? map.cosine(center) : 1;
       if (layout_.upper_only && above < -2 * width) continue;
-      const int closer = std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
+      // Between the profile along the normal, which is smooth, and planes, which jump, always.
+      const bool polar = views_[t].low == 0 && !polar_.empty();
+      const int closer = polar ? 4 : std::clamp(static_cast<int>(6 * width / std::max(std::fabs(above), width)), 1, 4);
       LeafGrid& grid = grids_[static_cast<size_t>(closer - 1)];
       if (!grid.side) grid.fill(part, closer * usual);
-      add(grid, part.width, cell_solid_angle(order) * copies, views_[t], map, leaf, &integral[t * layout_.channels]);
+      if (!weigh(grid, map)) continue;
+      const double area = cell_solid_angle(order) * copies;
+      if (polar)
+        add_polar(grid, part.width, sheet, area, views_[t], leaf, &integral[t * layout_.channels]);
+      else
+        add(grid, part.width, area, views_[t], leaf, &integral[t * layout_.channels]);
     }
   }
-  void add(const LeafGrid& grid, double width, double area, const TotalView& view, const LobeMap& map,
-           const int16_t* leaf, double* integral) {
-    const size_t views = layout_.views(), channels = layout_.channels, points = grid.direction.size();
+  // What the points count for; false: nothing.
+  bool weigh(const LeafGrid& grid, const LobeMap& map) {
+    const size_t points = grid.direction.size();
     weight_.resize(points);
     bool any = false;
     for (size_t k = 0; k < points; ++k) {
@@ -115,7 +127,29 @@ class LeafIntegral {
           counts ? static_cast<float>(map.stretch(d) * (layout_.cosine_weighted ? std::fabs(cosine) : 1.0)) : 0;
       any |= counts;
     }
-    if (!any) return;
+    return any;
+  }
+  // Between the profile along the normal and the slice above.
+  void add_polar(const LeafGrid& grid, double width, size_t sheet, double area, const TotalView& view,
+                 const int16_t* leaf, double* integral) const {
+    const size_t views = layout_.views(), points = grid.direction.size();
+    const float to_slope = view.w1 * scale_.unit() * static_cast<float>(width / grid.side);
+    for (size_t c = 0; c < layout_.channels; ++c) {
+      const int16_t* b = leaf + (c * views + view.high) * kStride;
+      float sum = 0;
+      for (size_t k = 0; k < points; ++k)
+        sum += weight_[k] *
+               portable_exp2(view.w0 * polar_.log2(sheet, grid.polar[k], c) +
+                             view.w1 * scale_.value(static_cast<float>(b[0]) + grid.dx[k] * static_cast<float>(b[1]) +
+                                                    grid.dy[k] * static_cast<float>(b[2])));
+      integral[c] += static_cast<double>(sum * mean_exp2(to_slope * static_cast<float>(b[1])) *
+                                         mean_exp2(to_slope * static_cast<float>(b[2]))) *
+                     area / static_cast<double>(points);
+    }
+  }
+  void add(const LeafGrid& grid, double width, double area, const TotalView& view, const int16_t* leaf,
+           double* integral) const {
+    const size_t views = layout_.views(), channels = layout_.channels, points = grid.direction.size();
     const float spacing = static_cast<float>(width / grid.side);
     for (size_t c = 0; c < channels; ++c) {
       const int16_t* a = leaf + (c * views + view.low) * kStride;
@@ -131,15 +165,33 @@ class LeafIntegral {
   }
   const AlignedLayout& layout_;
   LogScale scale_;
+  const PolarProfile& polar_;
   const std::vector<TotalView>& views_;
   std::array<LeafGrid, 4> grids_;
   std::vector<float> weight_;
 };
 
+// The profile that a bundle of these sheets makes of its first slice.
+PolarProfile profile_of(const AlignedLayout& layout, bool isotropic, const std::vector<AlignedSheet>& sheets) {
+  std::vector<Tree> trees;
+  std::vector<LogScale> scales;
+  for (const AlignedSheet& sheet : sheets) trees.emplace_back(sheet.leaves), scales.push_back(sheet.scale);
+  return polar_profile(layout, isotropic, scales, [&](size_t s, Dir d) -> LeafPlace {
+    const FacePoint p = face_point_fast(d);
+    const Tree::Found found = trees[s].find(p);
+    if (found.leaf < 0) return {};
+    const double cells = static_cast<double>(1u << found.order), x = p.x * cells, y = p.y * cells;
+    return {&sheets[s].plane[static_cast<size_t>(found.leaf) * layout.width() * kStride], layout.views() * kStride,
+            static_cast<float>(x - std::floor(x) - 0.5), static_cast<float>(y - std::floor(y) - 0.5)};
+  });
+}
+
 }  // namespace
 
-std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<AlignedSheet>& sheets,
-                             const AlignedTotals& totals, const std::vector<double>& wavelength_um) {
+std::vector<float> fit_scale(const AlignedLayout& layout, const Function::Info& function,
+                             const std::vector<AlignedSheet>& sheets, const AlignedTotals& totals) {
+  const std::vector<double>& wavelength_um = function.wavelength_um;
+  const PolarProfile polar = profile_of(layout, function.isotropic, sheets);
   const size_t channels = layout.channels;
   const std::vector<TotalView> views = total_views(layout, totals);
   std::vector<double> integral(views.size() * channels, 0.0);
@@ -149,7 +201,7 @@ std::vector<float> fit_scale(const AlignedLayout& layout, const std::vector<Alig
     const size_t blocks = (sheet.leaves.size() + kBlock - 1) / kBlock;
     std::vector<std::vector<double>> partial(blocks);
     parallel_for(0, blocks, 1, [&](size_t begin, size_t end) {
-      LeafIntegral leaf_integral(layout, sheet.scale, views);
+      LeafIntegral leaf_integral(layout, sheet.scale, polar, views);
       for (size_t b = begin; b < end; ++b) {
         partial[b].assign(integral.size(), 0.0);
         for (size_t i = b * kBlock; i < std::min(sheet.leaves.size(), (b + 1) * kBlock); ++i)

@@ -11,6 +11,7 @@
 #include "math/sampling.h"
 #include "sqt_fit/families.h"
 #include "sqt_fit/lobe_detection.h"
+#include "sqt_fit/pole_mean.h"
 #include "sqt_fit/source_means.h"
 #include "sqt_fit/source_totals.h"
 #include "sqt_fit/spectra.h"
@@ -229,9 +230,10 @@ double cost_of_folding(const Function& function) {
 
 }  // namespace
 
-AlignedSource::AlignedSource(const Function& function, const Options& asked,
-                             const std::function<void(double)>& progress)
+AlignedSource::AlignedSource(const Function& data, const Options& asked, const std::function<void(double)>& progress)
     : impl_(new Impl) {
+  const PoleMean mean(data);
+  const Function& function = mean.function();
   Impl& m = *impl_;
   Options options = asked;
   m.function = function.info();

@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "math/sampling.h"
 #include "math/warps.h"
+#include "sqt/mirror_pairs.h"
+#include "sqt/reciprocity.h"
 
 namespace suite::sqt {
 
@@ -16,14 +18,6 @@ constexpr double kLimit = 80 * kDegree;
 constexpr int kRings = 256, kSpokes = 64;  // of half directions, for totals
 constexpr size_t kPoints = 2 * kRings * kSpokes;
 const double kPeakAngles[3] = {20 * kDegree, 45 * kDegree, 70 * kDegree};
-
-// Directions near the mirror direction of `out`: half vectors with density 1 / (2 pi) a / ((1 - z) + a)^2 (1 + a - ...)
-// per steradian over z = cos theta_h in (0, 1]; heavy-tailed, so that lobes of any width are met.
-constexpr double kNear = 1e-3;
-double near_height(double u) {  // 1 - z by inversion of the cumulative (1 + a) s / (s + a), s = 1 - z in [0, 1]
-  return kNear * u / (1 + kNear - u);
-}
-double near_pdf(double s) { return (1 + kNear) * kNear / ((s + kNear) * (s + kNear)) / (2 * kPi); }
 
 // Rings for totals: even in log(s + a), so that narrow lobes (down to 0.01 deg) and wide ones have their share of them.
 constexpr double kFine = 1e-8;
@@ -61,8 +55,7 @@ void Reference::ask(Pair& p, const std::array<double, 4>& u, double w, std::span
   if (w < 0.5) {
     p.in = uniform_sphere({sphere ? u[2] : u[2] / 2, u[3]});
   } else {
-    const double s = near_height(u[2]), r = std::sqrt(s * (2 - s));
-    const Dir h{r * std::cos(2 * kPi * u[3]), r * std::sin(2 * kPi * u[3]), 1 - s};
+    const Dir h = near_half(u[2], u[3]);
     p.in = h * (2 * dot(h, p.out)) - p.out;
     if (sphere && w >= 0.75) p.in.z = -p.in.z;
   }
@@ -103,8 +96,7 @@ void Reference::find_totals() {
 }
 
 void Reference::find_unphysical() {
-  std::vector<double> back(channels_);
-  double difference = 0, sum = 0, negative = 0, invalid = 0, all = 0;
+  double negative = 0, invalid = 0, all = 0;
   for (size_t n = 0; n < std::min<size_t>(pairs_.size(), 50000); ++n) {
     const Pair& p = pairs_[n];
     if (p.weight == 0) {
@@ -115,15 +107,11 @@ void Reference::find_unphysical() {
     all += 1;
     for (size_t c = 0; c < channels_; ++c)
       negative += value_[n * channels_ + c] < 0 ? 1.0 / static_cast<double>(channels_) : 0;
-    if (!p.narrow || !weighted_ || p.in.z <= 0) continue;
-    function_.value(p.in, p.out, back);
-    for (size_t c = 0; c < channels_; ++c) {
-      if (!std::isfinite(back[c])) continue;
-      difference += p.weight * std::fabs(back[c] - value_[n * channels_ + c]);
-      sum += p.weight * (std::fabs(back[c]) + std::fabs(value_[n * channels_ + c]));
-    }
   }
-  findings_.reciprocity_error = sum > 0 ? difference / sum : 0;
+  if (weighted_)
+    findings_.reciprocity_error = reciprocity_error(channels_, [this](Dir out, Dir in, std::span<double> f) {
+                                    function_.value(out, in, f);
+                                  }).back();
   findings_.negative_share = all > 0 ? negative / all : 0;
   findings_.invalid_share = all > 0 ? invalid / all : 0;
 }
@@ -224,18 +212,16 @@ std::array<double, 3> Reference::least_peaks(const Bundle& bundle) const {
 }
 
 struct Reference::Sums {
-  double l1 = 0, f = 0, square = 0, f_square = 0, plain = 0, weight = 0, recip = 0, g = 0;
+  double l1 = 0, f = 0, square = 0, f_square = 0, plain = 0, weight = 0;
 };
 
 // Of a chunk of pairs, one per channel.
 void Reference::add_pairs(const Bundle& bundle, size_t begin, size_t end, std::span<Sums> sums) const {
-  std::vector<double> g(channels_), back(channels_);
+  std::vector<double> g(channels_);
   for (size_t n = begin; n < end; ++n) {
     const Pair& p = pairs_[n];
     if (p.weight == 0) continue;
     bundle.value(p.out, p.in, g);
-    const bool swap = p.narrow && weighted_ && p.in.z > 0 && n % 8 == 0;
-    if (swap) bundle.value(p.in, p.out, back);
     const double cosine = weighted_ ? std::fabs(p.in.z) : 1.0;
     for (size_t c = 0; c < channels_; ++c) {
       Sums& s = sums[c];
@@ -247,7 +233,6 @@ void Reference::add_pairs(const Bundle& bundle, size_t begin, size_t end, std::s
       s.f += p.weight * cosine * f;
       s.square += p.weight * e * e * cosine * cosine;
       s.f_square += p.weight * f * f * cosine * cosine;
-      if (swap) s.recip += p.weight * std::fabs(g[c] - back[c]), s.g += p.weight * (g[c] + back[c]);
     }
   }
 }
@@ -294,14 +279,14 @@ std::vector<ErrorFigures> Reference::measure(const Bundle& bundle) const {
       const Sums& p = parts[i];
       s->l1 += p.l1, s->f += p.f, s->square += p.square, s->f_square += p.f_square, s->plain += p.plain,
           s->weight += p.weight;
-      s->recip += p.recip, s->g += p.g;
     }
+  const std::vector<double> reciprocity = reciprocity_error(bundle);
   for (size_t c = 0; c < count; ++c) {
     const Sums& s = sums[c];
     out[c].l1 = s.f > 0 ? s.l1 / s.f : 0;
     out[c].cos_rmse = s.f_square > 0 ? std::sqrt(s.square / s.f_square) : 0;
     out[c].rmse = s.weight > 0 ? std::sqrt(s.plain / s.weight) : 0;
-    out[c].reciprocity_error = s.g > 0 ? s.recip / s.g : 0;
+    out[c].reciprocity_error = reciprocity[c];
   }
   parallel_for(0, channels_, 1, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) measure_channel(bundle, c, out[c]);

@@ -7,7 +7,7 @@
 //   rmse     = sqrt( mean (g - f)^2 ), 1/sr, whole hemisphere (the paper's metric)
 //   peak_ratio_20/45/70 = largest g over largest f in the plane of incidence at that view angle, up to 80 deg
 //   total_error = largest |W_g - W_f| / W_f over view angles up to 80 deg, W_g integrated from g where f is valid
-//   reciprocity_error = sum |g(o,i) - g(i,o)| / (2 sum g), up to 80 deg
+//   reciprocity_error: sqt/reciprocity.h
 //   max_weight = largest w / (pdf W) met while sampling the bundle, up to 80 deg
 // For functions over the sphere "hemisphere" reads sphere; cos_i is 1 for phase functions and intensities.
 // Pairs where the data are not valid are left out. The uniform sums are estimated with half of the pairs drawn near the

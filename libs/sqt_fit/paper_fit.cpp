@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "sqt_fit/paper_fit.h"
+#include "sqt_fit/pole_mean.h"
 
 namespace suite::sqt {
 
@@ -37,8 +38,9 @@ void fit_view(const Function& function, const PaperOptions& options, Dir out, st
 
 }  // namespace
 
-PaperData fit_paper(const Function& function, const PaperOptions& options,
-                    const std::function<void(double)>& progress) {
+PaperData fit_paper(const Function& asked, const PaperOptions& options, const std::function<void(double)>& progress) {
+  const PoleMean mean(asked);
+  const Function& function = mean.function();
   PaperData data;
   data.function = function.info();
   data.magnitude_um = data.function.wavelength_um;

@@ -5,6 +5,7 @@
 
 #include "apps/sqt-inspect/check.h"
 #include "optics/model_function.h"
+#include "sqt/reciprocity.h"
 #include "sqt_fit/paper_fit.h"
 
 namespace suite {
@@ -60,6 +61,22 @@ TEST(InspectCheck, RejectsATotalThatIsWrongByTwoPercent) {
     double total(Dir out, size_t c) const override { return 1.02 * b_->total(out, c); }
   };
   EXPECT_GT(check_bundle(Boastful(glossy()), "x.sqt", 100000).count("IN106"), 0u);
+}
+// The number of the report is the one definition's, which sqt-fit writes into the header.
+TEST(InspectCheck, SaysHowFarFromReciprocal) {
+  class OneSided final : public Spoiled {
+   public:
+    using Spoiled::Spoiled;
+    void value(Dir out, Dir in, std::span<double> f) const override {
+      b_->value(out, in, f);
+      for (double& v : f) v *= 1 + 0.5 * (out.z - in.z);
+    }
+  };
+  const OneSided bundle(glossy());
+  const Report r = check_bundle(bundle, "x.sqt", 1000);
+  EXPECT_NE(r.text().find(strf("reciprocity_error %.2f %%", 100 * sqt::reciprocity_error(bundle).back())),
+            std::string::npos)
+      << r.text();
 }
 TEST(InspectCheck, RejectsBadValuesMassesAndOverlaps) {
   class Below final : public Spoiled {
