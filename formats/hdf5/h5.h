@@ -125,6 +125,7 @@ class Reader {
   bool has(const std::string& name) const;
   std::string text(const std::string& attribute) const;
   std::vector<double> numbers(const std::string& attribute, size_t count) const;
+  const std::string& path() const { return path_; }
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

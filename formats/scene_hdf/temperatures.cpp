@@ -111,7 +111,7 @@ void read_table(h5::Reader& r, Scene& s, Loading& loading, TemperatureTable) {
       t.spec.loads.push_back({load[4 * at_load], load[4 * at_load + 1], load[4 * at_load + 2], load[4 * at_load + 3]});
     for (size_t i = 0; i < text_of.size(); ++i)
       if (text_of[i] == k) t.spec.texts[text_name[i]] = text[i];
-    if (!t.spec.model.empty()) make_temperature_model(t.spec);
+    if (!t.spec.model.empty()) make_temperature_model(t.spec, Where{r.path(), 0, 0, {}, -1});
     loading.row("layers").stored += 8 * kLayer * t.spec.layers.size();
     loading.row("temperatures").stored += 16 * t.spec.times.size() + 40 * t.spec.loads.size();
     s.temperatures.push_back(std::move(t));

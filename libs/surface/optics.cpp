@@ -44,6 +44,16 @@ std::unique_ptr<const TemperatureField> field_for(const TemperatureSpec& spec, c
   return field_of(std::move(model), loads);
 }
 
+// Error: naming the material.
+std::unique_ptr<SolvedField> solved_field(const TemperatureSpec& spec, const std::string& material, double begin,
+                                          double end) {
+  try {
+    return std::make_unique<SolvedField>(spec, begin, end);
+  } catch (const Error& e) {
+    throw Error(e.where(), "material '" + material + "': " + e.message(), e.hint(), e.code());
+  }
+}
+
 // Whether what the model asks for is still to be found.
 bool waits(const TemperatureSpec& spec, const Heating& heating) {
   return heating.pending && spec.loads.empty() && make_temperature_model(spec)->needs_loads();
@@ -219,7 +229,7 @@ void Optics::bake_one(const Scene& scene, size_t index, const Heating& heating) 
     any_emission_ = true;
     double low = INFINITY, high = 0;
     if (spec && !spec->loads.empty()) {
-      auto solved = std::make_unique<SolvedField>(*spec, window_.begin, window_.end);
+      auto solved = solved_field(*spec, m.id, window_.begin, window_.end);
       low = solved->range()[0], high = solved->range()[1];
       maps->field = std::move(solved);
     } else if (spec && heating.field && make_temperature_model(*spec)->needs_loads()) {

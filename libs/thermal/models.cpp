@@ -90,9 +90,11 @@ SolvedField::SolvedField(const TemperatureSpec& spec, double begin, double end) 
     const double from = repeat ? std::floor((begin - first) / period) : 0,
                  to = repeat ? std::floor((end - first) / period) : 0;
     if ((to - from + 1) * static_cast<double>(spec.load_times.size()) < 1e6)
-      for (double p = from; p <= to; ++p)
-        for (const double t : spec.load_times)
-          if (t + p * period > begin && t + p * period < end) times_.push_back(t + p * period);
+      for (int n = 0; n <= static_cast<int>(to - from); ++n)
+        for (const double t : spec.load_times) {
+          const double at = t + (from + n) * period;
+          if (at > begin && at < end) times_.push_back(at);
+        }
     std::sort(times_.begin(), times_.end());
     times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
   }

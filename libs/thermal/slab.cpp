@@ -314,7 +314,7 @@ void Slab::advance(double t) {
   SUITE_CHECK(T_.front() > 0);  // started
   if (!(t >= t_)) throw Error(strf("a slab at %.9g s is asked to go to %.9g s", t_, t), "times ascend");
   next_step_ = advance_by_error(
-      t_, t, next_step_, {options_.tolerance, options_.max_step, options_.min_step},
+      t_, t, next_step_, {options_.tolerance, options_.max_step, options_.min_step, options_.most_steps},
       [this](double dt) {
         double error = 0;
         return attempt(dt, error) ? error : INFINITY;

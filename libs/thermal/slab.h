@@ -41,6 +41,7 @@ struct SlabOptions {
   double tolerance = 0.01;  // K, bound of the estimated error of one step
   double max_step = 3600;   // s
   double min_step = 1e-9;   // s; below it the solver gives up with an Error
+  double most_steps = 2e6;  // of one advance(); beyond, the solver gives up with an Error
   double resolution = 60;   // s: automatic grids resolve what diffuses within this time
 };
 
@@ -55,7 +56,7 @@ class Slab {
   void start(double t, std::span<const double> kelvin);
 
   // Goes on to time t (s, not before the present) with steps chosen by the estimated error. Error: the loads give what
-  // is no load, or no step down to min_step succeeds.
+  // is no load, no step down to min_step succeeds, or there would be more than most_steps.
   void advance(double t);
   // One step of the given length (s, > 0) whatever its error; false (and no change) when Newton's method does not
   // converge or a temperature leaves 0..1e4 K, as it can far from balance with steps far beyond the time constants.

@@ -11,15 +11,39 @@ struct StepControl {
   double tolerance = 0.01;  // K, bound of the estimated error of one step
   double max_step = 3600;   // s
   double min_step = 1e-9;   // s; below it there is an Error
+  double most_steps = 1e7;  // tried on the way to one time; more, or many times more in sight, and there is an Error
+};
+
+// Counts steps and gives up in time: every 20,000 it looks at how far those led.
+class StepBudget {
+ public:
+  StepBudget(double t, double most) : last_(t), most_(most) {}
+  void take(double begin, double t, double end) {
+    if (++taken_ % kLook != 0) return;
+    const double ahead = (end - t) / (t - last_) * kLook;  // steps, if they stay as they are
+    if (static_cast<double>(taken_) >= most_ || !(ahead <= 10 * most_))
+      throw Error(strf("a slab would take about %.2g steps from %.9g to %.9g s", static_cast<double>(taken_) + ahead,
+                       begin, end),
+                  strf("at most %.2g: a shorter time, a larger tolerance, or loads that change less often", most_));
+    last_ = t;
+  }
+
+ private:
+  static constexpr long long kLook = 20000;
+  double last_, most_;
+  long long taken_ = 0;
 };
 
 // Moves t to `end` (>= t), the first step being dt (s); returns the step to go on with. attempt(dt): the estimated
 // error of a step, K, or infinite where none can be taken; accept(dt): takes the step just attempted and moves t;
-// reject(): counts. Error: no step above min_step keeps the tolerance.
+// reject(): counts. Error: no step above min_step keeps the tolerance; more steps than most_steps.
 template <class Attempt, class Accept, class Reject>
 double advance_by_error(double& t, double end, double dt, const StepControl& control, const Attempt& attempt,
                         const Accept& accept, const Reject& reject) {
+  const double begin = t;
+  StepBudget budget(t, control.most_steps);
   while (t < end) {
+    budget.take(begin, t, end);
     const double left = end - t;
     const bool last = dt >= left * (1 - 1e-12);
     // Near the end two even steps are better than a long one and a crumb.

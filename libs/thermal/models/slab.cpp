@@ -1,4 +1,5 @@
 // Conduction in layers below a surface that absorbs, radiates and convects; see slab.h for the method.
+#include <algorithm>
 #include <cmath>
 
 #include "thermal/models/rows.h"
@@ -41,6 +42,10 @@ class SlabModel final : public TemperatureModel {
     SlabSpec trial = spec_;  // refuses bad layers now, not at the first question
     trial.top.loads = [](double) { return SurfaceLoad{}; };
     Slab(std::move(trial), options_);
+    if (s.loads_repeat && s.load_times.size() > 1)
+      load_step_ = (s.load_times.back() - s.load_times.front()) / static_cast<double>(s.load_times.size() - 1);
+    if (const auto period = numbers_.find("period_s"); period != numbers_.end())
+      check_steps(period->second, "a slab's period_s");
   }
 
   void kelvin(std::span<const double> times, const Loads& loads, std::span<double> out) const override {
@@ -53,6 +58,7 @@ class SlabModel final : public TemperatureModel {
     const double start = begin != numbers_.end() ? begin->second : times[0] - period->second;
     if (start > times[0])
       throw Error(strf("a slab that starts at %.9g s is asked for %.9g s", start, times[0]), "give an earlier start_s");
+    check_steps(times.back() - start, "the past of a slab and the time that is simulated");
     slab.start(start, numbers_.at("initial_k"));
     if (period != numbers_.end()) {
       spin_up(slab, start, period->second, {options_.tolerance / 10, 500});
@@ -68,9 +74,19 @@ class SlabModel final : public TemperatureModel {
   bool needs_loads() const override { return true; }
 
  private:
+  // The steps that a span takes at least: the longest allowed, and one for every row of loads that repeat.
+  void check_steps(double span, const char* what) const {
+    const double least = std::max(span / options_.max_step, span / load_step_);
+    if (!(least <= options_.most_steps))
+      throw Error(strf("%s: %.9g s are at least %.3g steps", what, span, least),
+                  strf("at most %.2g: shorter, %s", options_.most_steps,
+                       span / load_step_ > options_.most_steps ? "or loads whose rows lie farther apart"
+                                                               : "or a longer max_step_s"));
+  }
   std::map<std::string, double> numbers_;
   SlabSpec spec_;
   SlabOptions options_;
+  double load_step_ = INFINITY;  // s, mean distance of the rows of loads that repeat
 };
 
 std::vector<TemperatureSpec> examples() {

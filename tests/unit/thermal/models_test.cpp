@@ -10,6 +10,7 @@
 namespace suite {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 Loads sunny_day() {
@@ -215,6 +216,57 @@ TEST(Slab, SaysWhenItsLoadsAreNone) {
   Slab thick(spec, {});
   thick.start(0, 400);
   EXPECT_THAT(complaint([&] { spin_up(thick, 0, 1000, {1e-9, 3}); }), HasSubstr("not periodic after 3 periods"));
+}
+
+// Bounded by steps, with the place; a hang before.
+TEST(Slab, RefusesMoreStepsThanItCanTake) {
+  TemperatureSpec slab{"slab",
+                       {{"thickness_m", 0.1},
+                        {"density_kg_m3", 2000},
+                        {"specific_heat_j_kg_k", 900},
+                        {"conductivity_w_m_k", 1},
+                        {"period_s", 4294967296.0}},
+                       {},
+                       {},
+                       false,
+                       {}};
+  slab.load_times = {0, 3600};
+  slab.loads = {{500, 300, 290, 2}, {600, 300, 291, 2}};
+  slab.loads_repeat = true;
+  const Where place{"s.yaml", 4, 5, {}, -1};
+  EXPECT_THAT(complaint([&] { make_temperature_model(slab, place); }),
+              AllOf(HasSubstr("s.yaml:4:5: error: "), HasSubstr("4.2949673e+09 s are at least 2.39e+06 steps")));
+  for (const double apart : {1e-300, 1e-6}) {
+    slab.numbers["period_s"] = 3600;
+    slab.load_times = {0, apart};
+    EXPECT_THAT(complaint([&] { make_temperature_model(slab, place); }), HasSubstr("rows lie farther apart")) << apart;
+  }
+  // A past that begins too long ago is noticed when the time is known.
+  slab.numbers.erase("period_s");
+  slab.numbers["start_s"] = -1e11;
+  slab.load_times = {0, 3600};
+  EXPECT_THAT(complaint([&] { SolvedField(slab, 0, 10); }), HasSubstr("at least "));
+  // A year of hourly loads is none too many.
+  slab.numbers.erase("start_s");
+  slab.numbers["period_s"] = 365.0 * 86400;
+  EXPECT_EQ(complaint([&] { make_temperature_model(slab, place); }), "");
+}
+
+// Loads that never let a step grow: noticed after 20,000 steps, not after hours.
+TEST(Slab, GivesUpWhenStepsStaySmall) {
+  SlabLayer l;
+  l.thickness = 0.1, l.density = 1000, l.specific_heat = {1000}, l.conductivity = {1};
+  SlabSpec spec;
+  spec.layers = {l};
+  spec.top.kind = SlabFace::Kind::surface;
+  spec.top.loads = [](double t) { return SurfaceLoad{1e4 * (1 + std::sin(1e7 * t)), 300, 280, 0}; };
+  spec.bottom.value = [](double) { return 0.0; };
+  SlabOptions options;
+  options.max_step = 1e-5, options.most_steps = 1e5;
+  Slab slab(spec, options);
+  slab.start(0, 280);
+  EXPECT_THAT(complaint([&] { slab.advance(3600); }), HasSubstr("a slab would take about "));
+  EXPECT_LT(slab.counters().steps, 30000);
 }
 
 TEST(Loads, TablesInterpolateRepeatAndRefuse) {
