@@ -4,6 +4,7 @@
 
 #include "base/files.h"
 #include "base/inputs.h"
+#include "formats/hdf5/own_values.h"
 #include "formats/hdf5/silence.h"
 
 namespace suite::h5 {
@@ -39,15 +40,14 @@ Foreign::Foreign(const std::string& path) : path_(path) {
 }
 
 bool Foreign::has(const std::string& name) const {
-  // Every link on the way must exist, or the library reports an error.
-  for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1))
-    if (H5Lexists(file_, name.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
-  return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+  if (const std::string step = external_step(file_, name); !step.empty())
+    fail("'" + step + "' is a link into another file, which is not followed");
+  return linked(file_, name);
 }
 
 Foreign::Table Foreign::table(const std::string& name) const {
   if (!has(name)) fail("dataset '" + name + "' is missing");
-  const Handle dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle dataset(H5Dopen2(file_, name.c_str(), within_the_file(H5P_DATASET_ACCESS)), H5Dclose);
   if (dataset < 0) fail("'" + name + "' is no dataset");
   const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose),
       create(H5Dget_create_plist(dataset), H5Pclose);
@@ -64,11 +64,13 @@ Foreign::Table Foreign::table(const std::string& name) const {
   const hsize_t bytes = t.rows * t.columns * H5Tget_size(type), there = H5Dget_storage_size(dataset);
   const H5D_layout_t layout = H5Pget_layout(create);
   const bool packed = layout == H5D_CHUNKED;
-  if ((layout != H5D_CONTIGUOUS && layout != H5D_COMPACT && !packed) || H5Pget_external_count(create) > 0 ||
-      (packed && !known_packing(create)))
+  if (const std::string wrong = elsewhere(create); !wrong.empty()) fail("dataset '" + name + "' " + wrong);
+  if ((layout != H5D_CONTIGUOUS && layout != H5D_COMPACT && !packed) || (packed && !known_packing(create)))
     fail("dataset '" + name + "' has a layout that is not read");
   if (there > file_size(path_) || (packed ? bytes / kBestRatio > there : bytes > there))
     fail("dataset '" + name + "' is not whole");
+  if (const std::string wrong = overclaim(t.rows * t.columns * sizeof(double), file_size(path_)); !wrong.empty())
+    fail("dataset '" + name + "' " + wrong);
   t.values.resize(t.rows * t.columns);
   if (!t.values.empty() && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, t.values.data()) < 0)
     fail("dataset '" + name + "' cannot be read");
@@ -77,7 +79,7 @@ Foreign::Table Foreign::table(const std::string& name) const {
 
 std::vector<std::string> Foreign::children(const std::string& group) const {
   if (!has(group)) fail("group '" + group + "' is missing");
-  const Handle g(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  const Handle g(H5Gopen2(file_, group.c_str(), within_the_file(H5P_GROUP_ACCESS)), H5Gclose);
   H5G_info_t info;
   if (g < 0 || H5Gget_info(g, &info) < 0) fail("'" + group + "' is no group");
   std::vector<std::string> names;

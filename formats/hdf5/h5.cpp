@@ -13,6 +13,7 @@
 #include "base/inputs.h"
 #include "base/memory.h"
 #include "base/progress.h"
+#include "formats/hdf5/own_values.h"
 #include "formats/hdf5/silence.h"
 
 namespace suite::h5 {
@@ -256,16 +257,15 @@ bool known_packing(hid_t create, int rank, size_t value_bytes) {
 }  // namespace
 
 bool Reader::has(const std::string& name) const {
-  // Every link on the way must exist, or the library reports an error.
-  for (size_t at = name.find('/', 1); at != std::string::npos; at = name.find('/', at + 1))
-    if (H5Lexists(file_, name.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
-  return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+  if (const std::string step = external_step(file_, name); !step.empty())
+    fail("'" + step + "' is a link into another file, which is not followed");
+  return linked(file_, name);
 }
 
 Reader::Opened Reader::open(const std::string& name, hid_t type, const char* units, size_t width, long long rows,
                             bool held) {
   if (!has(name)) fail("dataset '" + name + "' is missing");
-  Opened d{Handle(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose), 0, false};
+  Opened d{Handle(H5Dopen2(file_, name.c_str(), within_the_file(H5P_DATASET_ACCESS)), H5Dclose), 0, false};
   if (d.dataset < 0) fail("dataset '" + name + "' cannot be opened");
   std::string unit;
   if (!get_text(d.dataset, "units", unit)) fail("dataset '" + name + "' has no units");
@@ -284,12 +284,13 @@ Reader::Opened Reader::open(const std::string& name, hid_t type, const char* uni
   // What is declared must be there before memory is asked for.
   const hsize_t bytes = dims[0] * width * H5Tget_size(stored);
   d.packed = H5Pget_layout(create) == H5D_CHUNKED;
-  if (H5Pget_external_count(create) > 0 || (d.packed && !known_packing(create, rank, H5Tget_size(stored))))
-    fail("dataset '" + name + "' has another layout");
+  if (const std::string wrong = elsewhere(create); !wrong.empty()) fail("dataset '" + name + "' " + wrong);
+  if (d.packed && !known_packing(create, rank, H5Tget_size(stored))) fail("dataset '" + name + "' has another layout");
   const hsize_t there = H5Dget_storage_size(d.dataset), limit = file_size(path_);
   if (d.packed ? there > limit || bytes / kBestRatio > there : there != bytes || bytes > limit)
     fail("dataset '" + name + "' is not whole");
-  // A packed dataset may be a thousand times the size of its file.
+  if (const std::string wrong = d.packed ? overclaim(bytes, limit) : ""; !wrong.empty())
+    fail("dataset '" + name + "' " + wrong);
   if (const double memory = available_memory(); held && d.packed && static_cast<double>(bytes) > 0.9 * memory)
     fail("dataset '" + name + "' unpacks to " + human_bytes(static_cast<double>(bytes)) + ", and " +
          human_bytes(memory) + " of memory are available");
