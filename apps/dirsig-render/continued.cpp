@@ -20,7 +20,8 @@ std::string hash_of_named(const Simulation& sim) {
   for (const std::string& file : sim.files) {
     const bool scene =
         std::any_of(sim.scenes.begin(), sim.scenes.end(), [&](const SimulationScene& s) { return s.path == file; });
-    if (!scene && std::filesystem::is_regular_file(file)) all += hash_of_file(file);
+    std::error_code unknown;
+    if (!scene && std::filesystem::is_regular_file(file, unknown)) all += hash_of_file(file);
   }
   return sha256(all);
 }

@@ -27,7 +27,8 @@ void judge_input(const FitInput& input, const sqt::Reference& reference, bool st
     say(strf("directional-hemispherical total of %.4f exceeds 1", f.largest_total), "clamped to 1");
   if (f.negative_share > 0) say(strf("%.3g %% of the values are negative", 100 * f.negative_share), "taken as 0");
   if (surface && f.reciprocity_error > sqt::kNotReciprocal)
-    say(strf("the data are not reciprocal: reciprocity_error %.2f %%", 100 * f.reciprocity_error), "fitted as they are");
+    say(strf("the data are not reciprocal: reciprocity_error %.2f %%", 100 * f.reciprocity_error),
+        "fitted as they are");
 }
 
 sqt::AlignedSource::Options source_options(const SqtFitOptions& o) {

@@ -16,7 +16,10 @@ namespace suite {
 
 namespace {
 
-bool is_folder(const SqtFitOptions& o) { return !o.input.empty() && std::filesystem::is_directory(o.input); }
+bool is_folder(const SqtFitOptions& o) {
+  std::error_code unknown;  // a loop of links, say: opening it says what is wrong
+  return !o.input.empty() && std::filesystem::is_directory(o.input, unknown);
+}
 
 // What a folder's table asks of the options.
 void check_folder_options(const SqtFitOptions& o) {

@@ -125,7 +125,8 @@ void SceneWriter::read_folders(const Item& scene) {
       for (char& c : path) c = c == '\\' ? '/' : c;
       if (path.starts_with("$SCENE_DIR")) path = path.size() > 11 ? path.substr(11) : ".";
       const bool usable = !path.empty() && !path.starts_with('$');
-      const bool there = usable && std::filesystem::is_directory(inside(base, path));
+      std::error_code unknown;
+      const bool there = usable && std::filesystem::is_directory(inside(base, path), unknown);
       one->mark(there ? Fate::exact : Fate::ignored, there ? "" : "there is no such folder");
       if (usable) list.push_back(inside(base, path));
     }

@@ -76,6 +76,17 @@ void check_truth(const Params& sensor, const SensorContext& context) {
 
 namespace {
 
+// Of a simulation with an epoch: the times of its tasks lie within the range of dates.
+void check_times(const Params& p, const Sensor& sensor, const SensorContext& context) {
+  for (const Task& task : sensor.tasks())
+    for (const double t : {task.window.begin, task.window.end}) try {
+        context.utc(t);
+      } catch (const Error& e) {
+        const Params place = p.has("time_s") ? p.at("time_s") : p;
+        throw place.error(strf("%.9g s after the epoch: %s", t, e.message().c_str()), e.hint());
+      }
+}
+
 // What a sensor finds wrong without knowing where stands at the sensor.
 std::unique_ptr<Sensor> make_sensor_at(const Params& p, const SensorContext& context) {
   try {
@@ -129,6 +140,7 @@ Simulation read_simulation_tree(const Params& root, const std::string& path, con
     check_truth(p, context);
     sim.sensors.push_back(make_sensor_at(p, context));
     sim.sensor_where.push_back(p.where());
+    check_times(p, *sim.sensors.back(), context);
     for (const AskedCurve& curve : asked) check_coverage(curve, *sim.sensors.back(), p.where());
     if (sim.sources.tabled) check_coverage(*sim.sources.tabled, *sim.sensors.back(), p.where());
     if (!names.insert(sim.sensors.back()->name()).second)

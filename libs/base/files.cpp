@@ -195,7 +195,7 @@ size_t free_bytes(const std::string& folder) {
 void make_folder(const std::string& path) {
   std::error_code code;
   std::filesystem::create_directories(path, code);
-  if (code || !std::filesystem::is_directory(path))
+  if (code || !std::filesystem::is_directory(path, code))
     fail(path, "folder cannot be made" + (code ? ": " + code.message() : std::string()), "name a writable place");
   if (::access(path.c_str(), W_OK | X_OK) != 0) fail(path, "folder is not writable", "name a writable place");
 }

@@ -14,6 +14,12 @@ namespace {
 constexpr double kDay = 86400, kTtMinusTai = 32.184;
 constexpr double kMjdZero = 2400000.5;
 constexpr int kFirstYear = 1972, kLastYear = 2199;
+// Days from the first of 1972 to the first of 2200, modified Julian; calendars are asked within a year of them.
+constexpr int64_t kFirstDay = 41317, kEndDay = 124593, kMargin = 366;
+
+[[noreturn]] void outside() {
+  throw Error("a time is outside the range of UTC here", strf("%d to %d", kFirstYear, kLastYear));
+}
 
 bool leap_year(int y) { return (y % 4 == 0 && y % 100 != 0) || y % 400 == 0; }
 int days_in_month(int year, int month) {
@@ -30,6 +36,7 @@ int64_t mjd_of(int year, int month, int day) {
 
 // TAI - UTC at the start of a day, whole seconds from 1972 on.
 double leap_seconds(int64_t mjd) {
+  if (mjd < kFirstDay - kMargin || mjd > kEndDay + kMargin) outside();
   int year = 0, month = 0, day = 0;
   double fraction = 0, delta = 0;
   eraJd2cal(kMjdZero, static_cast<double>(mjd), &year, &month, &day, &fraction);
@@ -107,6 +114,7 @@ int zone_minutes(Scanner& s) {
 Instant operator+(Instant instant, double seconds) {
   // Whole days first, so that fractions keep their digits however long the time.
   const double days = std::floor(seconds / kDay);
+  if (!(std::fabs(days) < 1e15)) outside();
   Instant r{instant.day + static_cast<int64_t>(days), instant.seconds + (seconds - days * kDay)};
   while (r.seconds >= kDay) r = {r.day + 1, r.seconds - kDay};
   while (r.seconds < 0) r = {r.day - 1, r.seconds + kDay};
@@ -126,8 +134,7 @@ Instant instant_from_utc(const Utc& u) {
 }
 
 Utc utc_from_instant(Instant instant) {
-  if (instant.day < mjd_of(kFirstYear, 1, 1) || instant.day >= mjd_of(kLastYear + 1, 1, 1))
-    throw Error("a time is outside the range of UTC here", strf("%d to %d", kFirstYear, kLastYear));
+  if (instant.day < kFirstDay || instant.day >= kEndDay) outside();
   // The UTC day is the TAI day or the one before (TAI is ahead by less than a day).
   int64_t day = instant.day;
   double of_day = instant.seconds - leap_seconds(day);

@@ -240,6 +240,17 @@ TEST(SqtFitCli, OutputsAreCheckedFirst) {
   }
 }
 
+TEST(SqtFitCli, LinksThatLeadNowhereAreRefused) {
+  const TempFolder folder;
+  std::filesystem::create_symlink("loop.bsdf", folder / "loop.bsdf");
+  std::filesystem::create_symlink("nowhere.bsdf", folder / "gone.bsdf");
+  for (const char* name : {"loop.bsdf", "gone.bsdf"}) {
+    const CommandResult r = run_command(kFit + (folder / name) + " -o " + (folder / "x.sqt"));
+    EXPECT_EQ(r.code, 1) << r.err;
+    EXPECT_NE(r.err.find(std::string(name) + ": error: "), std::string::npos) << r.err;
+  }
+}
+
 TEST(SqtFitCli, HelpStatesConventions) {
   const CommandResult r = run_command(kFit + "--help");
   EXPECT_EQ(r.code, 0);

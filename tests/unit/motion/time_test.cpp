@@ -47,6 +47,17 @@ TEST(Time, JulianDatesOfTheSpaExample) {
   EXPECT_NEAR(((tt.day - ut1.day) + (tt.fraction - ut1.fraction)) * 86400, 64.184, 1e-6);
 }
 
+// Seconds far beyond the calendar are somebody's mistake, not ours: an Error, whoever asks.
+TEST(Time, FarSecondsAreRefused) {
+  const Clock clock(parse_iso8601("2026-06-21T10:00:00Z"));
+  for (const double t : {1e11, 1e14, 1e18, 1e30, -1e14, -1e18}) {
+    EXPECT_THROW(clock.utc(t), Error) << t;
+    EXPECT_THROW(julian_ut1(clock.at(std::fabs(t) < 1e20 ? t : 1e19), 0), Error) << t;
+  }
+  EXPECT_THROW(clock.at(1e30), Error);
+  EXPECT_NO_THROW(clock.utc(1e9));
+}
+
 TEST(Time, NamesWhatIsWrong) {
   for (const char* bad :
        {"", "2003", "2003-13-01", "2003-02-29", "2003-10-17T24:00:00Z", "2003-10-17T10:61:00Z", "2003-10-17T10:00:60Z",
