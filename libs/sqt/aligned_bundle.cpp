@@ -377,8 +377,6 @@ class AlignedBundle final : public Bundle {
 
 std::shared_ptr<const Bundle> make_bundle(AlignedData data) {
   check_aligned(data);
-  join_polar_slices(data.layout, data.sheets);
-  join_polar_totals(data.totals, data.layout.channels);
   Bundle::Info info;
   info.function = data.function;
   info.method = "aligned";

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "sqt/leaf_table.h"
 #include "sqt/portable_math.h"
 
 namespace suite::sqt {
@@ -90,50 +89,6 @@ std::function<double(double)> polar_weight(const AlignedLayout& layout) {
     const double z = 1 - below;
     return 4 * z * std::max(0.0, 2 * z * z - 1);
   };
-}
-
-void join_polar_slices(const AlignedLayout& layout, std::vector<AlignedSheet>& sheets) {
-  const size_t azimuths = layout.phi_count, views = layout.views(), width = layout.width();
-  if (!layout.cosine_weighted || azimuths < 2 || layout.theta.front() != 0) return;
-  for (AlignedSheet& sheet : sheets)
-    for (size_t i = 0; i < sheet.leaves.size(); ++i)
-      for (size_t c = 0; c < layout.channels; ++c) {
-        int16_t* const first = &sheet.plane[(i * width + c * views) * AlignedSheet::kStride];
-        for (size_t n = 0; n < AlignedSheet::kStride; ++n) {
-          const bool mass = n + 1 == AlignedSheet::kStride;
-          double sum = 0;
-          for (size_t j = 0; j < azimuths; ++j) {
-            const int16_t number = first[j * AlignedSheet::kStride + n];
-            sum += mass ? static_cast<uint16_t>(number) : number;
-          }
-          const auto mean = std::lround(sum / static_cast<double>(azimuths));
-          for (size_t j = 0; j < azimuths; ++j)
-            first[j * AlignedSheet::kStride + n] =
-                mass ? static_cast<int16_t>(static_cast<uint16_t>(mean)) : static_cast<int16_t>(mean);
-          if (mass)
-            for (size_t j = 0; j < azimuths; ++j)
-              sheet.mass[i * padded_row(width) + c * views + j] = static_cast<uint16_t>(mean);
-        }
-      }
-}
-
-void join_polar_totals(AlignedTotals& totals, size_t channels) {
-  const size_t azimuths = totals.phi_count;
-  if (azimuths < 2 || totals.theta.front() != 0) return;
-  auto join = [azimuths](std::vector<float>& table, size_t row) {
-    if (table.empty()) return;
-    for (size_t k = 0; k < row; ++k) {
-      const float first = table[k];
-      double sum = 0;
-      bool same = true;
-      for (size_t j = 0; j < azimuths; ++j) sum += table[j * row + k], same &= table[j * row + k] == first;
-      for (size_t j = 0; j < azimuths && !same; ++j)
-        table[j * row + k] = static_cast<float>(sum / static_cast<double>(azimuths));
-    }
-  };
-  join(totals.magnitudes, totals.magnitude_um.size());
-  join(totals.log2_scale, channels);
-  join(totals.delta, channels);
 }
 
 }  // namespace suite::sqt

@@ -80,9 +80,4 @@ PolarProfile polar_profile(const AlignedLayout& layout, bool isotropic, const st
 // Cosine times stretch (lobe_map.h) of a view along the normal, over 1 - d.z.
 std::function<double(double)> polar_weight(const AlignedLayout& layout);
 
-// Surfaces that are not isotropic: slices at the normal are one, whatever their azimuth; each becomes their mean (of
-// logarithms), once more changes nothing. Also of the totals.
-void join_polar_slices(const AlignedLayout& layout, std::vector<AlignedSheet>& sheets);
-void join_polar_totals(AlignedTotals& totals, size_t channels);
-
 }  // namespace suite::sqt

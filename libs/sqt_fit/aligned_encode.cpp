@@ -3,7 +3,6 @@
 #include <cmath>
 #include <optional>
 
-#include "sqt/polar_profile.h"
 #include "sqt/sheet_walk.h"
 #include "sqt/totals_code.h"
 #include "sqt_fit/aligned_source.h"
@@ -142,7 +141,6 @@ AlignedFit encode_aligned(const AlignedSource& source, double quality) {
   d.layout.quality = quality;
   d.totals = source.totals();
   fit.sheets_bytes = encode_sheets(source, quality, &d.sheets);
-  join_polar_slices(d.layout, d.sheets);  // as a bundle does
   d.totals.log2_scale = fit_scale(d.layout, d.function, d.sheets, d.totals);
   fit.totals_bytes = encode_totals(d.totals, d.layout.channels);
   return fit;

@@ -1,5 +1,6 @@
 #include "sqt_fit/pole_mean.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -38,7 +39,7 @@ void PoleMean::value(Dir out, Dir in, std::span<double> f) const {
   for (int k = 0; k < kAzimuths; ++k) {
     function_.value(out, turned(in, k), one);
     for (size_t c = 0; c < f.size(); ++c)
-      if (std::isfinite(one[c])) sum[c] += one[c], ++known[c];
+      if (std::isfinite(one[c])) sum[c] += std::max(0.0, one[c]), ++known[c];  // negative values are taken as 0
   }
   for (size_t c = 0; c < f.size(); ++c) f[c] = known[c] ? sum[c] / known[c] : std::numeric_limits<double>::quiet_NaN();
 }

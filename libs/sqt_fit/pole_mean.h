@@ -1,5 +1,5 @@
 // Isotropic data seen exactly along the normal: there the azimuth of the light means nothing, but measured data depend
-// on it. Values there are the mean over azimuths; elsewhere they are the data's.
+// on it. Values there are the mean over azimuths, negative ones taken as 0; elsewhere they are the data's.
 #pragma once
 #include "sqt/function.h"
 

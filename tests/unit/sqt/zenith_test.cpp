@@ -117,20 +117,6 @@ TEST(Zenith, MeanWeightIsTotal) {
     }
 }
 
-// Slices of all azimuths at the normal are one.
-TEST(Zenith, AnisotropicSurfacesHaveOneSliceThere) {
-  Analytic f([](Dir o, Dir i) { return 0.1 + 0.05 * i.x * i.x + 0.02 * o.x * o.y; }, 2, Domain::hemisphere,
-             Quantity::bsdf, false);
-  AlignedSource::Options options = test::small_options();
-  options.views = 4, options.azimuths = 8;
-  const auto bundle = make_bundle(spoiled(encode_aligned(AlignedSource(f, options), 0.05).data));
-  const Dir in = dir_from_angles(0.8, 0.3);
-  const double first = bundle->value({0, 0, 1}, in, 0);
-  EXPECT_NEAR(first / (0.1 + 0.05 * in.x * in.x), 1, 0.02);
-  for (int k = 0; k < 12; ++k)
-    EXPECT_NEAR(bundle->value(dir_from_angles(1e-7, 30 * k * kDegree), in, 0) / first, 1, 1e-5) << k;
-}
-
 // Measured data depend on azimuth there; a fit holds their mean.
 TEST(Zenith, FitsHoldTheMeanOfDataThatDepend) {
   const Analytic f([](Dir o, Dir i) { return 0.2 * (1 + 0.3 * (o.z > 1 - 1e-9 ? i.x * i.x : 0.5 * (1 - i.z * i.z))); });
