@@ -61,8 +61,7 @@ struct OutputWriter::Image {
   }
 };
 
-OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts,
-                           BandBiases biases)
+OutputWriter::OutputWriter(std::string folder, OutputSpec spec, SceneNotes notes, const Facts& facts, BandBiases biases)
     : folder_(std::move(folder)),
       spec_(std::move(spec)),
       notes_(std::move(notes)),

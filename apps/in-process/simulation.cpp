@@ -80,7 +80,8 @@ struct rs_simulation {
     const std::vector<BinReport> reports = choose_bins(*scene, sources_at_all_times(sim.sources, *scene), sensor);
     add_biases(reports, biases);
     for (const BinReport& r : reports)
-      if (!r.met()) told.push_back("bands are less exact than asked for: " + r.text());
+      if (!r.met())
+        told.push_back("bands are less exact than asked for: " + (r.missed.empty() ? r.text() : r.missed_text()));
     heating = heating_of(sim, *scene, sensor.states()[0]);
   }
   const suite::Capture& first() const { return sensor.tasks()[0].captures.at(0); }

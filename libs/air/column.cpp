@@ -50,7 +50,8 @@ GasPoints points_of(const AirSpec& spec, std::span<const AirLevel> levels, const
 class Baker {
  public:
   Baker(const AirSpec& spec, const SpectralState& state, ColumnParts parts)
-      : spec_(spec), state_(state), parts_(parts), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {}, {}, {}, {}, 0} {
+      : spec_(spec), state_(state), parts_(parts), levels_(air_levels(spec)), column_{shells(), state.size(), {}, {},
+                                                                                      {},       {},           {}, 0} {
     const double ground = spec.height_of_ground();
     while (column_.ground + 2 < levels_.size() && levels_[column_.ground].height < ground - 1) ++column_.ground;
     if (spec.refraction)
@@ -147,7 +148,8 @@ class Baker {
     const bool all = parts_ == ColumnParts::all;
     const std::vector<double> asked = all ? middles_ : coarse_middles();
     const ParticleOptics optics = particle_optics(particles, asked);
-    std::vector<double> unit_extinction(bins()), albedo(bins());  // extinction over amount, and the share that is scattered
+    std::vector<double> unit_extinction(bins()),
+        albedo(bins());  // extinction over amount, and the share that is scattered
     for (size_t i = 0; i < bins(); ++i) {
       const AxisPlace at = all ? AxisPlace{i, 0} : place_on(asked, middles_[i]);
       const size_t next = at.s > 0 ? at.i + 1 : at.i;

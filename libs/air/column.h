@@ -39,7 +39,7 @@ struct AirColumn {
 
 enum class ColumnParts {
   all,
-  extinction,  // without phase functions and moments, and particles interpolated over 1 % of the wavelength: for many bins
+  extinction,  // for many bins: no phase functions and moments, and particles interpolated over 1 % of the wavelength
 };
 // Bakes air for a state, whose g-points are some of those of with_gas_points. Error: bands beyond what gases or
 // particles are known for (named); as check_air.

@@ -73,7 +73,11 @@ void place_transparent_knots(SpectralState& state, size_t knot_count, std::span<
 
 AirChoice::AirChoice(const AirSpec& air, const AirPaths& paths, const std::vector<SeenSpectra>& seen,
                      const SpectralState& state, std::span<const Band> bands, bool white_light)
-    : paths_(paths), wanted_(state), bands_(bands), intervals_(air_cells(bands)), fine_(with_gas_points(air, intervals_)) {
+    : paths_(paths),
+      wanted_(state),
+      bands_(bands),
+      intervals_(air_cells(bands)),
+      fine_(with_gas_points(air, intervals_)) {
   training_ = ProductRecipe(both(seen, paths.spectra(PathSet::training)), fine_, white_light);
   held_out_ = ProductRecipe(both(seen, paths.spectra(PathSet::held_out)), fine_, white_light);
   products_ = training_.over(fine_);
@@ -113,7 +117,8 @@ SpectralState AirChoice::choose(double tolerance) const {
     const std::vector<Worst> worst = judge(best);
     bool met = true;
     for (size_t b = 0; b < cells.size(); ++b)
-      if (worst[b].error > tolerance) cells[b].tolerance *= std::clamp(0.7 * tolerance / worst[b].error, 0.2, 0.6), met = false;
+      if (worst[b].error > tolerance)
+        cells[b].tolerance *= std::clamp(0.7 * tolerance / worst[b].error, 0.2, 0.6), met = false;
     if (met) break;
   }
   return best;

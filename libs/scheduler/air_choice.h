@@ -1,11 +1,11 @@
 // Bins chosen through the gases of real air: few fine cells and g-points of them, with weights of their own for each
 // band, so that light along slanted paths through the air comes out as over all cells (spectral/cubature.h).
 //
-// Candidates are the g-points of cells of 0.5 nm or 1 cm-1, narrower where a band is narrow. They are fitted to paths of
-// training and judged on others (air_paths.h); bands that miss there are fitted closer and judged again. What is left is
-// each band's bias.
-// Based on: J.-L. Moncet et al., J. Atmos. Sci. 65, 2008 (optimal spectral sampling); J. Gasteiger et al., J. Quant.
-// Spectrosc. Radiat. Transfer 148, 2014 (representative wavelengths; 5 to 20 a band for 1 %).
+// Candidates are the g-points of cells of 0.5 nm or 1 cm-1, narrower where a band is narrow. They are fitted to paths
+// of training and judged on others (air_paths.h); bands that miss there are fitted closer and judged again. What is
+// left is each band's bias. Based on: J.-L. Moncet et al., J. Atmos. Sci. 65, 2008 (optimal spectral sampling); J.
+// Gasteiger et al., J. Quant. Spectrosc. Radiat. Transfer 148, 2014 (representative wavelengths; 5 to 20 a band for 1
+// %).
 #pragma once
 #include <span>
 #include <string>
@@ -45,8 +45,8 @@ class AirChoice {
   std::span<const Band> bands_;
   SpectralState intervals_, fine_;
   ProductRecipe training_, held_out_;
-  SpectralProducts products_;                // of training, over the fine cells
-  std::vector<BandCells> cells_;             // of each band
+  SpectralProducts products_;                 // of training, over the fine cells
+  std::vector<BandCells> cells_;              // of each band
   std::vector<std::vector<BandMean>> means_;  // [band][product] of held-out paths
   std::vector<double> floors_;
 };

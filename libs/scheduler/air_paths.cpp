@@ -51,8 +51,8 @@ class Depths {
       Row& scattered = k == 0 && any.molecules ? molecules_ : particles_;
       for (size_t l = 0; l + 1 < heights_.size(); ++l)
         for (size_t i = 0; i < bins; ++i)
-          scattered[l * bins + i] += column.kinds[k].scattering[(ground_ + l) * bins + i] *
-                                     static_cast<float>(heights_[l + 1] - heights_[l]);
+          scattered[l * bins + i] +=
+              column.kinds[k].scattering[(ground_ + l) * bins + i] * static_cast<float>(heights_[l + 1] - heights_[l]);
     }
     blackbody_.assign(column.blackbody.begin() + static_cast<long>(ground_ * bins), column.blackbody.end());
   }
@@ -193,7 +193,8 @@ std::vector<std::string> sunlight_names(const Paths& p, Depths::Scatterers scatt
       for (const double v : p.views)
         names.push_back(strf("sunlight through %.3g air masses and %.3g of the lowest %.3g km", m, v, h / 1000));
   }
-  for (const auto& [what, any] : {std::pair{"molecules", scatterers.molecules}, std::pair{"particles", scatterers.particles}}) {
+  for (const auto& [what, any] :
+       {std::pair{"molecules", scatterers.molecules}, std::pair{"particles", scatterers.particles}}) {
     if (!any) continue;
     for (const double h : p.heights)
       for (const double v : p.views)
@@ -252,8 +253,10 @@ Paths paths_of(const Own& own, PathSet set) {
   const auto add = [](std::vector<double>& to, std::initializer_list<double> more, size_t most) {
     for (const double v : more) add_apart(to, v, most);
   };
-  if (own.any_sun) add(p.suns, training ? std::initializer_list<double>{1.1, 6} : std::initializer_list<double>{1.8, 4.5}, 3);
-  add(p.heights, training ? std::initializer_list<double>{kHigh, 1000} : std::initializer_list<double>{kHigh, 2200}, 4);
+  if (own.any_sun)
+    add(p.suns, training ? std::initializer_list<double>{1.1, 6} : std::initializer_list<double>{1.8, 4.5}, 3);
+  add(p.heights,
+      training ? std::initializer_list<double>{kHigh, 800, 3500} : std::initializer_list<double>{kHigh, 1800}, 4);
   add(p.views, training ? std::initializer_list<double>{1, 4} : std::initializer_list<double>{1.4, 3}, 3);
   return p;
 }

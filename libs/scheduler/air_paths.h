@@ -2,8 +2,8 @@
 // the ground and up again, sunlight that the air scatters once, and what ground and air emit, each through the gases.
 //
 // Paths run through flat layers; a low sun's or a level path's air mass ends at 10. Heights and slants are those of the
-// sensor's own rays and suns and some to both sides; those that bins are judged by (held out) are others than those that
-// they are chosen by, but for the sensor's own.
+// sensor's own rays and suns and some to both sides; those that bins are judged by (held out) are others than those
+// that they are chosen by, but for the sensor's own.
 #pragma once
 #include <memory>
 #include <mutex>

@@ -206,8 +206,10 @@ class StateInAir {
 
   BinReport report(const std::string& sensor, const SpectralState& state) const {
     BinReport r = without_gases_.report(sensor, intervals_ ? intervals_ : state.size());
+    r.cell_um = INFINITY;
     r.g_points = intervals_ ? state.size() : 0;
     r.bias = bias_;
+    for (const Bin& b : air_cells(bands_).bins) r.cell_um = std::min(r.cell_um, b.high_um - b.low_um);
     r.through_gases = true, r.chosen = intervals_ == 0;
     r.reached = 0;
     for (size_t b = 0; b < bands_.size(); ++b) {

@@ -20,11 +20,11 @@ namespace suite {
 struct BinReport {
   std::string sensor;
   size_t bands = 0, bins = 0;
-  double wanted = 0;        // relative error of each band
-  double reached = 0;       // by the bins that are used, what the cells cannot tell included
-  double cell_um = 0;       // width of the finest cells
-  std::string band, under;  // the farthest: "red edge", "the sun on reflectance of asphalt"
-  bool chosen = true;       // false: the user wants even bins (spectral_error: 0), which were only looked at
+  double wanted = 0;           // relative error of each band
+  double reached = 0;          // by the bins that are used, what the cells cannot tell included
+  double cell_um = 0;          // width of the finest cells
+  std::string band, under;     // the farthest: "red edge", "the sun on reflectance of asphalt"
+  bool chosen = true;          // false: the user wants even bins (spectral_error: 0), which were only looked at
   size_t g_points = 0;         // of even intervals under real air
   bool through_gases = false;  // judged along paths through real air
   // Bands under real air that are farther off than wanted, by wavelength.

@@ -42,7 +42,7 @@ struct CaptureWork {
   size_t values = 0;               // doubles of a problem's sums: [channel][bin][band]
   size_t truth_slots = 0;
   std::vector<BandBias> bias = {};  // of its bands by their bins; empty: not known
-  std::vector<uint8_t> mine = {};  // [block] 1 where it is run here; empty = everywhere. With it, a store is needed.
+  std::vector<uint8_t> mine = {};   // [block] 1 where it is run here; empty = everywhere. With it, a store is needed.
   // Called once the pilot is finished, with the needs (all 0 without a target) and the seconds that the pilot took for
   // `paths` new paths; may lower goals.all.max_paths (a time budget). Empty = nothing does.
   std::function<void(CaptureWork&, std::span<const double> needs, double paths, double seconds)> after_pilot = {};

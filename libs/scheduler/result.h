@@ -4,10 +4,10 @@
 #include <string>
 
 #include "estimate/budget.h"
-#include "spectral/band_bias.h"
 #include "estimate/tails.h"
 #include "scheduler/scheduler.h"
 #include "scheduler/shortfall.h"
+#include "spectral/band_bias.h"
 #include "transport/truth/truth.h"
 
 namespace suite {

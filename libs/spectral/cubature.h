@@ -35,7 +35,8 @@ struct SpectralProducts {
   std::vector<std::vector<float>> unabsorbed = {};  // [spectrum][cell]; shorter: empty
   bool absorbed(const Product& p) const { return p.light < unabsorbed.size() && !unabsorbed[p.light].empty(); }
   double at(const Product& p, size_t cell) const {
-    return p.light == kOne ? with_factors(p, cell, 1) : with_factors(p, cell, static_cast<double>(spectra[p.light][cell]));
+    return p.light == kOne ? with_factors(p, cell, 1)
+                           : with_factors(p, cell, static_cast<double>(spectra[p.light][cell]));
   }
   double unabsorbed_at(const Product& p, size_t cell) const {
     return with_factors(p, cell, static_cast<double>(unabsorbed[p.light][cell]));

@@ -12,9 +12,9 @@ namespace suite::test {
 
 struct EvenGround {
   Curve reflectance;
-  Curve sun;               // irradiance above the air, W/(m2 um)
+  Curve sun;  // irradiance above the air, W/(m2 um)
   double sun_cosine = 0.8;
-  double height = 3000;    // of the view over the ground, m; a level of the air, or above all of it
+  double height = 3000;  // of the view over the ground, m; a level of the air, or above all of it
 };
 
 namespace even_air {

@@ -1,7 +1,7 @@
 // Bins that are chosen through the gases of real air, against steps of 0.5 nm (0.5 cm-1 in the thermal infrared): bands
-// on the slopes of water's bands over grass from 3 km, a blue band without lines, and bands at 9.4 and 13.6 um. Radiance
-// straight down over an even ground, by discrete ordinates without noise (support/even_air.h). Even intervals of 10 nm
-// (15 cm-1), split into g-points, are off by 3 to 8 % there: the negative control.
+// on the slopes of water's bands over grass from 3 km, a blue band without lines, and bands at 9.4 and 13.6 um.
+// Radiance straight down over an even ground, by discrete ordinates without noise (support/even_air.h). Even intervals
+// of 10 nm (15 cm-1), split into g-points, are off by 3 to 8 % there: the negative control.
 #include <gtest/gtest.h>
 
 #include "light/kinds/solar_spectrum.h"

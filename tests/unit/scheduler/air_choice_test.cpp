@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "air/column.h"
+#include "support/bins_kit.h"
 
 namespace suite {
 namespace {
@@ -68,6 +69,29 @@ TEST(AirChoice, ErrorsOfWhatGasesHaveTakenAreRelativeToLightWithoutThem) {
   products.unabsorbed = {{1, 1}};
   EXPECT_NEAR(band_means(products, band)[0].scale, 0.01, 1e-9);
   EXPECT_NEAR(band_means(products, band)[1].scale, 1, 1e-9);
+}
+
+// What bins may do to a band that they miss is part of its error; one within what is wanted keeps its own.
+TEST(AirChoice, BiasOfBandsThatMissIsPartOfTheirErrors) {
+  const std::vector<Band> bands{Band::rectangular("a", 0.55, 0.01), Band::rectangular("b", 0.65, 0.01)};
+  const auto scene = test::scene_of({test::quad(1, 0, 0)}, {test::material("grey", test::lambert(0.5))});
+  SourceSpecs sources = test::sun_of(Curve::constant(1000));
+  const auto errors = [&](BandBiases biases) {
+    std::vector<std::unique_ptr<Sensor>> sensors;
+    sensors.push_back(std::make_unique<test::RaySensor>(std::vector<Ray>{{{0.1, 0.1, 5}, {0, 0, -1}, 0}}, bands, 64));
+    JobOptions job;
+    job.progress = false;
+    for (auto& [of, bias] : biases) job.biases[{sensors[0]->name(), of.second}] = bias;
+    run_job(scene, sources, sensors, job);
+    const CaptureResult& r = static_cast<test::RaySensor&>(*sensors[0]).result;
+    return std::array{r.standard_error[0], r.standard_error[1], r.radiance[0]};
+  };
+  const auto without = errors({}), with = errors({{{"", 0}, {{0.1, 0, false}, {0.1, 0, true}}}});
+  EXPECT_EQ(with[2], without[2]);
+  EXPECT_NEAR(with[0], std::hypot(without[0], 0.1 * without[2]), 1e-9 * without[2]);
+  EXPECT_EQ(with[1], without[1]);
+  const auto dark = errors({{{"", 0}, {{0.1, 10 * without[2], false}, {}}}});
+  EXPECT_NEAR(dark[0], std::hypot(without[0], without[2]), 1e-9 * without[2]);
 }
 
 }  // namespace
