@@ -1,5 +1,5 @@
-// The bins of spectral states under real air: intervals so narrow that gases are alike within them, split into g-points
-// where gases absorb (libs/air).
+// Even bins of spectral states under real air (air_choice.h chooses others): intervals so narrow that gases are alike
+// within them, split into g-points where gases absorb (libs/air).
 #pragma once
 #include <span>
 

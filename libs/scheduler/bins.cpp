@@ -199,6 +199,7 @@ class StateInAir {
       const AirChoice choice(air_, paths_, seen_, state_, bands_, white_light_);
       note(choice.judge(in_air.state), choice.floors());
     } else {
+      judged_ = false;  // but what curves do within them is known
       note(std::vector<AirChoice::Worst>(bands_.size()), std::vector<double>(bands_.size(), 0.0));
     }
     return std::move(in_air.state);
@@ -210,7 +211,7 @@ class StateInAir {
     r.g_points = intervals_ ? state.size() : 0;
     r.bias = bias_;
     for (const Bin& b : air_cells(bands_).bins) r.cell_um = std::min(r.cell_um, b.high_um - b.low_um);
-    r.through_gases = true, r.chosen = intervals_ == 0;
+    r.through_gases = judged_, r.chosen = intervals_ == 0;
     r.reached = 0;
     for (size_t b = 0; b < bands_.size(); ++b) {
       if (!(bias_[b].relative > r.reached) && b > 0) continue;
@@ -218,7 +219,8 @@ class StateInAir {
       if (!under_[b].empty()) r.under = under_[b];
     }
     for (size_t b = 0; b < bands_.size(); ++b)
-      if (!bias_[b].within) r.missed.push_back({bands_[b].name, bands_[b].center_um, bias_[b].relative, under_[b]});
+      if (judged_ && !bias_[b].within)
+        r.missed.push_back({bands_[b].name, bands_[b].center_um, bias_[b].relative, under_[b]});
     std::stable_sort(r.missed.begin(), r.missed.end(),
                      [](const auto& a, const auto& b) { return a.center_um < b.center_um; });
     return r;
@@ -241,6 +243,7 @@ class StateInAir {
   AirPaths paths_;
   StateBins without_gases_;
   bool white_light_;
+  bool judged_ = true;    // along paths through the air
   size_t intervals_ = 0;  // of even bins
   std::vector<BandBias> bias_;
   std::vector<std::string> under_;
