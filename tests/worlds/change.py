@@ -50,7 +50,7 @@ def body_of_the_same(world, rng):
         inside = scene["materials"][o["material"]].get("inside") if "material" in o else None
         placed = [p for p in scene["world"] if p["place"] == name]
         if placed and inside and "plane" in o:
-            hosts.append((inside, [2.9, -2.9, -0.75], 0.3, True))
+            hosts.append((inside, [0, -2.4, -0.75], 0.5, True))
         if placed and inside and "box" in o and "x0" not in o["box"] and o["box"]["z0"] < 1 < 2 < o["box"]["z1"]:
             hosts.append((inside, [0, 0, 1.6], 0.4, False))
     if not hosts:

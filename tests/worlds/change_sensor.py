@@ -74,6 +74,12 @@ def swapped(world, rng):
     made = []
     for lamp, receiver in ((a, b), (b, a)):
         w = world.copy()
+        for piece in [*w.scene["materials"].values(), *w.scene["media"].values()]:  # what is warm shines as well
+            piece.pop("temperature_k", None)
+            piece.pop("temperature", None)
+            piece["maps"] = [m for m in piece.get("maps", []) if w.scene["maps"][m]["type"] != "temperature"]
+            if not piece["maps"]:
+                del piece["maps"]
         for key in ("sun", "moon", "sky"):
             w.sim.pop(key, None)
         keys = {k: w.sim["sensors"][0][k] for k in ("bands", "spectral_error", "truth") if k in w.sim["sensors"][0]}

@@ -17,7 +17,7 @@ from relations import RELATIONS
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 
 
-QUICK = 900000  # first seed of the default tests
+QUICK = (900001, 900003, 900004, 900005, 900006, 900007, 900008, 900010, 900011, 900012, 900013, 900014, 900015, 900016, 900017, 900019, 900022, 900023, 900024, 900026, 900027, 900028)  # of the default tests: quick ones
 
 
 def options(words):
@@ -83,11 +83,6 @@ def run_known(o):
     return results
 
 
-def run_quick(o, name):
-    o.relation = name
-    return run_all(o, range(QUICK, QUICK + (4 if RELATIONS[name].weight > 1.5 else 2)), None)[0]
-
-
 def main(words=None):
     o = options(words)
     if o.keep:
@@ -104,7 +99,7 @@ def main(words=None):
         return 1 if any(r["status"] not in ("holds", "open") for r in run_known(o)) else 0
     if o.quick:
         o.factor, o.jobs = 2, 1
-        results = [r for name in RELATIONS for r in run_quick(o, name)]
+        results, _ = run_all(o, QUICK, None)
         print(report.summary(results))
         return 1 if any(r["status"] not in ("holds", "none") for r in results) else 0
     low, high = (int(x) for x in o.seeds.split(":"))

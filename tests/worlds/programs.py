@@ -12,6 +12,7 @@ import envi  # noqa: E402
 from rows_model import FIT, PHASE_FIT  # noqa: E402
 
 TIMEOUT_S = 400
+FITS = {FIT: "ward:diffuse=0.2,specular=0.2,roughness=0.3", PHASE_FIT: "hg:g=0.5"}  # of sqt-fit --model
 
 
 class Refused(Exception):
@@ -40,9 +41,13 @@ class Programs:
         self.shared = os.path.join(scratch, "shared")
         self.warnings = {}
         os.makedirs(self.shared, exist_ok=True)
-        for file, model in ((FIT, "ward:diffuse=0.2,specular=0.2,roughness=0.3"), (PHASE_FIT, "hg:g=0.5")):
-            if not os.path.exists(os.path.join(self.shared, file)):
-                self.run([self.tool("sqt-fit"), "--model", model, "--order", "3", "-o", file, "-q"], self.shared)
+
+    def fit(self, file):
+        """A fit that worlds name, made when one does first."""
+        path = os.path.join(self.shared, file)
+        if not os.path.exists(path):
+            self.run([self.tool("sqt-fit"), "--model", FITS[file], "--order", "3", "-o", file, "-q"], self.shared)
+        return path
 
     def tool(self, name):
         return os.path.join(self.binaries, name)
@@ -66,21 +71,24 @@ class Programs:
         for name, content in {"scene.yaml": scene.encode(), "sim.yaml": sim.encode(), **world.files}.items():
             with open(os.path.join(folder, name), "wb") as file:
                 file.write(content)
-        for name in (FIT, PHASE_FIT):
+        for name in FITS:
             if f'"{name}"' in scene:
-                shutil.copy(os.path.join(self.shared, name), folder)
+                shutil.copy(self.fit(name), folder)
 
     def prepare(self, world, folder, paths_factor=1):
         self.write(world, folder, paths_factor)
-        return self.run([self.tool("scene-prep"), "scene.yaml", "-o", "scene.h5", "-q", "--no-crossing-check"], folder)
+        self.hear(self.run([self.tool("scene-prep"), "scene.yaml", "-o", "scene.h5", "-q", "--no-crossing-check"], folder))
+
+    def hear(self, told):
+        for line in told.splitlines():
+            if "warning" in line:
+                key = re.sub(r"[0-9.]+", "#", line)[:200]
+                self.warnings[key] = self.warnings.get(key, 0) + 1
 
     def render(self, folder, seed, options=(), out="out"):
         """-> {sensor: Picture}"""
         told = self.run([self.tool("dirsig-render"), "sim.yaml", "-o", out, "-q", "-j", "1", "--seed", str(seed), *options], folder)
-        for line in told.splitlines():
-            if "warning" in line:
-                key = re.sub(r"[0-9.]+", "#", line)[:110]
-                self.warnings[key] = self.warnings.get(key, 0) + 1
+        self.hear(told)
         return read(os.path.join(folder, out))
 
     def pictures(self, world, folder, seeds, paths_factor=1, options=()):

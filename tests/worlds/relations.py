@@ -162,7 +162,7 @@ RELATIONS = {r.name: r for r in (
     Relation("time_shift", same_as(change.time_shift), 1),
     Relation("channels", channels, 1, frozen("wants_camera")),
     Relation("sensors_agree", sensors_agree, 2, frozen("wants_camera")),
-    Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "still_world", "no_room", "no_profile")),
+    Relation("periodic", same_as(change.periodic_copies), 1.5, frozen("periodic", "moved", "still_world", "no_room", "no_profile")),
     Relation("reciprocity", reciprocity, 2, frozen("reciprocal", "still_world", "no_profile")),
     Relation("same_bytes", same_bytes, 1),
 )}

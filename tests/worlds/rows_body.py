@@ -185,9 +185,9 @@ def glass_on_opaque(d):
 
 def overlapping(d):
     index, parts = around(d)[1], []
-    for shift in (-0.25, 0.25):
+    for shift, priority in zip((-0.25, 0.25), d.rng.sample((1, 2, 3), 2)):  # equal ones that overlap in part are not defined
         name, _ = medium(d, index)
-        d.world.scene["media"][name]["priority"] = d.one(1, 2, 3)
+        d.world.scene["media"][name]["priority"] = priority
         o = d.world.add("objects", "o", box(d, d.material({"inside": name})))
         parts.append({"place": o, "translate": [shift, 0.1 * shift, 0]})
     return parts

@@ -92,7 +92,8 @@ def opacity(d, material):
 
 SHADING = {"without": ("reciprocal",)}  # normals that are not the surface's are not reciprocal
 ROWS = [
-    ("class_map", "map", class_map), ("mixture", "map", mixture), ("curve_index", "map", curve_index), ("texture", "map", texture),
+    ("class_map", "map", class_map), ("mixture", "map", mixture), ("curve_index", "map", curve_index), ("texture", "map", texture, {"without": ("moved", "periodic")}),  # pixels of one value are ranked by where they are
+   
     ("cube", "map", cube), ("temperature_map", "map", temperature), ("bump", "map", bump, SHADING), ("normal_map", "map", normal, SHADING),
     ("opacity", "map", opacity),
 ]

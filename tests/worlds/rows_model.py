@@ -193,6 +193,6 @@ ROWS = [
     ("isotropic", "phase", isotropic), ("fournier_forand", "phase", forand), ("petzold", "phase", petzold),
     ("leaves_phase", "phase", leaves_phase), ("sqt_phase", "phase", sqt_phase),
     ("absorbing", "medium", absorbing), ("scattering", "medium", scattering), ("hazy", "medium", hazy, {"weight": 2}), ("clear", "medium", clear),
-    ("leaves", "medium", leaves), ("water", "medium", water, {"what": ("refracts",)}),
+    ("leaves", "medium", leaves), ("water", "medium", water, {"what": ("refracts",), "without": ("reciprocal",)}),  # it is warm
     ("dispersive", "medium", dispersive, {"what": ("refracts",)}),
 ]

@@ -214,10 +214,11 @@ def draw_world(seed, traits, table, paths=4):
     if d.chance(0.2):
         d.pick("bands").make(d)
     d.pick("air").make(d)
-    d.pick("floor").make(d)
+    host = d.one("pool", "fill") if "wants_media" in d.traits else None
+    d.pick("floor", lambda r: host != "pool" or r.name == "pool").make(d)
     if d.surround:
         d.surround = []
-    d.pick("fill").make(d)
+    d.pick("fill", lambda r: host != "fill" or r.name != "fill_none").make(d)
     slots = SLOTS[:]
     d.rng.shuffle(slots)
     for slot in slots[:d.one(1, 2, 3, 3)]:
