@@ -126,9 +126,7 @@ void check_inputs(const RenderOptions& o, const Simulation& sim) {
 
 RunLock lock_place(const RenderOptions& o, const Simulation& sim) {
   if (o.study.empty()) check_inputs(o, sim);
-  const std::string folder = o.study.empty() ? o.output : o.study;
-  make_folder(folder);
-  return RunLock::of_folder(folder);
+  return RunLock::of_folder(o.study.empty() ? o.output : o.study);
 }
 
 void check_folder(const std::string& folder, const Simulation& sim, bool pictures) {

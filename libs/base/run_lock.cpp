@@ -28,8 +28,9 @@ struct RunLock::Held {
     // First the name, then the lock: who has opened the file meanwhile sees that it has gone.
     if (ours) ::unlink(path.c_str());
     if (descriptor >= 0) ::close(descriptor);
+    if (!made.empty()) ::rmdir(made.c_str());  // only when it is empty
   }
-  std::string path;
+  std::string path, made;
   std::optional<Temporary> ours;  // once the lock is held
   int descriptor = -1;
 };
@@ -91,9 +92,9 @@ void write_holder(int descriptor, const std::string& path) {
 
 }  // namespace
 
-RunLock::RunLock(const std::string& path, const std::string& place) {
+RunLock::RunLock(const std::string& path, const std::string& place, std::string made) {
   auto held = std::make_unique<Held>();
-  held->path = path;
+  held->path = path, held->made = std::move(made);
   while (!held->ours) {
     const CreatingFile creating;
     if (held->descriptor >= 0) ::close(held->descriptor);
@@ -114,7 +115,10 @@ RunLock::RunLock(const std::string& path, const std::string& place) {
 }
 
 RunLock RunLock::of_folder(const std::string& folder) {
-  return {in_folder(folder.empty() ? "." : folder, "run.lock"), folder.empty() ? "." : folder};
+  const std::string place = folder.empty() ? "." : folder;
+  const bool there = ::access(place.c_str(), F_OK) == 0;
+  make_folder(place);
+  return {in_folder(place, "run.lock"), place, there ? std::string() : place};
 }
 RunLock RunLock::of_file(const std::string& file) { return {file + ".lock", file}; }
 

@@ -11,7 +11,8 @@ namespace suite {
 class RunLock {
  public:
   RunLock() = default;  // holds nothing
-  // Error: another run holds the lock (with its host and process), or it cannot be written. The folder must exist.
+  // Error: another run holds the lock (with its host and process), or it cannot be written. A folder that is not there
+  // is made, and goes with the lock when nothing else came into it.
   static RunLock of_folder(const std::string& folder);
   static RunLock of_file(const std::string& file);
   RunLock(RunLock&& other) noexcept;
@@ -19,7 +20,7 @@ class RunLock {
   ~RunLock();
 
  private:
-  RunLock(const std::string& path, const std::string& place);
+  RunLock(const std::string& path, const std::string& place, std::string made = {});
   struct Held;
   Held* held_ = nullptr;
 };

@@ -110,7 +110,9 @@ TEST(Ephemeris, RefusesImpossibleAir) {
   const Instant when = instant_from_utc({2024, 1, 1, 0, 0, 0});
   EXPECT_THROW(sun_at(frame, {}, when, 0, {-1, 283}), Error);
   EXPECT_THROW(sun_at(frame, {}, when, 0, {1e5, 0}), Error);
-  EXPECT_THROW(moon_at(frame, {}, when, 1.5), Error);
+  // Texts are held to 0.9 s; here it may grow by one at each leap second of a run (motion/ut1.h).
+  EXPECT_THROW(moon_at(frame, {}, when, 4.5), Error);
+  EXPECT_NO_THROW(moon_at(frame, {}, when, 1.5));
 }
 
 }  // namespace
