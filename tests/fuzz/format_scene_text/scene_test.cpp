@@ -118,7 +118,8 @@ TEST_F(FuzzScene, Png) {
 
 TEST_F(FuzzScene, PortableMapsAndGdalTags) {
   const auto read = [](const std::string& path) { values_of(read_raster(path, 1 << 22), Numbers::scaled); };
-  for (const char* map : {"P2\n# grey\n3 2\n1000\n0 1 2 3 4 1000\n", "P5 3 2 255\nabcdef", "P6 1 2 65535\nabcdefghijkl"})
+  for (const char* map :
+       {"P2\n# grey\n3 2\n1000\n0 1 2 3 4 1000\n", "P5 3 2 255\nabcdef", "P6 1 2 65535\nabcdefghijkl"})
     test::fuzz(test::bytes_of(map), as_file("m.pgm", read), 23, 300, 2, {"65536", "0", "-1", "#", "\n", "99999999999"});
   test::fuzz(read_bytes(SUITE_SOURCE_DIR "/tests/data/raster/dem_scaled.tif"), as_file("d.tif", read), 24, 300, 2,
              {"nan", "1e999", "sample=\"9\"", "</Item>", "role=\"scale\""});
