@@ -257,12 +257,19 @@ void BandProjection::add(std::span<const float> in, std::span<double> sums) cons
     for (size_t b = 0; b < n; ++b) y[b] += static_cast<double>(x[b]);
     return;
   }
-  for (size_t b = 0; b < rows_.size(); ++b) {
-    const double* w = &weights_[rows_[b].offset];
-    const float* x = &in[rows_[b].first];
-    double sum = 0;
-    for (uint32_t i = 0; i < rows_[b].count; ++i) sum += w[i] * static_cast<double>(x[i]);
-    sums[b] += sum;
+  const Row* const rows = rows_.data();
+  const double* const weights = weights_.data();
+  const float* const all = in.data();
+  double* const y = sums.data();
+  for (size_t b = 0, n = rows_.size(); b < n; ++b) {
+    const Row row = rows[b];
+    const double* w = weights + row.offset;
+    const float* x = all + row.first;
+    // Most bands have one or two bins, for which a loop costs more than what it does.
+    double sum = w[0] * static_cast<double>(x[0]);
+    if (row.count > 1) sum += w[1] * static_cast<double>(x[1]);
+    for (uint32_t i = 2; i < row.count; ++i) sum += w[i] * static_cast<double>(x[i]);
+    y[b] += sum;
   }
 }
 
