@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/outputs.h"
@@ -95,10 +96,12 @@ bool tell(const dirsig::Ledger& ledger, bool strict) {
   for (const dirsig::Entry& e : ledger.entries()) {
     if (e.fate != Fate::unsupported && !(strict && e.fate == Fate::ignored)) continue;
     if (++told > kTold || e.part) continue;
-    warn(to_text(e.where) + ": " + to_text(e.fate) + ": " + e.path + (e.value.empty() ? "" : " = " + e.value) +
-         (e.note.empty() ? "" : ": " + e.note));
+    emit({Dr::import_unsupported, to_text(e.where) + ": " + to_text(e.fate) + ": " + e.path +
+                                      (e.value.empty() ? "" : " = " + e.value) +
+                                      (e.note.empty() ? "" : ": " + e.note)});
   }
-  if (told > kTold) warn(strf("and %zu more (--account FILE.json, or --convert FOLDER)", told - kTold));
+  if (told > kTold)
+    emit({Dr::import_more, strf("and %zu more (--account FILE.json, or --convert FOLDER)", told - kTold)});
   note(
       strf("import: %zu elements and keys, %zu exact, %zu converted, %zu approximated, %zu ignored-harmless, %zu "
            "unsupported",

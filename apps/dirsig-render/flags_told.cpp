@@ -1,5 +1,6 @@
 #include "flags_told.h"
 
+#include "base/diagnostics.h"
 #include "base/run_app.h"
 
 namespace suite {
@@ -44,9 +45,10 @@ void tell_quality(std::span<const SensorQuality> sensors) {
                         : strf("sensor '%s': no pixel is flagged", sensor.c_str()));
     for (size_t i = 0; i < all.of.size(); ++i) all.of[i] += counts.of[i];
     if (const uint64_t n = counts.with(quality_clipped); share(n, counts.problems) > kManyClipped)
-      warn(flagged_text(sensor, n, counts.problems, "clipped") +
-           "their counts stand at an end of the converter or their charge at the full well; another integration time, "
-           "gain_e_per_dn, bias_dn, bits or full_well_e holds them");
+      emit({Dr::clipped,
+            flagged_text(sensor, n, counts.problems, "clipped") +
+                "their counts stand at an end of the converter or their charge at the full well; another integration "
+                "time, gain_e_per_dn, bias_dn, bits or full_well_e holds them"});
   }
   for (const QualityBit& b : quality_bits())
     if (all.with(b.bit)) note(b.name + ": " + b.meaning);

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <optional>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/outputs.h"
 #include "base/parallel.h"
@@ -68,7 +69,8 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
     note(strf("heat: %u paths of a face have a standard error of %.2g K: %u for %g K", t.pilot_paths, t.pilot_error,
               t.paths, p.spec.target));
     if (!t.enough)
-      warn(strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target));
+      emit({Dr::heat_paths,
+            strf("heat: %u paths of a face are the most, and too few for target_k %g", kMostPaths, p.spec.target)});
     check_size(p, sim);
   }
   std::optional<LeftOut> left_out;
@@ -91,14 +93,14 @@ Found find(PreparedHeat& p, const Scene& scene, const Simulation& sim, const Ren
   if (bar) bar->finish();
   if (left_out) note("heat: " + left_out->sentence(found.result));
   if (left_out && left_out->bound(found.result) > sim.heat->leave_out)
-    warn(strf("heat: that is more than the %g K of leave_out_k", sim.heat->leave_out));
+    emit({Dr::heat_left_out, strf("heat: that is more than the %g K of leave_out_k", sim.heat->leave_out)});
   return found;
 }
 
 std::vector<std::string> tell(const HeatResult& h, const PreparedHeat& p, double seconds) {
   const std::vector<std::string> sentences = heat_sentences(h, p, seconds);
   for (const std::string& sentence : sentences) note("heat: " + sentence);
-  for (const std::string& sentence : h.notes) warn("heat: " + sentence);
+  for (const std::string& sentence : h.notes) emit({Dr::heat_limit, "heat: " + sentence});
   return sentences;
 }
 
@@ -131,8 +133,9 @@ HeatResult found_or_read(PreparedHeat& p, const Scene& scene, const Simulation& 
     throw Error(options.heat + ": holds temperatures of elements alone, and `final_gather` asks for points",
                 "find them anew with it, or drop it");
   if (result.span.begin != p.spec.span.begin || result.span.end != p.spec.span.end)
-    warn(strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
-              options.heat.c_str(), result.span.begin, result.span.end, p.spec.span.begin, p.spec.span.end));
+    emit({Dr::heat_other_span,
+          strf("%s has temperatures from %g to %g s, the simulation asks for %g to %g s: those of the file are used",
+               options.heat.c_str(), result.span.begin, result.span.end, p.spec.span.begin, p.spec.span.end)});
   tell(result, p, seconds_since(begun));
   return result;
 }
@@ -205,7 +208,8 @@ Heating heating_of(const std::shared_ptr<const Scene>& scene, const Simulation& 
                    const RenderOptions& options, const std::string& folder, Ranks* ranks) {
   if (!waits_for_heat(*scene)) {
     if (sim.heat && sees_heat(sim, options))
-      warn("the simulation has `heat`, and no material of the scene waits for it ('temperature: {model: heat}')");
+      emit({Dr::heat_unused,
+            "the simulation has `heat`, and no material of the scene waits for it ('temperature: {model: heat}')"});
     return {};
   }
   if (!sees_heat(sim, options)) {
@@ -257,16 +261,11 @@ void tell_of_points(const Heating& heating) {
   if (!found || !found->points) return;
   const PointHeat& points = found->points->points;
   const auto count = [](uint64_t n) { return human_count(static_cast<double>(n)); };
-  if (points.displaced() > 0)
-    warn(strf("heat: %s points lie on what stands elsewhere at other times: they have their elements' temperatures",
-              count(points.displaced()).c_str()));
+  for (const Diagnostic& d : points.diagnostics()) emit(d);
   if (points.asked() == 0) return;
   note(strf("heat: the temperatures of %s points took %.1f s of all threads together, %.0f us each",
             count(points.asked()).c_str(), points.seconds(),
             1e6 * points.seconds() / static_cast<double>(points.asked())));
-  if (points.unsettled() > 0)
-    warn(strf("heat: the temperatures of %s of them did not settle: they have their elements'",
-              count(points.unsettled()).c_str()));
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/diagnostics.h"
 #include "base/run_app.h"
 
 namespace suite {
@@ -27,15 +28,17 @@ std::vector<std::string> LocatedPixels::write_tables(const LocatedImage& image, 
   try {
     map_ = ground_map(*places_, wishes_.epsg, wishes_.pixel);
   } catch (const Error& e) {
-    warn("'" + image.base + ".img' gets no lookup table (GLT)" + (sight_ ? " and no map: " : ": ") + e.message() +
-         (e.hint().empty() ? "" : "; " + e.hint()));
+    emit({Dr::no_lookup_table, "'" + image.base + ".img' gets no lookup table (GLT)" +
+                                   (sight_ ? " and no map: " : ": ") + e.message() +
+                                   (e.hint().empty() ? "" : "; " + e.hint())});
   }
   mapped_ = sight_ && map_;
   if (mapped_ && horizon_in_view(sight_->lines(), *places_)) {
     mapped_ = false;
-    warn("'" + image.base +
-         strf(".tif' gets no map: the horizon is in view, or ground that is seen at less than %g degrees",
-              kLeastElevation));
+    emit({Dr::no_map,
+          "'" + image.base +
+              strf(".tif' gets no map: the horizon is in view, or ground that is seen at less than %g degrees",
+                   kLeastElevation)});
   }
   return write_geolocation(image, *places_, map_ ? &*map_ : nullptr);
 }

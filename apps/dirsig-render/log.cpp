@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/json.h"
 #include "base/parallel.h"
@@ -72,6 +73,23 @@ Json json_of(std::span<const JobReport::SensorShortfall> sensors) {
   return all;
 }
 
+// Every diagnostic of the run, muted ones too.
+Json diagnostics_json() {
+  Json all = Json::array();
+  for (const auto& [d, muted] : reported_diagnostics()) {
+    const DiagnosticKind& kind = diagnostic_kind(d.code);
+    Json j = Json::object();
+    j.set("code", code_text(d.code));
+    j.set("severity", to_text(kind.severity));
+    j.set("text", printable(d.text));
+    j.set("condition", kind.condition);
+    j.set("cure", kind.cure);
+    j.set("muted", muted);
+    all.push(std::move(j));
+  }
+  return all;
+}
+
 }  // namespace
 
 void write_log(const std::string& path, const JobReport& r, const JobOptions& options) {
@@ -98,6 +116,7 @@ void write_log(const std::string& path, const JobReport& r, const JobOptions& op
   j.set("share_at_target", r.share_at_target);
   j.set("share_flagged", r.share_flagged);
   j.set("ended", r.stopped_by);
+  j.set("diagnostics", diagnostics_json());
   Json quality = Json::array();
   for (const SensorQuality& q : r.quality) quality.push(json_of(q));
   j.set("quality", std::move(quality));

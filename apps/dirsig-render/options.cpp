@@ -75,6 +75,8 @@ void declare_questions(Cli& cli, RenderOptions& o) {
   cli.option("--plugin", o.plugins, "shared library with a further kind of sensor; may be repeated", "FILE...");
   cli.flag("--list-truth", o.list_truth, "print the kinds of truth and stop");
   cli.flag("--list-channels", o.list_channels, "print the parts of the light that images can hold and stop");
+  cli.flag("--list-diagnostics", o.list_diagnostics, "print the code, condition and cure of every diagnostic and stop");
+  cli.option("--mute", o.mute, "do not print diagnostics of this code; render.json has them all (repeatable)", "CODE");
   cli.flag("--list-models", o.list_models, "print the scattering models and their parameters and stop");
 }
 

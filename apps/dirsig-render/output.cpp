@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/outputs.h"
 #include "base/run_app.h"
@@ -172,7 +173,7 @@ OutputWriter::Image& OutputWriter::image_of(const Delivery& d, const std::string
   m.map = d.map;
   if (m.map)
     if (const std::string off = map_offset(*m.map, m.columns, m.rows, notes_.origin); !off.empty())
-      warn("sensor '" + d.sensor.name() + "': " + off);
+      emit({Dr::map_offset, "sensor '" + d.sensor.name() + "': " + off});
   const std::string& lines = files == OutputSpec::Files::task ? d.lines_of_task : d.lines_of_all;
   const std::string& said = files == OutputSpec::Files::capture || lines.empty() ? d.description : lines;
   m.description = said.empty() ? "" : "; " + said;
@@ -334,10 +335,10 @@ void OutputWriter::finish(Image& m, const std::string& base, std::span<const Ban
     picture.write(m.files.back());
   }
   if (m.unknown && m.wishes.quantity == Quantity::brightness_temperature)
-    warn(
-        strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "
-             "zero, say); they are the header's data ignore value",
-             base.c_str(), m.unknown, size_t{m.columns} * m.rows * m.values));
+    emit({Dr::no_brightness_temperature,
+          strf("'%s.img': %zu of %zu values have no brightness temperature between 10 and 20 000 K (their radiance is "
+               "zero, say); they are the header's data ignore value",
+               base.c_str(), m.unknown, size_t{m.columns} * m.rows * m.values)});
   for (const std::string& file : m.files) note("wrote " + file);
 }
 

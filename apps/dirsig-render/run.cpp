@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "air_told.h"
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/interrupt.h"
@@ -76,16 +77,17 @@ void choose_bins_of(Sensor& sensor, const Scene& scene, std::span<const SourceSp
     note(r.text());
     if (r.met()) continue;
     if (r.through_gases) {
-      warn(strf("sensor '%s': bands may be farther off than %g %%: %s; %s", r.sensor.c_str(), 100 * r.wanted,
-                r.missed_text().c_str(),
-                r.chosen ? "their errors include it"
-                         : "their errors include it; leave out spectral_step_um or give a smaller one"));
+      emit({Dr::bins_through_gases,
+            strf("sensor '%s': bands may be farther off than %g %%: %s; %s", r.sensor.c_str(), 100 * r.wanted,
+                 r.missed_text().c_str(),
+                 r.chosen ? "their errors include it"
+                          : "their errors include it; leave out spectral_step_um or give a smaller one")});
       continue;
     }
-    warn(strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(), r.band.c_str(),
-              100 * r.reached, r.under.c_str(), 100 * r.wanted,
-              r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
-                       : "leave out 'spectral_error: 0' or give a smaller spectral_step_um"));
+    emit({Dr::bins, strf("sensor '%s': band '%s' may be %.2g %% off (%s), %g %% is wanted; %s", r.sensor.c_str(),
+                         r.band.c_str(), 100 * r.reached, r.under.c_str(), 100 * r.wanted,
+                         r.chosen ? "more bins are not carried: its spectra have lines that are finer still"
+                                  : "leave out 'spectral_error: 0' or give a smaller spectral_step_um")});
   }
 }
 
@@ -167,9 +169,9 @@ void tell(const JobReport& r, const Scene& scene) {
   if (paths > 0 && r.statistics.truncated > 0)
     note(strf("cut at the maximum number of nodes: %.3g %% of the throughput at the reference wavelength",
               100 * r.statistics.truncated / paths));
-  if (const std::string sentence = strayed(r.statistics, scene); !sentence.empty()) warn(sentence);
+  if (const auto leaks = diagnose_leaks(r.statistics, scene)) emit(*leaks);
   for (const JobReport::SensorShortfall& s : r.shortfalls)
-    for (const std::string& sentence : sentences(s.sensor, s.shortfall)) warn(sentence);
+    for (const Diagnostic& d : diagnose_shortfall(s.sensor, s.shortfall)) emit(d);
 }
 
 void tell(const JobReport& r, const Scene& scene, const JobOptions& options, const std::string& folder) {
@@ -221,6 +223,7 @@ std::optional<int> answer(const RenderOptions& o) {
   if (o.list_truth) return print(truth_rows().list());
   if (o.list_channels) return print(channel_rows().list());
   if (o.list_models) return print(models().list());
+  if (o.list_diagnostics) return print(diagnostics_text());
   if (!o.explain.empty()) return print(explain(o.explain));
   const bool deck = o.air && is_deck(o.simulation);
   if (!o.against.empty() && !deck) throw UsageError("--against belongs to --air and a deck (.tp5, .ltn, tape5)");
@@ -251,7 +254,7 @@ void check_sensors(Simulation& sim, const Scene& scene, JobOptions& options) {
   note("parts of the renderer:\n" + text_of(features_of(scene, sim.sources, sim.sensors, options.pipeline)));
   look_through_tables(sim.sources, scene, sim.sensors);
   for (const std::string& sentence : tell_sources(sim.sources, scene, sim.sensors)) note(sentence);
-  for (const std::string& sentence : tell_air(sim.sources, scene, sim.sensors, options)) note(sentence);
+  for (const Diagnostic& d : diagnose_air(sim.sources, scene, sim.sensors, options)) emit(d);
   const std::vector<SourceSpecs> standing = sources_at_all_times(sim.sources, scene);
   for (const auto& sensor : sim.sensors) {
     check_preview(*sensor, sim.output.preview_of(sensor->name()));
@@ -311,7 +314,7 @@ JobOptions job_options(const Simulation& sim, const RenderOptions& o) {
   options.budget = budget_of(o);
   options.share = share_of(o);
   options.kit_bytes = kit_bytes_of(o);
-  options.tiles = {tile_bytes_of(o), warn};
+  options.tiles = {tile_bytes_of(o), [](const std::string& text) { emit({Dr::tile_beyond_limit, text}); }};
   options.pipeline.stop = stop_rule_of(o);
   options.pipeline.method = method_of(o);
   return options;
@@ -329,6 +332,7 @@ void find_beforehand(const std::shared_ptr<const Scene>& scene, const Simulation
 
 int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   for (const std::string& plugin : o.plugins) load_plugin(plugin);
+  for (const std::string& code : o.mute) mute(diagnostic_code(code));
   if (const auto code = answer(o)) return *code;
   if (show_finished(cli, o)) return 0;
   check_usage(cli, o, ranks);
@@ -376,15 +380,15 @@ int run_render(const Cli& cli, const RenderOptions& o, Ranks* ranks) {
   const bool part = options.share && options.share->runs();
   check_folder(o.output, sim, !part);
   writer = std::make_unique<OutputWriter>(o.output, sim.output, notes_of(*scene), facts, options.biases);
-  if (!sim.sources.any()) warn("there is no sun, no sky and no lamp: only materials with a temperature will be seen");
-  options.doubt = [](const Doubt& doubt) { warn(doubt.text()); };
-  options.warn = warn;
+  if (!sim.sources.any())
+    emit({Dr::no_sources, "there is no sun, no sky and no lamp: only materials with a temperature will be seen"});
+  options.diagnose = emit;
   start_sensors(sim, options, part ? "" : o.output);
   JobReport report = run_safely(scene, sim, options, o.output, delivered);
   flags.add_to(report);
   conclude(report, options, o.output, sim, loaded, *writer);
   if (!report.stopped) return show_own(o);
-  warn("stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options));
+  emit({Dr::stopped, "stopped: " + what_is_left(o.output, report.captures, report.captures_asked, options)});
   return 128 + stop_signal();
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "base/diagnostics.h"
 #include "base/run_app.h"
 
 namespace suite {
@@ -56,8 +57,9 @@ int Together::conclude(int code) {
   // Others may understand their command lines and wait.
   if (code != 0 && !begun_ && ranks_->fail() && !ranks_->leads()) {
     set_silent(false);
-    warn(strf("rank %d on host %s was started with options that cannot be: ", ranks_->rank(), ranks_->host().c_str()) +
-         command_line());
+    emit({Dr::rank_options,
+          strf("rank %d on host %s was started with options that cannot be: ", ranks_->rank(), ranks_->host().c_str()) +
+              command_line()});
   }
   return ranks_->conclude(code);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/diagnostics.h"
 #include "base/files.h"
 #include "base/inputs.h"
 #include "base/json.h"
@@ -73,7 +74,7 @@ Viewed open_viewed(const std::string& folder, const std::string& name) {
     const std::string path = base + "_" + product + ".img";
     if (!file_exists(path)) return false;
     if (belongs(main, read_envi_header(path))) return true;
-    warn(path + " is left out: it is of another run than " + name + ".img");
+    emit({Dr::page_of_other_run, path + " is left out: it is of another run than " + name + ".img"});
     return false;
   };
   if (there("truth")) v.truth = read_envi_header(base + "_truth.img");
@@ -348,8 +349,8 @@ void write_view(const std::string& folder, const std::string& path, size_t room)
   for (const std::string& name : images_of(folder)) images.push_back(open_viewed(folder, name));
   const size_t step = step_for(images, bytes);
   if (step > 1)
-    warn(strf("%s keeps every %zu-th column and row of the images alone, to stay within %s", path.c_str(), step,
-              human_bytes(bytes).c_str()));
+    emit({Dr::page_thinned, strf("%s keeps every %zu-th column and row of the images alone, to stay within %s",
+                                 path.c_str(), step, human_bytes(bytes).c_str())});
   make_folders_of({path});
   const std::string name = std::filesystem::path(in_folder(folder, "x")).parent_path().filename();
   LivePage page(path, "Results in " + name, kScripts, about_page(images, step));

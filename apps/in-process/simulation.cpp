@@ -121,11 +121,11 @@ void render(const rs_simulation& s, const RayRequests& rays, uint32_t paths, uin
   options.biases = s.biases;
   options.progress = false;
   if (paths) options.budget.min_paths = options.budget.max_paths = paths, options.budget.relative_error = 0;
-  options.warn = [&](const std::string& sentence) { told.push_back(sentence); };
-  options.doubt = [&](const Doubt& doubt) { told.push_back(doubt.text()); };
+  const auto keep = [&](const Diagnostic& d) { told.push_back(line_of(d)); };
+  options.diagnose = keep;
   const JobReport report = run_job(s.scene, sources, sensors, options);
   for (const JobReport::SensorShortfall& lacks : report.shortfalls)
-    for (const std::string& sentence : sentences(lacks.sensor, lacks.shortfall)) told.push_back(sentence);
+    for (const Diagnostic& d : diagnose_shortfall(lacks.sensor, lacks.shortfall)) keep(d);
 }
 
 }  // namespace

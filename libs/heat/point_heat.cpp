@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "heat/sunlight_wave.h"
 
 namespace suite {
@@ -151,6 +152,21 @@ std::vector<float> straight_sunlight(const HeatScene& scene, const WeatherLoads&
     for (size_t m = 0; m < result.moments; ++m)
       out[f * result.moments + m] = static_cast<float>(double{out[f * result.moments + m]} * weather.direct[m]);
   return out;
+}
+
+std::vector<Diagnostic> PointHeat::diagnostics() const {
+  const auto count = [](uint64_t n) { return human_count(static_cast<double>(n)); };
+  std::vector<Diagnostic> found;
+  if (displaced() > 0)
+    found.push_back({Dr::heat_points_displaced,
+                     strf("heat: %s points lie on what stands elsewhere at other times: they have their elements' "
+                          "temperatures",
+                          count(displaced()).c_str())});
+  if (unsettled() > 0)
+    found.push_back({Dr::heat_points_unsettled,
+                     strf("heat: the temperatures of %s points did not converge: they have their elements'",
+                          count(unsettled()).c_str())});
+  return found;
 }
 
 }  // namespace suite

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/diagnostics.h"
 #include "heat/heat_balance.h"
 #include "heat/point_response.h"
 
@@ -39,6 +40,8 @@ class PointHeat {
   uint64_t unsettled() const { return unsettled_; }
   // Places on what stands elsewhere at other times: they have their element's, too.
   uint64_t displaced() const { return displaced_; }
+  // What was counted so far and matters.
+  std::vector<Diagnostic> diagnostics() const;
 
  private:
   std::optional<double> found(uint32_t element, const HeatedPlace& place, double time) const;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "air/column.h"
-#include "scheduler/doubts.h"
 #include "scheduler/scene_albedo.h"
+#include "scheduler/sensor_diagnostics.h"
 
 namespace suite {
 

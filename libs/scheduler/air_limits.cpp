@@ -5,8 +5,8 @@
 
 #include "scene/primitives.h"
 #include "scheduler/air_left_out.h"
-#include "scheduler/doubts.h"
 #include "scheduler/moments.h"
+#include "scheduler/sensor_diagnostics.h"
 
 namespace suite {
 
@@ -137,13 +137,13 @@ std::string bands_within(const Sensor& sensor, const GasLimit& limit) {
 }
 
 // Bands that lie where gases are less sure than in general, range by range.
-void report_gas_limits(const GasProvider& gases, Sensors sensors, std::vector<std::string>& said) {
+void report_gas_limits(const GasProvider& gases, Sensors sensors, std::vector<Diagnostic>& found) {
   for (const GasLimit& limit : gases.limits()) {
     std::string names;
     for (const auto& sensor : sensors)
       if (const std::string bands = bands_within(*sensor, limit); !bands.empty())
         names += (names.empty() ? "" : ", ") + bands;
-    if (!names.empty()) said.push_back("gases: " + limit.text() + "; bands there: " + names);
+    if (!names.empty()) found.push_back({Dr::gas_limits, "gases: " + limit.text() + "; bands there: " + names});
   }
 }
 
@@ -155,6 +155,23 @@ bool sees_sunlight(const Sensor& sensor) {
   return std::any_of(states.begin(), states.end(), [](const SpectralState& state) {
     return std::any_of(state.bins.begin(), state.bins.end(), [](const Bin& b) { return b.low_um < kThermal; });
   });
+}
+
+void diagnose_low_bodies(const SourceSpecs& written, const Scene& scene, Sensors sensors, const AirSpec& air,
+                         std::vector<Diagnostic>& found) {
+  const Lowest body = lowest_body(written, scene, sensors);
+  if (body.zenith > kLowSun) found.push_back({Dr::low_sun, low(body)});
+  if (body.body.empty()) return;
+  const double radius = air.radius + air.height_of_scene();
+  const Shells shells = Shells::round(
+      {0, 0, -radius}, radius,
+      {air.height_of_ground() - air.height_of_scene(), air.profile.levels.back().height - air.height_of_scene()});
+  for (const auto& sensor : sensors)
+    if (body.zenith > kLowLimb && sees_sunlight(*sensor) && looks_along_limb(*sensor, shells))
+      found.push_back({Dr::limb_low_sun,
+                       "air: sensor '" + sensor->name() +
+                           "' looks along the limb under a sun lower than any that was compared (84 degrees from the "
+                           "zenith: within 1 %, 0.55 um through haze, lowest points from 5 to 60 km)"});
 }
 
 }  // namespace
@@ -170,41 +187,31 @@ double share_from_beyond(double reach, double scale) {
   return sum / kParts;
 }
 
-std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene, Sensors sensors,
-                                  const JobOptions& job) {
-  std::vector<std::string> said;
-  if (!written.air) return said;
-  if (written.air->gases) report_gas_limits(*written.air->gases, sensors, said);
+std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& scene, Sensors sensors,
+                                     const JobOptions& job) {
+  std::vector<Diagnostic> found;
+  if (!written.air) return found;
+  if (written.air->gases) report_gas_limits(*written.air->gases, sensors, found);
   if (written.air->scattering == AirScattering::traced)
-    if (const auto sentence = open_below(written, scene, job)) said.push_back(*sentence);
-  if (written.air->scattering != AirScattering::diffuse) return said;
+    if (const auto sentence = open_below(written, scene, job)) found.push_back({Dr::air_open_below, *sentence});
+  if (written.air->scattering != AirScattering::diffuse) return found;
   SourceSpecs first = written;
   resolve_sources(first, scene);
   const AirSpec& air = *first.air;
   if (air.adjacency && scene.media.empty()) {
     if (!goes_back(job.pipeline))
-      said.push_back("air: this estimator goes back to no place in the air: light between ground and air is that of " +
-                     even_ground(air) + "; what single places send into it (adjacency) and shadows in it are left out");
+      found.push_back(
+          {Dr::no_adjacency,
+           "air: this estimator goes back to no place in the air: light between ground and air is that of " +
+               even_ground(air) + "; what single places send into it (adjacency) and shadows in it are left out"});
     else if (const auto sentence = beyond(air, written, scene, job))
-      said.push_back(*sentence);
+      found.push_back({Dr::even_ground_beyond, *sentence});
   }
   for (const auto& sensor : sensors)
     if (air.adjacency && !scene.media.empty() && sees_sunlight(*sensor))
-      if (const auto sentence = left_out(air, scene, *sensor)) said.push_back(*sentence);
-  if (!air.round) return said;
-  const Lowest body = lowest_body(written, scene, sensors);
-  if (body.zenith > kLowSun) said.push_back(low(body));
-  if (body.body.empty()) return said;
-  const double radius = air.radius + air.height_of_scene();
-  const Shells shells = Shells::round(
-      {0, 0, -radius}, radius,
-      {air.height_of_ground() - air.height_of_scene(), air.profile.levels.back().height - air.height_of_scene()});
-  for (const auto& sensor : sensors)
-    if (body.zenith > kLowLimb && sees_sunlight(*sensor) && looks_along_limb(*sensor, shells))
-      said.push_back("air: sensor '" + sensor->name() +
-                     "' looks along the limb under a sun lower than any that was compared (84 degrees from the zenith: "
-                     "within 1 %, 0.55 um through haze, lowest points from 5 to 60 km)");
-  return said;
+      if (const auto sentence = left_out(air, scene, *sensor)) found.push_back({Dr::adjacency_beside_media, *sentence});
+  if (air.round) diagnose_low_bodies(written, scene, sensors, air, found);
+  return found;
 }
 
 }  // namespace suite

@@ -1,11 +1,12 @@
 // What real air's light over an even ground is worth for a scene, its sun and what sensors look at: the
 // limits of air that is solved as AirScattering::diffuse, each where it matters.
 #pragma once
+#include "base/diagnostics.h"
 #include "scheduler/scheduler.h"
 
 namespace suite {
 
-// Sentences, none where nothing matters, or where the air is not solved for an even ground, but for the first two:
+// Diagnostics, none where nothing matters, or where the air is not solved for an even ground, but for the first two:
 // - bands lie where the gases' tables are less sure than in general (air/gas_limits.h);
 // - air that is traced goes on below a scene that ends;
 // - beyond the scene the even ground goes on, unless there is an Earth, a surface without end or a scene that repeats
@@ -18,8 +19,8 @@ namespace suite {
 // - a sensor looks past the ground along the limb from 10 km or more (the corners, edges and middles of its captures
 //   are asked) under a sun lower than 85 degrees from the zenith.
 // written: the sources; resolved here for every capture. Error: as resolve_sources.
-std::vector<std::string> tell_air(const SourceSpecs& written, const Scene& scene,
-                                  std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& job);
+std::vector<Diagnostic> diagnose_air(const SourceSpecs& written, const Scene& scene,
+                                     std::span<const std::unique_ptr<Sensor>> sensors, const JobOptions& job);
 
 inline constexpr double kMostFromBeyond = 0.05;
 inline constexpr double kLeastLeftOut = 1e-3;      // of reflectance, of the sunlight on the way

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "air/column.h"
-#include "scheduler/doubts.h"
+#include "scheduler/sensor_diagnostics.h"
 
 namespace suite {
 

@@ -52,7 +52,7 @@ class Job {
     }
     if (progress_) progress_->finish();
     if (!report_.stopped && options_.store) options_.store->finish();
-    if (!report_.stopped && !options_.share) doubt_after();
+    if (!report_.stopped && !options_.share) diagnose_after();
     if (tracers_) report_.tiles = tracers_->tile_use();
     finish();
     return std::move(report_);
@@ -70,7 +70,7 @@ class Job {
     tracers_ = std::make_unique<TracerCache>(scene_, options_.periodic, cut_out(*scene_), options_.tiles);
     if (!items.empty()) tracer_of(capture_of(items.front()));
     report_.build_seconds = seconds_since(start_);
-    doubt_before();
+    diagnose_before();
     if (options_.share) mine_ = blocks_of_share(sensors_, *options_.share);
     if (options_.store) begin_store(items);
     std::vector<ToldRound> none;
@@ -145,21 +145,22 @@ class Job {
     return tracers_->builds() > before;
   }
 
-  // Each sensor is doubted once: what was said before rendering explains what comes out.
-  void doubt_before() {
-    if (!options_.doubt || !tracer_) return;
-    const auto say = [&](const std::vector<Doubt>& doubts) {
-      for (const Doubt& d : doubts)
-        if (!d.useless || doubted_.insert(d.sensor).second) options_.doubt(d);
+  // One useless picture is reported once a sensor: what was said before rendering explains what comes out.
+  void diagnose_before() {
+    if (!options_.diagnose || !tracer_) return;
+    const auto say = [&](const std::vector<SensorDiagnostic>& found) {
+      for (const SensorDiagnostic& d : found)
+        if (!d.useless || useless_.insert(d.sensor).second) options_.diagnose(d.diagnostic());
     };
-    say(doubts_of_view(*tracer_, sources_, sensors_));
-    say(doubts_of_light(sources_, *scene_, sensors_));
+    say(diagnose_views(*tracer_, sources_, sensors_));
+    say(diagnose_lights(sources_, *scene_, sensors_));
   }
 
-  void doubt_after() {
-    for (size_t s = 0; options_.doubt && s < sensors_.size(); ++s)
-      if (!doubted_.contains(sensors_[s]->name()))
-        if (const auto doubt = doubt_of_outcome(*sensors_[s], outcomes_[s], !options_.store)) options_.doubt(*doubt);
+  void diagnose_after() {
+    for (size_t s = 0; options_.diagnose && s < sensors_.size(); ++s)
+      if (!useless_.contains(sensors_[s]->name()))
+        if (const auto found = diagnose_outcome(*sensors_[s], outcomes_[s], !options_.store))
+          options_.diagnose(found->diagnostic());
   }
 
   // Of a part of a job: the part's blocks of a capture of the sensors; empty = all of them.
@@ -273,10 +274,10 @@ class Job {
     log.new_optics = kits_->optics_bakes() > bakes;
     if (capture.bin_by == Capture::BinBy::sun && (!kit.optics->media().empty() || kit.environment->atmosphere))
       throw Error("sensor '" + sensor.name() + "' asks for many suns at once, which do not shine through media or air");
-    if (options_.warn)
-      for (const std::string& s :
-           doubts_beforehand(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))
-        if (told_.insert(s).second) options_.warn(s);
+    if (options_.diagnose)
+      for (const Diagnostic& d :
+           diagnose_light_paths(*tracer_, sources_, *kit.optics, options_.pipeline, goals_of(item).all.max_paths))
+        if (diagnosed_.insert(d.text).second) options_.diagnose(d);
     for (const auto& p : primed_)
       if (p->made_of(*tracer_, kit)) return p;
     primed_.push_back(
@@ -382,9 +383,9 @@ class Job {
   LocalExecutor local_;
   Saving saving_;
   std::vector<SensorOutcome> outcomes_;  // of each sensor
-  std::set<std::string> doubted_;        // sensors
+  std::set<std::string> useless_;        // sensors
   Judge judge_;
-  std::set<std::string> told_;
+  std::set<std::string> diagnosed_;         // by text
   std::vector<std::vector<uint8_t>> mine_;  // [capture][block] of the sensors that the share runs
   double total_problems_ = 0;
   uint32_t cap_ = 0;

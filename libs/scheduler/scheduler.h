@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "estimate/budget.h"
-#include "scheduler/doubts.h"
 #include "scheduler/kits.h"
+#include "scheduler/sensor_diagnostics.h"
 #include "scheduler/share.h"
 #include "scheduler/shortfall.h"
 #include "scheduler/state_store.h"
@@ -55,9 +55,9 @@ struct JobOptions {
   std::function<bool()> stop;
   std::function<void(const StoredWork&)> begun;   // called once, before the first capture of a job that has a store
   std::function<void(uint32_t)> time_worth = {};  // is told the maximum of paths that a time budget is turned into
-  std::function<void(const Doubt&)> doubt = {};   // is told of pictures that will be or are useless; null = nobody
-  // Told, once each and before the paths are run, what a state's light will lack; empty = nobody listens.
-  std::function<void(const std::string&)> warn = {};
+  // Called once for each diagnostic: before the paths are run for what a state's light will lack and for pictures that
+  // will be useless, after them for those that are. Empty = nobody listens.
+  std::function<void(const Diagnostic&)> diagnose = {};
 };
 
 // What one capture took; a line of the log.

@@ -1,12 +1,15 @@
 // What results are known to lack: light that was not found (transport/lost_light.h), light that was cut at the maximum
-// number of nodes (Accumulators::shortfall), samples that were rejected. Counted problem by problem, told per sensor.
+// number of nodes (Accumulators::shortfall), samples that were rejected. Counted problem by problem, reported per
+// sensor.
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "transport/pipeline.h"
 
 namespace suite {
@@ -53,19 +56,19 @@ struct Shortfall {
 };
 Shortfall shortfall_of(std::span<const Lack> problems);
 
-// One sentence about each thing that a sensor's results lack: how many problems, how much, what helps. Also where no
+// One diagnostic for each thing that a sensor's results lack: how many problems, how much, what helps. Also where no
 // problem is flagged for its noise, but the mean of all lacks as much as flags one.
-std::vector<std::string> sentences(const std::string& sensor, const Shortfall& shortfall);
+std::vector<Diagnostic> diagnose_shortfall(const std::string& sensor, const Shortfall& shortfall);
 
-// What is said of paths that left bodies of media where they have no surface, as out of a sheet of water that ends in
-// the open: nothing where that is less than kStrays of their throughput, more than rounding at edges of meshes makes.
+// Paths that leaked out of bodies of media where these have no boundary, as out of a sheet of water that ends in the
+// open: nothing where that is less than kStrays of their throughput, more than rounding at edges of meshes makes.
 inline constexpr double kStrays = 1e-4;
-std::string strayed(const RunStatistics& statistics, const Scene& scene);
+std::optional<Diagnostic> diagnose_leaks(const RunStatistics& statistics, const Scene& scene);
 
-// Sentences about sources whose light paths of a state will not find: behind smooth refracting surfaces, which is
-// estimated, and by way of mirrors, which is not. paths: that a problem takes at most; disks that these meet often
+// Sources whose light the paths of a state will not find: behind smooth refracting surfaces, which is estimated, and
+// caustics by way of mirrors, which are not. paths: that a problem takes at most; disks that these meet often
 // enough are left out. repeats: the scene does.
-std::vector<std::string> lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
-                                    const PipelineOptions& options, uint32_t paths, bool repeats);
+std::vector<Diagnostic> diagnose_lost_light(const Scene& scene, const SourceSpecs& sources, const Optics& optics,
+                                            const PipelineOptions& options, uint32_t paths, bool repeats);
 
 }  // namespace suite

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -39,9 +40,9 @@ class Look {
     }
   }
 
-  std::vector<std::string> all() {
+  std::vector<Diagnostic> all() {
     look_for_overlaps();
-    if (std::find(looked_at_.begin(), looked_at_.end(), true) == looked_at_.end()) return {told_.begin(), told_.end()};
+    if (std::find(looked_at_.begin(), looked_at_.end(), true) == looked_at_.end()) return found();
     size_t seen = 0;
     tracer_.each(
         "refracting surfaces", [&](const TracedObject& o) { return has(o, looked_at_); },
@@ -50,11 +51,18 @@ class Look {
           shoot(box_of(number, o), seen);
           drop(box_of(number, o), seen);
         });
-    if (!skipping_.empty()) told_.insert(skipping_);
-    return {told_.begin(), told_.end()};
+    if (!skipping_.empty()) insert(Dr::dense_medium_skipped, skipping_);
+    return found();
   }
 
  private:
+  std::vector<Diagnostic> found() const {
+    std::vector<Diagnostic> all;
+    for (const auto& [text, code] : found_) all.push_back({code, text});
+    return all;
+  }
+  void insert(Dr code, const std::string& text) { found_.emplace(text, code); }
+
   // Where bodies of different media may overlap at all.
   void look_for_overlaps() {
     std::set<uint32_t> media;
@@ -139,10 +147,10 @@ class Look {
           tracer_.object(h.object).instance == tracer_.object(hit.object).instance)
         continue;
       const auto [a, b] = std::minmax(id, scene_.materials[other].id);
-      told_.insert(
-          "refracting surfaces ('" + a + "', '" + b +
-          "') lie in each other: only one of them bends light there, and what it goes on through is wrong. Give "
-          "the common face one surface with `inside` and `outside`, or leave a gap");
+      insert(Dr::interfaces_coincide,
+             "refracting surfaces ('" + a + "', '" + b +
+                 "') lie in each other: only one of them bends light there, and what it goes on through is wrong. Give "
+                 "the common face one surface with `inside` and `outside`, or leave a gap");
       return;
     }
     if (!refracts_[material])
@@ -158,12 +166,12 @@ class Look {
                    back = medium_at(hit.position - hit.normal * off, hit.time);
     const double there = index_of(front), here = index_of(back);
     if (std::fabs(here - there) <= kApart * there) return;
-    told_.insert(
-        strf("'%s' parts %s (index %.4g) from %s (index %.4g) and bends nothing, as a material without a `model` "
-             "does: light goes straight on and none is reflected there. Give it `model: dielectric` with "
-             "`index: %.4g`, or the media one index",
-             scene_.materials[material].id.c_str(), name_of(back).c_str(), here, name_of(front).c_str(), there,
-             here / there));
+    insert(Dr::boundary_without_interface,
+           strf("'%s' parts %s (index %.4g) from %s (index %.4g) and bends nothing, as a material without a `model` "
+                "does: light goes straight on and none is reflected there. Give it `model: dielectric` with "
+                "`index: %.4g`, or the media one index",
+                scene_.materials[material].id.c_str(), name_of(back).c_str(), here, name_of(front).c_str(), there,
+                here / there));
   }
 
   uint32_t medium_at(Vec3 place, double time) {
@@ -185,22 +193,24 @@ class Look {
     const double off = kOff * double{hit.step};
     const uint32_t front = medium_at(hit.position + hit.normal * off, hit.time),
                    back = medium_at(hit.position - hit.normal * off, hit.time);
-    for (const uint32_t medium : {front, back}) tell_skipped(hit, m, medium);
+    for (const uint32_t medium : {front, back}) keep_skipped(hit, m, medium);
     const auto apart = [](double a, double b) { return std::fabs(a - b) > kApart * b; };
     const double made_for = index_of(m.outside), own = m.surface.curves.at("index").at(um_);
     if (!apart(own * index_of(front), index_of(back))) return;
     if (apart(index_of(front), made_for)) {
-      told_.insert(
-          strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
-               "needs a material with `outside`, or to end",
-               m.id.c_str(), name_of(front).c_str(), index_of(front), made_for));
+      insert(Dr::index_in_front,
+             strf("'%s' has %s (index %.4g) in front of it, and bends light as if that had index %.4g: there it "
+                  "needs a material with `outside`, or to end",
+                  m.id.c_str(), name_of(front).c_str(), index_of(front), made_for));
       return;
     }
     const double meant = own * index_of(front), share = std::pow(index_of(back) / meant, 2);
-    told_.insert(strf(
-        "'%s' bends light into matter of index %.4g, but behind it there is %s (index %.4g): radiance from there is "
-        "%.3g times what it should be. Give what the surface encloses the higher `priority`, or close the surface",
-        m.id.c_str(), meant, name_of(back).c_str(), index_of(back), share));
+    insert(
+        Dr::index_behind,
+        strf("'%s' bends light into matter of index %.4g, but behind it there is %s (index %.4g): radiance from there "
+             "is "
+             "%.3g times what it should be. Give what the surface encloses the higher `priority`, or close the surface",
+             m.id.c_str(), meant, name_of(back).c_str(), index_of(back), share));
   }
 
   // Bodies of media of equal priority that overlap in part: one of them ends within the other.
@@ -231,7 +241,7 @@ class Look {
         } else if (const auto left = std::find_if(in.rbegin(), in.rend(), [&](const In& b) { return b.body == body; });
                    left != in.rend()) {
           for (auto later = in.rbegin(); later != left; ++later)
-            if (length(hit.position - later->place) > kTouching * double{hit.step}) tell_overlap(*left, *later);
+            if (length(hit.position - later->place) > kTouching * double{hit.step}) report_overlap(*left, *later);
           in.erase(std::next(left).base());
         }
         ray.origin = tracer_.leave(hit, d);
@@ -239,7 +249,7 @@ class Look {
     }
   }
   template <class In>
-  void tell_overlap(const In& a, const In& b) {
+  void report_overlap(const In& a, const In& b) {
     const auto priority = [&](uint32_t medium) { return is_named(medium) ? scene_.media[medium].priority : 0; };
     if (a.medium == b.medium || a.body == b.body || priority(a.medium) != priority(b.medium)) return;
     const auto rate = [&](uint32_t medium) {
@@ -249,7 +259,8 @@ class Look {
     };
     const bool turned = scene_.materials[a.material].id > scene_.materials[b.material].id;
     const In &first = turned ? b : a, &second = turned ? a : b;
-    told_.insert(
+    insert(
+        Dr::media_overlap,
         strf("bodies of '%s' and '%s' overlap in part and have one priority: which of %s (extinction %.3g 1/m, index "
              "%.4g) and %s (%.3g 1/m, %.4g) fills what they share depends on where the light comes from. Give one of "
              "them a higher `priority`",
@@ -259,8 +270,8 @@ class Look {
   }
 
   // Rays leave a surface from a step off it, so that they do not meet it again where float places are coarse; what
-  // fills that step is left out. The worst case is told once.
-  void tell_skipped(const Hit& hit, const Material& m, uint32_t medium) {
+  // fills that step is left out. The worst case is reported once.
+  void keep_skipped(const Hit& hit, const Material& m, uint32_t medium) {
     if (medium == kNone || !is_named(medium)) return;
     const BakedMedium& baked = optics_.media()[medium];
     double densest = 0;
@@ -285,23 +296,23 @@ class Look {
   double um_;
   std::vector<bool> refracts_, looked_at_;  // per material
   std::vector<Hit> beside_;
-  std::set<std::string> told_;
-  double skipped_ = 0;  // the most
+  std::map<std::string, Dr> found_;  // by text: each once
+  double skipped_ = 0;               // the most
   std::string skipping_;
   TraceStatistics statistics_;
 };
 
 }  // namespace
 
-std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& optics) {
-  return tracer.tells_all() ? Look(tracer, optics).all() : std::vector<std::string>{};
+std::vector<Diagnostic> diagnose_surroundings(const Tracer& tracer, const Optics& optics) {
+  return tracer.tells_all() ? Look(tracer, optics).all() : std::vector<Diagnostic>{};
 }
 
-std::vector<std::string> doubts_beforehand(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
-                                           const PipelineOptions& options, uint32_t paths) {
-  std::vector<std::string> all =
-      lost_light(tracer.scene(), sources, optics, options, paths, tracer.periodic().has_value());
-  for (std::string& s : wrong_surroundings(tracer, optics)) all.push_back(std::move(s));
+std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
+                                             const PipelineOptions& options, uint32_t paths) {
+  std::vector<Diagnostic> all =
+      diagnose_lost_light(tracer.scene(), sources, optics, options, paths, tracer.periodic().has_value());
+  for (Diagnostic& d : diagnose_surroundings(tracer, optics)) all.push_back(std::move(d));
   return all;
 }
 

@@ -12,16 +12,16 @@
 
 namespace suite {
 
-// Sentences about refracting surfaces with another index in front or behind than they are made for (by more than
+// Diagnostics of refracting surfaces with another index in front or behind than they are made for (by more than
 // kApart), about those that lie in each other, about bodies of media of equal priority that overlap in part, and about
 // boundaries that part media of different indices and bend nothing; and about matter so dense that what rays skip where
 // they leave a surface of a large object counts (kSkipped of the light). Looked for along a few rays through each
 // refracting object, so that what is small may be missed.
 constexpr double kApart = 0.02, kSkipped = 1e-3;
-std::vector<std::string> wrong_surroundings(const Tracer& tracer, const Optics& optics);
+std::vector<Diagnostic> diagnose_surroundings(const Tracer& tracer, const Optics& optics);
 
-// These, after what paths of at most so many a problem will not find (lost_light).
-std::vector<std::string> doubts_beforehand(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
-                                           const PipelineOptions& options, uint32_t paths);
+// These, after what paths of at most so many a problem will not find (diagnose_lost_light).
+std::vector<Diagnostic> diagnose_light_paths(const Tracer& tracer, const SourceSpecs& sources, const Optics& optics,
+                                             const PipelineOptions& options, uint32_t paths);
 
 }  // namespace suite

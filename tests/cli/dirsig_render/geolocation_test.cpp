@@ -248,6 +248,7 @@ TEST_F(Geolocation, TooFineAGridIsTold) {
   const CommandResult r = run("dirsig-render fine.yaml -o fine -q");
   EXPECT_EQ(r.code, 0);
   EXPECT_THAT(r.err, HasSubstr("warning: 'fine/frame.img' gets no lookup table (GLT): a lookup table of"));
+  EXPECT_THAT(r.err, HasSubstr("[DR801]"));
   EXPECT_TRUE(file_exists(*folder_ / "fine/frame_igm.img"));
   EXPECT_FALSE(file_exists(*folder_ / "fine/frame_glt.img"));
 }

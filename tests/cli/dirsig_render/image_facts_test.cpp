@@ -197,7 +197,8 @@ TEST_F(ImageFacts, BrightnessTemperatureOfTheBand) {
   EXPECT_GT(known, 100u);
   EXPECT_GT(none, 20u);
   EXPECT_THAT(r.err,
-              HasSubstr(strf("warning: 'warm/map.img': %zu of 400 values have no brightness temperature", none)));
+              AllOf(HasSubstr(strf("warning: 'warm/map.img': %zu of 400 values have no brightness temperature", none)),
+                    HasSubstr("[DR804]")));
   const Raster tiff = read_raster(*folder_ / "warm/map.tif");
   for (size_t i = 0; i < kelvin.size(); ++i)
     ASSERT_TRUE(std::isnan(kelvin[i]) ? std::isnan(tiff.values[i]) : tiff.values[i] == static_cast<float>(kelvin[i]));

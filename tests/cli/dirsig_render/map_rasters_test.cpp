@@ -190,6 +190,7 @@ TEST_F(MapRasters, AHorizonHasNoMap) {
   const CommandResult r = run("dirsig-render eye.yaml -o eye");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("gets no map: the horizon is in view"));
+  EXPECT_THAT(r.err, HasSubstr("[DR802]"));
   EXPECT_THAT(r.err + r.out, HasSubstr("ground control points: "));
   EXPECT_FALSE(file_exists(file("eye/eye_map.tif")));
   EXPECT_TRUE(file_exists(file("eye/eye_error.tif")));

@@ -116,6 +116,14 @@ TEST_F(Ranks, write_what_one_process_writes) {
     }
 }
 
+// Options that one rank alone cannot have: it says so by itself, as the others wait.
+TEST_F(Ranks, started_unlike_are_reported) {
+  const std::string program = SUITE_BIN_DIR "/dirsig-render sim.yaml -o never";
+  const CommandResult r = shell(ranks(1, program) + " : -n 1 " + program + " --no-such-option");
+  EXPECT_NE(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, AllOf(HasSubstr("was started with options that cannot be"), HasSubstr("[DR903]")));
+}
+
 TEST_F(Ranks, go_on_and_add_paths) {
   std::filesystem::copy(*folder_ / "whole", *folder_ / "more");
   render(2, "sim.yaml -o more --more 16 -q -j 1");

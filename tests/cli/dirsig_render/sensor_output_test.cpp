@@ -143,6 +143,7 @@ TEST_F(SensorOutput, ClippedCountsAreFlaggedAndTold) {
     const auto [said, clipped] = run(detector, name);
     EXPECT_EQ(clipped, 64) << name;
     EXPECT_THAT(said, HasSubstr("sensor 'uas': 64 of 64 pixels are clipped (100 %)"));
+    EXPECT_THAT(said, HasSubstr("[DR113]"));
     EXPECT_THAT(read_text(*folder_ / (std::string(name) + "/render.json")), HasSubstr("\"clipped\": 64"));
   }
   // Room for all of it, and detectors that always give an end of the scale: nothing is clipped.

@@ -90,7 +90,7 @@ TEST_F(UselessPictures, GoodOnesAreNotDoubted) {
 
 TEST_F(UselessPictures, UnderTheGround) {
   expect_one(kDay + camera("[0, -20, -30]", "[0, 0, -10]"),
-             {"(0, -20, -30) m, 30 m under the surface 'ground'", "raise it"}, true);
+             {"(0, -20, -30) m, 30 m under the surface 'ground'", "raise it", "[DR107]"}, true);
   // In a solid.
   expect_one(kDay + kSky + camera("[4, 0, 1]", "[4, 1, 1]"), {"2 m under the surface 'ground'"}, true, "boards");
   expect_one(kDay + kSky + "earth: {material: ground}\n" + camera("[0, -20, -30]", "[0, 0, -10]"),
@@ -98,11 +98,11 @@ TEST_F(UselessPictures, UnderTheGround) {
 }
 
 TEST_F(UselessPictures, NothingIsHit) {
-  expect_one(kDay + kSky + camera("[0, 3000, 300]", "[0, 3400, 100]"), {"looks past the scene", "(2, -2, 0) m"}, true,
-             "boards");
+  expect_one(kDay + kSky + camera("[0, 3000, 300]", "[0, 3400, 100]"),
+             {"looks past the scene", "(2, -2, 0) m", "[DR108]"}, true, "boards");
   // Beside the scene, so near that rays have to tell.
-  expect_one(kDay + kSky + camera("[-20, 0, 30]", "[1, 0, 0]"), {"none of its paths met anything", "picture is black"},
-             false, "boards");
+  expect_one(kDay + kSky + camera("[-20, 0, 30]", "[1, 0, 0]"),
+             {"none of its paths met anything", "picture is black", "[DR109]"}, false, "boards");
   expect_one(kDay + "sky: {radiance: 50, full_sphere: true}\n" + camera("[-20, 0, 30]", "[1, 0, 0]"),
              {"none of its paths met anything: the picture shows the sky alone"}, false, "boards");
 }
@@ -110,7 +110,7 @@ TEST_F(UselessPictures, NothingIsHit) {
 TEST_F(UselessPictures, NightWithoutASky) {
   expect_one(
       "sun: {direction: {zenith_deg: 100, azimuth_deg: 90}, irradiance: 1000}\n" + camera("[0, -20, 30]", "[0, 0, 0]"),
-      {"the sun is 10.0 degrees below the horizon and nothing else shines", "give a time of day"}, true);
+      {"the sun is 10.0 degrees below the horizon and nothing else shines", "give a time of day", "[DR101]"}, true);
   expect_one("sun: {direction: {time_utc: \"2026-06-21T05:00:00Z\"}, irradiance: 1000}\n" +
                  camera("[0, -20, 30]", "[0, 0, 0]"),
              {"degrees below the horizon at 2026-06-21T05:00:00Z"}, true);
@@ -124,15 +124,18 @@ TEST_F(UselessPictures, TwilightOverAnEndlessPlane) {
   const std::string dusk =
       "sun: {direction: {zenith_deg: 93, azimuth_deg: 90}}\natmosphere: {profile: us_standard, gases: none}\n" +
       camera("[0, -20, 30]", "[0, 0, 0]");
-  expect_one(dusk,
-             {"3.0 degrees below the horizon", "the endless plane 'plane' shades all air", "give the plane a size"},
-             true, "endless");
+  expect_one(
+      dusk,
+      {"3.0 degrees below the horizon", "the endless plane 'plane' shades all air", "give the plane a size", "[DR102]"},
+      true, "endless");
   EXPECT_EQ(warnings(said(dusk)), 0u);
 }
 
 TEST_F(UselessPictures, DegreesForMetres) {
-  expect_one(kDay + kSky + camera("[43.101, -77.602, 300]", "[0, 0, 0]"),
-             {"(43.101, -77.602, 300) m", "latitude and longitude (43.1000, -77.6000 degrees)", "latitude_deg"}, true);
+  expect_one(
+      kDay + kSky + camera("[43.101, -77.602, 300]", "[0, 0, 0]"),
+      {"(43.101, -77.602, 300) m", "latitude and longitude (43.1000, -77.6000 degrees)", "latitude_deg", "[DR106]"},
+      true);
   expect_one(kDay + kSky + camera("[-77.602, 43.101, 300]", "[0, 0, 0]"), {"longitude and latitude"}, true);
   expect_one(
       kDay + kSky +
@@ -149,16 +152,17 @@ TEST_F(UselessPictures, BandsOutside) {
       "sun: {direction: {zenith_deg: 45, azimuth_deg: 90}, irradiance: {wavelength_um: [0.3, 2], value: [1000, "
       "1000], outside: zero}}\n" +
           camera("[0, -20, 30]", "[0, 0, 0]", 10),
-      {"no source sends light in band 'pan' (10 um)"}, true);
+      {"no source sends light in band 'pan' (10 um)", "[DR103]"}, true);
   expect_one(kDay + camera("[0, -20, 30]", "[0, 0, 0]", 1.6),
-             {"band 'pan' (1.6 um) lies beyond the ends of all spectra of the scene, of which the nearest is at 1 um"},
+             {"band 'pan' (1.6 um) lies beyond the ends of all spectra of the scene, of which the nearest is at 1 um",
+              "[DR104]"},
              true);
 }
 
 TEST_F(UselessPictures, AllZero) {
   // It sees black boards only.
   expect_one(kDay + kSky + camera("[100, -1, 30]", "[100, 0, 1]"),
-             {"every pixel of every band is zero", "check the sources"}, false);
+             {"every pixel of every band is zero", "check the sources", "[DR110]"}, false);
 }
 
 // --dry-run refuses what the run refuses: here a curve that ends before the band, with the sensor's line and the band.

@@ -1,4 +1,5 @@
 // Temperatures at points of coarse elements, against those of elements so small that they have them.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,6 +128,8 @@ TEST(FinalGather, WhatDoesNotSettleHasTheErrorOfItsElement) {
     EXPECT_GT(told, 0u);
     EXPECT_EQ(points.asked(), told) << "the same place twice running";
     EXPECT_EQ(points.unsettled(), settles ? 0u : told);
+    EXPECT_THAT(lines_of(points.diagnostics()),
+                testing::Conditional(settles, testing::IsEmpty(), testing::ElementsAre(testing::HasSubstr("[DR607]"))));
   }
 }
 
@@ -157,6 +160,8 @@ TEST(FinalGather, WhatStandsElsewhereHasTheTemperatureOfItsElement) {
     }
     EXPECT_EQ(displaced > 0, moves);
     EXPECT_EQ(points.displaced(), displaced);
+    EXPECT_THAT(lines_of(points.diagnostics()),
+                testing::Conditional(moves, testing::ElementsAre(testing::HasSubstr("[DR606]")), testing::IsEmpty()));
   }
 }
 

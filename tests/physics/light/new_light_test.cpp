@@ -7,8 +7,8 @@
 
 #include "formats/sim_text/sources.h"
 #include "scheduler/bins.h"
-#include "scheduler/doubts.h"
 #include "scheduler/features.h"
+#include "scheduler/sensor_diagnostics.h"
 #include "tests/support/message_of.h"
 #include "tests/support/radiometry_kit.h"
 #include "tests/support/ring_light.h"
@@ -86,10 +86,10 @@ TEST(NewLight, ItsSpectrumChoosesBinsAndTellsDarkBands) {
   };
   std::vector<std::unique_ptr<Sensor>> sensors;
   sensors.push_back(look(4));
-  EXPECT_TRUE(doubts_of_light(lit_between(0.4, 0.7), *scene, sensors).empty());
-  const std::vector<Doubt> dark = doubts_of_light(lit_between(0.6, 0.7), *scene, sensors);
+  EXPECT_TRUE(diagnose_lights(lit_between(0.4, 0.7), *scene, sensors).empty());
+  const std::vector<SensorDiagnostic> dark = diagnose_lights(lit_between(0.6, 0.7), *scene, sensors);
   ASSERT_EQ(dark.size(), 1u);
-  EXPECT_THAT(dark[0].text(), testing::HasSubstr("no source sends light in band"));
+  EXPECT_THAT(dark[0].diagnostic().text, testing::HasSubstr("no source sends light in band"));
   std::vector<LightSpectra> sent;
   const SourceSpecs ring = lit_between(0.4, 0.7);
   ring.lights[0]->add_spectra(sent);

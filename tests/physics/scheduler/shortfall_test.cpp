@@ -56,10 +56,16 @@ TEST(Cavity, WhatIsCutIsInTheStandardError) {
 }
 
 TEST(Cavity, ClosingSentence) {
-  EXPECT_THAT(sentences("eye", cavity(0.98, 64, 256).report.shortfalls.at(0).shortfall),
+  EXPECT_THAT(lines_of(diagnose_shortfall("eye", cavity(0.98, 64, 256).report.shortfalls.at(0).shortfall)),
               testing::ElementsAre(testing::AllOf(testing::HasSubstr("sensor 'eye': 1 of 1 problems lost light"),
-                                                  testing::HasSubstr("max_nodes"))));
-  EXPECT_THAT(sentences("eye", cavity(0.3, 64, 256).report.shortfalls.at(0).shortfall), testing::IsEmpty());
+                                                  testing::HasSubstr("max_nodes help [DR202]"))));
+  EXPECT_THAT(diagnose_shortfall("eye", cavity(0.3, 64, 256).report.shortfalls.at(0).shortfall), testing::IsEmpty());
+}
+
+TEST(Shortfall, RejectedSamples) {
+  EXPECT_THAT(lines_of(diagnose_shortfall("eye", shortfall_of(std::vector<Lack>{{0, 0, 0.1, 3}, {0, 0, 0.1, 0}}))),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("1 of 2 problems rejected 3 samples"),
+                                                  testing::HasSubstr("[DR203]"))));
 }
 
 // Both bounds of a flag: the share of the light, and of its error.
@@ -79,7 +85,7 @@ TEST(Lack, IsFlaggedWhereItMatters) {
 
 TEST(Lack, OfManyNoisyProblemsIsToldAllTheSame) {
   const auto told = [](double share, double error) {
-    return sentences("s", shortfall_of(std::vector<Lack>(10, Lack{0, share, error, 0})));
+    return lines_of(diagnose_shortfall("s", shortfall_of(std::vector<Lack>(10, Lack{0, share, error, 0}))));
   };
   EXPECT_THAT(told(2e-3, 1), testing::ElementsAre(testing::AllOf(testing::HasSubstr("0 of 10"),
                                                                  testing::HasSubstr("0.2 % of the radiance of all"))));

@@ -36,14 +36,15 @@ std::vector<std::string> told(double low, Material glass) {
   const Tracer tracer(scene);
   const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
   const Optics optics(*scene, sensor.states()[0]);
-  return wrong_surroundings(tracer, optics);
+  return lines_of(diagnose_surroundings(tracer, optics));
 }
 
 using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 TEST(Surroundings, GlassInWaterThatIsMadeForAir) {
   EXPECT_THAT(told(-2, interface_of("pane", kGlass, 1)),
-              ElementsAre(AllOf(HasSubstr("'pane' has 'water'"), HasSubstr("1.34"), HasSubstr("`outside`"))));
+              ElementsAre(AllOf(HasSubstr("'pane' has 'water'"), HasSubstr("1.34"), HasSubstr("`outside`"),
+                                HasSubstr("[DR303]"))));
   EXPECT_THAT(told(-2, interface_of("pane", kGlass / kWater, 1, 0)), IsEmpty());
   EXPECT_THAT(told(-2, interface_of("pane", kGlass / kWater, 1)), IsEmpty()) << "its index suits";
 }
@@ -58,7 +59,7 @@ TEST(Surroundings, GlassHalfInWater) {
 
 TEST(Surroundings, GlassOnWater) {
   EXPECT_THAT(told(0, interface_of("pane", kGlass, 1)),
-              ElementsAre(HasSubstr("('pane', 'surface') lie in each other")));
+              ElementsAre(AllOf(HasSubstr("('pane', 'surface') lie in each other"), HasSubstr("[DR301]"))));
   EXPECT_THAT(told(0.01, interface_of("pane", kGlass, 1)), IsEmpty());
 }
 
@@ -80,10 +81,11 @@ TEST(Surroundings, BoundariesThatShouldBend) {
     check_scene(*scene, "boundaries");
     const Tracer tracer(scene);
     const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
-    return wrong_surroundings(tracer, Optics(*scene, sensor.states()[0]));
+    return lines_of(diagnose_surroundings(tracer, Optics(*scene, sensor.states()[0])));
   };
-  EXPECT_THAT(told_of(kWater, false), ElementsAre(AllOf(HasSubstr("'side' parts 'layer' (index 1.34)"),
-                                                        HasSubstr("bends nothing"), HasSubstr("dielectric"))));
+  EXPECT_THAT(told_of(kWater, false),
+              ElementsAre(AllOf(HasSubstr("'side' parts 'layer' (index 1.34)"), HasSubstr("bends nothing"),
+                                HasSubstr("dielectric"), HasSubstr("[DR302]"))));
   EXPECT_THAT(told_of(1, false), IsEmpty());
   EXPECT_THAT(told_of(kWater, true), IsEmpty());
   EXPECT_THAT(told_of(kGlass, true), ElementsAre(HasSubstr("'side' parts 'layer' (index 1.5) from 'water'")));
@@ -102,9 +104,10 @@ TEST(Surroundings, DenseMatterOfALargeObject) {
     const Tracer tracer(scene);
     const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
     const Optics optics(*scene, sensor.states()[0]);
-    return wrong_surroundings(tracer, optics);
+    return lines_of(diagnose_surroundings(tracer, optics));
   };
-  EXPECT_THAT(told_of(2e4, 3), ElementsAre(AllOf(HasSubstr("paths in 'water'"), HasSubstr("'surface'"))));
+  EXPECT_THAT(told_of(2e4, 3),
+              ElementsAre(AllOf(HasSubstr("paths in 'water'"), HasSubstr("'surface'"), HasSubstr("[DR306]"))));
   EXPECT_THAT(told_of(2e4, 1e-3), IsEmpty());
   EXPECT_THAT(told_of(10, 3), IsEmpty());
 }
@@ -123,15 +126,16 @@ TEST(Surroundings, PrioritiesThatAreAmbiguous) {
     check_scene(*scene, "priorities");
     const Tracer tracer(scene);
     const RaySensor sensor(std::vector<Ray>{{{0, 0, 9}, {0, 0, -1}, 0}}, one_band(), 1);
-    return wrong_surroundings(tracer, Optics(*scene, sensor.states()[0]));
+    return lines_of(diagnose_surroundings(tracer, Optics(*scene, sensor.states()[0])));
   };
   EXPECT_THAT(told_of(0, 2.5, 2), IsEmpty()) << "nested";
   EXPECT_THAT(told_of(0, 4, 2), IsEmpty()) << "touching";
   EXPECT_THAT(told_of(0, 3.5, 0), IsEmpty()) << "one medium";
-  EXPECT_THAT(told_of(1, 3.5, 2), ElementsAre(AllOf(HasSubstr("'ball' bends light into matter of index 1.5"),
-                                                    HasSubstr("'haze' (index 1)"), HasSubstr("0.444 times"))));
+  EXPECT_THAT(told_of(1, 3.5, 2),
+              ElementsAre(AllOf(HasSubstr("'ball' bends light into matter of index 1.5"), HasSubstr("'haze' (index 1)"),
+                                HasSubstr("0.444 times"), HasSubstr("[DR304]"))));
   EXPECT_THAT(told_of(0, 3.5, 2), ElementsAre(AllOf(HasSubstr("'cloud' and 'layer' overlap in part"),
-                                                    HasSubstr("'smoke' (extinction 0.1 1/m"))));
+                                                    HasSubstr("'smoke' (extinction 0.1 1/m"), HasSubstr("[DR305]"))));
 }
 
 }  // namespace

@@ -69,7 +69,9 @@ TEST(WaterBed, CollimatedSunIsMissedAndSaid) {
   const Shortfall& told = run.report.shortfalls.at(0).shortfall;
   EXPECT_EQ(told.unresolved.problems, 1u);
   EXPECT_NEAR(told.unresolved.mean(), 1, 1e-12) << "all of its light";
-  EXPECT_THAT(sentences("s", told), testing::ElementsAre(testing::HasSubstr("1 of 1 problems are not resolved")));
+  EXPECT_THAT(lines_of(diagnose_shortfall("s", told)),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("1 of 1 problems are not resolved"),
+                                                  testing::HasSubstr("[DR201]"))));
 }
 
 TEST(WaterBed, SmallDiskIsMissedWideDiskIsMet) {
@@ -244,7 +246,9 @@ TEST(LostLight, IsToldBeforeThePathsAreRun) {
     JobOptions job;
     job.progress = false;
     job.pipeline.refracted_sources = asked;
-    job.warn = [&](const std::string& text) { said.push_back(text); };
+    job.diagnose = [&](const Diagnostic& d) {
+      if (d.code >= Dr::unresolved_refracted && d.code <= Dr::caustics_not_found) said.push_back(line_of(d));
+    };
     std::vector<std::unique_ptr<Sensor>> sensors;
     sensors.push_back(look(paths));
     run_job(water_bed(std::move(surface)), sources, sensors, job);
@@ -252,19 +256,22 @@ TEST(LostLight, IsToldBeforeThePathsAreRun) {
   };
   using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
   EXPECT_THAT(warnings(sun(0), smooth(kIndex), 4),
-              ElementsAre(AllOf(HasSubstr("the sun (collimated) is not found behind"), HasSubstr("'water'")),
-                          AllOf(HasSubstr("reflect to others"), HasSubstr("'water'"))));
-  EXPECT_THAT(warnings(sun(0), smooth(kIndex), 4, true), ElementsAre(HasSubstr("reflect to others")));
+              ElementsAre(AllOf(HasSubstr("the sun (collimated) is not found behind"), HasSubstr("'water'"),
+                                HasSubstr("[DR205]")),
+                          AllOf(HasSubstr("caustics: light of"), HasSubstr("'water'"))));
+  EXPECT_THAT(warnings(sun(0), smooth(kIndex), 4, true), ElementsAre(HasSubstr("caustics: light of")));
   EXPECT_THAT(warnings(sun(0.27), smooth(kIndex), 4), ElementsAre(HasSubstr("one path in"), HasSubstr("one path in")));
   EXPECT_THAT(warnings(sun(0), {"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr}, 4),
-              ElementsAre(HasSubstr("reflect to others")));
+              ElementsAre(HasSubstr("caustics: light of")));
   // Photons look for a disk in mirrors, never for what no path can meet.
   SourceSpecs both = sun(0);
   both.add(SunSpec{dir_from_angles(0.2, 0), 0.27 * kDegree, Curve::constant(1)});
   const ModelSpec mirror{"mirror", {}, {{"reflectance", Curve::constant(0.9)}}, {}, nullptr};
-  EXPECT_THAT(warnings(sun(0.27), mirror, 4), ElementsAre(HasSubstr("found where photons say so")));
+  EXPECT_THAT(warnings(sun(0.27), mirror, 4),
+              ElementsAre(AllOf(HasSubstr("found by photon-guided sampling"), HasSubstr("[DR206]"))));
   EXPECT_THAT(warnings(both, mirror, 4),
-              ElementsAre(HasSubstr("found where photons say so"), HasSubstr("is not found and not estimated")));
+              ElementsAre(HasSubstr("found by photon-guided sampling"),
+                          AllOf(HasSubstr("is not found and not estimated"), HasSubstr("[DR207]"))));
   EXPECT_THAT(warnings(sun(5), smooth(kIndex), 4096), IsEmpty());
   EXPECT_THAT(warnings(sun(0), lambert(0.1), 4), IsEmpty());
 }

@@ -1,4 +1,4 @@
-#include "scheduler/doubts.h"
+#include "scheduler/sensor_diagnostics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ std::string when(const SourceTime* date, double moment) {
 }
 
 // Sun and Moon have set whenever the sensor looks, and nothing else shines.
-std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+std::optional<SensorDiagnostic> night(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const bool others = std::any_of(written.lights.begin(), written.lights.end(), [](auto& l) { return !l->disk(); });
   if (!written.sun() || others || written.has_air() || glows(scene)) return std::nullopt;
   SourcesInTime sources(written, scene);
@@ -50,14 +50,15 @@ std::optional<Doubt> night(const SourceSpecs& written, const Scene& scene, const
     const double height = now.sun()->disk()->direction.z;
     if (height > highest) highest = height, moment = moment_of(*c);
   }
-  return Doubt{sensor.name(),
-               strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
-                    -std::asin(std::max(-1.0, highest)) / kDegree, when(written.sun()->date(), moment).c_str()),
-               "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
+  return SensorDiagnostic{
+      Dr::sun_below_horizon, sensor.name(),
+      strf("the sun is %.1f degrees below the horizon%s and nothing else shines: the picture will be black",
+           -std::asin(std::max(-1.0, highest)) / kDegree, when(written.sun()->date(), moment).c_str()),
+      "give a time of day or a direction with the sun up, or a `sky`, a `moon` or `lamps`"};
 }
 
 // A flat plane without end is under the air of a round Earth, too: it shades all of it from a Sun that has set.
-std::optional<Doubt> shaded_twilight(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+std::optional<SensorDiagnostic> shaded_twilight(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const auto endless = std::find_if(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& p) {
     return p.kind == PrimitiveKind::plane && primitive_box(p).empty();
   });
@@ -66,12 +67,13 @@ std::optional<Doubt> shaded_twilight(const SourceSpecs& written, const Scene& sc
   for (const Capture* c : some_captures(sensor, 64)) {
     const FarDisk* sun = sources.at(moment_of(*c)).sun()->disk();
     if (!set(*sun)) continue;
-    return Doubt{sensor.name(),
-                 strf("the sun is %.1f degrees below the horizon%s, and the endless plane '%s' shades all air from it: "
-                      "there is no twilight",
-                      -std::asin(sun->direction.z) / kDegree, when(written.sun()->date(), moment_of(*c)).c_str(),
-                      endless->name.c_str()),
-                 "give the plane a size; `earth` goes on around it"};
+    return SensorDiagnostic{
+        Dr::no_twilight, sensor.name(),
+        strf("the sun is %.1f degrees below the horizon%s, and the endless plane '%s' shades all air from it: "
+             "there is no twilight",
+             -std::asin(sun->direction.z) / kDegree, when(written.sun()->date(), moment_of(*c)).c_str(),
+             endless->name.c_str()),
+        "give the plane a size; `earth` goes on around it"};
   }
   return std::nullopt;
 }
@@ -85,7 +87,7 @@ std::string named(const std::vector<std::string>& names) {
 }
 
 // Bands in which no source sends anything, of a scene that does not glow itself.
-std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
+std::optional<SensorDiagnostic> dark_bands(const SourceSpecs& now, const Scene& scene, const Sensor& sensor) {
   if (!now.any() || glows(scene) || now.has_air()) return std::nullopt;
   std::vector<std::string> names;
   for (size_t s = 0; s < sensor.states().size(); ++s)
@@ -96,13 +98,14 @@ std::optional<Doubt> dark_bands(const SourceSpecs& now, const Scene& scene, cons
       if (!lit && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   if (names.empty()) return std::nullopt;
-  return Doubt{sensor.name(), "no source sends light in band " + named(names) + " and nothing in the scene glows there",
-               "give the sources spectra that reach it, the scene temperatures, or the sensor other bands"};
+  return SensorDiagnostic{Dr::unlit_band, sensor.name(),
+                          "no source sends light in band " + named(names) + " and nothing in the scene glows there",
+                          "give the sources spectra that reach it, the scene temperatures, or the sensor other bands"};
 }
 
 // Bands beyond the tabulated ends of every spectrum of the scene, where only `outside` says what the surfaces are.
 // Loading drops points far from the sensors' bands, so only the ends that are nearest to them are known here.
-std::optional<Doubt> unknown_bands(const Scene& scene, const Sensor& sensor) {
+std::optional<SensorDiagnostic> unknown_bands(const Scene& scene, const Sensor& sensor) {
   double low = INFINITY, high = 0;
   const auto widen = [&](double from, double to) { low = std::min(low, from), high = std::max(high, to); };
   for (const Material& m : scene.materials) {
@@ -122,8 +125,8 @@ std::optional<Doubt> unknown_bands(const Scene& scene, const Sensor& sensor) {
   for (size_t s = 0; s < sensor.states().size() && high > 0; ++s)
     for (const Band& b : sensor.bands(s))
       if (b.low_um() > high || b.high_um() < low)
-        return Doubt{
-            sensor.name(),
+        return SensorDiagnostic{
+            Dr::band_beyond_spectra, sensor.name(),
             strf("band '%s' (%.3g um) lies beyond the ends of all spectra of the scene, of which the nearest is "
                  "at %.3g um: what is seen there is only what their `outside` says",
                  b.name.c_str(), b.center_um, b.low_um() > high ? high : low),
@@ -131,26 +134,26 @@ std::optional<Doubt> unknown_bands(const Scene& scene, const Sensor& sensor) {
   return std::nullopt;
 }
 
-std::optional<Doubt> too_long(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
+std::optional<SensorDiagnostic> too_long(const SourceSpecs& written, const Scene& scene, const Sensor& sensor) {
   const std::optional<LongExposure> e = long_exposure(written, scene, sensor);
   if (!e) return std::nullopt;
-  return Doubt{sensor.name(),
-               strf("capture '%s' lasts %.4g s, in which the %s moves by %.3g degrees (its radius is %.3g) and what it "
-                    "sends to level ground changes by %.2g %%; it is taken where it stands in the middle",
-                    e->capture.c_str(), e->seconds, e->body.c_str(), e->moved / kDegree, e->radius / kDegree,
-                    100 * e->irradiance_change),
-               "divide it into shorter captures (lines_per_capture, tasks, integration times) where that matters",
-               false};
+  return SensorDiagnostic{
+      Dr::long_exposure, sensor.name(),
+      strf("capture '%s' lasts %.4g s, in which the %s moves by %.3g degrees (its radius is %.3g) and what it "
+           "sends to level ground changes by %.2g %%; it is taken where it stands in the middle",
+           e->capture.c_str(), e->seconds, e->body.c_str(), e->moved / kDegree, e->radius / kDegree,
+           100 * e->irradiance_change),
+      "divide it into shorter captures (lines_per_capture, tasks, integration times) where that matters", false};
 }
 
 }  // namespace
 
-std::vector<Doubt> doubts_of_light(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
-  std::vector<Doubt> all;
+std::vector<SensorDiagnostic> diagnose_lights(const SourceSpecs& written, const Scene& scene, Sensors sensors) {
+  std::vector<SensorDiagnostic> all;
   if (sensors.empty()) return all;
   const SourceSpecs first = first_sources(written, scene, sensors);
   for (const auto& sensor : sensors) {
-    std::optional<Doubt> found = night(written, scene, *sensor);
+    std::optional<SensorDiagnostic> found = night(written, scene, *sensor);
     if (!found) found = shaded_twilight(written, scene, *sensor);
     if (!found) found = dark_bands(first, scene, *sensor);
     if (!found) found = unknown_bands(scene, *sensor);
@@ -169,24 +172,24 @@ void SensorOutcome::add(std::span<const Band> of, const CaptureResult& result, c
   }
 }
 
-std::optional<Doubt> doubt_of_outcome(const Sensor& sensor, const SensorOutcome& o, bool complete) {
+std::optional<SensorDiagnostic> diagnose_outcome(const Sensor& sensor, const SensorOutcome& o, bool complete) {
   const size_t lit = static_cast<size_t>(std::count(o.bright.begin(), o.bright.end(), true));
   const bool missed = complete && o.paths > 0 && o.nodes == 0;
   if (missed && (lit == 0 || o.looks_down))
-    return Doubt{sensor.name(),
-                 lit ? "none of its paths met anything: the picture shows the sky alone"
-                     : "none of its paths met anything: the picture is black",
-                 "check where it stands and looks: metres east, north and up in the scene's frame"};
+    return SensorDiagnostic{Dr::nothing_hit, sensor.name(),
+                            lit ? "none of its paths met anything: the picture shows the sky alone"
+                                : "none of its paths met anything: the picture is black",
+                            "check where it stands and looks: metres east, north and up in the scene's frame"};
   if (o.bands.empty() || lit == o.bands.size()) return std::nullopt;
   if (lit == 0)
-    return Doubt{
-        sensor.name(), "every pixel of every band is zero: no light reaches what it sees",
+    return SensorDiagnostic{
+        Dr::all_zero, sensor.name(), "every pixel of every band is zero: no light reaches what it sees",
         "check the sources (directions, spectra), the surfaces' reflectance in its bands and what shades them"};
   std::vector<std::string> names;
   for (size_t b = 0; b < o.bands.size(); ++b)
     if (!o.bright[b]) names.push_back("'" + o.bands[b] + "'");
-  return Doubt{sensor.name(), "every pixel of band " + named(names) + " is zero",
-               "check the spectra of the sources and of the surfaces there"};
+  return SensorDiagnostic{Dr::band_zero, sensor.name(), "every pixel of band " + named(names) + " is zero",
+                          "check the spectra of the sources and of the surfaces there"};
 }
 
 SensorRay middle_ray(const Sensor& sensor, const Capture& capture, size_t problem) {

@@ -1,10 +1,10 @@
-// Doubts about where sensors stand and look: found by a few of their rays, without rendering.
+// Diagnostics of where sensors stand and look: found by a few of their rays, without rendering.
 #include <algorithm>
 #include <cmath>
 
 #include "optics/models.h"
 #include "scene/primitives.h"
-#include "scheduler/doubts.h"
+#include "scheduler/sensor_diagnostics.h"
 #include "surface/material_lookup.h"
 
 namespace suite {
@@ -25,7 +25,7 @@ std::vector<SensorRay> probes(const Sensor& sensor, const Capture& capture) {
 std::string place(Vec3 p) { return strf("(%.6g, %.6g, %.6g) m", p.x, p.y, p.z); }
 
 // Metres that look like the degrees of the scene's origin.
-std::optional<Doubt> degrees_as_metres(const Scene& scene, const Sensor& sensor, Vec3 at) {
+std::optional<SensorDiagnostic> degrees_as_metres(const Scene& scene, const Sensor& sensor, Vec3 at) {
   const GeodeticOrigin& o = scene.origin;
   constexpr double kNear = 0.5, kSmall = 2;  // degrees; small ones are ordinary metres
   if (!o.given || std::fabs(o.latitude_deg) < kSmall || std::fabs(o.longitude_deg) < kSmall) return std::nullopt;
@@ -33,8 +33,8 @@ std::optional<Doubt> degrees_as_metres(const Scene& scene, const Sensor& sensor,
   const bool straight = near(at.x, o.latitude_deg) && near(at.y, o.longitude_deg),
              swapped = near(at.x, o.longitude_deg) && near(at.y, o.latitude_deg);
   if (!straight && !swapped) return std::nullopt;
-  return Doubt{
-      sensor.name(),
+  return SensorDiagnostic{
+      Dr::degrees_as_metres, sensor.name(),
       strf("it stands at %s east, north and up, which are the numbers of the scene's %s (%.4f, %.4f degrees)",
            place(at).c_str(), straight ? "latitude and longitude" : "longitude and latitude",
            straight ? o.latitude_deg : o.longitude_deg, straight ? o.longitude_deg : o.latitude_deg),
@@ -59,8 +59,8 @@ Vertical look(const Tracer& tracer, Vec3 from, double up, double time) {
 }
 
 // Opaque ground over it, seen from behind, and nothing, or the same solid's other side from behind, below it.
-std::optional<Doubt> under_ground(const Tracer& tracer, const SourceSpecs& written, const Sensor& sensor,
-                                  const SensorRay& ray, const SpectralState& state) {
+std::optional<SensorDiagnostic> under_ground(const Tracer& tracer, const SourceSpecs& written, const Sensor& sensor,
+                                             const SensorRay& ray, const SpectralState& state) {
   const Scene& scene = tracer.scene();
   const Vec3 at = ray.ray.origin;
   const std::string cure = "positions are metres in the scene's frame, up from its origin: raise it";
@@ -70,7 +70,8 @@ std::optional<Doubt> under_ground(const Tracer& tracer, const SourceSpecs& writt
                  ground = written.earth->height.value_or(scene.origin.ellipsoid_height_m + lowest - 1),
                  deep = ground - frame.geodetic_from_enu(at).height_m;
     if (deep > 0)
-      return Doubt{sensor.name(), strf("it stands at %s, %.4g m inside the Earth", place(at).c_str(), deep), cure};
+      return SensorDiagnostic{Dr::sensor_below_ground, sensor.name(),
+                              strf("it stands at %s, %.4g m inside the Earth", place(at).c_str(), deep), cure};
   }
   if (uses_media(scene)) return std::nullopt;  // under water is a place to be
   const Vertical over = look(tracer, at, 1, ray.ray.time);
@@ -81,8 +82,8 @@ std::optional<Doubt> under_ground(const Tracer& tracer, const SourceSpecs& writt
   if (material != kNone && !scene.materials[material].surface.model.empty() &&
       !bake(scene.materials[material].surface, state)->opaque())
     return std::nullopt;
-  return Doubt{
-      sensor.name(),
+  return SensorDiagnostic{
+      Dr::sensor_below_ground, sensor.name(),
       strf("it stands at %s, %.4g m under the surface '%s' above it and with no ground below it", place(at).c_str(),
            over.hit.distance, material == kNone ? "" : scene.materials[material].id.c_str()),
       cure};
@@ -116,7 +117,7 @@ bool passes_by(const std::vector<SensorRay>& rays, const Box3& box) {
   return least > apart + 1e-3;
 }
 
-std::optional<Doubt> looks_past(const Tracer& tracer, const SourceSpecs& written, const Sensor& sensor) {
+std::optional<SensorDiagnostic> looks_past(const Tracer& tracer, const SourceSpecs& written, const Sensor& sensor) {
   if (endless(tracer, written)) return std::nullopt;
   size_t captures = 0;
   for (const Task& task : sensor.tasks()) captures += task.captures.size();
@@ -131,22 +132,23 @@ std::optional<Doubt> looks_past(const Tracer& tracer, const SourceSpecs& written
   if (!down && written.any()) return std::nullopt;  // a picture of the sky
   const SensorRay first = middle_ray(sensor, sensor.tasks()[0].captures[0], 0);
   const Box3& box = tracer.bounds();
-  return Doubt{sensor.name(),
-               strf("it looks past the scene: from %s towards (%.3f, %.3f, %.3f), and the scene lies between %s and %s",
-                    place(first.ray.origin).c_str(), first.ray.direction.x, first.ray.direction.y,
-                    first.ray.direction.z, place(box.low).c_str(), place(box.high).c_str()),
-               "check where it stands and looks: metres east, north and up in the scene's frame"};
+  return SensorDiagnostic{
+      Dr::looks_past_scene, sensor.name(),
+      strf("it looks past the scene: from %s towards (%.3f, %.3f, %.3f), and the scene lies between %s and %s",
+           place(first.ray.origin).c_str(), first.ray.direction.x, first.ray.direction.y, first.ray.direction.z,
+           place(box.low).c_str(), place(box.high).c_str()),
+      "check where it stands and looks: metres east, north and up in the scene's frame"};
 }
 
 }  // namespace
 
-std::vector<Doubt> doubts_of_view(const Tracer& tracer, const SourceSpecs& written, Sensors sensors) {
-  std::vector<Doubt> all;
+std::vector<SensorDiagnostic> diagnose_views(const Tracer& tracer, const SourceSpecs& written, Sensors sensors) {
+  std::vector<SensorDiagnostic> all;
   for (const auto& sensor : sensors) {
     if (sensor->tasks().empty() || sensor->tasks()[0].captures.empty()) continue;
     const Capture& c = sensor->tasks()[0].captures[0];
     const SensorRay ray = middle_ray(*sensor, c, c.problems() / 2);
-    std::optional<Doubt> found = degrees_as_metres(tracer.scene(), *sensor, ray.ray.origin);
+    std::optional<SensorDiagnostic> found = degrees_as_metres(tracer.scene(), *sensor, ray.ray.origin);
     if (!found) found = under_ground(tracer, written, *sensor, ray, sensor->states()[c.state]);
     if (!found) found = looks_past(tracer, written, *sensor);
     if (found) all.push_back(*found);

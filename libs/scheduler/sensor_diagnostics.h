@@ -4,15 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "scheduler/moments.h"
 #include "transport/pipeline.h"
 
 namespace suite {
 
-struct Doubt {
+struct SensorDiagnostic {
+  Dr code;
   std::string sensor, cause, cure;
   bool useless = true;  // else only less exact than it might be
-  std::string text() const { return "sensor '" + sensor + "': " + cause + "; " + cure; }
+  Diagnostic diagnostic() const { return {code, "sensor '" + sensor + "': " + cause + "; " + cure}; }
 };
 
 // What all captures of a sensor came to.
@@ -26,14 +28,14 @@ struct SensorOutcome {
 
 // Before rendering, without geometry: every light of a sensor is below the horizon, or sends nothing in one of its
 // bands; a capture lasts so long that the sun does not stand still.
-std::vector<Doubt> doubts_of_light(const SourceSpecs& written, const Scene& scene, Sensors sensors);
+std::vector<SensorDiagnostic> diagnose_lights(const SourceSpecs& written, const Scene& scene, Sensors sensors);
 
 // Before rendering: the sensor is under the ground, stands where only its latitude and longitude taken as metres would
 // put it, or looks past everything.
-std::vector<Doubt> doubts_of_view(const Tracer& tracer, const SourceSpecs& written, Sensors sensors);
+std::vector<SensorDiagnostic> diagnose_views(const Tracer& tracer, const SourceSpecs& written, Sensors sensors);
 
 // After rendering: nothing was hit, everything is zero, a band is. complete: the outcome counts all paths.
-std::optional<Doubt> doubt_of_outcome(const Sensor& sensor, const SensorOutcome& outcome, bool complete);
+std::optional<SensorDiagnostic> diagnose_outcome(const Sensor& sensor, const SensorOutcome& outcome, bool complete);
 
 // Raises quality_no_information for problems without light whose rays have all the weight 0, as outside the circle of a
 // fisheye lens.

@@ -1,0 +1,152 @@
+"""Diagnostics as a user meets them: their codes in the text, muted, in render.json and in the list; every code is in the
+list of some test. diagnostics_test.py BIN SOURCES FOLDER
+"""
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+BIN, SOURCES, FOLDER = (pathlib.Path(p).resolve() for p in sys.argv[1:4])
+
+SCENE = """scene: 1
+origin: {latitude_deg: 43.1, longitude_deg: -77.6, height_m: 120}
+materials:
+  ground:
+    model: lambert
+    reflectance: {points: [[0.4, 0.2], [0.7, 0.3], [0.75, 0], [14, 0]], outside: hold}
+    temperature: {model: constant, kelvin: 300}
+objects:
+  plane: {plane: {width: 4000, depth: 4000}, material: ground}
+world:
+  - {place: plane}
+"""
+ROOF = """scene: 1
+origin: {latitude_deg: 39.83, longitude_deg: -104.65, height_m: 1650}
+materials:
+  concrete:
+    model: lambert
+    reflectance: {points: [[0.4, 0.2], [0.7, 0.3]], outside: hold}
+    thermal: {thickness_m: 0.2, density_kg_m3: 2300, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.4}
+    temperature: {model: heat}
+objects:
+  yard: {plane: {width: 20, depth: 20}, material: concrete}
+  wall: {box: {x0: -1, y0: -1, z0: 0, x1: 1, y1: 1, z1: 3}, material: concrete}
+world:
+  - {place: yard}
+  - {place: wall}
+"""
+# An engine that is warmer than leaving elements out allows for.
+HOT = ROOF.replace("""objects:
+""", """  engine:
+    model: lambert
+    reflectance: 0.2
+    thermal: {thickness_m: 0.01, density_kg_m3: 2300, specific_heat_j_kg_k: 900, conductivity_w_m_k: 1.4}
+    temperature: {model: heat, source_w_m2: 40000}
+objects:
+  engine: {box: {x0: -1, y0: -1, z0: 0, x1: 1, y1: 1, z1: 1}, material: engine}
+""") + "  - {place: engine, translate: [6, 0, 0]}\n"
+SUN = "sun: {direction: {zenith_deg: 40, azimuth_deg: 90}, irradiance: 1000}\n"
+RED = "[{name: red, center_um: 0.6, fwhm_um: 0.05, shape: rectangular}]"
+WARM = "[{name: warm, center_um: 10, fwhm_um: 1, shape: rectangular}]"
+
+
+def camera(bands=RED, more="", kind="frame_camera", position="[0, -20, 30]"):
+    return (f"sensors:\n  - {{kind: {kind}, name: eye, columns: 8, rows: 6, pitch_um: 100, focal_length_mm: 50, position_m: "
+            f"{position}, look_at_m: [0, 0, 0], paths: 4, bands: {bands}{more}}}\n")
+
+
+def heat(keys=", paths: 8", span="", elements=12):
+    return ("epoch: 2001-07-14T07:00:00Z\nweather: {file: denver.epw, year: 2001}\n"
+            f"heat: {{elements: {elements}, step_s: 1800{keys}}}\n" + camera(WARM, ", time_s: 43200" + span))
+
+
+class Diagnostics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(FOLDER, ignore_errors=True)
+        FOLDER.mkdir(parents=True)
+        shutil.copy(SOURCES / "sample_scenes/summer_street/denver_july.epw", FOLDER / "denver.epw")
+        for name, text in (("scene", SCENE), ("cold", SCENE.replace("    temperature: {model: constant, kelvin: 300}\n", "")), ("roof", ROOF), ("hot", HOT)):
+            (FOLDER / f"{name}.yaml").write_text(text)
+            cls.run_program("scene-prep", f"{name}.yaml", "-o", f"{name}.h5", "-q")
+
+    @classmethod
+    def run_program(cls, program, *arguments):
+        done = subprocess.run([BIN / program, *arguments], cwd=FOLDER, capture_output=True, text=True, timeout=120)
+        if done.returncode:
+            raise AssertionError(done.stderr)
+        return done.stderr if program == "dirsig-render" and "--list-diagnostics" not in arguments else done.stdout
+
+    def said(self, text, *options, scene="scene", out="out"):
+        (FOLDER / "sim.yaml").write_text(f"scene: {scene}.h5\n{text}")
+        return self.run_program("dirsig-render", "sim.yaml", "-o", out, *options)
+
+    def expect(self, code, text, *options, severity="warning", times=1, **where):
+        said = self.said(text, *options, **where)
+        self.assertEqual(said.count(f"[{code}]"), times, said)
+        line = next(line for line in said.splitlines() if f"[{code}]" in line)
+        self.assertEqual(line.startswith("warning: "), severity == "warning", line)
+        return said
+
+    def test_each_is_reported_with_its_code(self):
+        self.expect("DR105", SUN.replace("{zenith_deg: 40, azimuth_deg: 90}", "{time_utc: '2026-06-21T17:00:00Z'}") +
+                    camera(more=", integration_time_s: 1800"))
+        self.expect("DR111", scene="cold", text=SUN + camera("[{name: red, center_um: 0.6, fwhm_um: 0.05, shape: rectangular}, "
+                                          "{name: black, center_um: 1.6, fwhm_um: 0.05, shape: rectangular}]"))
+        self.expect("DR112", camera(WARM))
+        self.expect("DR501", "sun: {direction: {zenith_deg: 40, azimuth_deg: 90}}\natmosphere: {profile: midlatitude_summer}\n" +
+                    camera("[{name: water, center_um: 0.94, fwhm_um: 0.01, shape: rectangular}]", ", spectral_step_um: 0.02"))
+        self.expect("DR502", SUN + camera("[{name: edge, center_um: 0.72, fwhm_um: 0.1, shape: rectangular}]",
+                                          ", spectral_step_um: 0.1, spectral_error: 0"))
+
+    def test_of_heat(self):
+        self.expect("DR601", heat(", target_k: 0.001"), scene="roof")
+        self.expect("DR602", heat(", paths: 8, leave_out_k: 0.01", elements=100), scene="hot")
+        self.expect("DR603", heat(), scene="roof", out="found")  # what lies beyond the curves
+        self.expect("DR604", heat(span=", integration_time_s: 60"), "--heat", "found/heat.h5", scene="roof")
+        self.expect("DR605", heat())
+
+    def test_of_imports(self):
+        shutil.copytree(SOURCES / "tests/data/dirsig", FOLDER / "dirsig")
+        asked = json.loads((FOLDER / "dirsig/plane.jsim").read_text())
+        asked[0] |= {f"not_known_{n}": n for n in range(20)}
+        (FOLDER / "dirsig/more.jsim").write_text(json.dumps(asked))
+        said = self.run_program("dirsig-render", "dirsig/more.jsim", "-o", "imported")
+        self.assertGreaterEqual(said.count("[DR701]"), 1, said)
+        self.assertEqual(said.count("[DR702]"), 1, said)
+
+    def test_of_pages(self):
+        self.said(SUN + camera(), out="one")
+        self.expect("DR806", SUN + camera().replace("columns: 8, rows: 6", "columns: 200, rows: 200"), "--view", "p.html",
+                    "--view-size", "256KiB", out="two")
+        shutil.copy(FOLDER / "one/eye_material.img", FOLDER / "two/eye_material.img")
+        shutil.copy(FOLDER / "one/eye_material.img.hdr", FOLDER / "two/eye_material.img.hdr")
+        self.assertIn("[DR805]", self.run_program("dirsig-render", "-o", "two", "--view", "q.html"))
+
+    def test_muted_ones_stay_in_the_log(self):
+        self.assertNotIn("[DR112]", self.said(camera(WARM), "--mute", "DR112", out="muted"))
+        kept = [d for d in json.loads((FOLDER / "muted/render.json").read_text())["diagnostics"] if d["code"] == "DR112"]
+        self.assertEqual(len(kept), 1)
+        self.assertTrue(kept[0]["muted"])
+        self.assertEqual(kept[0]["severity"], "warning")
+        self.assertTrue(kept[0]["text"] and kept[0]["condition"] and kept[0]["cure"])
+        done = subprocess.run([BIN / "dirsig-render", "sim.yaml", "-o", "x", "--mute", "DR113x"], cwd=FOLDER, capture_output=True,
+                              text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("unknown diagnostic code 'DR113x'", done.stderr)
+        self.assertIn("DR113", done.stderr)
+
+    def test_every_code_is_listed_documented_and_provoked(self):
+        listed = re.findall(r"^(DR\d+)  ", self.run_program("dirsig-render", "--list-diagnostics"), re.M)
+        self.assertEqual(len(set(listed)), len(listed))
+        header = (SOURCES / "libs/base/diagnostics.h").read_text()
+        self.assertEqual(listed, [f"DR{n}" for n in re.findall(r"^  \w+ = (\d+),", header, re.M)])
+        tests = "\n".join(p.read_text() for p in (SOURCES / "tests").rglob("*_test.*"))
+        self.assertEqual([code for code in listed if not re.search(rf"[\[\"]{code}\\?[\]\"]", tests)], [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
